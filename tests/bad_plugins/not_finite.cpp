@@ -60,6 +60,7 @@ class Kernel final : public palpate::Kernel, Spoilt {
   void covariance(const palpate::PointsView& a, const palpate::PointsView& b, palpate::MatrixOut out) const override {
     fill(a, b, out);
     spoil("covariance", out);
+    if (length_ > 1e12) spoil("covariance of a far fit", out);
   }
   void variance(const palpate::PointsView&, palpate::VectorOut out) const override {
     out.setOnes();
@@ -75,7 +76,7 @@ class Kernel final : public palpate::Kernel, Spoilt {
     return {{"length_scale", number("parameters", length_), palpate::Unit::metre}};
   }
   bool differentiable() const override { return true; }
-  void set_parameters(const palpate::VectorView& values) override { length_ = values(0); }
+  void set_parameters(const palpate::VectorView& values) override { length_ = number("set_parameters", values(0)); }
   void derivatives(const palpate::PointsView& a, const palpate::PointsView& b, palpate::MatrixOut value,
                    palpate::MatrixOut slopes) const override {
     fill(a, b, value);
@@ -135,6 +136,7 @@ class Fitting final : public palpate::Fitting, Spoilt {
     palpate::FitSummary out;
     out.changed = true;
     out.objective = number("fit: objective", 0.0);
+    if (is("fit: far")) problem.kernel.set_parameters(Eigen::VectorXd::Constant(1, 1e13));
     if (is("fit: kernel")) problem.kernel.set_parameters(Eigen::VectorXd::Constant(1, bad()));
     return out;
   }

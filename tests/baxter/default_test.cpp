@@ -99,7 +99,7 @@ palpate::test::Finished on_the_arm(const std::vector<std::string>& words) {
 }
 
 TEST(DefaultOnTheArm, EndsAsNearToTheHeightsAsInTheSimulatorWithTheSameNoise) {
-  if (palpate::test::kSanitized) GTEST_SKIP() << "release makes these taps";
+  if (palpate::test::kSanitized) GTEST_SKIP() << "many descents, too slow under sanitizers: release makes them";
   const int taps = at_length() ? 40 : 20;
   double on_arm = 0.0;
   double simulated = 0.0;
@@ -131,7 +131,7 @@ double mean_error(const ResolvedConfig& config, const std::vector<TapRecord>& ta
 }
 
 TEST(DefaultOnTheArm, IsSimulatedByWhatCalibrateMakesOfFortyOfItsTaps) {
-  if (palpate::test::kSanitized) GTEST_SKIP() << "release makes these taps";
+  if (palpate::test::kSanitized) GTEST_SKIP() << "many descents, too slow under sanitizers: release makes them";
   const auto of_block = words(3, 40, {"scene=block", "acquisition=random", "scene.effects=" + kEffects + "}"});
   auto arm = on_the_arm(of_block);
   Recording recording{"the arm", arm.config, {}, {}, {}};

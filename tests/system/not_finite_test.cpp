@@ -57,6 +57,7 @@ TEST_P(NotFinite, EndsTheRunWithOneLineThatNamesPluginAndFunction) {
 }
 
 const Words kCeres{"fitting.type=ceres"};
+const Words kFarFit{"fitting.type=not_finite", "fitting.spoils='fit: far'", "posterior=dense"};
 
 INSTANTIATE_TEST_SUITE_P(
     By, NotFinite,
@@ -68,6 +69,8 @@ INSTANTIATE_TEST_SUITE_P(
             Spoilt{"kernel", "derivatives", "derivatives() gave", kCeres},
             Spoilt{"kernel", "covariance", "covariance() gave", {"posterior=dense", "threads=3"}},
             Spoilt{"kernel", "covariance", "covariance() gave", {}, kAnySide},
+            Spoilt{"kernel", "set_parameters", "() gave", kCeres},
+            Spoilt{"kernel", "covariance of a far fit", "covariance() gave", kFarFit},
             Spoilt{"acquisition", "score", "score that is not"},
             Spoilt{"acquisition", "prior_scale", "prior_scale() gave"},
             Spoilt{"acquisition", "score_approaches", "score that is not", {}, kAnySide},

@@ -42,6 +42,42 @@ TEST_P(Doubted, MapsAreAtEachPlaceWhatItsOwnTestimonySays) {
   EXPECT_GT(variance.maxCoeff(), 2.0 * variance.minCoeff()) << "it is better known where taps are";
 }
 
+/// Taps of a process with so little noise that the forms need jitter.
+struct ExactTaps {
+  Candidates candidates = lattice_of(5, 5);
+  std::shared_ptr<Kernel> kernel;
+  test::Process process;
+  ExactTaps(const char* length_scale, double rough, double noise = 1e-9)
+      : kernel(test::make<Kernel>(test::shared_host(), "rbf", length_scale)),
+        process(kernel, ProcessSettings{0.1, noise, 0.0, 1.0}, candidates) {
+    for (int i = 0; i < 24; ++i)
+      process.add({0.01 + 0.0137 * (i % 13), 0.012 + 0.011 * (i % 11)}, 0.05 + (i % 2 == 0 ? rough : -rough));
+  }
+};
+
+TEST(DoubtReport, IsOfTheJudgementThatIsUsedAndEndsWithIt) {
+  const Eigen::VectorXd suspicion = Eigen::VectorXd::Constant(24, 0.03);
+  const ExactTaps flat("{length_scale: 3 cm}", 0.0), rough("{length_scale: 50 cm}", 0.01),
+      without("{length_scale: 3 cm}", 0.0, 0.0);
+  DoubtedSurface surface(flat.candidates);
+  surface.judge(flat.process, suspicion);
+  ASSERT_TRUE(surface.judged());
+  EXPECT_GT(surface.report().jitter, 0.0);
+  const int raised = surface.report().raised;
+  EXPECT_GT(raised, 0);
+  surface.judge(flat.process, suspicion);
+  EXPECT_EQ(surface.report().raised, 2 * raised) << "every factorisation counts";
+  surface.judge(without.process, suspicion);
+  EXPECT_FALSE(surface.judged());
+  EXPECT_EQ(surface.report().jitter, 0.0) << "nothing was factorised";
+
+  DoubtedSurface other(rough.candidates);
+  other.judge(rough.process, suspicion);
+  ASSERT_FALSE(other.judged()) << "a rough arm explains the heights";
+  EXPECT_EQ(other.report().raised, 0) << "the judgement of the tiny noise is not used";
+  EXPECT_EQ(other.report().jitter, 0.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(After, Doubted, testing::Values(1, 2, 7, 24), testing::PrintToStringParamName());
 
 }  // namespace

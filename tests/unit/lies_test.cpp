@@ -187,6 +187,20 @@ TEST(LikeliestLies, OfACovarianceThatIsNoneSetTapsAsideWhichKeepTheirSuspicion) 
   EXPECT_TRUE(got.doubt.allFinite() && got.mean.allFinite() && got.variance.allFinite());
 }
 
+// Which of several signals comes first means nothing: rows are set aside for each by itself.
+TEST(LikeliestLies, DoNotDependOnTheOrderOfSignalsOfWhichSomeSetTapsAside) {
+  Trial trial(6, 1.0, true, 5);
+  trial.testimony.covariance(2, 4) = trial.testimony.covariance(4, 2) = 7.0;
+  trial.testimony.signals = {0.005, 1.0};
+  const Judgement one = judge(trial.testimony);
+  ASSERT_GT(one.report.set_aside, 0);
+  trial.testimony.signals = {0.005};
+  ASSERT_EQ(judge(trial.testimony).report.set_aside, 0)
+      << "the noise is larger than what is wrong with so small a signal";
+  trial.testimony.signals = {1.0, 0.005};
+  EXPECT_LT((judge(trial.testimony).doubt - one.doubt).lpNorm<Eigen::Infinity>(), 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(OfSoMany, Lies, testing::Values(1, 2, 5, 8));
 /// 4096 sets, four times over.
 INSTANTIATE_TEST_SUITE_P(OfTwelve, Lies, testing::ValuesIn(brief() ? std::vector<int>() : std::vector<int>{12}));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What a program may answer, line by line, and what becomes of it.
+#include "answers/answer.hpp"
 #include "unit/process_backend.hpp"
+
+#include <cmath>
 
 namespace palpate::test {
 namespace {
@@ -107,6 +110,21 @@ std::vector<Odd> odd_answers() {
 
 INSTANTIATE_TEST_SUITE_P(Every, OddAnswer, testing::ValuesIn(odd_answers()),
                          [](const auto& one) { return one.param.name; });
+
+TEST(Answer, HasTheSameBoundsForItsPeakAsForItsForce) {
+  Contact contact{Outcome::contact, 0.05, 8.0, 1.0, {}};
+  EXPECT_FALSE(find_fault(contact, kAnyArm));
+  for (const double peak : {0.0, 8.0, 1000.0}) {
+    contact.peak = peak;
+    EXPECT_FALSE(find_fault(contact, kAnyArm)) << peak;
+  }
+  for (const double peak : {-1.0, 1000.1, 1e300, HUGE_VAL, std::nan("")}) {
+    contact.peak = peak;
+    const auto fault = find_fault(contact, kAnyArm);
+    ASSERT_TRUE(fault) << peak;
+    EXPECT_THAT(fault->reason, testing::HasSubstr("N is outside 0 to 1000 N"));
+  }
+}
 
 }  // namespace
 }  // namespace palpate::test

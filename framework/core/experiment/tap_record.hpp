@@ -129,12 +129,14 @@ struct RunResult : ModelState {
     if (tap.contact.outcome != Outcome::contact) ++(tap.is_missed() ? missed_taps : failed_taps);
   }
 
-  /// Adds what rounding made necessary in the factorisations of one model; jitter in the square of its unit.
+  /// Adds what rounding made necessary in the factorisations of one model; jitter in the square of its unit. Models are
+  /// of the same taps: one that several set aside is one.
   void count(const FactorReport& factors) {
     jitter_max = std::max(jitter_max, factors.jitter);
     interventions["jitter"] += factors.raised;
     interventions["pivoted"] += factors.pivoted;
-    interventions["set_aside"] += factors.set_aside;
+    int& set_aside = interventions["set_aside"];
+    set_aside = std::max(set_aside, factors.set_aside);
   }
 
   std::string stop_reason;

@@ -154,12 +154,19 @@ RunResult Watch::result(TapBelief& belief) {
   } else if (belief.surface_process()) {
     belief.build(Quantity::height);  // what is told of a process is of its maps, too
   }
+  std::vector<const Process*> counted;  // one process may have several outputs
   const auto take = [&](const TapBelief::Output& one, std::optional<ProcessState>& state) {
     if (!one) return;
     const Process& process = *one.process;
     state = state_of(one);
-    out.count(FactorReport{state->jitter, process.jitter_raised(), process.pivoted(), process.set_aside()});
-    out.interventions["variance_clamped"] += process.variances_clamped();
+    FactorReport factors{state->jitter, process.jitter_raised(), process.pivoted(), process.set_aside()};
+    if (std::find(counted.begin(), counted.end(), &process) != counted.end()) {
+      factors.raised = factors.pivoted = 0;
+    } else {
+      counted.push_back(&process);
+      out.interventions["variance_clamped"] += process.variances_clamped();
+    }
+    out.count(factors);
   };
   take(belief.height_process(), out.height_process);
   take(belief.weight_process(), out.weight_process);
@@ -174,9 +181,14 @@ RunResult Watch::result(TapBelief& belief) {
   if (const Footprint* footprint = belief.footprint()) {
     out.footprint = state_of(*footprint);
     // What a footprint factorises counts as what the processes do, by the names of its numbers.
+    FactorReport factors;
     for (const FootprintNumber& one : out.footprint->numbers) {
-      if (one.name == "jitter" || one.name == "set_aside") out.interventions[one.name] += static_cast<int>(one.value);
+      if (one.name == "jitter") factors.jitter = one.value;
+      if (one.name == "jitter_raised") factors.raised = static_cast<int>(one.value);
+      if (one.name == "pivoted") factors.pivoted = static_cast<int>(one.value);
+      if (one.name == "set_aside") factors.set_aside = static_cast<int>(one.value);
     }
+    out.count(factors);
   }
   out.interventions["fit_failed"] = belief.failed_fits();
   return out;

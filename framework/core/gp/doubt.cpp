@@ -28,6 +28,8 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
   const ProcessSettings& settings = process.settings();
   judged_ = process.size() > 0 && settings.noise > 0.0;
   judgement_.doubt = suspicion;
+  report_.jitter = 0.0;
+  report_.set_aside = 0;
   if (!judged_) return;
   Testimony testimony;
   const auto taps = static_cast<Eigen::Index>(process.size());
@@ -50,14 +52,12 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
     for (const double share : kRough) testimony.noises.push_back(share * settings.signal);
     const Judgement rough = palpate::judge(testimony);
     judged_ = !(rough.log_evidence > judgement_.log_evidence + kStrong);
-    if (!judged_) judgement_.doubt = rough.doubt;
+    if (!judged_) {
+      judgement_.doubt = rough.doubt;
+      judgement_.report = rough.report;
+    }
   }
-  // Every court of every tap has the same need: it is counted where it begins.
-  const FactorReport& now = judgement_.report;
-  report_.raised += now.jitter > 0.0 && report_.jitter == 0.0 ? 1 : 0;
-  report_.pivoted += now.pivoted > 0 && report_.set_aside == 0 ? 1 : 0;
-  report_.jitter = now.jitter;
-  report_.set_aside = now.set_aside;
+  report_.add(judgement_.report);
 }
 
 void DoubtedSurface::forget() {

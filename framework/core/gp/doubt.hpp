@@ -36,8 +36,8 @@ class DoubtedSurface {
   /// Whether any were: else the surface is that of the process.
   bool judged() const { return judged_; }
 
-  /// What rounding made necessary in all judgements so far: the jitter of the last, in the square of the targets' unit,
-  /// how often it came to be needed, and how many taps are set aside now.
+  /// What rounding made necessary in the judgements so far, as far as they were used: the jitter of the last, in the
+  /// square of the targets' unit, the factorisations of all that needed it, and how many taps are set aside now.
   const FactorReport& report() const { return report_; }
   /// How many variances of the last map rounding has taken below 0; they read as 0.
   int variances_clamped() const { return clamped_; }

@@ -272,13 +272,6 @@ class Squares {
   Eigen::Index count_ = 0;
 };
 
-/// What the courts of one judgement have to tell: they factorise the same rows.
-void add(FactorReport& all, const FactorReport& one) {
-  const int set_aside = std::max(all.set_aside, one.set_aside);
-  all.add(one);
-  all.set_aside = set_aside;
-}
-
 }  // namespace
 
 Judgement judge(const Testimony& testimony, const Effort& effort) {
@@ -292,7 +285,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
     for (const double noise : testimony.noises) {
       sets.emplace_back(courts.emplace_back(testimony, signal, noise), effort);
       most = std::max(most, sets.back().most());
-      add(out.report, courts.back().report());
+      out.report.add(courts.back().report());
     }
   }
   const Eigen::Index n = testimony.heights.size();
@@ -346,6 +339,8 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
         squares.next() << 0.0, std::sqrt(weight) * sets[i].column(rest);
         squares.take();
       }
+      // Nothing was found about those that were set aside.
+      for (const int row : court.set_aside()) out.doubt(row) += all * testimony.suspicion(row);
       of_signal += all;
       if (all > 0.0) squares.sum().bottomRightCorner(n, n).triangularView<Eigen::Lower>() -= all * court.inverse();
     }
@@ -367,8 +362,6 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
     }
   }
   out.doubt /= sum;
-  // Nothing was found about those that were set aside.
-  for (const int row : courts.front().set_aside()) out.doubt(row) = testimony.suspicion(row);
   out.a /= sum;
   out.b /= sum;
   out.s2 /= sum;

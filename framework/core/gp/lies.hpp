@@ -64,8 +64,9 @@ struct Judgement {
 };
 
 /// Sums over the sets. A noise that is below what the forms take (kInverseNoise) is raised to that, which the report
-/// counts as jitter. Rows that no jitter makes independent of the others are set aside: they keep their suspicion and
-/// tell nothing. All numbers are finite where heights and covariances are, and far from overflow. Never throws.
+/// counts as jitter. Rows that no jitter makes independent of the others are set aside, for each signal and noise by
+/// itself: there they keep their suspicion and tell nothing. All numbers are finite where heights and covariances are,
+/// and far from overflow. Never throws.
 Judgement judge(const Testimony& testimony, const Effort& effort = {});
 
 }  // namespace palpate

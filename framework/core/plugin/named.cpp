@@ -139,6 +139,9 @@ class NamedKernel final : public Named<Kernel> {
     call(&Kernel::set_parameters, values);
     reasonable_ = (values.array() > kLeast && values.array() < kMost).all();
   }
+  /// The hyperparameters stay, a fit has chosen them: from now on a number that is not finite is refused, whatever they
+  /// are.
+  void settle() { reasonable_ = true; }
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
     call(&Kernel::derivatives, a, b, value, slopes);
     require("derivatives()", value);
@@ -197,6 +200,7 @@ class NamedFitting final : public Named<Fitting> {
       require_finite("fit()", one.mean);
     }
     for (const KernelParameter& one : problem.kernel.parameters()) require_finite("fit()", one.value);
+    if (auto* const kernel = dynamic_cast<NamedKernel*>(&problem.kernel)) kernel->settle();
     return out;
   }
 };

@@ -458,9 +458,13 @@ FieldList<Summary> make_summary_list() {
            std::pair{"height_refused",
                      "taps of which the backend reported no finite number, or, from any side, an end that is not on "
                      "the way of the tool"},
-           std::pair{"jitter", "how often it was raised"},
-           std::pair{"pivoted", "how often no jitter helped and the covariance was factorised with pivoting"},
-           std::pair{"set_aside", "taps that stay out of the final models because the others tell all about them"},
+           std::pair{"jitter", "how often factorisations raised it, those of each tap anew"},
+           std::pair{
+               "pivoted",
+               "factorisations, those of each tap anew, in which no jitter helped and rows were chosen by pivoting"},
+           std::pair{
+               "set_aside",
+               "taps that stay out of a final model because the others tell all about them; the most of any model"},
            std::pair{"variance_clamped",
                      "candidates of the final models whose variance rounding took out of [0, prior]; "
                      "they read as its ends"},

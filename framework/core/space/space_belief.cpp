@@ -255,10 +255,7 @@ void SpaceBelief::look_for_reductions() {
 FactorReport SpaceBelief::factors() const {
   FactorReport out = skin_.report();
   out.jitter *= skin_.deviation() * skin_.deviation();
-  // A contact that does not enter is counted once.
-  const int set_aside = std::max(out.set_aside, reduced_.set_aside);
   out.add(reduced_);
-  out.set_aside = set_aside;
   return out;
 }
 

@@ -60,6 +60,10 @@ std::optional<AnswerFault> find_fault(const Contact& answer, const HeightBounds&
     return AnswerFault{fmt::format("force {:.6g} N is outside 0 to {:g} N", answer.force, kMostForce),
                        "give the size of the push in newtons (are these millinewtons?)"};
   }
+  if (answer.peak && !is_within(*answer.peak, 0.0, kMostForce)) {
+    return AnswerFault{fmt::format("peak force {:.6g} N is outside 0 to {:g} N", *answer.peak, kMostForce),
+                       "give the largest push in newtons (are these millinewtons?)"};
+  }
   if (!is_within(answer.seconds, 0.0, kMostSeconds)) {
     return AnswerFault{fmt::format("seconds {:.6g} is outside 0 to {:.0f}", answer.seconds, kMostSeconds),
                        "give the time of the tap in seconds (are these milliseconds?)"};

@@ -32,7 +32,7 @@ struct AnswerFault {
 };
 
 /// Returns the first value of an answer that is out of its bounds or not a finite number, nullopt if there is none. The
-/// height of a contact lies within `bounds`, the force within 0 to 1000 N, the seconds within 0 to 86400, a day.
+/// height of a contact lies within `bounds`, force and peak within 0 to 1000 N, the seconds within 0 to 86400, a day.
 std::optional<AnswerFault> find_fault(const Contact& answer, const HeightBounds& bounds);
 
 /// Returns the outcome of this name. Returns nullopt for a name that no answer may have, and so for `unknown`, which

@@ -51,19 +51,20 @@ inline bool is_regular(double square, Eigen::Index row, double diagonal) {
 /// pivot is not above rounding, or not a number, are left out.
 std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 
-/// What rounding made necessary in the factorisations of one owner: it goes into the record.
+/// What rounding made necessary in the factorisations of one owner: it goes into the record. What is factorised anew at
+/// every tap is counted anew at every tap.
 struct FactorReport {
   double jitter = 0.0;  ///< variance on the diagonal beside the noise, in the unit of the matrix; as it is now
   int raised = 0;       ///< how often that was raised
   int pivoted = 0;      ///< how often no jitter helped, and independent rows were looked for
   int set_aside = 0;    ///< rows that do not enter now
 
-  /// Adds the counts of another owner, and takes the larger jitter.
+  /// Adds the counts of another owner of the same rows, and takes the larger jitter and the more rows set aside.
   void add(const FactorReport& other) {
     jitter = std::max(jitter, other.jitter);
     raised += other.raised;
     pivoted += other.pivoted;
-    set_aside += other.set_aside;
+    set_aside = std::max(set_aside, other.set_aside);
   }
 };
 

@@ -99,9 +99,12 @@ class Classifier final : public Footprint {
   std::vector<FootprintNumber> numbers() const override {
     std::optional<Laplace> now;
     const Laplace& posterior = posterior_ ? *posterior_ : now.emplace(*kernel_, settings_, points_, on_);
+    const FactorReport& factors = posterior.report();
     return {{"log_evidence", posterior.log_evidence()},
-            {"jitter", static_cast<double>(posterior.report().raised)},
-            {"set_aside", static_cast<double>(posterior.report().set_aside)}};
+            {"jitter", factors.jitter},
+            {"jitter_raised", static_cast<double>(factors.raised)},
+            {"pivoted", static_cast<double>(factors.pivoted)},
+            {"set_aside", static_cast<double>(factors.set_aside)}};
   }
 
  private:

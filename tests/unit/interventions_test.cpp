@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// What a run counts of the factorisations of its models: each once, and jitter is a variance, never a count.
+#include "support/runs.hpp"
+#include "support/testing.hpp"
+
+namespace palpate::test {
+namespace {
+
+TEST(Interventions, CountATapThatSeveralModelsSetAsideOnce) {
+  RunResult result;
+  result.count(FactorReport{1e-9, 2, 1, 3});
+  result.count(FactorReport{1e-6, 1, 4, 2});
+  EXPECT_EQ(result.interventions.at("jitter"), 3);
+  EXPECT_EQ(result.interventions.at("pivoted"), 5);
+  EXPECT_EQ(result.interventions.at("set_aside"), 3);
+  EXPECT_EQ(result.jitter_max, 1e-6);
+}
+
+TEST(Interventions, CountAProcessOfHeightsAndLabelsOnce) {
+  const std::vector<Contact> answers(6, contact_at(0.05));
+  Finished run("default.yaml",
+               {"weight.hyperparameters=shared", "surface=single", "height.lies=none", "footprint=regression",
+                "height.noise=0mm", "candidates.count=1", "repeat=allow", "taps=6"},
+               scripted(answers));
+  run.experiment.ask(Quantity::weight | Quantity::height);
+  const RunResult result = run.experiment.result();
+  const Process* const process = run.experiment.belief().height_process().process;
+  ASSERT_NE(process, nullptr);
+  ASSERT_EQ(run.experiment.belief().weight_process().process, process);
+  ASSERT_GT(process->jitter_raised(), 0);
+  EXPECT_EQ(result.interventions.at("jitter"), process->jitter_raised());
+}
+
+/// A footprint that factorises something.
+struct Factorising final : Footprint {
+  void add(const Touch&) override {}
+  void probability(const PointsView&, VectorOut out) override { out.setConstant(0.5); }
+  std::vector<FootprintNumber> numbers() const override {
+    return {{"jitter", 0.25}, {"jitter_raised", 3.0}, {"pivoted", 2.0}, {"set_aside", 1.0}};
+  }
+};
+
+TEST(Interventions, TakeTheNumbersOfAFootprintByTheirNames) {
+  const Instead<Footprint> plugins(std::make_shared<Factorising>());
+  Finished run("default.yaml", {"taps=4"}, scripted(std::vector<Contact>(4, contact_at(0.05))), plugins);
+  const RunResult result = run.experiment.result();
+  EXPECT_EQ(result.interventions.at("jitter"), 3);
+  EXPECT_EQ(result.interventions.at("pivoted"), 2);
+  EXPECT_EQ(result.interventions.at("set_aside"), 1);
+  EXPECT_EQ(result.jitter_max, 0.25);
+}
+
+/// No covariance: all pairs vary more with each other than by themselves.
+struct Impossible final : Kernel {
+  void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      for (Eigen::Index j = 0; j < b.rows(); ++j) out(i, j) = a.row(i) == b.row(j) ? 1.0 : 3.0;
+    }
+  }
+  void variance(const PointsView&, VectorOut out) const override { out.setOnes(); }
+  std::vector<KernelParameter> parameters() const override { return {}; }
+};
+
+TEST(Interventions, OfTheClassifierTellJitterAsAVarianceAndItsCountBeside) {
+  const Instead<Kernel> plugins(std::make_shared<Impossible>());
+  Finished run("default.yaml", {"footprint=classifier", "posterior=dense", "acquisition=random", "taps=6"},
+               scripted({contact_at(0.05), contact_at(0.0), contact_at(0.05), contact_at(0.05)}), plugins);
+  run.experiment.ask(Quantity::probability | Quantity::height);
+  const RunResult result = run.experiment.result();
+  ASSERT_TRUE(result.footprint);
+  const auto number = [&](const std::string& name) {
+    for (const FootprintNumber& one : result.footprint->numbers)
+      if (one.name == name) return one.value;
+    return std::nan("");
+  };
+  EXPECT_GE(number("jitter_raised"), 1.0);
+  EXPECT_GT(number("jitter"), 0.0);
+  EXPECT_LT(number("jitter"), 1e-9) << "nobody sees that";
+}
+
+}  // namespace
+}  // namespace palpate::test
