@@ -18,6 +18,7 @@ using test::kHover;
 using test::kOnDesk;
 using testing::HasSubstr;
 using testing::StartsWith;
+using MotionType = tapping::MotionOptions::Type;
 
 /// An arm with springs over a hard desk, and what came of its taps.
 class HardDesk {
@@ -82,6 +83,23 @@ TEST(ACaughtTool, IsHeldWhereItIsAndToldAndNotPulledAgainstTheReflex) {
       bench.wait(3.0);
       EXPECT_EQ(bench.robot.commands.size(), sent);
       EXPECT_LT(std::abs(bench.robot.body.pressing()), Body::kReflex) << where;
+    }
+  }
+}
+
+TEST(ACaughtTool, IsNoticedInAFirstTapBeforeTheReflexWithAnyMotionAndSign) {
+  BaxterOptions options = fake_options();
+  for (const auto type : {MotionType::paper, MotionType::two_stage, MotionType::continuous}) {
+    for (const auto sign : {BaxterOptions::ForceSign::negative, BaxterOptions::ForceSign::learn}) {
+      for (const double friction : {0.0, 0.2}) {  // Nm
+        options.motion.type = type;
+        options.force_sign = sign;
+        HardDesk bench(friction, options);
+        bench.robot.body.inject({FaultKind::caught, 3000.0, {}});
+        EXPECT_THAT(bench.tap(kOnDesk).reason, StartsWith("something holds the tool: it pulls with "));
+        EXPECT_EQ(bench.reflexes, 0) << static_cast<int>(type) << ", " << friction << " Nm";
+        EXPECT_LT(bench.pull, Body::kReflex);
+      }
     }
   }
 }

@@ -258,7 +258,7 @@ TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
   ASSERT_TRUE(terminal.shows("Enter taps, q ends: ")) << terminal.screen();
   EXPECT_THAT(terminal.screen(), HasSubstr("tap 1 of 2 at ("));
   EXPECT_THAT(terminal.screen(), HasSubstr("stop at 5.0 N above the tare: a contact\r\n      press with at most "));
-  EXPECT_THAT(terminal.screen(), HasSubstr("\r\n      stop whatever it does when the force changes by 14.0 N upwards"));
+  EXPECT_THAT(terminal.screen(), HasSubstr("\r\n      stop on the way down when the force changes by 14.0 N upwards"));
   EXPECT_EQ(commanded(lab), 0);
   EXPECT_EQ(text_of(run_of(lab) / "taps.jsonl"), "") << "no tap is announced";
   terminal.type("\n");

@@ -250,16 +250,29 @@ TapTrace record_caught() {
   return out;
 }
 
-void save(const TapTrace& trace, const std::string& name) {
+/// The file of that name holds what was recorded now, as far as its digits go; with PALPATE_WRITE_TRACES it is written.
+void expect_stored(const TapTrace& trace, const std::string& name) {
   if (const char* folder = std::getenv("PALPATE_WRITE_TRACES")) {
-    write_trace(trace, std::filesystem::path(folder) / (name + ".csv"));
+    return write_trace(trace, std::filesystem::path(folder) / (name + ".csv"));
+  }
+  SCOPED_TRACE(name + ".csv, to be recorded again if the robot of the tests has changed");
+  const TapTrace stored =
+      palpate::test::read_trace(palpate::test::source_folder() / "tests/data/guarded_taps" / (name + ".csv"));
+  EXPECT_EQ(stored.verdict, trace.verdict);
+  EXPECT_NEAR(stored.not_before, trace.not_before, 0.011);
+  EXPECT_NEAR(stored.by, trace.by, 0.011);
+  ASSERT_EQ(stored.rows.size(), trace.rows.size());
+  for (std::size_t i = 0; i < trace.rows.size(); ++i) {
+    ASSERT_NEAR(stored.rows[i].height, trace.rows[i].height, 2e-5) << "row " << i;
+    ASSERT_NEAR(stored.rows[i].force, trace.rows[i].force, 0.02) << "row " << i;
+    ASSERT_EQ(stored.rows[i].sender, trace.rows[i].sender) << "row " << i;
   }
 }
 
 TEST(TapTraces, WithAFaultAreStoppedByTheDriverInTime) {
-  save(record_frozen(), "frozen");
-  save(record_second_sender(), "second_sender");
-  save(record_caught(), "caught");
+  expect_stored(record_frozen(), "frozen");
+  expect_stored(record_second_sender(), "second_sender");
+  expect_stored(record_caught(), "caught");
   int faults = 0;
   for (const std::filesystem::path& file : palpate::test::recorded_traces()) {
     const TapTrace trace = palpate::test::read_trace(file);
@@ -275,8 +288,8 @@ TEST(TapTraces, WithAFaultAreStoppedByTheDriverInTime) {
 TEST(TapTraces, OfTheRobotOfTheTestsAreDecidedAsTheTruthSays) {
   for (const Case& one : cases()) {
     const TapTrace trace = record(one);
-    save(trace, one.name);
     SCOPED_TRACE(one.what);
+    expect_stored(trace, one.name);
     const auto motion = palpate::test::filled<tapping::MotionOptions>(trace.motion);
     tapping::GuardedTap tap(motion, tapping::plan_descent(motion, 0.0, {}), tapping::GuardedTap::Arm::real);
     double stopped = -1.0;

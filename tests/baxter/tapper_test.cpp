@@ -127,7 +127,7 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
           "descend at 0.4 cm/s to at most 2.0 cm below the desk", "stop at 5.0 N above the tare: a contact",
           "press with at most about 13.5 N on something rigid: the arm's springs have 4.5 kN/m there, and 535 ms "
           "pass from 5.0 N to standstill, so that motion.speed is not reached",
-          "stop whatever it does when the force changes by 14.0 N upwards or downwards, and by half as much "
+          "stop on the way down when the force changes by 14.0 N upwards or downwards, and by half as much "
           "again sideways"));
   EXPECT_TRUE(bench.robot.commands.empty());
   ASSERT_EQ(bench.tap(kOnObject).outcome, Outcome::contact);

@@ -159,9 +159,10 @@ TEST(CompareSeeds, EqualValuesHaveNoIntervalAndItSaysWhy) {
   EXPECT_FALSE(made.groups[0].mean.interval);
   EXPECT_TRUE(made.pairs[1].difference.interval) << "c - a";
   EXPECT_FALSE(made.pairs[2].difference.interval) << "c - b";
-  EXPECT_THAT(compare_tables(made), HasSubstr("\na: equal in all 12 seeds: no interval, because equal values do not "
-                                              "tell how far the next may lie\n"));
-  EXPECT_THAT(compare_tables(made), HasSubstr("\nc - b: equal differences in all 12 seeds: no interval"));
+  EXPECT_THAT(compare_tables(made),
+              HasSubstr("\na has no interval: its values are equal in all 12 seeds, which does not "
+                        "tell how far the next may lie\n"));
+  EXPECT_THAT(compare_tables(made), HasSubstr("\nc - b has no interval: its differences are equal in all 12 seeds"));
 }
 
 TEST(CompareWhere, LeavesOutAResultThatIsMissingOrNotFiniteNegatedOrNot) {

@@ -25,7 +25,7 @@ inline constexpr std::size_t kLeastForInterval = 5;
 /// and of 10 values of two kinds in 99 of 100 cases (docs/comparing.md has the figures).
 inline constexpr std::size_t kLeastForBootstrap = 20;
 
-/// The mean of finite values, and the interval that contains it more often for so many clusters: Student's below
+/// The mean of finite values, and the interval whose coverage is nearer to 95 % for so many clusters: Student's below
 /// kLeastForBootstrap clusters, else that of bootstrap_mean(). None of fewer than kLeastForInterval clusters, nor of
 /// clusters that are all_equal(), to which `scale` belongs.
 MeanEstimate mean_of_sample(const Clusters& clusters, double scale = 0.0);

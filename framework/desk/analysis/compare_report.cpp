@@ -168,9 +168,8 @@ std::string units_note(const Comparison& comparison) {
   std::string out;
   const auto equal = [&](const std::string& name, const MeanEstimate& mean, bool difference) {
     if (mean.clusters < kLeastForInterval || mean.interval) return;
-    out +=
-        fmt::format("{}: equal {}in all {}: no interval, because equal values do not tell how far the next may lie\n",
-                    name, difference ? "differences " : "", units_words(mean.clusters, comparison.by_seed));
+    out += fmt::format("{} has no interval: its {} are equal in all {}, which does not tell how far the next may lie\n",
+                       name, difference ? "differences" : "values", units_words(mean.clusters, comparison.by_seed));
   };
   for (const ComparedGroup& one : comparison.groups) {
     if (comparison.has_copies() && one.mean.clusters < one.mean.count)

@@ -75,8 +75,9 @@ std::string pareto_table(const Pareto& pareto) {
     equal = equal || (one.error.clusters > 1 && !one.error.interval) || (one.cost.clusters > 1 && !one.cost.interval);
   }
   if (equal) {
-    out += fmt::format("no interval: all {} are equal, which does not tell how far the next may lie\n",
-                       pareto.by_seed ? "seeds" : "jobs");
+    out += fmt::format(
+        "a setting whose values are equal for all {} has no interval: that does not tell how far the next may lie\n",
+        pareto.by_seed ? "seeds" : "jobs");
   }
   const bool all_complete =
       std::all_of(pareto.settings.begin(), pareto.settings.end(), [](const Setting& one) { return one.complete(); });

@@ -21,7 +21,7 @@ constexpr double kPulled = 6.0;
 constexpr double kFewestPulled = 3.0;
 constexpr double kPulledFor = 0.12;
 constexpr double kEvenFrom = 0.7;  ///< s after which an arm that trails by 0.35 s comes down evenly
-constexpr double kEvenTo = 1.0;    ///< s, for so long its force is looked at, and until there are so many readings:
+constexpr double kEvenTo = 1.0;    ///< s until which its force is averaged, longer if there are fewer readings than
 constexpr std::size_t kFewestEven = 10;
 constexpr double kSteady = 1.5;      ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
 constexpr double kLeastMoved = 2.5;  ///< N that the zero may move, whatever the threshold: noise makes 0.4
@@ -126,6 +126,7 @@ struct Tapper::WayDown {
   double set_point = plan.hover;
   double speed = motion.speed;
   bool tared = false;
+  bool goes_up = false;
   std::vector<Eigen::Vector3d> tare = {};  ///< readings of one that goes on
   EvenDescent even = {};
   std::optional<double> moving = {};  ///< N along z that an arm which comes down reads beside that at rest
@@ -168,12 +169,15 @@ void Tapper::lead(WayDown& way) {
   way.periods.add({seen_.now, height()}, way.tap.tap().even_for());
   const double before = std::exchange(way.set_point, way.tap.next(height(), felt, watch_.fresh()));
   if (way.tap.tap().noticed() > way.periods.noticed) way.periods.notice(way.tap.tap().noticed());
-  slow_down(way);
-  if (way.set_point > before && sign_ != 0.0) {
+  if (!taring && !way.tap.tap().presses_no_further()) slow_down(way);
+  const double sign = way.tap.sign();
+  // Once for each way up: a new expectation forgets the readings that pulled.
+  if (way.set_point > before && !way.goes_up && sign != 0.0) {
     const double along = std::clamp(way.plan.hover + kFromAbove - height(), 0.0, way.column.length() - kTurned);
-    watch_.expect_rise(Watch::Rise{way.tap.zero(), sign_, most_pull(way.column, along)});
+    watch_.expect_rise(Watch::Rise{way.tap.zero(), sign, most_pull(way.column, along)});
   }
   if (way.set_point < before) watch_.expect_rise(std::nullopt);
+  if (way.set_point != before) way.goes_up = way.set_point > before;
   // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
   if (way.set_point == height() && way.set_point != before) {
     way.command = seen_.joints->position;

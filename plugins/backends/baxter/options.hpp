@@ -127,16 +127,14 @@ struct BaxterOptions : Options {
          {"positive", "it rises", {}},
          {"learn", "until the first contact any change counts, and that contact shows it", {}}});
     force_sign = chosen;
-    fields.real(
-        force_stop,
-        Field(
-            "force_stop",
-            "change of the force since the tare at which the arm stops whatever it does; sideways, while it goes up or "
-            "down, half as much again")
-            .in(Unit::newton)
-            .above(0)
-            .at_most(kGreatestStop)
-            .from("the arm's firmware stops it at 16 N"));
+    fields.real(force_stop, Field("force_stop",
+                                  "change of the force since the tare at which an arm stops that touches nothing yet; "
+                                  "sideways, while it goes "
+                                  "up or down, half as much again")
+                                .in(Unit::newton)
+                                .above(0)
+                                .at_most(kGreatestStop)
+                                .from("the arm's firmware stops it at 16 N"));
     for (int i = 0; i < motion.count(); ++i)
       fields.require(force_stop > motion.at(i).threshold, "force_stop", "must lie above motion.threshold");
     fields.choice(inverse_kinematics, Field("inverse_kinematics", "who finds the joints for a pose"),

@@ -180,7 +180,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
                   tapping::newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness)),
                   1e-3 * stiffness, 1e3 * reaction_.seconds(), tapping::newtons(motion.threshold),
                   motion.speed < wanted.speed ? ", so that motion.speed is not reached" : ""));
-  out.push_back("stop whatever it does when the force changes by " + tapping::newtons(options_.force_stop) +
+  out.push_back("stop on the way down when the force changes by " + tapping::newtons(options_.force_stop) +
                 " upwards or downwards, and by half as much again sideways");
   return out;
 }

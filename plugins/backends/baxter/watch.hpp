@@ -166,7 +166,7 @@ class Watch {
   /// the sign of it when something presses the tool upwards, and the pull (N) from which it stops the arm. The joints
   /// rub the other way than when the zero was felt, which reads as a pull of up to 13 N at 0.4 Nm; so where the arm has
   /// begun to go up freely the zero is felt anew, and `follows` as in Zero, but by no more than a pose can change it:
-  /// tapping::FreeForce::kMostDrift times the way up. What changes it by more is a spring.
+  /// tapping::FreeForce::kMostDrift times the way up. A force that changes faster is that of a spring.
   struct Rise {
     double zero;
     double sign;

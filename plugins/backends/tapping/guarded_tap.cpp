@@ -103,7 +103,9 @@ double GuardedTap::next(double height, double force, bool fresh) {
       break;
     case Stage::rest:
       if (waited(motion_.pause) && (arm_ == Arm::simulated || averaged(kFewestWatched))) {
-        conclude({height, arm_ == Arm::simulated || rise().is_contact, 0.0});
+        Rise found = arm_ == Arm::simulated ? Rise{height, true, 0.0} : rise();
+        found.height = height;
+        conclude(found);
       }
       break;
     case Stage::back_off:
@@ -194,10 +196,11 @@ void GuardedTap::conclude(const Rise& found) {
   if (!asks || lasts || again) return finish({Outcome::contact, found.height, peak_, 0.0, {}});
   if (found.is_contact) refused_ = first_;
   if (presses && !found.is_contact && too_soft()) {
-    return finish({Outcome::aborted, 0.0, 0.0, 0.0,
-                   fmt::format("something presses that is too soft: its force rises by {:.0f} N/m, and {:.0f} N/m are "
-                               "needed to tell it from a zero that changes with the pose",
-                               found.slope, kSoftestRise)});
+    return finish(
+        {Outcome::aborted, 0.0, 0.0, 0.0,
+         fmt::format("something presses that is too soft: its force rises by {:.0f} N/m; an object's rises by "
+                     "{:.0f} N/m from at most {:.0f} cm above, to be told from a zero that changes with the pose",
+                     found.slope, kSoftestRise, 100.0 * kFarthestOnset)});
   }
   enter(Stage::descend);
 }

@@ -92,7 +92,7 @@ function meansWords(sweep, settings) {
   const rest = "numbered: no other setting is at least as good in both.";
   const counts = settings.map((one) => one.error.clusters);
   const equal = settings.some(({ cost, error }) => [cost, error].some((one) => one.clusters > 1 && one.half === null))
-    ? " No bar: all values are equal, which does not tell how far the next may lie."
+    ? " No bar where all values of a setting are equal: that does not tell how far the next may lie."
     : "";
   const copies = settings.some(({ error }) => !sweep.seeds && error.clusters < error.count) ? " Copies of a run count once." : "";
   if (!sweep.seeds || counts.length === 0) return `The seed is not swept: means over the jobs of each setting; ${rest}${copies}${equal}`;
