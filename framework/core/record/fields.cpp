@@ -458,10 +458,9 @@ FieldList<Summary> make_summary_list() {
            std::pair{"height_refused",
                      "taps of which the backend reported no finite number, or, from any side, an end that is not on "
                      "the way of the tool"},
-           std::pair{"jitter", "how often factorisations raised it, those of each tap anew"},
-           std::pair{
-               "pivoted",
-               "factorisations, those of each tap anew, in which no jitter helped and rows were chosen by pivoting"},
+           std::pair{"jitter", "how often a factorisation needed jitter; the factorisations of every tap count"},
+           std::pair{"pivoted",
+                     "factorisations of all taps in which no jitter helped and rows were chosen by pivoting"},
            std::pair{
                "set_aside",
                "taps that stay out of a final model because the others tell all about them; the most of any model"},
