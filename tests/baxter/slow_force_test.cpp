@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 namespace palpate::baxter {
 namespace {
 
@@ -24,8 +26,8 @@ class Desk {
  public:
   explicit Desk(double stiffness, const BaxterOptions& options = fake_options())
       : scene_(palpate::test::scene_of("[]", fmt::format("{{stiffness: {{object: {} N/m}}}}", stiffness))),
-        robot(*scene_, springs()),
-        tapper(options, *scene_, robot, nullptr, [](const std::string&) {}) {
+        robot(*scene_, springs(options)),
+        tapper(options, *scene_, robot, nullptr, [this](const std::string& note) { notes += note + "\n"; }) {
     robot.every_period = [this] {
       const double presses = robot.body.pressing();
       peak = std::max(peak, presses);
@@ -46,8 +48,8 @@ class Desk {
   void inject(const std::string& fault) { robot.body.inject(parse_fault(fault)); }
 
  private:
-  static test::BodyOptions springs() {
-    test::BodyOptions out = test::body_options(fake_options());
+  static test::BodyOptions springs(const BaxterOptions& options) {
+    test::BodyOptions out = test::body_options(options);
     out.mechanics.type = fake_baxter::MechanicsOptions::Type::springs;
     return out;
   }
@@ -56,6 +58,7 @@ class Desk {
   int taps_ = 0;
 
  public:
+  std::string notes;
   test::BodyRobot robot;
   Tapper tapper;
   double peak = 0.0;    ///< N, of this tap
@@ -76,6 +79,23 @@ TEST(AForce, ThatIsRenewedTwentyOrTenTimesASecondIsTappedWith) {
         EXPECT_LT(desk.peak, Body::kReflex) << every;
       }
     }
+  }
+}
+
+// Nothing was measured yet, and so the arm comes down as slowly as its renewals ask for, and not at the least speed of
+// an arm that was measured.
+TEST(AForce, ThatIsRenewedEightTimesASecondIsExpectedWithinTheBoundAtTheFirstTap) {
+  BaxterOptions options = fake_options();
+  options.place.corner[0] = 0.4;  // 8.4 kN/m: stiffer than any place of a usual area
+  for (const int every : {10, 12}) {
+    Desk desk(kHard, options);
+    desk.inject(fmt::format("slow_force={}", every));
+    desk.tapper.check();
+    EXPECT_EQ(desk.tap().outcome, Outcome::contact) << every;
+    EXPECT_LT(desk.peak, Body::kReflex) << every;
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(desk.notes, found, std::regex("at most ([0-9.]+) N are expected"))) << desk.notes;
+    EXPECT_LE(std::stod(found[1]), Reaction::kGreatestForce + 0.05) << every << ": " << desk.notes;
   }
 }
 
@@ -119,6 +139,18 @@ TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigu
   EXPECT_THAT(contact.reason, HasSubstr("the arm was raised to the height of travel"));
   EXPECT_TRUE(contact.ends_run);
   EXPECT_GT(desk.lowest, 0.03) << "it did not come down further";
+}
+
+TEST(SomethingSoft, BelowThePromisedStiffnessIsToldByThePapersMotionToo) {
+  BaxterOptions options = fake_options();
+  options.motion.type = tapping::MotionOptions::Type::paper;
+  options.motion.overrun = 0.1;
+  Desk desk(250.0, options);
+  const Contact contact = desk.tap();
+  EXPECT_EQ(contact.outcome, Outcome::aborted);
+  EXPECT_THAT(contact.reason, HasSubstr("something presses that is too soft: its force rises by 1"));
+  EXPECT_FALSE(contact.ends_run);
+  EXPECT_LT(desk.peak, Body::kReflex);
 }
 
 TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThan25SecondsAndToldOrFound) {

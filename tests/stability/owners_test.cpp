@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rows of the stability matrix that are not the default's: one per owner of a factorisation, over noise, length
 // scale and taps, with places apart, repeated and nearly repeated. The sum over outliers and the default have theirs in
-// matrix_test.cpp.
+// matrix_test.cpp. PALPATE_LONG=1 adds the cells of 1000 taps, ten minutes.
 #include "objective.hpp"
 #include "space/reduction.hpp"
 #include "space/skin.hpp"
@@ -17,6 +17,7 @@
 #include <Eigen/Cholesky>
 
 #include <cmath>
+#include <cstdlib>
 
 namespace palpate::stability {
 namespace {
@@ -64,7 +65,8 @@ double moved_by_last_digits(const Case& one) {
     for (const Real& target : oracle.targets()) scale = std::max(scale, std::abs(static_cast<double>(target)));
     scale = std::max(scale, std::abs(static_cast<double>(exact)));
     oracle.nudge_covariances(x, y);
-    if (!oracle.factorise(0.0)) return HUGE_VAL;
+    // As far as the prior goes, in the unit of the largest value.
+    if (!oracle.factorise(0.0)) return 1.0;
     out = std::max(out, std::abs(static_cast<double>(Real(oracle.at(x, y).mean - exact))));
   }
   return out / scale;
@@ -148,6 +150,7 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
   Eigen::MatrixXd k(n, n);
   rbf->covariance(model.points, model.points, k);
   constexpr double kEps = 2.220446049250313e-16;
+  int evaluated = 0;
   for (const double noise : kNoises) {
     const double ratio = std::max(noise, 1e-12) / 0.1;
     const std::vector<double> x{std::log(GetParam().length_scale), 2.0 * std::log(ratio), 0.0};
@@ -157,6 +160,7 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
     double value = 0.0;
     std::vector<double> gradient(x.size());
     if (!objective.evaluate(x.data(), &value, gradient.data())) continue;  // the search turns back
+    ++evaluated;
     ASSERT_TRUE(std::isfinite(value)) << noise;
     Wide c = k.cast<long double>();
     const double least = ratio * ratio + 10.0 * static_cast<double>(n) * kEps * k(0, 0);
@@ -186,6 +190,7 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
       EXPECT_NEAR(gradient[i], slope, 1e-5 * std::max(1.0, size)) << noise << " parameter " << i;
     }
   }
+  EXPECT_EQ(evaluated, std::size(kNoises));
 }
 
 const Piece kBox{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
@@ -212,7 +217,7 @@ TEST_P(Owners, SkinAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
   Random random(6, "owners skin");
   Solids solids({0.26, 0.26}, {6, 20}, Random(9, "solids"));
   std::vector<SurfaceTouch> all;
-  while (static_cast<int>(all.size()) < std::min(GetParam().taps, 100)) {
+  while (static_cast<int>(all.size()) < GetParam().taps) {
     if (!all.empty() && again(static_cast<int>(all.size()))) {
       all.push_back(all.back());
       all.back().length += gap();
@@ -248,10 +253,13 @@ TEST_P(Owners, SkinAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
 }
 
 std::vector<Cell> cells() {
+  std::vector<int> taps{3, 25};
+  if (!test::brief()) taps.push_back(100);
+  if (std::getenv("PALPATE_LONG") != nullptr) taps.push_back(1000);
   std::vector<Cell> out;
   for (const Places places : {Places::apart, Places::repeated, Places::nearly_repeated}) {
-    for (const int taps : test::brief() ? std::vector<int>{3, 25} : std::vector<int>{3, 25, 100})
-      for (const double length : {0.001, 0.03, 0.5, 20.0}) out.push_back({places, taps, length});
+    for (const int count : taps)
+      for (const double length : {0.001, 0.03, 0.5, 20.0}) out.push_back({places, count, length});
   }
   return out;
 }

@@ -48,7 +48,7 @@ struct ComparedPair {
   FateCounts lost;
   MeanEstimate difference;             ///< count: pairs of jobs; clusters: seeds
   std::optional<RatioEstimate> ratio;  ///< mean of the first over that of the second; if asked for, and it makes sense
-  SignedRank test;                     ///< of the means per seed, or of the pairs where jobs are the units
+  SignedRank test;                     ///< of the means per unit: JobUnits
   std::optional<double> p_holm;        ///< adjusted for all pairs of this comparison; none if there is but one
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/pareto_report.hpp"
 
-#include "analysis/bootstrap.hpp"
 #include "analysis/gnuplot.hpp"
 #include "analysis/readable.hpp"
 

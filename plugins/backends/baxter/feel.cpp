@@ -77,15 +77,16 @@ double Tapper::stiffness_at(const Target& place) const {
 }
 
 /// The greatest speed (m/s) at which no contact is expected to exceed Reaction::kGreatestForce. Throws Fault, after
-/// which `then` may be done, where the robot was measured and that speed is below Reaction::kSlowest.
+/// which `then` may be done, where that speed is too low to tap with.
 double Tapper::greatest_speed(double threshold, double stiffness, Then then) const {
   const double greatest = reaction_.greatest_speed(threshold, stiffness);
-  if (greatest >= Reaction::kSlowest || !reaction_.measured()) return std::max(greatest, Reaction::kSlowest);
+  const double needed = reaction_.measured() ? Reaction::kSlowest : Reaction::kSlowestFirst;
+  if (greatest >= needed) return greatest;
   throw Fault{fmt::format("a contact would be noticed after {:.0f} ms and stopped {:.0f} ms later, messages come up "
                           "to {:.0f} ms late: at {:.1f} N that allows {:.1f} mm/s, and {:.0f} mm/s are needed. "
                           "Connect by cable, end other load, or lower motion.threshold",
                           1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(), threshold,
-                          1e3 * greatest, 1e3 * Reaction::kSlowest),
+                          1e3 * greatest, 1e3 * needed),
               then};
 }
 
@@ -106,8 +107,7 @@ tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double sti
   const double greatest = greatest_speed(motion.threshold, stiffness, Then::hold);
   const double configured = motion.speed;
   motion.speed = std::min(motion.speed, greatest);
-  motion.fine_speed = std::min(
-      motion.fine_speed, std::max(Reaction::kSlowest, reaction_.greatest_speed(motion.fine_threshold, stiffness)));
+  motion.fine_speed = std::min(motion.fine_speed, greatest_speed(motion.fine_threshold, stiffness, Then::hold));
   if (motion.adaptive_hover) motion.adaptive_hover->speed = std::min(motion.adaptive_hover->speed, greatest);
   const double way = motion.hover + motion.overrun;
   motion.timeout += way / motion.speed - way / configured;

@@ -35,6 +35,8 @@ class Reaction {
   static constexpr double kGreatestForce = 13.5;
   /// m/s: an arm that was measured and would have to be slower is rejected.
   static constexpr double kSlowest = 0.002;
+  /// m/s: the same of an arm that was not measured yet, and is taken for slower than it may be.
+  static constexpr double kSlowestFirst = 0.001;
   static constexpr double kLookedAt = 1.5;      ///< s of a descent
   static constexpr double kShortestWay = 0.06;  ///< m
   /// Renewals of the force that a notice may take: the three readings of a contact, and one that noise spoils.
