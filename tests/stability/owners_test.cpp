@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rows of the stability matrix that are not the default's: one per owner of a factorisation, over noise, length
 // scale and taps, with places apart, repeated and nearly repeated. The sum over outliers and the default have theirs in
-// matrix_test.cpp. PALPATE_LONG=1 adds the cells of 1000 taps, ten minutes.
+// matrix_test.cpp. PALPATE_LONG=1 adds the cells of 1000 taps, half an hour.
 #include "objective.hpp"
 #include "space/reduction.hpp"
 #include "space/skin.hpp"
