@@ -65,8 +65,8 @@ double moved_by_last_digits(const Case& one) {
     for (const Real& target : oracle.targets()) scale = std::max(scale, std::abs(static_cast<double>(target)));
     scale = std::max(scale, std::abs(static_cast<double>(exact)));
     oracle.nudge_covariances(x, y);
-    // As far as the prior goes, in the unit of the largest value.
-    if (!oracle.factorise(0.0)) return 1.0;
+    // The changed matrix is not positive definite: any mean within the largest value is possible.
+    if (!oracle.factorise(0.0)) return std::max(1.0, out / scale);
     out = std::max(out, std::abs(static_cast<double>(Real(oracle.at(x, y).mean - exact))));
   }
   return out / scale;
@@ -150,7 +150,6 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
   Eigen::MatrixXd k(n, n);
   rbf->covariance(model.points, model.points, k);
   constexpr double kEps = 2.220446049250313e-16;
-  int evaluated = 0;
   for (const double noise : kNoises) {
     const double ratio = std::max(noise, 1e-12) / 0.1;
     const std::vector<double> x{std::log(GetParam().length_scale), 2.0 * std::log(ratio), 0.0};
@@ -159,8 +158,7 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
     Objective objective(model, Measure::log_marginal_likelihood, expectations, false, simd::widest());
     double value = 0.0;
     std::vector<double> gradient(x.size());
-    if (!objective.evaluate(x.data(), &value, gradient.data())) continue;  // the search turns back
-    ++evaluated;
+    ASSERT_TRUE(objective.evaluate(x.data(), &value, gradient.data())) << noise;
     ASSERT_TRUE(std::isfinite(value)) << noise;
     Wide c = k.cast<long double>();
     const double least = ratio * ratio + 10.0 * static_cast<double>(n) * kEps * k(0, 0);
@@ -190,7 +188,6 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
       EXPECT_NEAR(gradient[i], slope, 1e-5 * std::max(1.0, size)) << noise << " parameter " << i;
     }
   }
-  EXPECT_EQ(evaluated, std::size(kNoises));
 }
 
 const Piece kBox{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
@@ -255,7 +252,7 @@ TEST_P(Owners, SkinAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
 std::vector<Cell> cells() {
   std::vector<int> taps{3, 25};
   if (!test::brief()) taps.push_back(100);
-  if (std::getenv("PALPATE_LONG") != nullptr) taps.push_back(1000);
+  if (!test::brief() && std::getenv("PALPATE_LONG") != nullptr) taps.push_back(1000);
   std::vector<Cell> out;
   for (const Places places : {Places::apart, Places::repeated, Places::nearly_repeated}) {
     for (const int count : taps)

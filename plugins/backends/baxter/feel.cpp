@@ -80,13 +80,13 @@ double Tapper::stiffness_at(const Target& place) const {
 /// which `then` may be done, where that speed is too low to tap with.
 double Tapper::greatest_speed(double threshold, double stiffness, Then then) const {
   const double greatest = reaction_.greatest_speed(threshold, stiffness);
-  const double needed = reaction_.measured() ? Reaction::kSlowest : Reaction::kSlowestFirst;
-  if (greatest >= needed) return greatest;
-  throw Fault{fmt::format("a contact would be noticed after {:.0f} ms and stopped {:.0f} ms later, messages come up "
-                          "to {:.0f} ms late: at {:.1f} N that allows {:.1f} mm/s, and {:.0f} mm/s are needed. "
-                          "Connect by cable, end other load, or lower motion.threshold",
-                          1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(), threshold,
-                          1e3 * greatest, 1e3 * needed),
+  if (greatest >= reaction_.slowest()) return greatest;
+  const char* const assumed = reaction_.measured() ? "" : "until a contact was measured it is assumed that ";
+  throw Fault{fmt::format("{}a contact would be noticed after {:.0f} ms and stopped {:.0f} ms later, messages come up "
+                          "to {:.0f} ms late: at {:.1f} N that allows {:.2f} mm/s, and {:.0f} mm/s are needed. "
+                          "Connect by cable, end other load, or take a motion.threshold below {:.1f} N",
+                          assumed, 1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(),
+                          threshold, 1e3 * greatest, 1e3 * reaction_.slowest(), threshold),
               then};
 }
 
@@ -107,7 +107,8 @@ tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double sti
   const double greatest = greatest_speed(motion.threshold, stiffness, Then::hold);
   const double configured = motion.speed;
   motion.speed = std::min(motion.speed, greatest);
-  motion.fine_speed = std::min(motion.fine_speed, greatest_speed(motion.fine_threshold, stiffness, Then::hold));
+  if (motion.type == tapping::MotionOptions::Type::two_stage)
+    motion.fine_speed = std::min(motion.fine_speed, greatest_speed(motion.fine_threshold, stiffness, Then::hold));
   if (motion.adaptive_hover) motion.adaptive_hover->speed = std::min(motion.adaptive_hover->speed, greatest);
   const double way = motion.hover + motion.overrun;
   motion.timeout += way / motion.speed - way / configured;
@@ -151,7 +152,7 @@ void Tapper::rise(const Path& up, double gently, double sign, const std::optiona
   // A pull is noticed as late as a contact.
   const double stiffness = arm_.vertical_stiffness(seen_.joints->position);
   double speed = std::min(
-      {motion_.speed, kGentle, std::max(Reaction::kSlowest, reaction_.greatest_speed(motion_.threshold, stiffness))});
+      {motion_.speed, kGentle, std::max(reaction_.slowest(), reaction_.greatest_speed(motion_.threshold, stiffness))});
   Eigen::Vector3d force = seen_.endpoint->force;
   const auto set_free = [&] {
     watch_.set_tare(force, Watch::Zero::follows);

@@ -33,9 +33,10 @@ class Reaction {
 
   /// N, which a contact is to reach at most: the arm's firmware stops it at 16 N, and noise delays a notice.
   static constexpr double kGreatestForce = 13.5;
-  /// m/s: an arm that was measured and would have to be slower is rejected.
+  /// m/s: an arm that would have to be slower is rejected.
   static constexpr double kSlowest = 0.002;
-  /// m/s: the same of an arm that was not measured yet, and is taken for slower than it may be.
+  /// m/s: the same until a contact was measured; it is then assumed to be noticed and stopped as late as by the slowest
+  /// robot that is driven.
   static constexpr double kSlowestFirst = 0.001;
   static constexpr double kLookedAt = 1.5;      ///< s of a descent
   static constexpr double kShortestWay = 0.06;  ///< m
@@ -70,6 +71,8 @@ class Reaction {
 
   /// Whether a contact has shown how late it is noticed.
   bool measured() const { return !noticing_.empty(); }
+  /// m/s, of which an arm that would have to be slower is rejected.
+  double slowest() const { return measured() ? kSlowest : kSlowestFirst; }
   /// s, the longest of the latest kKept contacts and one renewal, since noise may spoil a reading; at least kRenewals.
   double noticing() const;
   double trailing() const;  ///< s, the longest of the latest kKept motions
