@@ -7,8 +7,8 @@
 // else Student's t), of the same differences. "none" are samples without an interval, whose values are all equal: they
 // count neither as covered nor as missed, because `compare` prints [-]. Values that no interval covers stand below.
 //     interval_coverage SAMPLES [--seeds N] RESULTS_CSV=METRIC ...
-// SAMPLES is 1000 or more: with 1000, the 99 % interval of a cell reaches 1.8 percent (at 95 %) to 2.6 percent (at 89
-// %) to each side. --seeds gives the table of 5, 10, 20 or 60 seeds alone. Exit code 1: a cell misses.
+// SAMPLES is 1000 or more: with 1000, the 99 % interval of a cell at 95 % reaches 1.8 percent to each side, at 89 %
+// 2.6 percent. --seeds gives the table of 5, 10, 20 or 60 seeds alone. Exit code 1: a cell misses.
 #include "support/populations.hpp"
 
 #include <algorithm>

@@ -214,7 +214,7 @@ TEST_P(Owners, SkinAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
   Random random(6, "owners skin");
   Solids solids({0.26, 0.26}, {6, 20}, Random(9, "solids"));
   std::vector<SurfaceTouch> all;
-  // Runs from any side end before 100 taps.
+  // With more, a cell of the long form takes minutes.
   while (static_cast<int>(all.size()) < std::min(GetParam().taps, 100)) {
     if (!all.empty() && again(static_cast<int>(all.size()))) {
       all.push_back(all.back());
