@@ -90,6 +90,27 @@ TEST_P(TroubleInATap, LeavesTheArmWithMassesAsSafe) {
 INSTANTIATE_TEST_SUITE_P(OnTheWayDown, TroubleInATap, testing::ValuesIn(palpate::test::kTroubles),
                          [](const auto& trouble) { return name_of(trouble.param); });
 
+TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedWithinTwoSeconds) {
+  for (const double filter : {0.0, 0.1, 0.2}) {  // of the force, s: the later a contact is noticed the slower it is
+    Bench bench(fake_options(),
+                [](test::BodyOptions& body) { body.mechanics.type = fake_baxter::MechanicsOptions::Type::springs; });
+    if (filter > 0.0) bench.robot.body.inject({FaultKind::wrench_filter, filter, {}});
+    bench.check();
+    ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
+    double stood = 0.0;
+    bench.robot.every_period = [&] {
+      if (stood > 0.0 || bench.tip() > 0.125) return;
+      stood = bench.robot.body.now();
+      bench.robot.body.inject({FaultKind::drop_commands, 5.0, {}});
+    };
+    const Contact contact = bench.tap(kOnObject);
+    ASSERT_GT(stood, 0.0);
+    EXPECT_THAT(contact.reason, HasSubstr("the arm does not follow")) << filter;
+    EXPECT_TRUE(contact.ends_run) << filter;
+    EXPECT_LT(bench.robot.body.now() - stood, 2.0 + 0.5) << filter << ": and the joints are held for 0.5 s";
+  }
+}
+
 TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
   Bench bench;
   bench.robot.body.inject({FaultKind::kill_endpoint, 0.0, {}}, {1, 0.125});

@@ -23,8 +23,11 @@ constexpr double kPulledFor = 0.12;
 constexpr double kEvenFrom = 0.7;  ///< s after which an arm that trails by 0.35 s comes down evenly
 constexpr double kEvenTo = 1.0;    ///< s until which its force is averaged, longer if there are fewer readings than
 constexpr std::size_t kFewestEven = 10;
-constexpr double kSteady = 1.5;      ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
-constexpr double kLeastMoved = 2.5;  ///< N that the zero may move, whatever the threshold: noise makes 0.4
+constexpr std::size_t kLookedBack = 100;   ///< periods in which an arm that is sent down evenly must have come down
+constexpr double kLeastOfWay = 1.0 / 3.0;  ///< of that way; onto something rigid its force would be noticed before
+constexpr int kQuiet = 3;                  ///< readings below half the threshold, one after the other
+constexpr double kSteady = 1.5;            ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
+constexpr double kLeastMoved = 2.5;        ///< N that the zero may move, whatever the threshold: noise makes 0.4
 
 /// The mean force along z of a descent from when the arm, which trails its set-point, comes down evenly until shortly
 /// after. Where it rises meanwhile a contact begins: that is no force of a moving arm.
@@ -65,6 +68,11 @@ struct EvenPeriods {
   void restart(double time) {
     now.clear();
     begin = time + kEvenFrom;
+  }
+  /// How far it came down in the last kLookedBack of them, metres; nothing while they are fewer.
+  std::optional<double> came() const {
+    if (now.size() <= kLookedBack) return std::nullopt;
+    return now[now.size() - 1 - kLookedBack].height - now.back().height;
   }
   void notice(int count) {
     noticed = count;
@@ -132,6 +140,7 @@ struct Tapper::WayDown {
   std::optional<double> moving = {};  ///< N along z that an arm which comes down reads beside that at rest
   EvenPeriods periods = {};
   int pulled = 0;  ///< readings, one after the other
+  int quiet = 0;   ///< readings, one after the other
 
   Joints at(double height) const { return column.at(plan.hover + kFromAbove - height); }
 };
@@ -186,6 +195,19 @@ void Tapper::lead(WayDown& way) {
   }
   if (taring) return tare(way);
   if (watch_.fresh()) feel_free(way, felt, beside, coming_down);
+  expect_descent(way);
+}
+
+/// An arm that was sent down and feels nothing must come down: later it would make up for all of the way at once.
+void Tapper::expect_descent(const WayDown& way) const {
+  const std::optional<double> came = way.periods.came();
+  const double sent = static_cast<double>(kLookedBack) * kPeriod * way.speed;
+  if (!came || *came >= kLeastOfWay * sent || way.quiet < kQuiet) return;
+  throw Fault{
+      fmt::format("the arm does not follow, it came down by {:.1f} mm where it was sent {:.1f} mm: see what blocks "
+                  "it, and whether others command it",
+                  1e3 * *came, 1e3 * sent),
+      Then::hold};
 }
 
 /// Messages that come later than before, or a force that is renewed more seldom, leave less time to stop.
@@ -213,6 +235,7 @@ void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_dow
   const double zero = way.tap.zero();
   const double against = sign_ == 0.0 ? std::abs(felt - zero) : sign_ * (felt - zero);
   peak_ = std::max(peak_.value_or(0.0), against);
+  way.quiet = against < 0.5 * way.motion.threshold ? way.quiet + 1 : 0;
   // Of an arm that is being stopped the force is the contact's, and noise may take that above force_stop.
   if (way.tap.tap().presses_no_further()) {
     watch_.forget_tare();

@@ -7,20 +7,24 @@
 namespace palpate::baxter {
 namespace {
 
-constexpr std::size_t kKept = 5;         ///< motions and contacts whose worst counts
+constexpr std::size_t kMotions = 5;      ///< the latest, whose worst counts
+constexpr std::size_t kContacts = 10;    ///< the latest
 constexpr double kFades = 30.0;          ///< s in which a lateness fades to a third
 constexpr std::size_t kFewest = 30;      ///< periods of a free descent
 constexpr double kClear = 0.001;         ///< m above that height that counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and the period in which they are looked at
+constexpr double kRiseFor = 0.1;         ///< s before a notice in which the rise of the force is measured
+constexpr double kLeastRise = 1.0;       ///< N/s
 constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: what takes longer was no steady rise
 /// s that joints trail at least on a Baxter (measured: 0.3 to 0.4 s), and the share of a lag that they go on by after a
 /// stop: those of a critically damped joint, 1 / (2 e).
 constexpr double kLeastLag = 0.3;
 constexpr double kGoOn = 0.184;
 
-void keep(std::deque<double>& values, double value) {
+template <typename Value>
+void keep(std::deque<Value>& values, Value value, std::size_t most) {
   values.push_back(value);
-  if (values.size() > kKept) values.pop_front();
+  if (values.size() > most) values.pop_front();
 }
 
 double most(const std::deque<double>& values, double without) {
@@ -86,7 +90,7 @@ void Reaction::learn_trailing(const std::vector<Step>& motion) {
     const double offset = at_begin + share * (at_end - at_begin);
     area += (behind(motion[i]) - offset) * (motion[i].time - motion[i - 1].time);
   }
-  keep(trailing_, std::max(0.0, area / way.norm()));
+  keep(trailing_, std::max(0.0, area / way.norm()), kMotions);
 }
 
 void Reaction::learn_noticing(const Periods& periods, double free_down_to, double threshold, double stiffness) {
@@ -98,13 +102,32 @@ void Reaction::learn_noticing(const Periods& periods, double free_down_to, doubl
     if (stiffness * (it->height - descent.at(it->time)) < threshold) break;
     reached = it->time;
   }
-  keep(noticing_, std::clamp(periods.back().time - reached, kLeastNoticing, kMostNoticing + kRenewals * renewal_));
+  Periods pressed;  // heights by which the tip stays behind
+  for (const Reaction::Period& one : periods) {
+    if (one.time > periods.back().time - kRiseFor) pressed.push_back({one.time, one.height - descent.at(one.time)});
+  }
+  const double rise = std::max(kLeastRise, stiffness * fit(pressed).velocity);
+  const double seconds =
+      std::clamp(periods.back().time - reached, kLeastNoticing, kMostNoticing + kRenewals * renewal_);
+  keep(noticing_, {seconds, rise}, kContacts);
 }
 
 double Reaction::noticing() const {
   const double renewals = kRenewals * renewal_;
-  if (!measured()) return kFirstNoticing + std::max(0.0, renewals - kLeastNoticing);
-  return std::max(most(noticing_, 0.0) + renewal_, renewals);
+  const double least = std::max(kLeastNoticing, renewals);
+  const double first = kFirstNoticing - kLeastNoticing;  // two standard deviations of what is assumed before a contact
+  if (!measured()) return least + first;
+  double weights = 4.0 / (first * first);
+  double sum = weights * least;
+  double surely = 0.0;
+  for (const Notice& one : noticing_) {
+    // A force that is renewed seldom has crossed the threshold up to one renewal ago.
+    const double deviation = std::hypot(kNoise / one.rise, renewal_ / std::sqrt(12.0));
+    weights += 1.0 / (deviation * deviation);
+    sum += one.seconds / (deviation * deviation);
+    surely = std::max(surely, one.seconds - 2.0 * deviation);
+  }
+  return std::max({sum / weights + 2.0 / std::sqrt(weights) + renewal_, surely + renewal_, renewals});
 }
 
 double Reaction::trailing() const { return most(trailing_, kFirstTrailing); }

@@ -6,9 +6,11 @@
 // k being the vertical stiffness of its springs. None of the times is published, and each depends on the robot, its
 // firmware and its network:
 // - noticing: from the true force being at the threshold to the set-point that stops the arm. It holds the filter of
-// the
-//   force, the delay of its messages and the readings that make a contact. Within a contact the true force follows from
-//   positions alone, which no filter delays: k times the distance by which the tip stays behind its free descent.
+//   the force, the delay of its messages and the readings that make a contact. Within a contact the true force follows
+//   from positions alone, which no filter delays: k times the distance by which the tip stays behind its free descent.
+//   The force is noisy: where it rises slowly, as on something soft, a contact is noticed much too early or too late by
+//   chance and says little of how late one with something rigid would be noticed. So each contact counts by how steeply
+//   its force rose.
 // - stopping: from that set-point to standstill. It holds the delay of commands and of joints, and what the joints go
 // on
 //   by. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less what
@@ -45,6 +47,9 @@ class Reaction {
   /// s of noticing and trailing until they were measured: those of the slowest robot that is driven and that renews its
   /// force a hundred times a second.
   static constexpr double kFirstNoticing = 0.23;
+  /// N, the standard deviation of the force at which a contact is noticed: noise of 1.5 N makes 0.5 to 0.9, the more
+  /// the steeper the force rises.
+  static constexpr double kNoise = 0.7;
   static constexpr double kFirstTrailing = 0.55;
 
   /// Takes how late messages or this program are at `now`, seconds; the worst counts, and fades within kFades.
@@ -73,9 +78,11 @@ class Reaction {
   bool measured() const { return !noticing_.empty(); }
   /// m/s, of which an arm that would have to be slower is rejected.
   double slowest() const { return measured() ? kSlowest : kSlowestFirst; }
-  /// s, the longest of the latest kKept contacts and one renewal, since noise may spoil a reading; at least kRenewals.
+  /// s: the mean of the latest kContacts contacts and of what was assumed before them, each by the inverse of its
+  /// variance, and two standard deviations of that mean; at least what one of them shows beyond two of its own, since a
+  /// robot may become later; and one renewal, since noise may spoil a reading; at least kRenewals.
   double noticing() const;
-  double trailing() const;  ///< s, the longest of the latest kKept motions
+  double trailing() const;  ///< s, the longest of the latest kMotions motions
   double stopping() const;  ///< s
   double lateness() const { return late_; }
   /// T, seconds.
@@ -87,7 +94,13 @@ class Reaction {
   double expected_force(double threshold, double speed, double stiffness) const;
 
  private:
-  std::deque<double> noticing_;
+  /// A contact: how late it was noticed, s, and how fast its force rose then, N/s.
+  struct Notice {
+    double seconds;
+    double rise;
+  };
+
+  std::deque<Notice> noticing_;
   std::deque<double> trailing_;
   double late_ = 0.0;
   double late_at_ = 0.0;

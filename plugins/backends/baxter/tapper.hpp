@@ -62,6 +62,7 @@ class Tapper {
   Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
   struct WayDown;
   void lead(WayDown& way);
+  void expect_descent(const WayDown& way) const;
   void slow_down(WayDown& way);
   void tare(WayDown& way);
   void feel_free(WayDown& way, double felt, double beside, bool coming_down);
