@@ -4,7 +4,6 @@
 #include "baxter/watch.hpp"
 
 #include "baxter/words.hpp"
-#include "tapping/free_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +77,7 @@ std::optional<Fault> Watch::pull(const Snapshot& seen, const Eigen::Vector3d& ti
   const double pulls = pull_of(rise, *seen.endpoint);
   if (rise.follows == Zero::follows) {
     if (!motion_.anchor) motion_.anchor = Motion::Anchor{rise.zero, tip.z()};
-    const double most = tapping::FreeForce::kMostDrift * std::max(0.0, tip.z() - motion_.anchor->height);
+    const double most = kMostDrift * std::max(0.0, tip.z() - motion_.anchor->height);
     rise.zero -= rise.sign * pulls * std::min(1.0, since / kRiseFollows);
     rise.zero = std::clamp(rise.zero, motion_.anchor->zero - most, motion_.anchor->zero + most);
   }
