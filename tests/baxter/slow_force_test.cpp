@@ -17,6 +17,7 @@ using fake_baxter::FaultKind;
 using fake_baxter::parse_fault;
 using test::fake_options;
 using testing::AnyOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 constexpr double kHard = 20000.0;  // N/m
@@ -136,7 +137,7 @@ TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasure
   desk.inject("slow_force=10");
   ASSERT_EQ(desk.tap().outcome, Outcome::contact) << "at 5 N, while nothing was measured";
   const Contact contact = desk.tap();
-  EXPECT_THAT(contact.reason, HasSubstr("a contact would be noticed after 4"));
+  EXPECT_THAT(contact.reason, ContainsRegex("^a contact would be noticed after [45].. ms"));
   EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 2 mm/s are needed"));
   EXPECT_GT(desk.lowest, 0.1) << "it did not come down";
 }

@@ -33,7 +33,8 @@ test::Change<test::BodyOptions> starts(const Eigen::Vector3d& at) {
 TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
   Bench bench;
   bench.check();
-  for (const Target& place : {kOnObject, kOnDesk, Target{0.115, 0.05}, Target{0.2, 0.21}}) {
+  int known = 0;  // contacts: one with something soft says little of how late one with something hard is noticed
+  for (const Target& place : {kOnObject, kOnDesk, Target{0.115, 0.05}, Target{0.2, 0.21}, kOnDesk, Target{0.2, 0.03}}) {
     const Contact contact = bench.touch(place);
     EXPECT_NEAR(bench.tip(), kHover, 0.01);
     EXPECT_GT(contact.force, 5.0);
@@ -41,7 +42,7 @@ TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
     EXPECT_GE(contact.peak.value(), 5.0);
     EXPECT_LT(contact.peak.value(), Body::kReflex);
     EXPECT_GT(contact.seconds, 2.0);
-    EXPECT_LT(contact.seconds, 20.0);
+    EXPECT_LT(contact.seconds, known++ < 2 ? 36.0 : 20.0);
     EXPECT_EQ(contact.reason, "");
   }
 }
@@ -57,7 +58,8 @@ TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
   }));
   bench.check();
   const auto seconds = [&](int motion) {
-    bench.tap(kOnDesk, motion);  // from anywhere; the next one is over its place already
+    // The first one comes from anywhere; the others are over their place already, and show how early they are noticed.
+    for (int i = 0; i < 5; ++i) bench.tap(kOnDesk, motion);
     const Contact contact = bench.tap(kOnDesk, motion);
     EXPECT_EQ(contact.outcome, Outcome::contact);
     return contact.seconds;

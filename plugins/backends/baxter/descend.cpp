@@ -247,6 +247,7 @@ void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_dow
   if (!way.moving && way.plan.start >= way.plan.hover) {
     const auto mean = way.even.add(way.tap.tap().even_for(), seen_.endpoint->force.z());
     if (mean) way.moving = *mean - zero_.z();
+    if (mean) lately_ = {std::min(std::abs(*way.moving), way.motion.threshold), way.speed};
   }
   // An arm that goes up rubs the other way, which is no pull.
   way.pulled = coming_down && sign_ * (felt - zero) < -way.motion.threshold ? way.pulled + 1 : 0;
@@ -269,13 +270,7 @@ Contact Tapper::judge(const WayDown& way, const Contact& contact) {
                   "the contact may be none");
   }
   if (way.moving) learn_moving(*way.moving);
-  const std::vector<Reaction::Period>& periods = way.periods.at_notice;
-  if (!periods.empty()) {
-    // Something soft may have been touched that far above.
-    const double free =
-        std::max(contact.height, periods.back().height + way.motion.threshold / tapping::GuardedTap::kSoftest);
-    reaction_.learn_noticing(periods, free, way.motion.threshold, way.stiffness);
-  }
+  reaction_.learn_noticing(way.periods.at_notice, contact.height, way.motion.threshold, way.stiffness);
   shown_sign_ = way.tap.sign();
   return contact;
 }

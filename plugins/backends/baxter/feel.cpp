@@ -30,6 +30,7 @@ constexpr double kGentle = 0.01;   ///< m/s: an arm of 6.4 kN/m that is held fee
 constexpr double kSpeedUp = 0.15;  ///< m/s^2, afterwards
 /// N that an arm reads less when it goes up faster, by its speed, and behind a zero that changes by 50 N/m.
 constexpr double kFaster = 2.0;
+constexpr double kMovingNoise = 0.5;     ///< N, of what an arm reads beside while it comes down
 constexpr double kLatest = 0.2;          ///< of a force that is followed, the part of the latest reading
 constexpr double kToRest = 0.015;        ///< m/s, of the centimetre before a rest, where nothing should be
 constexpr double kFirstThreshold = 5.0;  ///< N, until a contact was measured
@@ -130,7 +131,14 @@ void Tapper::learn_rubbing(const Path& column) {
 /// joints rub, and what it was seen to read beside while it moves.
 double Tapper::most_pull(const Path& way, double along) const {
   if (!rubbing_) return options_.force_stop;
-  return motion_.threshold + std::abs(moving_) + kRubs * 2 * *rubbing_ * turned(way, along);
+  return motion_.threshold + lately_.beside + kRubs * 2 * *rubbing_ * turned(way, along);
+}
+
+/// m/s at which an arm that goes up freely reads at most kFaster less than it is known to: that grows with its speed.
+double Tapper::greatest_rise() const {
+  const double surely = lately_.beside - kMovingNoise;
+  if (surely <= 0.0) return motion_.retreat_speed;
+  return std::min(motion_.retreat_speed, lately_.speed * (1.0 + kFaster / surely));
 }
 
 /// Goes up from where it may press, of which only a pull is a fault. `zero`: of the force along z down there, N.
@@ -168,7 +176,7 @@ void Tapper::rise(const Path& up, double gently, double sign, const std::optiona
     const bool presses = zero && sign * (force.z() - *zero) > motion_.threshold;
     if (height() < (presses ? surely : clear)) continue;
     if (!std::exchange(free, true)) set_free();
-    speed = std::min(motion_.retreat_speed, speed + kSpeedUp * kPeriod);
+    speed = std::min(greatest_rise(), speed + kSpeedUp * kPeriod);
   }
   await_height(up.end());
   if (!free) set_free();
@@ -187,7 +195,8 @@ void Tapper::learn_sign() {
         std::string(sign_ > 0.0 ? "rises: positive" : "falls: negative"));
 }
 
-/// What the force reads beside while the arm comes down in the air is no contact: from now on it counts as zero then.
+/// What the force reads beside while the arm comes down in the air at `speed` (m/s) is no contact: from now on it
+/// counts as zero then.
 void Tapper::learn_moving(double difference) {
   const bool much = std::abs(difference) >= kMostMoving * motion_.threshold;
   moving_ = much ? 0.0 : difference;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/reaction.hpp"
 
+#include "tapping/guarded_tap.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +15,8 @@ constexpr double kFades = 30.0;          ///< s in which a lateness fades to a t
 constexpr std::size_t kFewest = 30;      ///< periods of a free descent
 constexpr double kClear = 0.001;         ///< m above that height that counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and the period in which they are looked at
+constexpr double kOnePeriod = 0.01;      ///< s, which a measured time may be too short
 constexpr double kRiseFor = 0.1;         ///< s before a notice in which the rise of the force is measured
-constexpr double kLeastRise = 1.0;       ///< N/s
 constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: what takes longer was no steady rise
 /// s that joints trail at least on a Baxter (measured: 0.3 to 0.4 s), and the share of a lag that they go on by after a
 /// stop: those of a critically damped joint, 1 / (2 e).
@@ -69,6 +71,21 @@ Line fit(const Periods& periods) {
   return out;
 }
 
+/// How fast the force rose at the notice, N/s: by how fast the tip stayed behind its `descent`, and at least the
+/// threshold since the contact began; at most as on something rigid.
+double rise(const Periods& periods, double began, const Line& descent, double threshold, double stiffness) {
+  const double noticed = periods.back().time;
+  Periods behind;
+  for (const Reaction::Period& one : periods) {
+    if (one.time > noticed - kRiseFor) behind.push_back({one.time, one.height - descent.at(one.time)});
+  }
+  const auto first =
+      std::find_if(periods.begin(), periods.end() - 1, [began](const auto& one) { return one.height <= began; });
+  const double on_average = threshold / std::max(kLeastNoticing, noticed - first->time);
+  const double rigid = stiffness * std::abs(descent.velocity);
+  return std::clamp(stiffness * fit(behind).velocity, std::min(on_average, rigid), rigid);
+}
+
 }  // namespace
 
 void Reaction::late(double seconds, double now) {
@@ -93,23 +110,20 @@ void Reaction::learn_trailing(const std::vector<Step>& motion) {
   keep(trailing_, std::max(0.0, area / way.norm()), kMotions);
 }
 
-void Reaction::learn_noticing(const Periods& periods, double free_down_to, double threshold, double stiffness) {
-  const Periods free = last_free(periods, free_down_to);
+void Reaction::learn_noticing(const Periods& periods, double began, double threshold, double stiffness) {
+  if (periods.empty()) return;
+  const Period& notice = periods.back();
+  // Something soft may have been touched that far above.
+  const Periods free = last_free(periods, std::max(began, notice.height + threshold / tapping::GuardedTap::kSoftest));
   if (free.empty()) return;
   const Line descent = fit(free);
-  double reached = periods.back().time;  // when the true force was at the threshold
+  double reached = notice.time;  // when the true force was at the threshold
   for (auto it = periods.rbegin(); it != periods.rend(); ++it) {
     if (stiffness * (it->height - descent.at(it->time)) < threshold) break;
     reached = it->time;
   }
-  Periods pressed;  // heights by which the tip stays behind
-  for (const Reaction::Period& one : periods) {
-    if (one.time > periods.back().time - kRiseFor) pressed.push_back({one.time, one.height - descent.at(one.time)});
-  }
-  const double rise = std::max(kLeastRise, stiffness * fit(pressed).velocity);
-  const double seconds =
-      std::clamp(periods.back().time - reached, kLeastNoticing, kMostNoticing + kRenewals * renewal_);
-  keep(noticing_, {seconds, rise}, kContacts);
+  const double seconds = std::clamp(notice.time - reached, kLeastNoticing, kMostNoticing + kRenewals * renewal_);
+  keep(noticing_, {seconds, rise(periods, began, descent, threshold, stiffness)}, kContacts);
 }
 
 double Reaction::noticing() const {
@@ -127,7 +141,7 @@ double Reaction::noticing() const {
     sum += one.seconds / (deviation * deviation);
     surely = std::max(surely, one.seconds - 2.0 * deviation);
   }
-  return std::max({sum / weights + 2.0 / std::sqrt(weights) + renewal_, surely + renewal_, renewals});
+  return std::max({sum / weights + 2.0 / std::sqrt(weights), surely, renewals}) + kOnePeriod;
 }
 
 double Reaction::trailing() const { return most(trailing_, kFirstTrailing); }

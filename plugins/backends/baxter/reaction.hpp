@@ -70,9 +70,9 @@ class Reaction {
   /// shows nothing.
   void learn_trailing(const std::vector<Step>& motion);
 
-  /// Learns from a contact that was noticed in the last of `periods`; the tip was free down to `free_down_to` (m).
-  /// `stiffness` in N/m, `threshold` in N. Too short a descent shows nothing.
-  void learn_noticing(const std::vector<Period>& periods, double free_down_to, double threshold, double stiffness);
+  /// Learns from a contact that was noticed in the last of `periods` and began at the height `began` (m). `stiffness`
+  /// in N/m, `threshold` in N. Too short a descent shows nothing.
+  void learn_noticing(const std::vector<Period>& periods, double began, double threshold, double stiffness);
 
   /// Whether a contact has shown how late it is noticed.
   bool measured() const { return !noticing_.empty(); }
@@ -80,7 +80,7 @@ class Reaction {
   double slowest() const { return measured() ? kSlowest : kSlowestFirst; }
   /// s: the mean of the latest kContacts contacts and of what was assumed before them, each by the inverse of its
   /// variance, and two standard deviations of that mean; at least what one of them shows beyond two of its own, since a
-  /// robot may become later; and one renewal, since noise may spoil a reading; at least kRenewals.
+  /// robot may become later, and at least kRenewals; and one period, which a measured time may be too short.
   double noticing() const;
   double trailing() const;  ///< s, the longest of the latest kMotions motions
   double stopping() const;  ///< s

@@ -86,6 +86,7 @@ class Tapper {
   void measure_time();
   tapping::MotionOptions bounded(tapping::MotionOptions motion, double stiffness) const;
   void learn_moving(double difference);
+  double greatest_rise() const;
   Eigen::Vector3d force_at_rest(const Joints& joints);
   std::string recover(const Fault& fault);
   static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
@@ -124,7 +125,12 @@ class Tapper {
   bool calibrated_ = false;
   double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
-  double moving_ = 0.0;            ///< N along z that it reads beside while the arm comes down in the air
+  double moving_ = 0.0;  ///< N along z that it reads beside while the arm comes down in the air
+  /// Of the latest descent that showed it: how much it read beside, N, and how fast it was, m/s.
+  struct {
+    double beside = 0.0;
+    double speed = 0.0;
+  } lately_;
   std::optional<double> rubbing_;  ///< Nm with which every joint rubs, once it is known
   double shown_sign_ = 0.0;        ///< by the latest contact that was believed; 0 if nothing showed it
   Reaction reaction_;
