@@ -2,6 +2,7 @@
 #include "calibrate/calibrate.hpp"
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@ int calibrate(Program& program, const std::vector<std::string>& directories) {
     check_one_run(directory);
     recordings.push_back(read_recording(program, directory));
   }
-  fmt::print("{}", palpate::calibrate(program, recordings));
+  print_text(palpate::calibrate(program, recordings));
   return kDone;
 }
 

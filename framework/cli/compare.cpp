@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/compare_report.hpp"
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
 #include "config/hash.hpp"
 #include "config/trouble.hpp"
@@ -109,17 +111,16 @@ int compare(Program& program, const CompareArguments& arguments) {
   const auto comparisons = compare_all(program, sweep, arguments);
   if (!comparisons) return kInterrupted;
   if (arguments.table) {
-    fmt::print("{}", means_table(*comparisons));
+    print_text(means_table(*comparisons));
     return kDone;
   }
-  for (const Comparison& one : *comparisons) fmt::print("{}\n", compare_tables(one));
-  fmt::print("{}", compare_legend(*comparisons));
+  for (const Comparison& one : *comparisons) print_out("{}\n", compare_tables(one));
+  print_text(compare_legend(*comparisons));
   const std::string condition = arguments.where.value_or("");
   for (const Comparison& one : *comparisons) {
     const fs::path file = table_file(sweep, one, condition);
-    const auto trouble = trouble_in([&] { write_file(file, to_csv(compare_rows(one, condition))); });
-    // No reason to fail: what was asked for is on stdout.
-    fmt::print(stderr, "{}: {}\n", trouble ? "no table was left" : "table", trouble ? trouble->what() : file.string());
+    write_file(file, to_csv(compare_rows(one, condition)));
+    mention(fmt::format("table: {}\n", file.string()));
   }
   return kDone;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/display.hpp"
 
+#include "cli/output.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
 
@@ -47,22 +48,19 @@ std::string relabelled_line(const Row& summary) {
 TapTable::TapTable(std::int64_t budget) : budget_(budget), terminal_(::isatty(STDOUT_FILENO) != 0) {}
 
 void TapTable::clear_live_line() const {
-  if (terminal_) mention(kClearLine, stdout);
+  if (terminal_) print_text(kClearLine);
 }
 
 void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
-    mention(
-        fmt::format("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm",
-                    "y cm", "height cm", "contact", "max sd cm", "error cm", "IoU", "(the last three before the tap)"),
-        stdout);
+    print_out("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm", "y cm",
+              "height cm", "contact", "max sd cm", "error cm", "IoU", "(the last three before the tap)");
     header_ = true;
   }
   if (!terminal_) return;
-  mention(fmt::format("{:>4}  of {}, going to ({:.2f}, {:.2f}) cm ...", tap.number, budget_, tap.target.x * 100,
-                      tap.target.y * 100),
-          stdout);
-  std::fflush(stdout);
+  print_out("{:>4}  of {}, going to ({:.2f}, {:.2f}) cm ...", tap.number, budget_, tap.target.x * 100,
+            tap.target.y * 100);
+  flush_output();
 }
 
 void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) {
@@ -75,11 +73,15 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
                   touched ? fmt::format("{:.2f}", tap.contact.height * 100) : std::string("-"), contact,
                   scaled(tap.max_standard_deviation, 100, "{:.2f}"), scaled(tap.errors.rmse, 100, "{:.2f}"),
                   scaled(tap.errors.footprint_iou, 1, "{:.2f}"), touched ? "" : "  " + tap.contact.reason);
-  mention(line, stdout);
-  std::fflush(stdout);
+  print_text(line);
+  flush_output();
 }
 
-void mention(const std::string& text, std::FILE* where) { std::fputs(text.c_str(), where); }
+void mention(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
+std::string record_line(const RunReport& report) {
+  return fmt::format("{} {}", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
+}
 
 void print_summary(const RunReport& report) {
   const Row& row = report.summary;
@@ -106,9 +108,7 @@ void print_summary(const RunReport& report) {
   if (const std::string doubted = row.text("doubted"); !doubted.empty())
     text += fmt::format("doubted: taps that may lie, each with the probability: {}\n", doubted);
   text += numerics_line(row);
-  text +=
-      fmt::format("{} {}\n", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
-  mention(text, stdout);
+  print_text(text + record_line(report) + "\n");
 }
 
 }  // namespace palpate::cli

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 namespace palpate::cli {
@@ -26,12 +25,15 @@ class TapTable final : public Journal {
   bool header_ = false;
 };
 
-/// Writes what only accompanies the work. That nobody can read it any more, because the terminal is closed, is no
-/// reason to break the work off, as fmt::print would.
-void mention(const std::string& text, std::FILE* where = stderr);
+/// Writes on stderr what only accompanies the work. That nobody can read it any more, because the terminal is closed,
+/// is no reason to break the work off, as fmt::print would.
+void mention(const std::string& text);
 
 /// Takes the line of a terminal away on which something was shown for a while.
 constexpr const char* kClearLine = "\r\x1b[K";
+
+/// Where the record of a run is, or how it goes on.
+std::string record_line(const RunReport& report);
 
 /// The result of a run in a few lines.
 void print_summary(const RunReport& report);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/output.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
 #include "report/exchange/exchange.hpp"
@@ -43,7 +44,7 @@ int export_run(Program& program, const std::string& directory, const std::string
   mention_state(recording);
   const auto write = [&](const char* name, const std::string& text) {
     write_file(folder / name, text);
-    fmt::print("{}\n", (folder / name).string());
+    print_out("{}\n", (folder / name).string());
   };
   write("surface.ply", surface);
   write("taps.ply", taps_ply(recording, playback.experiment().counts(), run));

@@ -3,6 +3,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/output.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>
@@ -35,8 +36,8 @@ bool conclude(const std::vector<Expectation>& expectations, const std::vector<Ru
               const GateOutput& output) {
   const std::vector<Verdict> verdicts = judge(expectations, runs);
   const auto held = std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict& one) { return one.holds; });
-  if (output.count_on_stdout && !verdicts.empty()) fmt::print("expected: {} of {}\n", held, verdicts.size());
-  std::fflush(stdout);
+  if (output.count_on_stdout && !verdicts.empty()) print_out("expected: {} of {}\n", held, verdicts.size());
+  flush_output();
   for (const Verdict& verdict : verdicts) {
     if (!verdict.holds) mention(verdict_line(verdict) + "\n");
   }

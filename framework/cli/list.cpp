@@ -2,6 +2,7 @@
 #include "analysis/runs_table.hpp"
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/output.hpp"
 #include "config/trouble.hpp"
 #include "record/catalogue.hpp"
 #include "record/files.hpp"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 void print_json(const std::vector<Row>& rows) {
   std::vector<std::string> lines;
   for (const Row& row : rows) lines.push_back("  " + to_json_line(row));
-  fmt::print("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n");
+  print_out("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n");
 }
 
 /// Why fewer are listed than there are folders.
@@ -54,7 +55,7 @@ int list_runs(Program&, const ListArguments& arguments) {
   } else {
     for (ListedRecord& one : records) rows.push_back(std::move(one.row));
   }
-  arguments.json ? print_json(rows) : mention(runs_table(rows), stdout);
+  arguments.json ? print_json(rows) : print_text(runs_table(rows));
   if (all.records.empty()) mention(fmt::format("{}: holds no run and no sweep\n", folder.string()));
   if (where && rows.empty() && !records.empty())
     mention(fmt::format("command line: --where: leaves none of {}\n", records.size()));

@@ -6,6 +6,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/manual.hpp"
 #include "cli/needs.hpp"
+#include "cli/output.hpp"
 #include "cli/usage.hpp"
 #include "config/tree.hpp"
 #include "config/trouble.hpp"
@@ -489,7 +490,7 @@ int perform(const CommandLine& line, bool asked, int argc, char** argv) {
 int complete(const CLI::App& app, int argc, char** argv) {
   if (argc < 3) return kDone;
   return with_program(argc, argv, [&](Program& program) {
-    fmt::print("{}", completion_lines(argv[2], usage_of(app), program, {argv + 3, argv + argc}));
+    print_text(completion_lines(argv[2], usage_of(app), program, {argv + 3, argv + argc}));
     return kDone;
   });
 }
@@ -537,13 +538,16 @@ int exit_status(Error::Kind kind) {
 }  // namespace palpate::cli
 
 int main(int argc, char** argv) {
+  palpate::cli::occupy_standard_files();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may grow no more is an error of the write, as a full disk is
+  int status = palpate::cli::kFailed;
   try {
-    return palpate::cli::run_main(argc, argv);
+    status = palpate::cli::run_main(argc, argv);
   } catch (const palpate::Error& error) {
     palpate::cli::mention(std::string(error.what()) + "\n");
-    return palpate::cli::exit_status(error.kind());
+    status = palpate::cli::exit_status(error.kind());
   } catch (const std::exception& error) {
     palpate::cli::mention(fmt::format("palpate: {}\n", error.what()));
-    return palpate::cli::kFailed;
   }
+  return palpate::cli::finish_output(status);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/needs.hpp"
 
+#include "cli/output.hpp"
 #include "config/trouble.hpp"
 #include "record/run_directory.hpp"
 
@@ -32,10 +33,10 @@ void Needs::listing(const std::string& what) {
 void Needs::print() const {
   const auto known = plugins_of_build(program_.installation.plugins);
   if (known.empty()) return;
-  if (whole_) fmt::print("palpate_whole\n");
-  if (every_plugin_) fmt::print("palpate_plugins\n");
+  if (whole_) print_out("palpate_whole\n");
+  if (every_plugin_) print_out("palpate_plugins\n");
   for (const auto& [kind, name] : plugins_) {
-    if (known.count({kind, name}) != 0) fmt::print("palpate_{}_{}\n", kind, name);
+    if (known.count({kind, name}) != 0) print_out("palpate_{}_{}\n", kind, name);
   }
 }
 

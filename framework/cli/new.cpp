@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A plugin to begin with: the one of its kind in plugins/starters, under the name that is asked for.
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 
 #include <palpate/error.hpp>
 
@@ -66,8 +67,8 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   write(starters / "CMakeLists.txt", "CMakeLists.txt");
   write(starters / kind / "starter.cpp", name + ".cpp");
   write(starters / kind / "starter.yaml", name + ".yaml");
-  fmt::print("{0}/{0}.cpp is the plugin {1}/{0}, and {0}/{0}.yaml an experiment with it. {2}", name, kind,
-             next_steps(program.installation, name));
+  print_out("{0}/{0}.cpp is the plugin {1}/{0}, and {0}/{0}.yaml an experiment with it. {2}", name, kind,
+            next_steps(program.installation, name));
   return kDone;
 }
 

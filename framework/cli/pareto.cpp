@@ -3,6 +3,8 @@
 #include "analysis/pareto_report.hpp"
 #include "analysis/readable.hpp"
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
+#include "cli/output.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 
@@ -35,9 +37,9 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
                                     : draw_png(pareto_script(pareto, title_of(name, pareto), bound, chosen),
                                                kParetoWidth, kParetoHeight, stem.string() + ".png");
   if (trouble.empty()) {
-    fmt::print(stderr, "picture: {}.png, table: {}.csv\n", stem.string(), stem.string());
+    mention(fmt::format("picture: {0}.png, table: {0}.csv\n", stem.string()));
   } else {
-    fmt::print(stderr, "no picture was drawn: {}; table: {}.csv\n", trouble, stem.string());
+    mention(fmt::format("no picture was drawn: {}; table: {}.csv\n", trouble, stem.string()));
   }
 }
 
@@ -51,10 +53,10 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
   name = Tree::scalar(name.text + "_best", true);
   const char* const kept =
       pareto.more_is_better() ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
-  fmt::print("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
-             fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
-  fmt::print("# {}; {}; {}, of which this is the first.\n{}", error_words(pareto, chosen), cost_words(pareto, chosen),
-             units_words(chosen.error.clusters, pareto.by_seed), to_yaml(config));
+  print_out("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
+            fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
+  print_out("# {}; {}; {}, of which this is the first.\n{}", error_words(pareto, chosen), cost_words(pareto, chosen),
+            units_words(chosen.error.clusters, pareto.by_seed), to_yaml(config));
 }
 
 }  // namespace
@@ -66,9 +68,9 @@ int pareto(Program&, const ParetoArguments& arguments) {
   const std::optional<double> bound = asked ? std::optional(read_bound(pareto, *arguments.within)) : std::nullopt;
   const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
   if (pareto.unfinished > 0) {
-    fmt::print(stderr, "{} of {} jobs have not ended, 'palpate resume' carries on\n", pareto.unfinished, pareto.jobs);
+    mention(fmt::format("{} of {} jobs have not ended, 'palpate resume' carries on\n", pareto.unfinished, pareto.jobs));
   }
-  fmt::print(asked ? stderr : stdout, "{}", pareto_table(pareto));
+  asked ? mention(pareto_table(pareto)) : print_text(pareto_table(pareto));
   // First what was asked for: the directory may be one where nothing can be written.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);
   write_files(sweep, pareto, sweep_name(sweep), bound, chosen);

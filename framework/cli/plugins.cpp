@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
+#include "cli/output.hpp"
 #include "config/describe.hpp"
 #include "record/json.hpp"
 
@@ -27,9 +29,9 @@ Tree row_tree(const PluginHost& host, const PluginListing& row) {
 }
 
 void print_one(const PluginHost& host, const PluginListing& row) {
-  fmt::print("{}/{}: {}\n{}\n", row.kind, row.name, row.summary, row.file.string());
+  print_out("{}/{}: {}\n{}\n", row.kind, row.name, row.summary, row.file.string());
   const std::vector<FieldDescription> options = options_of(host, row);
-  fmt::print("{}", options.empty() ? "  no options\n" : describe_text(options));
+  print_text(options.empty() ? "  no options\n" : describe_text(options));
 }
 
 }  // namespace
@@ -52,16 +54,16 @@ int plugins(Program& program, const std::string& what, bool json) {
   if (json) {
     Tree list = Tree::list();
     for (const PluginListing& row : rows) list.items.push_back(row_tree(program.host, row));
-    fmt::print("{}", to_json(list));
+    print_text(to_json(list));
   } else if (!name.empty() && !broken) {
     print_one(program.host, rows.front());
   } else {
     for (const PluginListing& row : rows) {
-      if (row.trouble.empty()) fmt::print("{:<12} {:<19} {}\n", row.kind, row.name, row.summary);
+      if (row.trouble.empty()) print_out("{:<12} {:<19} {}\n", row.kind, row.name, row.summary);
     }
   }
   for (const PluginListing& row : rows) {
-    if (!row.trouble.empty()) fmt::print(stderr, "{}\n", row.trouble);
+    if (!row.trouble.empty()) mention(row.trouble + "\n");
   }
   return broken ? kFailed : kDone;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
 
@@ -20,16 +21,16 @@ int replay(Program& program, const std::string& directory) {
   check_one_run(directory);
   const ReplayReport report = replay_run(program, directory);
   if (report.differences.empty()) {
-    fmt::print("{} taps, {} numbers, all equal\n", report.taps, report.numbers);
+    print_out("{} taps, {} numbers, all equal\n", report.taps, report.numbers);
     return kDone;
   }
-  fmt::print("{} taps, {} numbers, {} differ\n", report.taps, report.numbers, report.differences.size());
+  print_out("{} taps, {} numbers, {} differ\n", report.taps, report.numbers, report.differences.size());
   for (std::size_t i = 0; i < report.differences.size() && i < kShown; ++i) {
     const Difference& one = report.differences[i];
-    fmt::print("{}: {}: recorded {}, now {}\n", one.tap == 0 ? std::string("summary") : fmt::format("tap {}", one.tap),
-               one.field, one.recorded, one.replayed);
+    print_out("{}: {}: recorded {}, now {}\n", one.tap == 0 ? std::string("summary") : fmt::format("tap {}", one.tap),
+              one.field, one.recorded, one.replayed);
   }
-  if (report.differences.size() > kShown) fmt::print("... and {} more\n", report.differences.size() - kShown);
+  if (report.differences.size() > kShown) print_out("... and {} more\n", report.differences.size() - kShown);
   return kFailed;
 }
 

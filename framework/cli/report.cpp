@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/output.hpp"
 #include "record/files.hpp"
 #include "report/figures/figures.hpp"
 #include "report/page/run_page.hpp"
@@ -44,12 +45,12 @@ class Patience {
 
 void write_page(const fs::path& file, const std::string& page) {
   write_file(file, page);
-  fmt::print("{}\n", file.string());
+  print_out("{}\n", file.string());
 }
 
 void show(const Figures& figures) {
   for (const std::string& note : figures.notes) mention(note + "\n");
-  for (const fs::path& picture : figures.pictures) fmt::print("{}\n", picture.string());
+  for (const fs::path& picture : figures.pictures) print_out("{}\n", picture.string());
 }
 
 /// Throws Error for a run from any side, of which there is no `what`.

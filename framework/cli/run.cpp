@@ -3,6 +3,7 @@
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/output.hpp"
 #include "cli/step.hpp"
 #include "cli/watcher.hpp"
 #include "config/expand.hpp"
@@ -23,7 +24,7 @@ namespace {
 
 /// The groups with their files, every value with its place, one a line, and what a later choice of type left behind.
 void print_origins(const std::vector<Composer::Group>& groups, const ResolvedConfig& config) {
-  for (const Composer::Group& one : groups) fmt::print("# {} {}: {}\n", one.path, one.name, one.file.string());
+  for (const Composer::Group& one : groups) print_out("# {} {}: {}\n", one.path, one.name, one.file.string());
   std::size_t width = 0;
   std::vector<std::pair<std::string, std::string>> lines;
   for (const ResolveNotes::Origin& one : config.notes.origins) {
@@ -32,9 +33,9 @@ void print_origins(const std::vector<Composer::Group>& groups, const ResolvedCon
     lines.emplace_back(fmt::format("{}: {}", one.path, text), one.place);
     width = std::max(width, lines.back().first.size());
   }
-  for (const auto& [text, place] : lines) fmt::print("{:<{}}  # {}\n", text, width, place);
+  for (const auto& [text, place] : lines) print_out("{:<{}}  # {}\n", text, width, place);
   for (const ResolveNotes::Origin& one : config.notes.dropped) {
-    fmt::print("# dropped: {} from {}, the type chosen later has no such option\n", one.path, one.place);
+    print_out("# dropped: {} from {}, the type chosen later has no such option\n", one.path, one.place);
   }
 }
 
@@ -65,18 +66,18 @@ void print_models(const Program& program, const ResolvedConfig& config) {
       who += (who.empty() ? "" : ", ") + one.who;
     }
   });
-  if (trouble) fmt::print("# this config cannot be run: {}\n", trouble->what());
-  if (!models.empty()) fmt::print("# models that taps are chosen from, and who reads them:\n");
-  for (const auto& [model, who] : models) fmt::print("#   {}: {}\n", model, who);
+  if (trouble) print_out("# this config cannot be run: {}\n", trouble->what());
+  if (!models.empty()) print_out("# models that taps are chosen from, and who reads them:\n");
+  for (const auto& [model, who] : models) print_out("#   {}: {}\n", model, who);
 }
 
 void print_plan(const ResolvedConfig& config, const std::filesystem::path& directory) {
   const RunStatus status = read_status(directory);
-  fmt::print("{}: {} taps of {} with {}, kernel {}, seed {}\n", config.options.name, config.options.taps,
-             config.options.backend.type, config.options.acquisition.type, config.options.kernel.type,
-             config.options.seed);
-  fmt::print("{}: {}\n", directory.string(),
-             status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
+  print_out("{}: {} taps of {} with {}, kernel {}, seed {}\n", config.options.name, config.options.taps,
+            config.options.backend.type, config.options.acquisition.type, config.options.kernel.type,
+            config.options.seed);
+  print_out("{}: {}\n", directory.string(),
+            status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
 }
 
 }  // namespace
@@ -93,14 +94,14 @@ int run(Program& program, const RunArguments& arguments) {
   });
   if (trouble) throw in_words_of_axes(overrides, arguments.overrides, *trouble);
   if (const Tree* sweep = composed.find("sweep"); sweep != nullptr && !arguments.quiet) {
-    fmt::print(stderr, "{}: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n",
-               sweep->place.text());
+    mention(fmt::format("{}: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n",
+                        sweep->place.text()));
   }
   if (arguments.print_config) {
     if (arguments.origins) {
       print_origins(program.composer.groups(), config);
     } else {
-      fmt::print("{}", to_yaml(config.tree));
+      print_text(to_yaml(config.tree));
       print_models(program, config);
     }
     return kDone;
@@ -121,6 +122,7 @@ int run(Program& program, const RunArguments& arguments) {
 int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
                 const RunAction& action) {
   listen_for_interrupts();
+  outlive_reader();
   const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.interrupted);
   std::unique_ptr<Journal> display;
   if (output.table) display = std::make_unique<TapTable>(config.options.taps);
@@ -136,7 +138,8 @@ int conduct_run(const Program& program, const ResolvedConfig& config, const RunO
   // A run that failed is a result, too: continuous integration shall see it as one.
   if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
-  if (output.json) fmt::print("{}", to_json_text(report.summary));
+  name_record(record_line(report));
+  if (output.json) print_text(to_json_text(report.summary));
   if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;
   runs.front().summary = report.summary;

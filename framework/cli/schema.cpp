@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "config/describe.hpp"
 #include "experiment/experiment_options.hpp"
 #include "record/expectation.hpp"
@@ -104,7 +105,7 @@ int schema(Program& program) {
   for (const std::string& kind : PluginHost::kinds()) definitions.at(kind) = kind_schema(program.host, kind);
   out.at("$schema") = Tree::quote("http://json-schema.org/draft-07/schema#");
   out.at("title") = Tree::quote("palpate experiment");
-  fmt::print("{}", to_json(out));
+  print_text(to_json(out));
   return kDone;
 }
 

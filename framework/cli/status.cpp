@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "record/run_directory.hpp"
 
 #include <fmt/format.h>
@@ -16,8 +17,8 @@ int status(Program& program, const std::string& directory) {
     return value != nullptr ? value->text : std::string("?");
   };
   const std::string reason = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
-  fmt::print("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"),
-             reason);
+  print_out("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"),
+            reason);
   return kDone;
 }
 

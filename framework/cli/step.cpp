@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/step.hpp"
+#include "cli/output.hpp"
 
 #include "cli/display.hpp"
 #include "record/tap_row.hpp"
@@ -49,7 +50,7 @@ bool Step::permits(const TapRecord& tap, const Preview& preview) {
                         expected->height * 100, expected->standard_deviation * 100);
   }
   for (const std::string& line : preview.motion) text += "\n      " + line;
-  std::fflush(stdout);
+  flush_output();
   ::tcflush(STDIN_FILENO, TCIFLUSH);
   mention(text + "\n");
   for (;;) {

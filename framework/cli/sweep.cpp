@@ -5,6 +5,7 @@
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
 #include "cli/watcher.hpp"
 #include "config/trouble.hpp"
@@ -50,13 +51,13 @@ std::vector<std::size_t> jobs_of(const Campaign& campaign) {
 }
 
 /// Some jobs of many, as a task of a cluster runs them: what is said of the whole is said elsewhere.
-int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted) {
+int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted, bool all_recorded) {
   const bool complete = std::all_of(sweep.jobs.begin(), sweep.jobs.end(),
                                     [&](const Job& job) { return has_ended(job_directory(sweep, job)); });
   if (complete) write_results(sweep);
   print_failures(sweep, end.failures);
   if (interrupted) return kInterrupted;
-  if (!end.failures.empty()) return kFailed;
+  if (!end.failures.empty() || !all_recorded) return kFailed;
   return end.open.empty() ? kDone : kBusy;
 }
 
@@ -90,12 +91,13 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
     taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
   }
   const auto initial_taps = [&](std::size_t job) { return known[deciding(sweep.jobs[job])]; };
-  fmt::print("{}", sweep_table(sweep, std::exchange(results, {}), initial_taps));
+  print_text(sweep_table(sweep, std::exchange(results, {}), initial_taps));
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
-  if (!end.failures.empty()) fmt::print("try them again: palpate resume --retry-failed {}\n", directory);
+  if (!end.failures.empty()) print_out("try them again: palpate resume --retry-failed {}\n", directory);
   const bool open = interrupted || !end.open.empty();
-  fmt::print("{} {}\n", open ? "carry on: palpate resume" : "record:", directory);
+  if (!open) name_record("record: " + directory);
+  print_out("{} {}\n", open ? "carry on: palpate resume" : "record:", directory);
   if (interrupted) return kInterrupted;
   // What is expected stands in every job's config, and is judged of all: the first that can be read will do.
   std::optional<ResolvedConfig> config;
@@ -127,36 +129,38 @@ LaunchOptions launch_options(const Campaign& campaign) {
 /// Says how to go on with what a cluster has in hand.
 void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
   const std::string directory = shell_word(std::filesystem::absolute(campaign.sweep.directory).string());
-  fmt::print("look: palpate status {}\n", directory);
-  fmt::print("carry on what is missing then: palpate resume {} --launcher {}\n", directory, campaign.launch.launcher);
-  fmt::print("stop: {}\n", launcher.stop_command());
+  print_out("look: palpate status {}\n", directory);
+  print_out("carry on what is missing then: palpate resume {} --launcher {}\n", directory, campaign.launch.launcher);
+  print_out("stop: {}\n", launcher.stop_command());
 }
 
-/// Has the launcher run what is open and returns true at the end, or false where that is not awaited: on a cluster
-/// without --wait.
-bool launch_open(const Campaign& campaign, const Standing& begun) {
+enum class Launched { submitted, ended, ended_unrecorded };
+
+/// Has the launcher run what is open, and returns at the end of that, or, on a cluster without --wait, once it is
+/// submitted.
+Launched launch_open(const Campaign& campaign, const Standing& begun) {
   const auto print_array = [](const TaskArray& array) {
-    fmt::print("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
-               array.logs.string());
-    std::fflush(stdout);
+    print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
+              array.logs.string());
+    flush_output();
   };
   const Program& program = campaign.program;
   const std::unique_ptr<Launcher> launcher = make_launcher(
       campaign.launch.launcher, {program, campaign.sweep, campaign.config_of, launch_options(campaign), print_array});
   if (is_on_cluster(campaign)) {
-    if (begun.open.empty() || program.interrupted->load()) return true;  // there is nothing to submit
+    if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // there is nothing to submit
     if (!campaign.launch.wait) {
       launcher->submit(begun.open);
       print_ways_on(campaign, *launcher);
-      return false;
+      return Launched::submitted;
     }
     // A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   }
   SweepLine line(campaign.launch.quiet);
-  conduct(*launcher, campaign.sweep, begun, program.interrupted,
-          [&](const SweepProgress& progress) { line.show(progress); });
-  return true;
+  const bool all_recorded = conduct(*launcher, campaign.sweep, begun, program.interrupted,
+                                    [&](const SweepProgress& progress) { line.show(progress); });
+  return all_recorded ? Launched::ended : Launched::ended_unrecorded;
 }
 
 /// All that are not done, ascending.
@@ -186,6 +190,8 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   const Sweep& sweep = campaign.sweep;
   check_locks(sweep.directory);
   listen_for_interrupts();
+  outlive_reader();
+  name_record("carry on: palpate resume " + sweep.directory.string());
   const bool whole = campaign.only.empty();
   const std::vector<std::size_t> jobs = undone(begun);
   if (campaign.options.retry_failed) try_again(begun, campaign.launch.attempts);
@@ -193,10 +199,12 @@ int run_campaign(const Campaign& campaign, Standing begun) {
     mention("one job at a time: the backend has but one thing to move\n");
   }
   if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
-  if (!launch_open(campaign, begun)) return kDone;
+  const Launched launched = launch_open(campaign, begun);
+  if (launched == Launched::submitted) return kDone;
   const Standing end = standing_of(sweep, jobs);
   const bool interrupted = campaign.program.interrupted->load();
-  return whole ? conclude_whole(campaign, end, interrupted) : conclude_part(sweep, end, interrupted);
+  if (whole) return conclude_whole(campaign, end, interrupted);
+  return conclude_part(sweep, end, interrupted, launched == Launched::ended);
 }
 
 /// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.
@@ -246,7 +254,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   const std::string jobs = counted(static_cast<long>(plan.sweep.jobs.size()), "job");
   if (arguments.list) {
     for (const Job& job : plan.sweep.jobs) {
-      fmt::print("{}  {}{}\n", job.index, job.id, values_text(plan.sweep, job, "  "));
+      print_out("{}  {}{}\n", job.index, job.id, values_text(plan.sweep, job, "  "));
     }
     if (!arguments.launch.quiet) mention(jobs + "\n");
     return kDone;
@@ -285,12 +293,12 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
 int status_of_sweep(Program&, const std::string& directory) {
   const Sweep sweep = read_sweep(directory);
   Standing now = standing_of(sweep, all_jobs(sweep), true);
-  fmt::print("{} jobs", sweep.jobs.size());
+  print_out("{} jobs", sweep.jobs.size());
   for (const auto state : {RunStatus::State::done, RunStatus::State::running, RunStatus::State::failed,
                            RunStatus::State::unfinished, RunStatus::State::absent}) {
-    fmt::print(", {} {}", now.counts[state], state_name(state));
+    print_out(", {} {}", now.counts[state], state_name(state));
   }
-  fmt::print("\n");
+  print_out("\n");
   print_failures(sweep, now.failures);
   return kDone;
 }

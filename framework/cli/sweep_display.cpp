@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/sweep_display.hpp"
+#include "cli/output.hpp"
 
 #include "cli/display.hpp"
 
@@ -71,11 +72,11 @@ void print_failures(const Sweep& sweep, const std::vector<SweepFailure>& failure
   for (std::size_t i = 0; i < failures.size() && i < kMostLines; ++i) {
     const SweepFailure& one = failures[i];
     const Job& job = sweep.jobs[one.job];
-    fmt::print("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values_text(sweep, job, " "),
-               one.attempts, one.reason);
+    print_out("failed: job {} ({}),{}, attempt {}: {}\n", job.index, job.id, values_text(sweep, job, " "), one.attempts,
+              one.reason);
   }
   if (failures.size() > kMostLines) {
-    fmt::print("and {} more failed, results.csv has all reasons\n", failures.size() - kMostLines);
+    print_out("and {} more failed, results.csv has all reasons\n", failures.size() - kMostLines);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
+#include "cli/output.hpp"
 #include "record/run_directory.hpp"
 #include "watch/server.hpp"
 
@@ -23,8 +24,8 @@ int watch(Program& program, const WatchArguments& arguments) {
     mention(fmt::format("watch: whoever reaches {} and knows this address sees the run, and it travels in the clear\n",
                         arguments.bind));
   }
-  mention(server.url() + "\n", stdout);
-  std::fflush(stdout);
+  print_text(server.url() + "\n");
+  flush_output();
   server.run();
   return kDone;
 }

@@ -18,8 +18,6 @@ MODE CALL FILE: SYMPTOM". Any other failure fails the harness, and so does a kno
 """
 import argparse
 import concurrent.futures
-import csv
-import io
 import json
 import os
 import random
@@ -28,6 +26,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+from records import cut_power, differing, halves, tree
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 CONFIGS = os.path.realpath(os.path.join(HERE, "..", "..", "configs"))
@@ -200,131 +200,6 @@ class Compare(Sweep):
 COMMANDS = [Run(), Robot(), Job(), Sweep(), Report(), Compare()]
 
 
-# ---- records without clocks ----
-
-CLOCKS = {"wall_seconds", "compute_seconds", "compute", "peak_rss_bytes", "seconds", "command_line", "resumed",
-          "origins", "of_summary"}
-
-
-def without_clocks(value):
-    if isinstance(value, dict):
-        return {key: without_clocks(one) for key, one in value.items() if key not in CLOCKS}
-    return [without_clocks(one) for one in value] if isinstance(value, list) else value
-
-
-def lasting(path):
-    """What must be equal in the record of a run that was broken off; raises ValueError for a part of a file."""
-    name = os.path.basename(path)
-    with open(path, "rb") as file:
-        text = file.read().decode(errors="replace")
-    if name == "record.jsonl" or name == "taps.jsonl" or name == "attempts.jsonl":
-        # The last line may be a half one: readers pass over it.
-        rows = [json.loads(line) for line in text.split("\n")[:-1]]
-        rows = [without_clocks(row) for row in rows if "attempt" not in row]
-        last = {row.get("object", "manifest"): row for row in rows if "manifest" in row or "object" in row}
-        return str(list(last.values()) + [row for row in rows if "manifest" not in row and "object" not in row])
-    if name.endswith(".json"):
-        return str(without_clocks(json.loads(text)))
-    if name == "timings.csv":
-        return [line.split(",")[0] for line in text.split("\n")]
-    if name.endswith(".csv"):
-        rows = list(csv.reader(io.StringIO(text)))
-        if text and not text.endswith("\n") or any(len(row) != len(rows[0]) for row in rows):
-            raise ValueError("half a table")
-        kept = [i for i, key in enumerate(rows[0] if rows else []) if key.split(".")[0] not in CLOCKS]
-        return [[row[i] for i in kept] for row in rows]
-    if name == "report.html":
-        if not text.rstrip().endswith("</html>"):
-            raise ValueError("half a page")
-        return "a page"
-    return text
-
-
-def tree(folder):
-    """Path below `folder` -> what is lasting of the file."""
-    out = {}
-    for root, folders, files in os.walk(folder):
-        # A sweep that was never published: the next sweep after a minute removes it (tests/lab/draft_test.cpp).
-        folders[:] = [one for one in folders if not one.startswith(".sweep-")]
-        for name in files:
-            path = os.path.join(root, name)
-            try:
-                out[os.path.relpath(path, folder)] = lasting(path)
-            except ValueError as trouble:
-                out[os.path.relpath(path, folder)] = f"half: {trouble}"
-    return out
-
-
-def halves(folder, whole):
-    """Files under their final names that are parts, or whose summary says more than there is."""
-    found = tree(folder)
-    out = []
-    for path, kept in found.items():
-        name = os.path.basename(path)
-        if name.endswith((".tmp", ".jsonl", "timings.csv", "lock")) and name != "manifest.jsonl":
-            continue  # on its way, or growing
-        wrong = isinstance(kept, str) and kept.startswith("half: ")
-        if name in ("config.yaml", "surface.csv", "manifest.jsonl"):
-            wrong = kept != whole.get(path)
-        if name == "summary.json" and not wrong and "'status': 'done'" in kept:
-            run = os.path.dirname(path)
-            wrong = kept != whole.get(path) or any(
-                found.get(other) != whole[other] for other in whole
-                if os.path.dirname(other) == run and os.path.basename(other) in ("taps.jsonl", "taps.csv", "surface.csv"))
-        if wrong:
-            out.append(name)
-    return out
-
-
-# ---- a power cut ----
-
-def cut_power(bench, rng):
-    """Takes away what no sync has promised: names in any order, contents behind the last synced length.
-
-    Files keep a part of what is not synced, or zeros in its place."""
-    calls = [call for call in bench.trace() if call.result >= 0]
-    undo = []  # changes of names, youngest last
-    synced, size = {}, {}  # of files by their present names
-    for call in calls:
-        if call.name in ("create", "mkdir", "unlink"):
-            undo.append(call)
-        if call.name == "create":
-            synced[call.path] = size[call.path] = 0
-        elif call.name == "write":
-            size[call.path] = call.detail
-        elif call.name == "rename":
-            undo.append(call)
-            for lengths in (synced, size):
-                if call.path in lengths:
-                    lengths[call.to] = lengths.pop(call.path)
-        elif call.name == "sync" and os.path.isdir(call.path):
-            undo = [one for one in undo if os.path.dirname(one.to or one.path) != call.path]
-        elif call.name == "sync":
-            synced[call.path] = size.get(call.path, 0)
-    for path, length in size.items():
-        first = synced.get(path, length)
-        if length <= first or not os.path.isfile(path):
-            continue
-        os.truncate(path, rng.choice([first, rng.randint(first, length)]))
-        if rng.random() < 0.3:
-            os.truncate(path, length)  # zeros
-    for call in reversed(undo):
-        if rng.random() < 0.5:
-            continue
-        kept = f"{bench.state}.old/{call.number}"
-        if call.name == "rename" and os.path.exists(call.to) and not os.path.exists(call.path):
-            os.rename(call.to, call.path)
-            if os.path.exists(kept):
-                os.link(kept, call.to)
-        elif call.name == "unlink" and os.path.exists(kept) and not os.path.exists(call.path):
-            os.makedirs(os.path.dirname(call.path), exist_ok=True)
-            os.link(kept, call.path)
-        elif call.name == "mkdir":
-            shutil.rmtree(call.path, ignore_errors=True)
-        elif call.name == "create" and os.path.isfile(call.path):
-            os.remove(call.path)
-
-
 # ---- points ----
 
 class Point:
@@ -337,6 +212,8 @@ class Point:
         name = re.sub(r"\.sweep-\w{6}", "DRAFT", name)
         name = "/".join(re.sub(r"^[0-9a-f]{12}$", "ID", part) for part in name.split("/")[1:]) or "."
         # What a power cut takes away is drawn: by any of them the same may happen.
+        # A child that was killed is told of; a place that keeps no locks is wrong usage.
+        self.statuses = {137, 1 if command.children else 137} if mode in KILLS else {1, 2 if call.name == "lock" else 1}
         self.kind = f"{command.name} power" if mode == "power" else f"{command.name} {mode} {call.name} {name}"
 
     def failures(self, build, whole, seed):
@@ -359,7 +236,7 @@ class Point:
             difference = differing(tree(bench.runs), whole)
             if difference:
                 out["silent"] = difference
-        elif status not in ({137, 1 if self.command.children else 137} if self.mode in KILLS else {1}):
+        elif status not in self.statuses:
             out["exit"] = f"{status}: {said}"
         elif status == 1:
             lines = [line for line in said.split("\n") if line and not re.match(r"\d+ of \d+ jobs done", line)]
@@ -386,11 +263,6 @@ class Point:
             if difference:
                 out["differs"] = difference
         return out
-
-
-def differing(found, whole):
-    """Paths that are in one of them only, or not alike."""
-    return ", ".join(path for path in sorted(set(found) | set(whole)) if found.get(path) != whole.get(path))
 
 
 def lost_taps(bench):
@@ -421,8 +293,8 @@ def unbroken(command, build):
     return whole, points
 
 
-def read_known():
-    with open(os.path.join(HERE, "known.txt")) as lines:
+def read_known(file):
+    with open(file) as lines:
         return [line.strip() for line in lines if line.strip() and not line.startswith("#")]
 
 
@@ -433,7 +305,8 @@ def main():
     parser.add_argument("--points", type=int, default=60, help="points that are drawn")
     parser.add_argument("--seed", default="1", help="by which they are drawn")
     parser.add_argument("--only", default="", help="points whose kind begins with this")
-    parser.add_argument("--write", action="store_true", help="writes known.txt anew")
+    parser.add_argument("--write", action="store_true", help="writes that list anew")
+    parser.add_argument("--known", default=os.path.join(HERE, "known.txt"), help="list of known failures")
     parser.add_argument("-j", type=int, default=2, help="points at a time")
     arguments = parser.parse_args()
 
@@ -442,7 +315,7 @@ def main():
         wholes[command.name], more = unbroken(command, arguments.build)
         points += more
     points = [point for point in points if point.kind.startswith(arguments.only)]
-    known = [] if arguments.write else [one for one in read_known() if one.startswith(arguments.only)]
+    known = [] if arguments.write else [one for one in read_known(arguments.known) if one.startswith(arguments.only)]
     total = len(points)
     kinds = {}
     for point in points:
@@ -482,7 +355,7 @@ def main():
                 note(point, symptoms)
     gone = [one for one in known if one not in occurred]
     if arguments.write:
-        with open(os.path.join(HERE, "known.txt"), "w") as out:
+        with open(arguments.known, "w") as out:
             out.write("# Failures that are known: COMMAND MODE CALL FILE: SYMPTOM. This list may only shrink.\n")
             out.writelines(one + "\n" for one in sorted(occurred))
     print(f"{len(drawn)} of {total} points, {sum(occurred.values())} failures of {len(occurred)} kinds, "

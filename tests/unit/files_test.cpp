@@ -36,6 +36,20 @@ ino_t inode(const fs::path& file) {
   return status.st_ino;
 }
 
+/// What error_of() returns where no file may be longer than `bytes`: a limit of this process acts as a full disk does.
+template <class Call>
+std::string with_little_room(rlim_t bytes, const Call& call) {
+  rlimit before{};
+  EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto heard = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit little{bytes, before.rlim_max};
+  EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
+  std::string out = error_of(call);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, heard);
+  return out;
+}
+
 std::ptrdiff_t entries(const fs::path& folder) {
   return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
 }
@@ -128,23 +142,26 @@ TEST_F(WriteFile, GivesItsFilesTheRightsOfAnyOther) {
   EXPECT_EQ(fs::status(folder_.path() / "x").permissions(), fs::status(folder_.write("y", "a")).permissions());
 }
 
-using Neighbours = InFolder;
+using TemporaryFiles = InFolder;
 
-TEST_F(Neighbours, WithoutNamesAreAllRemoved) {
-  folder_.write("tap_004.csv.0123456789abcdef.tmp", "half of it");
-  folder_.write("tap_004.csv", "whole");
-  remove_neighbours(folder_.path(), {});
-  EXPECT_FALSE(fs::exists(folder_.path() / "tap_004.csv.0123456789abcdef.tmp"));
-  EXPECT_TRUE(fs::exists(folder_.path() / "tap_004.csv"));
-}
-
-TEST_F(Neighbours, OfTheNamedFilesAloneAreRemoved) {
-  for (const char* name : {"x.csv.0123456789abcdef.tmp", "y.csv.0123456789abcdef.tmp", "x.csv", "x.csv.tmp"}) {
+TEST_F(TemporaryFiles, OfAWriterThatWasKilledAreRemovedByTheNextThatWritesThere) {
+  for (const char* name : {"surface.ply.0123456789abcdef.tmp", "y.0123456789abcdef.tmp", "x.csv", "x.csv.tmp",
+                           "x.0123456789abcdeX.tmp", "0123456789abcdef.tmp"}) {
     folder_.write(name, "half");
   }
-  remove_neighbours(folder_.path(), {"x.csv"});
-  EXPECT_FALSE(fs::exists(folder_.path() / "x.csv.0123456789abcdef.tmp"));
-  EXPECT_EQ(entries(folder_.path()), 3);
+  write_file(folder_.path() / "report.html", "whole");
+  EXPECT_EQ(entries(folder_.path()), 5);
+  EXPECT_FALSE(fs::exists(folder_.path() / "surface.ply.0123456789abcdef.tmp"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "y.0123456789abcdef.tmp"));
+}
+
+TEST_F(TemporaryFiles, OfALivingWriterStay) {
+  TemporaryFile file(folder_.path() / "x");
+  remove_temporaries(folder_.path());
+  file.write("whole");
+  file.publish();
+  EXPECT_EQ(text_of(folder_.path() / "x"), "whole");
+  EXPECT_EQ(entries(folder_.path()), 1);
 }
 
 using InnerFolder = InFolder;
@@ -168,16 +185,8 @@ TEST_F(WriteFile, SaysWhyAPlaceCannotBeWrittenOrAFolderReplaced) {
 
 TEST_F(WriteFile, ThatIsRefusedItsBytesSaysWhyAndLeavesTheOldFileAndNoOther) {
   const fs::path file = folder_.write("x", "old");
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  // As a full disk would: a limit of this process on the length of files.
-  const auto heard = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit little{1000, before.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
-  const std::string said = error_of([&] { write_file(file, std::string(5000, 'a')); });
-  ::setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, heard);
-  EXPECT_EQ(said, file.string() + ": cannot be written: File too large");
+  EXPECT_EQ(with_little_room(1000, [&] { write_file(file, std::string(5000, 'a')); }),
+            file.string() + ": cannot be written: File too large");
   EXPECT_EQ(text_of(file), "old");
   EXPECT_EQ(entries(folder_.path()), 1);
 }
@@ -233,6 +242,16 @@ TEST_F(Appending, KnowsWhetherItIsStillWhereItWasOpened) {
   EXPECT_FALSE(log.is_in_place());
   folder_.write("log", "");
   EXPECT_FALSE(log.is_in_place()) << "another file of that name";
+}
+
+TEST_F(Appending, CutsOffALineThatItCouldNotWriteWhole) {
+  const fs::path file = folder_.write("log", std::string(990, 'a') + "\n");
+  AppendFile log(file);
+  EXPECT_EQ(with_little_room(1000, [&] { log.append("twenty characters ...", false); }),
+            file.string() + ": cannot be written: File too large");
+  EXPECT_EQ(fs::file_size(file), 991U) << "no half line, to which the next would be appended";
+  log.append("next\n", false);
+  EXPECT_EQ(text_of(file), std::string(990, 'a') + "\nnext\n");
 }
 
 TEST_F(Appending, SaysWhyItCannotWrite) {

@@ -24,7 +24,7 @@ constexpr std::array<double, kPhases> kSeconds{0.5, 0.0, 0.25, 0.125, 0.0625};
 /// Writes three taps as a living run does.
 void write_three(const fs::path& directory, bool announce) {
   RunDirectory run(directory);
-  run.open(announce, false);
+  run.open(announce);
   for (int i = 1; i <= 3; ++i) {
     run.announce(tap(i, 0.09));
     run.record(tap(i, 0.09), kSeconds);
@@ -61,7 +61,7 @@ TEST_F(RunFolder, CutsOffHalfALineAtEveryLength) {
       RunDirectory run(folder_.path() / "cut");
       EXPECT_EQ(run.recover().size(), 2U) << cut;
       EXPECT_EQ(text_of(file), whole.substr(0, second_end));
-      run.open(false, false);
+      run.open(false);
       run.record(tap(3, 0.09), kSeconds);
     }
     EXPECT_EQ(text_of(file), whole) << "what follows begins on a line of its own";

@@ -314,10 +314,13 @@ Tree read_yaml(const std::filesystem::path& path) {
   const auto status = std::filesystem::status(path, trouble);
   if (trouble == std::errc::permission_denied)
     throw Error(name, "cannot be read", "check the permissions of its folder");
+  const auto fail = [&] { throw Error(name, "cannot be read: " + trouble.message(), {}, Error::Kind::run); };
+  if (trouble == std::errc::io_error) fail();
   if (!std::filesystem::exists(status)) throw Error(name, "no such file", similar_file(path));
   if (!std::filesystem::is_regular_file(status)) throw Error(name, "not a regular file", "name a YAML file");
   const auto bytes = std::filesystem::file_size(path, trouble);
-  if (trouble || bytes > kMaxBytes) throw Error(name, "too large for a config", "at most 1 MiB");
+  if (trouble) fail();
+  if (bytes > kMaxBytes) throw Error(name, "too large for a config", "at most 1 MiB");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(name, "cannot be read", "check its permissions");
   const std::string text{std::istreambuf_iterator<char>(in), {}};

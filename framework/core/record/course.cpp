@@ -56,6 +56,13 @@ void note_learnt(RunDirectory& directory, const std::vector<Backend::Learnt>& le
   directory.write_manifest(manifest);
 }
 
+/// Has what follows forced to disk where the config or the backend asks for it.
+void sync_if_asked(const ResolvedConfig& config, const Experiment& experiment, RunDirectory& directory) {
+  const LogOptions::Sync sync = config.options.log.sync;
+  const bool once = !experiment.backend().repeatable();
+  if (sync == LogOptions::Sync::tap || (once && sync != LogOptions::Sync::none)) directory.sync();
+}
+
 void move_away(const fs::path& directory) {
   for (int n = 1;; ++n) {
     const fs::path old = directory.string() + fmt::format(".old-{}", n);
@@ -143,9 +150,8 @@ Course::Course(const ResolvedConfig& config, RunDirectory& directory, Experiment
       experiment_(experiment),
       watch_(watch),
       relay_(config.options, experiment, directory, company) {
-  const LogOptions& log = config.options.log;
-  const bool once = !experiment.backend().repeatable();  // then a tap of which nobody saw the end must leave a trace
-  directory.open(once, log.sync == LogOptions::Sync::tap || (once && log.sync != LogOptions::Sync::none));
+  // A tap that cannot be repeated, and of which nobody saw the end, must leave a trace.
+  directory.open(!experiment.backend().repeatable());
 }
 
 RunReport Course::finish(std::string failure) {
@@ -163,12 +169,16 @@ RunReport Course::finish(std::string failure) {
       peak_rss_bytes()};
   report.summary = summary_list().row(summary);
   directory_.write("taps.csv", to_csv(directory_.rows()));
-  if (result.interrupted) return report;
+  if (result.interrupted) {
+    directory_.files().flush();
+    return report;
+  }
   if (config_.options.log.surface && failure.empty()) {
     const auto [name, text] = surface_file(experiment_);
     directory_.write(name, text);
   }
   directory_.write_objects(object_rows(summary));
+  directory_.files().flush();
   directory_.write("summary.json", to_json_text(report.summary));
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
   return report;
@@ -203,6 +213,7 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
     throw Error(directory.string(), "another process has just run this", "run it again to see how it ended",
                 Error::Kind::busy);
   }
+  sync_if_asked(config, *experiment, *held);
   held->write("config.yaml", to_yaml(config.tree));
   held->write_manifest(manifest_of(workshop, config, *experiment));
   return {std::move(held), std::move(experiment)};
@@ -225,6 +236,7 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
   std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
   if (supervised) check_worth_asking(config, *experiment);
   experiment->resume(past);
+  sync_if_asked(config, *experiment, held);
   if (recorded_build(directory).empty()) {
     held.write_manifest(manifest_of(workshop, config, *experiment));
   } else {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <utility>
 
 #include <fcntl.h>
@@ -25,9 +27,14 @@ namespace {
   throw Error(file.string(), std::string(action) + ": " + std::strerror(errno), {}, Error::Kind::run);
 }
 
+/// Opens above the standard files, which a process may have been started without.
+Descriptor open_file(const fs::path& file, int flags) {
+  return above_standard(::open(file.c_str(), flags | O_CLOEXEC, 0666));
+}
+
 /// Opens what is to be written, but no link: whoever made that would choose what is overwritten.
 Descriptor open_to_write(const fs::path& file, int flags) {
-  Descriptor opened(::open(file.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, 0666));
+  Descriptor opened = open_file(file, flags | O_NOFOLLOW);
   if (opened) return opened;
   if (errno == ELOOP) refuse_link(file);
   fail(file, "cannot be opened");
@@ -39,25 +46,92 @@ const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
 
 Descriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT); }
 
-constexpr const char* kTemporary = ".tmp";
+/// Closes a second descriptor of the same open file: Linux hands all that was written to the file system at each close,
+/// and the first descriptor keeps its lock.
+bool flush_file(const Descriptor& file) {
+  const int copy = ::fcntl(file.number(), F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  return copy >= 0 && ::close(copy) == 0;
+}
+
+void sync_folder(const fs::path& folder) {
+  const Descriptor opened = open_file(folder, O_RDONLY | O_DIRECTORY);
+  if (!opened && errno == EACCES) return;  // of another user, and so not made here
+  // A file system that cannot sync folders, or on which none is made.
+  const auto needs_none = [] { return errno == EINVAL || errno == EROFS; };
+  if (!opened || (::fsync(opened.number()) != 0 && !needs_none())) fail(folder, "cannot be synced");
+}
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
+
+constexpr std::string_view kTemporary = ".tmp";
+constexpr std::size_t kDigits = 16;
+
+bool is_temporary(const std::string& name) {
+  const std::size_t end = name.size() - std::min(name.size(), kTemporary.size());
+  if (end <= kDigits || name.compare(end, kTemporary.size(), kTemporary) != 0) return false;
+  return name[end - kDigits - 1] == '.' && name.find_first_not_of("0123456789abcdef", end - kDigits) == end;
+}
+
+/// Before this process first writes in a folder.
+void remove_temporaries_once(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::string> seen;
+  {
+    const std::lock_guard<std::mutex> guard(mutex);
+    if (!seen.insert(folder.native()).second) return;
+  }
+  remove_temporaries(folder);
+}
+
+/// Whether a look at a path has shown that nothing is there, or nothing for this user.
+bool shows_nothing(int reason) {
+  return reason == ENOENT || reason == ENOTDIR || reason == EACCES || reason == ELOOP || reason == ENAMETOOLONG;
+}
 
 }  // namespace
 
-Neighbour::Neighbour(const fs::path& file) : file_(file) {
-  std::uint64_t unforeseen = 0;
-  if (::getrandom(&unforeseen, sizeof unforeseen, 0) != sizeof unforeseen) fail(file, "no random name for it");
-  path_ = file.string() + fmt::format(".{:016x}{}", unforeseen, kTemporary);
-  descriptor_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!descriptor_) fail(file, "cannot be made");
+TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
+  remove_temporaries_once(folder_of(file));
+  for (;;) {
+    std::uint64_t unforeseen = 0;
+    if (::getrandom(&unforeseen, sizeof unforeseen, 0) != sizeof unforeseen) fail(file, "no random name for it");
+    const fs::path path = file.string() + fmt::format(".{:016x}{}", unforeseen, kTemporary);
+    descriptor_ = open_file(path, O_RDWR | O_CREAT | O_EXCL);
+    if (!descriptor_ && errno == EEXIST) continue;
+    if (!descriptor_) fail(file, "cannot be made");
+    path_ = path;
+    // Whoever removes temporary files may have come between. A file system without locks has nobody who removes them.
+    const bool taken = ::fcntl(descriptor_.number(), F_OFD_SETLK, &kWholeFile) != 0 && errno == EAGAIN;
+    struct stat what {};
+    if (!taken && ::fstat(descriptor_.number(), &what) == 0 && what.st_nlink > 0) return;
+    ::unlink(path.c_str());
+  }
 }
 
-Neighbour::~Neighbour() {
+TemporaryFile::~TemporaryFile() {
   if (!path_.empty()) ::unlink(path_.c_str());
 }
 
-void Neighbour::rename() {
-  if (::rename(path_.c_str(), file_.c_str()) != 0) fail(file_, "cannot be renamed to");
+void TemporaryFile::write(std::string_view piece) const {
+  if (!write_all(descriptor_, piece)) fail(file_, "cannot be written");
+}
+
+void TemporaryFile::publish(bool sync) {
+  if (sync && ::fsync(descriptor_.number()) != 0) fail(file_, "cannot be synced");
+  if (!flush_file(descriptor_)) fail(file_, "cannot be written");
+  if (::rename(path_.c_str(), file_.c_str()) != 0) {
+    const int reason = errno;
+    // NFS asks again where an answer was lost, and is then told that the old name is gone.
+    struct stat own {
+    }, named{};
+    const bool renamed = reason == ENOENT && ::fstat(descriptor_.number(), &own) == 0 &&
+                         ::lstat(file_.c_str(), &named) == 0 && own.st_dev == named.st_dev &&
+                         own.st_ino == named.st_ino;
+    errno = reason;
+    if (!renamed) fail(file_, "cannot be renamed to");
+  }
   path_.clear();
+  if (sync) sync_folder(folder_of(file_));
 }
 
 void write_file(const fs::path& file, const std::string& text, bool sync) {
@@ -66,26 +140,23 @@ void write_file(const fs::path& file, const std::string& text, bool sync) {
 }
 
 void write_file(const fs::path& file, const Text& text, bool sync) {
-  Neighbour neighbour(file);
-  text([&](std::string_view piece) {
-    if (!write_all(neighbour.descriptor(), piece)) fail(file, "cannot be written");
-  });
-  if (sync && ::fsync(neighbour.descriptor().number()) != 0) fail(file, "cannot be synced");
-  neighbour.rename();
-  if (sync) {
-    const Descriptor folder{::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-    if (folder) ::fsync(folder.number());
-  }
+  TemporaryFile temporary(file);
+  text([&](std::string_view piece) { temporary.write(piece); });
+  temporary.publish(sync);
 }
 
-void remove_neighbours(const fs::path& folder, std::initializer_list<const char*> names) {
+void remove_temporaries(const fs::path& folder) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     const fs::path& file = entry.path();
-    if (file.extension() != kTemporary) continue;
-    const auto of = [&](const char* name) { return file.stem().stem() == name; };
-    if (names.size() == 0 || std::any_of(names.begin(), names.end(), of)) fs::remove(file, none);
+    if (!is_temporary(file.filename().string())) continue;
+    const Descriptor left = open_file(file, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY);
+    if (left && ::fcntl(left.number(), F_OFD_SETLK, &kWholeFile) == 0) fs::remove(file, none);
   }
+}
+
+void sync_names(const fs::path& folder) {
+  for (fs::path at = fs::absolute(folder); at != at.root_path(); at = at.parent_path()) sync_folder(at);
 }
 
 void cut_file(const fs::path& file, std::uintmax_t bytes) {
@@ -93,9 +164,13 @@ void cut_file(const fs::path& file, std::uintmax_t bytes) {
   if (::ftruncate(out.number(), static_cast<off_t>(bytes)) != 0) fail(file, "cannot be cut");
 }
 
-bool is_there(const fs::path& path) {
-  std::error_code none;
-  return fs::exists(path, none);
+bool is_there(const fs::path& path) { return size_if_there(path.c_str()).has_value(); }
+
+std::optional<std::uintmax_t> size_if_there(const char* path) {
+  struct stat what {};
+  if (::stat(path, &what) == 0) return static_cast<std::uintmax_t>(what.st_size);
+  if (shows_nothing(errno)) return std::nullopt;
+  fail(path, "cannot be looked at");
 }
 
 void refuse_link(const fs::path& path) {
@@ -123,9 +198,13 @@ std::string read_file(const fs::path& file, std::uintmax_t most_bytes) {
 }
 
 std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes) {
-  const auto refuse = [&] { throw Error(file.string(), "cannot be read"); };
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (!in && (errno == ENOENT || !is_there(file))) return std::nullopt;
+  const auto refuse = [&] {
+    if (errno == EIO || errno == ESTALE || errno == ENOLCK) fail(file, "cannot be read");
+    throw Error(file.string(), "cannot be read");
+  };
+  const Descriptor in = open_file(file, O_RDONLY);
+  if (!in && errno == ENOENT) return std::nullopt;
+  if (!in && errno != EIO && !is_there(file)) return std::nullopt;
   struct stat what {};
   if (!in || ::fstat(in.number(), &what) != 0) refuse();
   const auto bytes = static_cast<std::uintmax_t>(what.st_size);
@@ -152,8 +231,25 @@ AppendFile::AppendFile(const fs::path& file)
 }
 
 void AppendFile::append(const std::string& text, bool sync) {
-  if (!write_all(descriptor_, text)) fail(file_, "cannot be written");
-  if (sync && ::fdatasync(descriptor_.number()) != 0) fail(file_, "cannot be synced");
+  if (failed_) {
+    throw Error(file_.string(), "is not written to any more, because that failed before", "'palpate resume' goes on",
+                Error::Kind::run);
+  }
+  struct stat before {};
+  if (::fstat(descriptor_.number(), &before) != 0) fail(file_, "cannot be written");
+  if (!write_all(descriptor_, text)) {
+    const int reason = errno;
+    failed_ = ::ftruncate(descriptor_.number(), before.st_size) != 0;
+    errno = reason;
+    fail(file_, "cannot be written");
+  }
+  if (!sync || ::fdatasync(descriptor_.number()) == 0) return;
+  failed_ = true;
+  fail(file_, "its last line may not be on the disk, because it cannot be synced");
+}
+
+void AppendFile::flush() const {
+  if (!flush_file(descriptor_)) fail(file_, "cannot be written");
 }
 
 bool AppendFile::is_in_place() const {
@@ -180,7 +276,8 @@ FileLock FileLock::wait_for(const fs::path& file) {
 }
 
 bool FileLock::is_held(const fs::path& file) {
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  const Descriptor in = open_file(file, O_RDONLY);
+  if (!in && errno == EIO) fail(file, "cannot be looked at");
   struct flock other = kWholeFile;
   return in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0 && other.l_type != F_UNLCK;
 }

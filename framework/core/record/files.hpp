@@ -17,8 +17,9 @@
 
 namespace palpate {
 
-/// Writes `text` to a temporary neighbour and renames it to `file`: readers see the old content or the new, never a
-/// part, and a link is replaced. With `sync` content and name are on the disk when it returns. Throws Error.
+/// Writes `text` to a temporary file, closes that and renames it to `file`: readers see the old content or the new,
+/// never a part, and a link is replaced. With `sync` content and name are on the disk when it returns. Throws Error:
+/// then `file` is as it was, unless only the sync of its folder failed.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
 
 /// A text that is handed to `out` piece by piece, so that nobody needs all of it at once.
@@ -26,18 +27,18 @@ using TextOut = std::function<void(std::string_view piece)>;
 using Text = std::function<void(const TextOut& out)>;
 void write_file(const std::filesystem::path& file, const Text& text, bool sync = false);
 
-/// A file on its way to its name: made empty beside it, under one that nobody could have foreseen, and removed where it
-/// does not get there.
-class Neighbour {
+/// A file on its way to its name: made empty beside it, as NAME.<16 random hex digits>.tmp, and locked until it has its
+/// name. Removed where it does not get there, and after a kill by whoever next writes in that folder.
+class TemporaryFile {
  public:
   /// Throws Error.
-  explicit Neighbour(const std::filesystem::path& file);
-  ~Neighbour();
+  explicit TemporaryFile(const std::filesystem::path& file);
+  ~TemporaryFile();
 
   const std::filesystem::path& path() const { return path_; }
-  const Descriptor& descriptor() const { return descriptor_; }
-  /// Takes the place of `file`. Throws Error.
-  void rename();
+  void write(std::string_view piece) const;
+  /// Takes the place of `file`, once the file system has taken all that was written. Throws Error.
+  void publish(bool sync = false);
 
  private:
   std::filesystem::path file_;
@@ -45,15 +46,20 @@ class Neighbour {
   Descriptor descriptor_;
 };
 
-/// Removes what kills left behind in `folder` of files on their way to `names`, or, without any, of all. For who
-/// alone may write those.
-void remove_neighbours(const std::filesystem::path& folder, std::initializer_list<const char*> names);
+/// Removes the temporary files in `folder` whose writers were killed: those that nobody holds locked.
+void remove_temporaries(const std::filesystem::path& folder);
+
+/// Puts the names in `folder` on the disk, and the names of the folders on the way to it. Throws Error.
+void sync_names(const std::filesystem::path& folder);
 
 /// Keeps the first `bytes` of a file. Throws Error.
 void cut_file(const std::filesystem::path& file, std::uintmax_t bytes);
 
-/// Whether there is something of that name; what cannot be looked at is not there.
+/// Whether there is something of that name. What this user may not look at is not there. Throws Error where the file
+/// system fails.
 bool is_there(const std::filesystem::path& path);
+/// The same, and how many bytes it has; none where nothing is there.
+std::optional<std::uintmax_t> size_if_there(const char* path);
 
 /// Throws Error where `path`, a part of a record, is a link: what is written would lie where another person chose.
 void refuse_link(const std::filesystem::path& path);
@@ -66,21 +72,27 @@ std::filesystem::path make_inner_folder(const std::filesystem::path& folder);
 
 constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 
-/// The whole content. Throws Error, for a file of more than `most_bytes`, too.
+/// The whole content. Throws Error, for a file of more than `most_bytes`, too; of kind `run` where the file system
+/// fails.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes = kAnySize);
 
 /// The same; none where is_there() says that there is none.
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kAnySize);
 
-/// A file that only grows.
+/// A file that only grows, by whole lines.
 class AppendFile {
  public:
   AppendFile() = default;
   /// Opens or makes `file`. Throws Error.
   explicit AppendFile(const std::filesystem::path& file);
 
-  /// Appends in one system call; with `sync` it is on the disk when it returns. Throws Error.
+  /// Appends in one system call; with `sync` it is on the disk when it returns. Throws Error: what was not written
+  /// whole is cut off again. Where that fails, and after a sync that failed, nothing more is appended: the kernel has
+  /// dropped the data, and a second sync would report success.
   void append(const std::string& text, bool sync);
+
+  /// Has the file system take all that was appended, as closing does: NFS reports a full quota only then. Throws Error.
+  void flush() const;
 
   /// Whether the name that it was opened by still leads to it.
   bool is_in_place() const;
@@ -88,6 +100,7 @@ class AppendFile {
  private:
   std::filesystem::path file_;
   Descriptor descriptor_;
+  bool failed_ = false;
   std::uint64_t device_ = 0;  ///< with the next, which file it is
   std::uint64_t inode_ = 0;
 };
@@ -103,7 +116,8 @@ class FileLock {
   /// Makes `file` if need be and waits until it can be locked. Throws Error.
   static FileLock wait_for(const std::filesystem::path& file);
 
-  /// Whether some process holds the lock of `file` now. Asking disturbs nobody who is about to take it.
+  /// Whether some process holds the lock of `file` now. Asking disturbs nobody who is about to take it. Throws Error
+  /// where the file system fails.
   static bool is_held(const std::filesystem::path& file);
 
  private:

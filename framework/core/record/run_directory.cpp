@@ -35,6 +35,7 @@ std::optional<Row> read_summary(const fs::path& directory) {
 std::optional<Row> read_outcome(const fs::path& directory) {
   std::optional<Row> out;
   if (const auto trouble = trouble_in([&] { out = read_summary(directory); })) {
+    if (trouble->kind() == Error::Kind::run) throw *trouble;  // a file system that fails tells nothing of the run
     out.emplace().add("status", "failed");
     out->add("stop_reason", trouble->what());
   }
@@ -87,8 +88,8 @@ RunStatus read_status(const fs::path& directory) {
 }
 
 RunDirectory::RunDirectory(const fs::path& directory) : path_(directory), files_(path_) {
-  remove_neighbours(path_, {"config.yaml", "manifest.json", "taps.csv", "surface.csv", "objects.csv", kSummary});
-  remove_neighbours(path_ / "maps", {});
+  remove_temporaries(path_);
+  remove_temporaries(path_ / "maps");
 }
 
 std::vector<PastTap> RunDirectory::recover() {
@@ -114,10 +115,13 @@ std::vector<PastTap> RunDirectory::recover() {
   return past_taps(rows_, files_.taps_file());
 }
 
-void RunDirectory::open(bool announce, bool sync) {
+void RunDirectory::sync() { sync_ = true; }
+
+void RunDirectory::open(bool announce) {
   announce_ = announce;
-  sync_ = sync;
   files_.open();
+  // Lines that are on the disk are lost all the same if no name leads to them.
+  if (sync_) sync_names(path_);
 }
 
 void RunDirectory::announce(const TapRecord& tap) {
@@ -126,9 +130,10 @@ void RunDirectory::announce(const TapRecord& tap) {
 }
 
 void RunDirectory::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
-  rows_.push_back(tap_row(tap));
+  Row row = tap_row(tap);
   const TapTimes times{tap.number, seconds};
-  files_.add_tap(rows_.back(), &times, sync_);
+  files_.add_tap(row, &times, sync_);
+  rows_.push_back(std::move(row));
   for (std::size_t i = 0; i < kPhases; ++i) total_[i] += seconds[i];
 }
 

@@ -35,7 +35,8 @@ struct RunStatus {
 /// Its summary.json; none for a run that has not ended. Throws Error for a damaged one.
 std::optional<Row> read_summary(const std::filesystem::path& directory);
 
-/// The same for who looks at many: a damaged one is that of a failed run, with the damage for its reason.
+/// The same for who looks at many: a damaged one is that of a failed run, with the damage for its reason. Throws Error
+/// where the file system fails.
 std::optional<Row> read_outcome(const std::filesystem::path& directory);
 
 /// Throws Error if `summary` is that of a finished run in `directory` with more taps than are `recorded`.
@@ -72,9 +73,11 @@ class RunDirectory final : public Journal {
   /// becomes a tap of outcome `unknown`. Throws Error for a damaged file.
   std::vector<PastTap> recover();
 
-  /// Opens the log for what follows. With `announce` each tap is announced before it is made; with `sync` lines are
-  /// forced to disk.
-  void open(bool announce, bool sync);
+  /// From here on all that is written is forced to disk. Throws Error.
+  void sync();
+
+  /// Opens the log for what follows. With `announce` each tap is announced before it is made.
+  void open(bool announce);
 
   /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
   void check_in_place() const { files_.check_in_place(); }

@@ -11,9 +11,6 @@
 #include <charconv>
 #include <utility>
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 namespace palpate {
 
 namespace fs = std::filesystem;
@@ -91,7 +88,7 @@ void cut_half_line(const fs::path& file) {
 RunFiles::RunFiles(const fs::path& directory, bool packed) : directory_(directory.native() + "/"), packed_(packed) {}
 
 RunFiles::RunFiles(const fs::path& directory) : RunFiles(directory, false) {
-  packed_ = ::access((directory_ + kPacked).c_str(), F_OK) == 0;
+  packed_ = size_if_there((directory_ + kPacked).c_str()).has_value();
 }
 
 bool RunFiles::will_be_packed(const fs::path& directory) {
@@ -108,9 +105,9 @@ fs::path taps_file_to_come(const fs::path& directory) {
 }
 
 bool RunFiles::begun() const {
-  struct stat what {};
   // The one that is packed is there when somebody has asked for the lock.
-  return ::stat((directory_ + (packed_ ? kPacked : kTaps)).c_str(), &what) == 0 && (!packed_ || what.st_size > 0);
+  const std::optional<std::uintmax_t> bytes = size_if_there((directory_ + (packed_ ? kPacked : kTaps)).c_str());
+  return bytes && (!packed_ || *bytes > 0);
 }
 
 std::optional<std::string> tap_in_line(std::string_view line) {
@@ -256,6 +253,12 @@ void HeldFiles::set_objects(const std::vector<Row>& objects, bool sync) {
   std::string lines;
   for (const Row& object : objects) lines += to_json_line(object) + "\n";
   log().append(lines, sync);
+}
+
+void HeldFiles::flush() const {
+  for (const std::optional<AppendFile>* file : {&log_, &timings_, &attempts_}) {
+    if (*file) (*file)->flush();
+  }
 }
 
 void HeldFiles::add_attempt(const Row& attempt) {

@@ -106,6 +106,9 @@ class HeldFiles : public RunFiles {
   /// A line about an attempt at a job.
   void add_attempt(const Row& attempt);
 
+  /// Has the file system take all that was added. Throws Error where it does not.
+  void flush() const;
+
  private:
   AppendFile& log();
 

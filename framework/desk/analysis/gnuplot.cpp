@@ -42,7 +42,7 @@ std::string png_header(int width, int height, const std::string& output) {
 }
 
 std::string draw_png(const std::string& script, int width, int height, const fs::path& file) {
-  Neighbour picture(file);
+  TemporaryFile picture(file);
   Program program{{"gnuplot", "--default-settings"}};  // a user's own settings would give another picture
   program.own_group = false;                           // whoever presses Ctrl-C wants no picture either
   const std::string output = fs::absolute(picture.path()).string();
@@ -54,7 +54,7 @@ std::string draw_png(const std::string& script, int width, int height, const fs:
   const bool ended_well = gnuplot->status() == 0;
   if (!ended_well || fs::is_empty(picture.path()))
     return fmt::format("gnuplot {}: {}", ended_well ? "drew nothing" : "failed", first_words(gnuplot->said()));
-  picture.rename();
+  picture.publish();
   return {};
 }
 

@@ -57,7 +57,7 @@ void try_again(Standing& standing, int most_attempts) {
   std::sort(standing.open.begin(), standing.open.end());
 }
 
-void conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
+bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress) {
   SweepProgress counts;
   counts.done = begun.counts[RunStatus::State::done];
@@ -65,6 +65,7 @@ void conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::
   counts.before = counts.done + counts.failed;
   counts.jobs = counts.before + static_cast<int>(begun.open.size());
   bool gone = false;
+  bool all_recorded = true;
   bool cancelled = false;
   launcher.submit(begun.open);
   Launcher::State state;
@@ -83,13 +84,15 @@ void conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::
       const RunStatus::State now = read_ending(directory).state;
       const bool done = now == RunStatus::State::done;
       // Where not even a failure could be recorded, as on a full disk, there is none to be read.
-      const bool lost = !done && !cancelled && !is_running(directory);
+      const bool failed = now == RunStatus::State::failed;
+      const bool lost = !done && !failed && !cancelled && !is_running(directory);
+      all_recorded = all_recorded && !lost;
       counts.done += done ? 1 : 0;
-      counts.failed += now == RunStatus::State::failed || lost ? 1 : 0;
+      counts.failed += failed || lost ? 1 : 0;
     }
     progress(counts);
   } while (!counts.last);
-  if (!gone && !is_gone(sweep)) return;
+  if (!gone && !is_gone(sweep)) return all_recorded;
   throw Error(sweep.directory.string(), "was moved or removed while its jobs were under way",
               "where it was moved to, 'palpate resume' carries on; otherwise begin it again with 'palpate sweep'",
               Error::Kind::run);

@@ -48,8 +48,9 @@ void try_again(Standing& standing, int most_attempts);
 
 /// Has `launcher` run what is open, where jobs stand as in `begun`, and waits until it has none in its hands, or until
 /// `interrupted`, when it cancels them. `progress` is called when something changed and at least every half second.
-/// Throws Error where the sweep's directory is moved or removed meanwhile, when it has cancelled them.
-void conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
+/// Returns whether each job that ended has a record of its end: on a full disk not even a failure may get one. Throws
+/// Error where the sweep's directory is moved or removed meanwhile, when it has cancelled them.
+bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress);
 
 }  // namespace palpate

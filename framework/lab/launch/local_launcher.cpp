@@ -90,7 +90,8 @@ JobEnd LocalLauncher::run(std::size_t job) const {
         order_.workshop, [&] { return order_.config_of(job); }, directory_of(job), order_.options.resume);
   } catch (const std::exception& trouble) {  // which nobody but the terminal can be told of
     // Who conducts the sweep says once that all of it is gone. fmt::print would throw where a terminal was closed.
-    if (is_there(order_.sweep.directory)) {
+    std::error_code unknown;
+    if (std::filesystem::exists(order_.sweep.directory, unknown) || unknown) {
       std::fputs(fmt::format("job {}: {}\n", job, trouble.what()).c_str(), stderr);
     }
   }

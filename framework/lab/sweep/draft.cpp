@@ -73,7 +73,9 @@ void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
     text += known.yaml;
   }
   // In its place at once: nobody looks here before the whole folder gets its name.
-  AppendFile(directory / "config.yaml").append(text, false);
+  AppendFile file(directory / "config.yaml");
+  file.append(text, false);
+  file.flush();
 }
 
 void SweepDraft::replace_lost(const Sweep& sweep) const {

@@ -124,7 +124,6 @@ Sweep read_sweep(const fs::path& directory) {
 
 std::vector<Row> write_results(const Sweep& sweep) {
   const FileLock lock = FileLock::wait_for(sweep.directory / "lock");
-  remove_neighbours(sweep.directory, {"results.csv"});
   std::vector<Row> results = sweep_results(sweep);
   write_file(sweep.directory / "results.csv", to_csv(results));
   return results;

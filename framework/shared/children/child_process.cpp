@@ -90,17 +90,20 @@ pid_t spawn(const Program& program, const std::vector<int>& files) {
   ::posix_spawn_file_actions_addclosefrom_np(&actions, number);
   posix_spawnattr_t attributes;
   ::posix_spawnattr_init(&attributes);
+  sigset_t usual;
+  ::sigemptyset(&usual);
+  for (const int signal : {SIGPIPE, SIGXFSZ}) ::sigaddset(&usual, signal);  // which this process may ignore for itself
+  short flags = POSIX_SPAWN_SETSIGDEF;
   if (program.own_group) {
     sigset_t none;
     ::sigemptyset(&none);
     ::posix_spawnattr_setsigmask(&attributes, &none);
-    sigset_t usual;
-    ::sigemptyset(&usual);
-    for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaddset(&usual, signal);
-    ::posix_spawnattr_setsigdefault(&attributes, &usual);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaddset(&usual, signal);
     ::posix_spawnattr_setpgroup(&attributes, 0);
-    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    flags |= POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK;
   }
+  ::posix_spawnattr_setsigdefault(&attributes, &usual);
+  ::posix_spawnattr_setflags(&attributes, flags);
   const char* const file = program.file.empty() ? words.front() : program.file.c_str();
   pid_t pid = -1;
   const int refused = ::posix_spawnp(&pid, file, &actions, &attributes, words.data(), environment.data());

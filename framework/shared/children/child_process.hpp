@@ -65,7 +65,7 @@ struct Program {
   std::string file{};              ///< what is run; if empty, the name, which is looked for on PATH
   std::vector<std::string> environment = own_environment();  ///< of one name the first counts
   /// In a process group of its own it hears none of the terminal's signals, and takes all others as a fresh program
-  /// does; else it ends at Ctrl-C as this process does, and ignores what this one ignores.
+  /// does; else it ends at Ctrl-C as this process does, and ignores what this one ignores but SIGPIPE and SIGXFSZ.
   bool own_group = true;
 };
 

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "cli/output.hpp"
+
+#include "cli/commands.hpp"
+#include "cli/display.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace palpate::cli {
+namespace {
+
+constexpr int kUnknown = -1;
+/// Why stdout failed first; 0: it has not.
+int failure = 0;
+bool outlives = false;
+std::string record;
+
+void note_failure() {
+  if (failure == 0) failure = errno != 0 ? errno : kUnknown;
+}
+
+}  // namespace
+
+void occupy_standard_files() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(number, F_GETFD) >= 0) continue;
+    // Gets this very number, the lowest that is free.
+    ::open(number == STDIN_FILENO ? "/dev/full" : "/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+void print_text(std::string_view text) {
+  errno = 0;
+  if (failure == 0 && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) note_failure();
+}
+
+void flush_output() {
+  errno = 0;
+  if (std::fflush(stdout) != 0) note_failure();
+}
+
+void outlive_reader() {
+  std::signal(SIGPIPE, SIG_IGN);
+  outlives = true;
+}
+
+void name_record(std::string line) { record = std::move(line); }
+
+int finish_output(int status) {
+  flush_output();
+  errno = 0;
+  if (std::ferror(stdout) != 0) note_failure();  // of what CLI11 prints
+  // A file system may report only at close what it did not take.
+  errno = 0;
+  const int copy = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (copy >= 0 && ::close(copy) != 0) note_failure();
+  if (failure == 0) return status;
+  if (failure == EPIPE && outlives) {
+    if (!record.empty()) mention(record + "\n");
+    return status;
+  }
+  mention(fmt::format("standard output: cannot be written{}{}{}{}\n", failure == kUnknown ? "" : ": ",
+                      failure == kUnknown ? "" : std::strerror(failure), record.empty() ? "" : "; ", record));
+  return status == kDone ? kFailed : status;
+}
+
+}  // namespace palpate::cli
