@@ -4,6 +4,7 @@
 
 faulty_calls.cpp counts the calls of a command and fails the n-th in one of its modes. Then must hold:
 
+  hangs    the command ends
   exit     a failed call: exit status 1, or 0 and the whole record; a kill: 137, or the same where another process went on
   words    of status 1: one line on stderr, with a path or the reason of the system
   silent   status 0 with anything but the whole record
@@ -14,7 +15,7 @@ faulty_calls.cpp counts the calls of a command and fails the n-th in one of its 
   lost     (robot) every tap is in the record, and none was made twice
 
 The short form draws points; the long form takes all. known.txt lists the failures that are known, a line each: "COMMAND
-MODE CALL FILE: SYMPTOM". Any other failure fails the harness, and so does a known one that does not occur any more.
+MODE CALL FILE: SYMPTOM", and of a power cut "COMMAND power: SYMPTOM". Any other failure fails the harness, and so does a known one that does not occur any more.
 """
 import argparse
 import concurrent.futures
@@ -77,7 +78,7 @@ class Bench:
             env.update(LD_PRELOAD=os.path.join(self.build, "tests/libfaulty_calls.so"), PALPATE_FAULT=fault,
                        PALPATE_FAULT_BELOW=self.runs, PALPATE_FAULT_STATE=self.state)
         return subprocess.run([os.path.join(self.build, "palpate")] + words, cwd=self.folder, env=env, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=120)
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=300)
 
     def trace(self):
         if not os.path.exists(self.state + ".trace"):
@@ -211,9 +212,9 @@ class Point:
         name = re.sub(r"\.[0-9a-f]{16}\.tmp$", ".tmp", name)
         name = re.sub(r"\.sweep-\w{6}", "DRAFT", name)
         name = "/".join(re.sub(r"^[0-9a-f]{12}$", "ID", part) for part in name.split("/")[1:]) or "."
-        # What a power cut takes away is drawn: by any of them the same may happen.
         # A child that was killed is told of; a place that keeps no locks is wrong usage.
         self.statuses = {137, 1 if command.children else 137} if mode in KILLS else {1, 2 if call.name == "lock" else 1}
+        # What a power cut takes away is drawn: by any of them the same may happen.
         self.kind = f"{command.name} power" if mode == "power" else f"{command.name} {mode} {call.name} {name}"
 
     def failures(self, build, whole, seed):
@@ -222,6 +223,8 @@ class Point:
         try:
             self.command.prepare(bench)
             return self.check(bench, whole, random.Random(f"{seed} {self.kind} {self.number}"))
+        except subprocess.TimeoutExpired as trouble:
+            return {"hangs": str(trouble)}
         finally:
             bench.remove()
 
