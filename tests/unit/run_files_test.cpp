@@ -31,7 +31,7 @@ TapRecord made(int number) {
 }
 
 void make_taps(RunDirectory& run, int first, int last, bool announce = false) {
-  run.open(announce, false);
+  run.open(announce);
   for (int i = first; i <= last; ++i) {
     run.announce(made(i));
     run.record(made(i), kTook);
