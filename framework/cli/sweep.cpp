@@ -194,7 +194,7 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   name_record("carry on: palpate resume " + sweep.directory.string());
   const bool whole = campaign.only.empty();
   const std::vector<std::size_t> jobs = undone(begun);
-  if (campaign.options.retry_failed) try_again(begun, campaign.launch.attempts);
+  if (campaign.options.retry_failed) try_again(begun);
   if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {
     mention("one job at a time: the backend has but one thing to move\n");
   }

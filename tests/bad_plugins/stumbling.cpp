@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
-// An acquisition that can be loaded and made, and throws when it is used: what the run must survive in good order.
+// An acquisition or a footprint that can be loaded and made, and throws when it is used: what the run must survive in
+// good order.
 #include <palpate/acquisition.hpp>
+#include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
+
+#include <stdexcept>
 
 namespace broken {
 
@@ -9,6 +13,22 @@ struct OwnException final : std::exception {
   const char* what() const noexcept override { return "no score today"; }
 };
 
+#ifdef THROWS_WHEN_TOLD
+class Footprint final : public palpate::Footprint {
+ public:
+  using Options = palpate::NoOptions;
+  Footprint(const Options&, const palpate::Context&) {}
+  void add(const palpate::Touch&) override {
+    if (++touches_ == 3) throw std::runtime_error("no touch today");
+  }
+  void probability(const palpate::PointsView&, palpate::VectorOut out) override { out.setConstant(0.5); }
+
+ private:
+  int touches_ = 0;
+};
+
+PALPATE_PLUGIN(palpate::Footprint, Footprint, PLUGIN_NAME, "throws when it is told of the third touch")
+#else
 class Acquisition final : public palpate::Acquisition {
  public:
   using Options = palpate::NoOptions;
@@ -27,5 +47,6 @@ class Acquisition final : public palpate::Acquisition {
 };
 
 PALPATE_PLUGIN(palpate::Acquisition, Acquisition, PLUGIN_NAME, "throws when asked for a score")
+#endif
 
 }  // namespace broken

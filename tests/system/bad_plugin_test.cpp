@@ -248,5 +248,14 @@ TEST_F(BadPlugin, ThrowingInTheMiddleOfARunFailsTheRunInGoodOrder) {
   }
 }
 
+TEST_F(BadPlugin, ThrowingWhenToldOfATapLosesNoTap) {
+  environment_ = {test::with_plugin("throws_when_told")};
+  const Ended ended = palpate({"run", test::config("default.yaml"), "footprint=throws_when_told", "--runs", "runs"});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_EQ(ended.err, "footprint/throws_when_told: no touch today\n");
+  const std::string taps = read_file(directory("runs") / "taps.jsonl");
+  EXPECT_EQ(std::count(taps.begin(), taps.end(), '\n'), 3);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -6,6 +6,10 @@
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
+#include <gmock/gmock.h>
+
+#include <set>
+
 namespace palpate::test {
 namespace {
 
@@ -110,17 +114,41 @@ TEST(ResolvedConfig, TakesASearchInPlaceOfCountedTaps) {
             "command line: unknown option 'smallest' of initial, known: design, count");
 }
 
-TEST(Slug, KeepsLettersDigitsAndThreeSignsAndPutsOneDashForAllElse) {
+TEST(Slug, IsTheNameOrPutsOneDashForAllElseAndEndsInAHash) {
   EXPECT_EQ(slug("Object_I-2.b"), "Object_I-2.b");
-  EXPECT_EQ(slug("a /\\ b\nc"), "a-b-c");
+  EXPECT_THAT(slug("a /\\ b\nc"), testing::MatchesRegex("a-b-c~[0-9a-f]{6}"));
 }
 
 TEST(Slug, IsNeverEmptyHiddenLongOrAPath) {
-  EXPECT_EQ(slug(""), "experiment");
-  EXPECT_EQ(slug("///"), "experiment");
-  EXPECT_EQ(slug(".."), "experiment");
-  EXPECT_EQ(slug("../../etc"), "etc");
-  EXPECT_EQ(slug(std::string(100, 'a')), std::string(64, 'a'));
+  for (const char* const name : {"", "///", ".."})
+    EXPECT_THAT(slug(name), testing::MatchesRegex("experiment~[0-9a-f]{6}"));
+  EXPECT_THAT(slug("../../etc"), testing::MatchesRegex("etc~[0-9a-f]{6}"));
+  EXPECT_THAT(slug(std::string(100, 'a')), testing::MatchesRegex("a{64}~[0-9a-f]{6}"));
+}
+
+TEST(Slug, OfOtherNamesIsAnother) {
+  const std::vector<std::string> names{"Tasse blau",
+                                       "Tasse-blau",
+                                       "Tasse  blau",
+                                       "Tasse-blau-",
+                                       " Tasse blau",
+                                       "Schüssel",
+                                       "Schässel",
+                                       "Schssel",
+                                       "茶碗",
+                                       "花瓶",
+                                       "",
+                                       "experiment",
+                                       "///",
+                                       "..",
+                                       "a/b",
+                                       "a-b",
+                                       "a\nb",
+                                       std::string(64, 'a'),
+                                       std::string(65, 'a')};
+  std::set<std::string> folders;
+  for (const std::string& name : names) folders.insert(slug(name));
+  EXPECT_EQ(folders.size(), names.size());
 }
 
 }  // namespace

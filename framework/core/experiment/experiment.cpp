@@ -54,8 +54,9 @@ std::optional<TapRecord> Experiment::begin(Journal& journal, int most_taps, cons
 
 void Experiment::end(TapRecord& tap, Journal& journal) {
   if (tap.contact.outcome == Outcome::contact) read(tap);
-  observe(tap);
+  // Before any model takes it in: whatever a plugin does with it, a tap that was made is not lost.
   journal.record(tap, clock_.take());
+  observe(tap);
   check_backend(tap);
 }
 

@@ -82,16 +82,6 @@ Row settings_of(const fs::path& directory) {
   return out;
 }
 
-/// The records of that name: their folder has it, or stands for it where a folder cannot be called so.
-std::vector<fs::path> records_named(const std::string& name, const fs::path& runs) {
-  const std::string folder = slug(name);
-  std::vector<fs::path> out = read_catalogue(runs / folder).records;
-  if (folder == name) return out;
-  const auto other = [&](const fs::path& one) { return settings_of(one).text("name") != name; };
-  out.erase(std::remove_if(out.begin(), out.end(), other), out.end());
-  return out;
-}
-
 /// "a and 3 more, 'palpate list' shows them": of many the last ones, each with what sets it apart from those.
 Error several(const std::string& words, const std::string& base, std::vector<fs::path> records) {
   constexpr std::size_t kShown = 4;
@@ -180,7 +170,7 @@ fs::path find_record(const std::string& words, Wanted wanted, const fs::path& ru
   const std::string base = latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
   const bool is_path = is_there(base);
   if (is_path && is_record(base)) return base;
-  std::vector<fs::path> records = is_path ? read_catalogue(base).records : records_named(base, runs);
+  std::vector<fs::path> records = read_catalogue(is_path ? fs::path(base) : runs / slug(base)).records;
   if (records.empty()) {
     if (is_path || base.find('/') != std::string::npos) return base;
     throw unknown(words, base, runs);

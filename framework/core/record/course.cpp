@@ -214,8 +214,9 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
                 Error::Kind::busy);
   }
   sync_if_asked(config, *experiment, *held);
-  held->write("config.yaml", to_yaml(config.tree));
+  // The manifest first: only this process knows where each value was written, and without a config nobody carries on.
   held->write_manifest(manifest_of(workshop, config, *experiment));
+  held->write("config.yaml", to_yaml(config.tree));
   return {std::move(held), std::move(experiment)};
 }
 

@@ -12,7 +12,6 @@
 #include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
-#include <cctype>
 
 namespace palpate {
 namespace {
@@ -93,10 +92,10 @@ bool begins_with_id(const std::string& folder) {
 }
 
 std::string slug(const std::string& name) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
   std::string out;
   for (const char c : name) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-';
-    if (plain) {
+    if (kPlain.find(c) != std::string_view::npos) {
       out += c;
     } else if (!out.empty() && out.back() != '-') {
       out += '-';
@@ -105,7 +104,9 @@ std::string slug(const std::string& name) {
   out = out.substr(0, 64);
   boost::trim_left_if(out, boost::is_any_of(".-"));
   boost::trim_right_if(out, boost::is_any_of("-"));
-  return out.empty() ? "experiment" : out;
+  if (out == name && !out.empty()) return out;
+  constexpr std::size_t kDigits = 6;
+  return (out.empty() ? "experiment" : out) + '~' + hash_of(name).substr(0, kDigits);
 }
 
 }  // namespace palpate

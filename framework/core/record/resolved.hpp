@@ -38,7 +38,9 @@ inline constexpr std::size_t kIdLength = 12;
 /// Whether a folder is named by an id; something may follow it, as in 910071e8f4bb.old-1.
 bool begins_with_id(const std::string& folder);
 
-/// The name of a run's folder: letters, digits, '.', '_' and '-' of `name`, at most 64, never empty or hidden.
+/// Returns the name of the folder of all runs that are called `name`: the letters, digits, '.', '_' and '-' of it, at
+/// most 64, never empty or hidden. Of any other name it ends in '~' and six hex digits of its hash, so that other names
+/// have other folders.
 std::string slug(const std::string& name);
 
 }  // namespace palpate

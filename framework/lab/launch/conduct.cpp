@@ -48,12 +48,9 @@ Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, b
   return out;
 }
 
-void try_again(Standing& standing, int most_attempts) {
-  std::vector<SweepFailure>& failures = standing.failures;
-  const auto again = std::stable_partition(failures.begin(), failures.end(),
-                                           [&](const SweepFailure& one) { return one.attempts >= most_attempts; });
-  for (auto one = again; one != failures.end(); ++one) standing.open.push_back(one->job);
-  failures.erase(again, failures.end());
+void try_again(Standing& standing) {
+  for (const SweepFailure& one : standing.failures) standing.open.push_back(one.job);
+  standing.failures.clear();
   std::sort(standing.open.begin(), standing.open.end());
 }
 

@@ -43,8 +43,8 @@ std::vector<std::size_t> all_jobs(const Sweep& sweep);
 /// Looks through `jobs`. Who has them in hand is asked only for `running` ones to be told from others.
 Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool running = false);
 
-/// Makes those failed jobs open again that were begun fewer than `most_attempts` times.
-void try_again(Standing& standing, int most_attempts);
+/// Makes the failed jobs open again, however often they were begun.
+void try_again(Standing& standing);
 
 /// Has `launcher` run what is open, where jobs stand as in `begun`, and waits until it has none in its hands, or until
 /// `interrupted`, when it cancels them. `progress` is called when something changed and at least every half second.
