@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "record/run_directory.hpp"
 
+#include "children/child_process.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
 #include "support/testing.hpp"
 
 #include <fstream>
+#include <memory>
+
+#include <unistd.h>
 
 namespace palpate::test {
 namespace {
@@ -79,6 +83,69 @@ TEST_F(RunFolder, AnIntentWithoutResultBecomesATapOfUnknownOutcomeOnce) {
     EXPECT_EQ(past[3].contact.outcome, Outcome::unknown);
     EXPECT_EQ(past[3].target.x, 0.4);
   }
+}
+
+/// Every way of writing there, each refused with `words`.
+void expect_nothing_is_written(RunDirectory& run, const std::string& words) {
+  using testing::StartsWith;
+  const auto words_of = [](const auto& write) { return error_of(write, Error::Kind::run); };
+  EXPECT_THAT(words_of([&] { run.announce(tap(2, 0.09)); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.record(tap(2, 0.09), kSeconds); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.write("summary.json", std::string("{}")); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.write_manifest(Tree::map()); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.write_objects({Row()}); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.files().add_attempt(Row()); }), StartsWith(words));
+}
+
+TEST_F(RunFolder, IsWrittenToByNobodyWhoseLockWasRemovedOrTakenOver) {
+  const fs::path folder = folder_.path() / "run";
+  const fs::path lock = folder / "lock";
+  RunDirectory run(folder);
+  run.open(true);
+  run.announce(tap(1, 0.09));
+  run.record(tap(1, 0.09), kSeconds);
+  const std::string recorded = text_of(folder / "taps.jsonl");
+  fs::remove(lock);
+  expect_nothing_is_written(run, lock.string() + ": was removed while a run was writing beside it");
+  {
+    RunDirectory other(folder);
+    EXPECT_EQ(other.recover().size(), 1U);
+    expect_nothing_is_written(run, lock.string() + ": was removed while a run was writing beside it");
+  }
+  EXPECT_EQ(text_of(folder / "taps.jsonl"), recorded);
+  EXPECT_FALSE(fs::exists(folder / "summary.json"));
+}
+
+TEST_F(RunFolder, TakesTheResultOfATapWhereverItsFolderWasMovedMeanwhile) {
+  RunDirectory run(folder_.path() / "run");
+  run.open(true);
+  run.announce(tap(1, 0.09));
+  fs::rename(folder_.path() / "run", folder_.path() / "moved");
+  run.record(tap(1, 0.09), kSeconds);
+  EXPECT_EQ(RunFiles(folder_.path() / "moved").taps().size(), 2U);
+  EXPECT_THAT(error_of([&] { run.announce(tap(2, 0.09)); }, Error::Kind::run),
+              testing::HasSubstr("was moved or removed while a run was writing there"));
+}
+
+TEST_F(RunFolder, IsWrittenToByNoForkedChildAndFreeAgainThoughThatLives) {
+  const fs::path folder = folder_.path() / "run";
+  auto run = std::make_unique<RunDirectory>(folder);
+  run->open(true);
+  run->announce(tap(1, 0.09));
+  run->record(tap(1, 0.09), kSeconds);
+  const std::string recorded = text_of(folder / "taps.jsonl");
+  const auto child = ChildProcess::fork([&](const ChildProcess::Say& say) {
+    expect_nothing_is_written(*run, folder.string() + ": is held by the process that this one was forked from");
+    say(testing::Test::HasFailure() ? "written" : "refused");
+    return ::pause();
+  });
+  while (child->said().empty() && !child->wait(0.001)) {
+  }
+  EXPECT_EQ(child->said(), "refused");
+  EXPECT_EQ(text_of(folder / "taps.jsonl"), recorded);
+  EXPECT_TRUE(is_running(folder));
+  run.reset();
+  EXPECT_FALSE(is_running(folder));
 }
 
 TEST_F(RunFolder, RefusesADamagedLineWithItsNumber) {

@@ -257,22 +257,51 @@ bool AppendFile::is_in_place() const {
   return ::stat(file_.c_str(), &named) == 0 && named.st_dev == device_ && named.st_ino == inode_;
 }
 
-FileLock::FileLock(const fs::path& file) : descriptor_(open_lock(file)) {
-  if (::fcntl(descriptor_.number(), F_OFD_SETLK, &kWholeFile) == 0) return;
-  if (errno == EAGAIN || errno == EACCES) {
+FileLock::FileLock(const fs::path& file, int command)
+    : file_(file), descriptor_(open_lock(file)), folder_(open_file(folder_of(file), O_PATH | O_DIRECTORY)) {
+  if (!folder_) fail(folder_of(file), "cannot be opened");
+  owner_ = ::getpid();
+  while (::fcntl(descriptor_.number(), command, &kWholeFile) != 0) {
+    if (errno == EINTR) continue;
+    const bool busy = command == F_OFD_SETLK && (errno == EAGAIN || errno == EACCES);
+    if (!busy) fail(file, "cannot be locked");
     throw Error(file.parent_path().string(), "another process holds this run", "wait for it, or stop it",
                 Error::Kind::busy);
   }
-  fail(file, "cannot be locked");
 }
 
-FileLock FileLock::wait_for(const fs::path& file) {
-  FileLock lock;
-  lock.descriptor_ = open_lock(file);
-  while (::fcntl(lock.descriptor_.number(), F_OFD_SETLKW, &kWholeFile) != 0) {
-    if (errno != EINTR) fail(file, "cannot be locked");
+FileLock::FileLock(const fs::path& file) : FileLock(file, F_OFD_SETLK) {}
+
+FileLock FileLock::wait_for(const fs::path& file) { return FileLock(file, F_OFD_SETLKW); }
+
+FileLock& FileLock::operator=(FileLock&& other) noexcept {
+  file_.swap(other.file_);
+  descriptor_ = std::move(other.descriptor_);  // which swaps
+  folder_ = std::move(other.folder_);
+  std::swap(owner_, other.owner_);
+  return *this;
+}
+
+FileLock::~FileLock() {
+  if (!descriptor_ || owner_ != ::getpid()) return;
+  struct flock whole = kWholeFile;
+  whole.l_type = F_UNLCK;
+  ::fcntl(descriptor_.number(), F_OFD_SETLK, &whole);
+}
+
+void FileLock::check() const {
+  if (owner_ != ::getpid()) {
+    throw Error(file_.parent_path().string(), "is held by the process that this one was forked from",
+                "open it in the child, once the parent has closed it", Error::Kind::run);
   }
-  return lock;
+  struct stat held {
+  }, named{};
+  if (::fstat(descriptor_.number(), &held) != 0) fail(file_, "cannot be looked at");
+  const int there = ::fstatat(folder_.number(), file_.filename().c_str(), &named, AT_SYMLINK_NOFOLLOW);
+  if (there == 0 && held.st_dev == named.st_dev && held.st_ino == named.st_ino) return;
+  if (there != 0 && errno != ENOENT) fail(file_, "cannot be looked at");
+  throw Error(file_.string(), "was removed while a run was writing beside it: another process may go on with that run",
+              "see that none does; 'palpate resume' carries on", Error::Kind::run);
 }
 
 bool FileLock::is_held(const fs::path& file) {

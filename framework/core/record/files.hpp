@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace palpate {
 
@@ -112,6 +113,14 @@ class FileLock {
   FileLock() = default;
   /// Makes `file` if need be and locks it. Throws Error of kind `busy` if another process holds it.
   explicit FileLock(const std::filesystem::path& file);
+  FileLock(FileLock&& other) noexcept { *this = std::move(other); }
+  FileLock& operator=(FileLock&& other) noexcept;
+  /// Unlocks, unless in a forked child: until the process that took the lock lets go, it stays locked.
+  ~FileLock();
+
+  /// Throws Error where another process may hold the lock by now: in a forked child, and where the name in the folder,
+  /// wherever that was moved, does not lead to the locked file any more.
+  void check() const;
 
   /// Makes `file` if need be and waits until it can be locked. Throws Error.
   static FileLock wait_for(const std::filesystem::path& file);
@@ -121,7 +130,12 @@ class FileLock {
   static bool is_held(const std::filesystem::path& file);
 
  private:
+  explicit FileLock(const std::filesystem::path& file, int command);
+
+  std::filesystem::path file_;
   Descriptor descriptor_;
+  Descriptor folder_;
+  int owner_ = 0;  ///< process id
 };
 
 /// Throws Error if the file system of `folder`, which exists, keeps no locks: two processes would do the same work.

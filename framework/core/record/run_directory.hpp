@@ -91,8 +91,11 @@ class RunDirectory final : public Journal {
   /// Seconds by phase of all taps, those of earlier processes included.
   std::array<double, kPhases> total_seconds() const { return total_; }
 
-  void write(const std::string& name, const std::string& text) const { write_file(path_ / name, text, sync_); }
-  void write(const std::string& name, const Text& text) const { write_file(path_ / name, text, sync_); }
+  template <class T>  // a text, or a Text
+  void write(const std::string& name, const T& text) const {
+    files_.check_held();
+    write_file(path_ / name, text, sync_);
+  }
   void write_manifest(const Tree& manifest) { files_.set_manifest(manifest, sync_); }
   void write_objects(const std::vector<Row>& objects) { files_.set_objects(objects, sync_); }
 

@@ -221,12 +221,13 @@ void HeldFiles::mend(const std::vector<Row>& taps) {
 }
 
 void HeldFiles::check_in_place() const {
-  if (log_ && log_->is_in_place()) return;
+  if (log_ && log_->is_in_place()) return check_held();
   throw Error(directory_.string(), "was moved or removed while a run was writing there",
               "where it was moved to, 'palpate resume' carries on", Error::Kind::run);
 }
 
 void HeldFiles::add_tap(const Row& tap, const TapTimes* times, bool sync) {
+  check_held();
   std::string line = to_json_line(tap) + "\n";
   if (packed() && times != nullptr) {
     std::string seconds(kSeconds);
@@ -243,12 +244,14 @@ void HeldFiles::add_tap(const Row& tap, const TapTimes* times, bool sync) {
 }
 
 void HeldFiles::set_manifest(const Tree& manifest, bool sync) {
+  check_held();
   if (!packed()) return write_file(directory_ / kManifest, to_json(manifest), sync);
   log().append(std::string(kManifestLine) + to_json_line(manifest) + "}\n", sync);
 }
 
 void HeldFiles::set_objects(const std::vector<Row>& objects, bool sync) {
   if (objects.empty()) return;
+  check_held();
   if (!packed()) return write_file(directory_ / kObjects, to_csv(objects), sync);
   std::string lines;
   for (const Row& object : objects) lines += to_json_line(object) + "\n";
@@ -262,6 +265,7 @@ void HeldFiles::flush() const {
 }
 
 void HeldFiles::add_attempt(const Row& attempt) {
+  check_held();
   if (packed()) return log().append(to_json_line(attempt) + "\n", false);
   if (!attempts_) {
     const fs::path file = directory_ / kAttempts;

@@ -96,6 +96,9 @@ class HeldFiles : public RunFiles {
   /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
   void check_in_place() const;
 
+  /// Throws Error where another process may be writing there, as FileLock::check() says: before each write.
+  void check_held() const { lock_.check(); }
+
   /// A tap that was made, with its times, or one that is announced. With `sync` it is on the disk on return.
   void add_tap(const Row& tap, const TapTimes* times, bool sync);
 
