@@ -3,6 +3,10 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <string>
+
+#include <sys/prctl.h>
+#include <unistd.h>
 
 namespace palpate::cli {
 namespace {
@@ -16,6 +20,8 @@ extern "C" void on_key(int signal) {
 /// also hears it from the one that started it. Nobody means to leave a robot's arm where it is by that.
 extern "C" void on_request(int) { interrupted = true; }
 
+bool followed = false;
+
 }  // namespace
 
 std::atomic<bool> interrupted{false};
@@ -25,5 +31,17 @@ void listen_for_interrupts() {
   std::signal(SIGTERM, on_request);
   if (std::signal(SIGHUP, on_request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
 }
+
+void follow_parent() {
+  const char* const value = std::getenv("PALPATE_PARENT");
+  if (value == nullptr) return;
+  const std::string parent = value;
+  ::unsetenv("PALPATE_PARENT");  // what this program starts is not meant
+  followed = true;
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (parent != std::to_string(::getppid())) std::_Exit(128 + SIGTERM);  // it has ended meanwhile
+}
+
+bool is_followed() { return followed; }
 
 }  // namespace palpate::cli

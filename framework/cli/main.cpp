@@ -539,6 +539,7 @@ int exit_status(Error::Kind kind) {
 
 int main(int argc, char** argv) {
   palpate::cli::occupy_standard_files();
+  palpate::cli::follow_parent();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may grow no more is an error of the write, as a full disk is
   int status = palpate::cli::kFailed;
   try {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/sweep_display.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/output.hpp"
 
 #include "cli/display.hpp"
@@ -40,7 +41,7 @@ void SweepLine::show(const SweepProgress& progress) {
   const auto now = std::chrono::steady_clock::now();
   const int ended = progress.done + progress.failed;
   const int tenth = 10 * ended / progress.jobs;
-  if (terminal_) {
+  if (terminal_ || is_followed()) {
     if (!progress.last && now - shown_ < std::chrono::milliseconds(100)) return;
   } else if (tenth == tenth_) {
     return;

@@ -12,7 +12,7 @@
 namespace palpate::cli {
 
 /// Prints a live line of a sweep on a terminal, else a line per tenth, on stderr: done, running, failed, rate, time
-/// left.
+/// left. To the process that is_followed() means it prints each state on a line.
 class SweepLine {
  public:
   explicit SweepLine(bool quiet);
