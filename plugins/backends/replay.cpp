@@ -7,8 +7,8 @@
 #include <palpate/plugin.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -91,9 +91,12 @@ class Table {
   double number(const std::string& column, double absent) const {
     const std::string cell = text(column);
     if (cell.empty()) return absent;
-    char* end = nullptr;
-    const double value = std::strtod(cell.c_str(), &end);
-    if (*end != '\0' || !std::isfinite(value)) throw Error(where(), column + ": '" + cell + "' is not a number");
+    const char* const end = cell.data() + cell.size();
+    double value = 0.0;
+    const char* const begin = std::find_if(cell.data(), end, [](char c) { return c != ' '; });
+    const auto read = std::from_chars(begin, end, value);  // with a point, whatever the locale of the caller
+    if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
+      throw Error(where(), column + ": '" + cell + "' is not a number");
     return value;
   }
 

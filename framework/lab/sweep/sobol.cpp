@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <boost/random/sobol.hpp>
 
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 
 namespace palpate {
 namespace {
@@ -51,7 +51,12 @@ Range parse_range(const Tree::Entry& entry) {
 }
 
 /// Nine digits are more than any setting needs, and still tell points apart.
-double shortened(double value) { return std::strtod(fmt::format("{:.9g}", value).c_str(), nullptr); }
+double shortened(double value) {
+  const std::string text = fmt::format("{:.9g}", value);
+  double out = value;
+  std::from_chars(text.data(), text.data() + text.size(), out);  // of every locale
+  return out;
+}
 
 std::int64_t read_samples(const Tree& described, const Place& place) {
   const Tree* samples = described.find("samples");
