@@ -14,7 +14,7 @@
 
 namespace palpate::acquisitions {
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)  // which has not begun when one is chosen
 // Bits are counted by as many at a time as the machine can: nothing else is as much of the work.
 #define PALPATE_COUNTS_BITS __attribute__((target_clones("avx2", "default")))
 #else
