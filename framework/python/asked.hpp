@@ -7,6 +7,7 @@
 #include "record/callers_run.hpp"
 #include "record/tap_row.hpp"
 #include "shop.hpp"
+#include "threads.hpp"
 #include "values.hpp"
 
 #include <memory>
@@ -17,53 +18,88 @@
 
 namespace palpate {
 
-/// A run whose taps the caller makes.
+/// A run whose taps the caller makes. Its methods are called with Python's lock, by any thread, one of which at a time
+/// has its turn.
 class Asked {
  public:
   Asked(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs, bool force) {
+    const Turn turn(owned_);
     const ResolvedConfig resolved = resolve(config, overrides);
     run_ = CallersRun::start(shop_.workshop, resolved, directory_of(resolved, runs), force);
+    describe();
   }
   Asked(const std::string& directory, bool retry_failed, bool force) {
+    const Turn turn(owned_);
     run_ = CallersRun::resume(shop_.workshop, directory, {retry_failed, force});
+    describe();
+  }
+  /// A forked child has none of the threads that the models would wait for.
+  ~Asked() {
+    if (!owned_.is_here()) static_cast<void>(run_.release());
   }
 
   std::optional<TapRecord> ask(const std::optional<Array>& scores) {
     std::optional<Eigen::VectorXd> values;
     if (scores) values = checked(*scores);
-    const py::gil_scoped_release free;
+    const Turn turn(owned_);
     const TapRecord* tap = open().begin(values ? &*values : nullptr);
     return tap != nullptr ? std::optional(*tap) : std::nullopt;
   }
 
   void tell(Contact contact) {
-    const py::gil_scoped_release free;
+    const Turn turn(owned_);
     open().end(std::move(contact));
   }
 
   std::string finish() {
-    const py::gil_scoped_release free;
+    const Turn turn(owned_);
     return to_json_text(open().finish().summary);
   }
-  /// Lets go of the directory; what is not finished can be carried on.
-  void close() { run_.reset(); }
-
-  bool finished() { return open().finished(); }
-  std::string directory() { return open().directory().string(); }
-  int taps() { return open().experiment().counts().taps; }
-  std::pair<int, int> shape() {
-    const Candidates& candidates = open().experiment().candidates();
-    return {candidates.rows, candidates.columns};
+  /// Lets go of the directory, whatever is thrown. What is not finished can be carried on. With `finish` it is, unless
+  /// a tap is still to be told. In the child of a fork there is nothing to let go of.
+  void close(bool finish) {
+    if (!owned_.is_here()) return;
+    const Turn turn(owned_);
+    const std::unique_ptr<CallersRun> run = std::move(run_);
+    if (run && finish && !run->finished() && !run->pending()) run->finish();
   }
-  FromAbove& experiment() { return open().experiment(); }
+
+  bool finished() {
+    const Turn turn(owned_);
+    return open().finished();
+  }
+  int taps() {
+    const Turn turn(owned_);
+    return open().experiment().counts().taps;
+  }
+  /// A copy, as of now.
+  Map map(const Eigen::VectorXd& (TapBelief::*quantity)() const, Quantity wanted) {
+    const Turn turn(owned_);
+    FromAbove& experiment = open().experiment();
+    experiment.build(wanted);
+    return {(experiment.belief().*quantity)(), rows(), columns()};
+  }
+
+  const std::string& directory() const { return directory_; }
+  const Eigen::VectorXd& xs() const { return xs_; }
+  const Eigen::VectorXd& ys() const { return ys_; }
 
  private:
+  /// What stays as it is.
+  void describe() {
+    directory_ = run_->directory().string();
+    xs_ = run_->experiment().candidates().xs;
+    ys_ = run_->experiment().candidates().ys;
+  }
+  int rows() const { return static_cast<int>(ys_.size()); }
+  int columns() const { return static_cast<int>(xs_.size()); }
+
   CallersRun& open() {
     if (!run_) throw Error("experiment", "is closed", "palpate.Experiment.resume(DIR) carries it on");
     return *run_;
   }
-  Eigen::VectorXd checked(const Array& scores) {
-    const auto wanted = static_cast<py::ssize_t>(open().experiment().candidates().size());
+  Eigen::VectorXd checked(const Array& scores) const {
+    const auto wanted = static_cast<py::ssize_t>(rows()) * columns();
     if (scores.size() != wanted) {
       throw Error("scores", "has " + std::to_string(scores.size()) + " values",
                   "give one a candidate, " + std::to_string(wanted));
@@ -74,8 +110,12 @@ class Asked {
     return out;
   }
 
+  Owned owned_;
   Shop shop_;
   std::unique_ptr<CallersRun> run_;
+  std::string directory_;
+  Eigen::VectorXd xs_;
+  Eigen::VectorXd ys_;
 };
 
 /// The result of a tap as a backend would have returned it. Throws Error for an outcome that no answer may have.

@@ -10,12 +10,14 @@
 #include "records.hpp"
 #include "shop.hpp"
 #include "sweep/plan.hpp"
+#include "threads.hpp"
 #include "values.hpp"
 
 #include <pybind11/stl.h>
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -32,6 +34,10 @@ class Listener final : public Journal {
       : interrupted_(interrupted), progress_(std::move(progress)) {}
   void announce(const TapRecord&) override {}
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override {
+    if (Calls::all().ended()) {
+      interrupted_ = true;
+      return;
+    }
     const py::gil_scoped_acquire held;
     if (PyErr_CheckSignals() != 0) return stop(py::error_already_set());
     if (progress_.is_none()) return;
@@ -57,11 +63,11 @@ class Listener final : public Journal {
 std::string run(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs,
                 bool force, const py::object& progress) {
   Shop shop;
-  const ResolvedConfig resolved = resolve(config, overrides);
   Listener listener(shop.interrupted, progress);
   RunReport report;
   {
-    const py::gil_scoped_release free;
+    const Unlocked others_go_on;
+    const ResolvedConfig resolved = resolve(config, overrides);
     report = start_run(shop.workshop, resolved, directory_of(resolved, runs), force, &listener);
   }
   if (listener.trouble()) throw *listener.trouble();
@@ -71,12 +77,14 @@ std::string run(const std::string& config, const std::vector<std::string>& overr
 /// Where a sweep would be, and of how many jobs: every one of them composed and checked.
 std::pair<std::string, std::size_t> plan(const std::string& config, const std::vector<std::string>& words,
                                          const std::string& runs) {
-  const py::gil_scoped_release free;
-  const SweepPlan plan = plan_sweep(home().composer, home().host, config, words, runs);
+  const Unlocked others_go_on;
+  Composer fresh = composer();
+  const SweepPlan plan = plan_sweep(fresh, home().host, config, words, runs);
   return {plan.sweep.directory.string(), plan.sweep.jobs.size()};
 }
 
 std::string found(const std::string& words, bool sweep, const std::string& runs) {
+  const Unlocked others_go_on;
   return find_record(words, sweep ? Wanted::sweep : Wanted::run, runs).string();
 }
 
@@ -85,6 +93,8 @@ std::vector<std::tuple<std::string, std::string, std::string>> tap_fields() {
   for (const RecordField& one : tap_list().fields(true)) out.emplace_back(one.name, unit_symbol(one.unit), one.meaning);
   return out;
 }
+
+Array line(const Eigen::VectorXd& values) { return Array(values.size(), values.data()); }
 
 }  // namespace
 }  // namespace palpate
@@ -111,17 +121,36 @@ PYBIND11_MODULE(_palpate, module) {
     }
   });
   py::class_<Record>(module, "Record")
-      .def(py::init<const std::string&>())
+      .def(py::init([](const std::string& directory) {
+        const Unlocked others_go_on;
+        return std::make_unique<Record>(directory);
+      }))
+      .def("is_here", &Record::is_here)
       .def("config", &Record::config)
       .def("id", &Record::id)
       .def("taps", &Record::taps)
       .def("manifest", &Record::manifest)
       .def("size", &Record::size)
-      .def("after", &Record::after)
-      .def("truth", &Record::truth)
-      .def("axes", &Record::axes);
+      .def("after",
+           [](Record& self, int taps) {
+             py::dict out;
+             for (auto& [name, map] : self.after(taps)) out[name] = array_of(std::move(map));
+             return out;
+           })
+      .def("truth",
+           [](Record& self) -> py::object {
+             std::optional<Map> truth = self.truth();
+             return truth ? array_of(std::move(*truth)) : py::object(py::none());
+           })
+      .def("axes", [](Record& self) {
+        const auto [xs, ys] = self.axes();
+        return std::pair(line(xs), line(ys));
+      });
   py::class_<SweepRecord>(module, "SweepRecord")
-      .def(py::init<const std::string&>())
+      .def(py::init([](const std::string& directory) {
+        const Unlocked others_go_on;
+        return std::make_unique<SweepRecord>(directory);
+      }))
       .def("directory", &SweepRecord::directory)
       .def("keys", &SweepRecord::keys)
       .def("size", &SweepRecord::size)
@@ -135,12 +164,12 @@ PYBIND11_MODULE(_palpate, module) {
       .def_readonly("score", &TapRecord::score)
       .def_property_readonly("source", [](const TapRecord& tap) { return source_name(tap.source); })
       .def_readonly("why", &TapRecord::why);
+  // To change one would change nothing.
   const auto map = [](const Eigen::VectorXd& (TapBelief::*quantity)() const, Quantity wanted) {
-    return [quantity, wanted](const py::object& self) {
-      Asked& asked = self.cast<Asked&>();
-      asked.experiment().build(wanted);
-      const Candidates& candidates = asked.experiment().candidates();
-      return view((asked.experiment().belief().*quantity)(), candidates.rows, candidates.columns, self);
+    return [quantity, wanted](Asked& self) {
+      Array out = array_of(self.map(quantity, wanted));
+      out.attr("setflags")(py::arg("write") = false);
+      return out;
     };
   };
   py::class_<Asked>(module, "Asked")
@@ -155,17 +184,8 @@ PYBIND11_MODULE(_palpate, module) {
       .def("finished", &Asked::finished)
       .def("directory", &Asked::directory)
       .def("taps", &Asked::taps)
-      .def("shape", &Asked::shape)
-      .def("xs",
-           [](Asked& self) {
-             const Eigen::VectorXd& v = self.experiment().candidates().xs;
-             return Array(v.size(), v.data());
-           })
-      .def("ys",
-           [](Asked& self) {
-             const Eigen::VectorXd& v = self.experiment().candidates().ys;
-             return Array(v.size(), v.data());
-           })
+      .def("xs", [](Asked& self) { return line(self.xs()); })
+      .def("ys", [](Asked& self) { return line(self.ys()); })
       .def("uncertainty", map(&TapBelief::uncertainty, Quantity::uncertainty))
       .def("weight", map(&TapBelief::weight, Quantity::weight))
       .def("probability", map(&TapBelief::probability, Quantity::probability))
@@ -175,6 +195,7 @@ PYBIND11_MODULE(_palpate, module) {
   module.def("plan", &plan);
   module.def("found", &found);
   module.def("tap_fields", &tap_fields);
+  module.def("end_calls", [] { Calls::all().end(); });
   module.attr("version") = kVersion;
   module.attr("program") = home().installation.program.string();
 }

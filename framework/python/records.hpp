@@ -9,6 +9,7 @@
 #include "record/run_files.hpp"
 #include "shop.hpp"
 #include "sweep/sweep.hpp"
+#include "threads.hpp"
 #include "values.hpp"
 
 #include <cstddef>
@@ -20,26 +21,33 @@
 
 namespace palpate {
 
-/// What is believed as of now, in arrays of the caller's.
-inline py::dict maps_of(FromAbove& experiment) {
+/// NamedMaps by their names.
+using NamedMaps = std::vector<std::pair<const char*, Map>>;
+
+/// What is believed as of now.
+inline NamedMaps maps_of(FromAbove& experiment) {
   experiment.build(Quantity::uncertainty | Quantity::weight | Quantity::probability | Quantity::height);
   const TapBelief& belief = experiment.belief();
-  const int rows = experiment.candidates().rows;
-  const int columns = experiment.candidates().columns;
-  py::dict out;
-  out["height_mean"] = copied(belief.height_mean(), rows, columns);
-  out["height_standard_deviation"] = copied(belief.height_variance().cwiseMax(0.0).cwiseSqrt(), rows, columns);
-  out["uncertainty"] = copied(belief.uncertainty(), rows, columns);
-  out["weight"] = copied(belief.weight(), rows, columns);
-  out["probability"] = copied(belief.probability(), rows, columns);
-  out["surface"] = copied(reconstruction(belief), rows, columns);
-  return out;
+  const auto map = [&](const Eigen::VectorXd& values) {
+    return Map{values, experiment.candidates().rows, experiment.candidates().columns};
+  };
+  return {{"height_mean", map(belief.height_mean())},
+          {"height_standard_deviation", map(belief.height_variance().cwiseMax(0.0).cwiseSqrt())},
+          {"uncertainty", map(belief.uncertainty())},
+          {"weight", map(belief.weight())},
+          {"probability", map(belief.probability())},
+          {"surface", map(reconstruction(belief))}};
 }
 
-/// A run directory and its models.
+/// A run directory and its models. Its methods are called with Python's lock, by any thread; where they work with the
+/// models, one thread at a time has its turn.
 class Record {
  public:
   explicit Record(const std::string& directory) : recording_(read_recording(shop_.workshop, directory)) {}
+  /// A forked child has none of the threads that the models would wait for.
+  ~Record() {
+    if (!owned_.is_here()) static_cast<void>(playback_.release());
+  }
 
   py::object config() const { return python_of(recording_.config.tree); }
   std::string id() const { return recording_.config.id; }
@@ -50,35 +58,40 @@ class Record {
     const std::optional<Tree> manifest = RunFiles(recording_.directory).manifest();
     return manifest ? py::module_::import("json").attr("loads")(to_json(*manifest)) : py::none();
   }
+  bool is_here() const { return owned_.is_here(); }
 
   /// The models after so many taps.
-  py::dict after(int taps) {
+  NamedMaps after(int taps) {
     if (taps < 0 || taps > size())
       throw Error("after", "there are " + std::to_string(size()) + " taps, not " + std::to_string(taps), "take fewer");
-    if (!playback_ || playback_->taps() > taps) playback_ = std::make_unique<Playback>(shop_.workshop, recording_);
-    {
-      const py::gil_scoped_release free;
-      playback_->advance_to(taps);
-    }
-    return maps_of(playback_->from_above());
+    const Turn turn(owned_, "run");
+    if (playback_ && playback_->taps() > taps) playback_.reset();
+    playback().advance_to(taps);
+    return maps_of(playback().from_above());
   }
 
-  /// The heights of the scene that was tapped; None where another world was.
-  py::object truth() {
-    if (!playback_) playback_ = std::make_unique<Playback>(shop_.workshop, recording_);
-    FromAbove& experiment = playback_->from_above();
+  /// The heights of the scene that was tapped; none where another world was.
+  std::optional<Map> truth() {
+    const Turn turn(owned_, "run");
+    FromAbove& experiment = playback().from_above();
     const Truth* truth = experiment.truth();
-    if (truth == nullptr) return py::none();
-    return copied(truth->height, experiment.candidates().rows, experiment.candidates().columns);
+    if (truth == nullptr) return std::nullopt;
+    return Map{truth->height, experiment.candidates().rows, experiment.candidates().columns};
   }
 
-  std::pair<Array, Array> axes() {
-    if (!playback_) playback_ = std::make_unique<Playback>(shop_.workshop, recording_);
-    const Candidates& candidates = playback_->from_above().candidates();
-    return {Array(candidates.xs.size(), candidates.xs.data()), Array(candidates.ys.size(), candidates.ys.data())};
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> axes() {
+    const Turn turn(owned_, "run");
+    const Candidates& candidates = playback().from_above().candidates();
+    return {candidates.xs, candidates.ys};
   }
 
  private:
+  Playback& playback() {
+    if (!playback_) playback_ = std::make_unique<Playback>(shop_.workshop, recording_);
+    return *playback_;
+  }
+
+  Owned owned_;
   Shop shop_;
   Recording recording_;
   std::unique_ptr<Playback> playback_;
@@ -97,9 +110,12 @@ class SweepRecord {
   /// A row a job, of those that have not ended the swept keys alone.
   std::vector<Column> table() const {
     std::vector<Row> rows;
-    rows.reserve(sweep_.jobs.size());
-    for (const Job& job : sweep_.jobs)
-      rows.push_back(result_row(sweep_, job, read_outcome(job_directory(sweep_, job)).value_or(Row())));
+    {
+      const Unlocked others_go_on;
+      rows.reserve(sweep_.jobs.size());
+      for (const Job& job : sweep_.jobs)
+        rows.push_back(result_row(sweep_, job, read_outcome(job_directory(sweep_, job)).value_or(Row())));
+    }
     return columns_of(rows);
   }
 

@@ -26,11 +26,11 @@ inline Installation find_own_installation() {
   return find_installation(std::filesystem::weakly_canonical(self.dli_fname));
 }
 
-/// What all runs of this process share. Never destroyed: Python lets go of objects in an order of its own.
+/// What all runs of this process share, in all of its threads. Never destroyed: Python lets go of objects in an order
+/// of its own.
 struct Home {
   Installation installation = find_own_installation();
   PluginHost host{PluginHost::search_path(installation.plugins)};
-  Composer composer{installation.configs, config_keys()};
 };
 inline Home& home() {
   static Home* const one = new Home;
@@ -49,8 +49,12 @@ inline std::vector<Override> parsed_overrides(const std::vector<std::string>& ov
   return parsed;
 }
 
+/// One for each call: it keeps the files that it has read, which may have changed by the next call, and is for one
+/// thread.
+inline Composer composer() { return Composer(home().installation.configs, config_keys()); }
+
 inline ResolvedConfig resolve(const std::string& config, const std::vector<std::string>& overrides) {
-  return resolve_experiment(home().composer.compose(config, parsed_overrides(overrides)), home().host);
+  return resolve_experiment(composer().compose(config, parsed_overrides(overrides)), home().host);
 }
 
 }  // namespace palpate

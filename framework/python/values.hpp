@@ -2,6 +2,7 @@
 // What Python has for our values: arrays for maps, dicts for configs, columns for tables.
 #pragma once
 
+#include "config/quantity.hpp"
 #include "config/tree.hpp"
 #include "record/row.hpp"
 
@@ -9,7 +10,7 @@
 #include <pybind11/pybind11.h>
 #include <Eigen/Core>
 
-#include <cstdlib>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <string>
@@ -23,17 +24,18 @@ namespace py = pybind11;
 
 using Array = py::array_t<double>;
 
-/// Values that somebody owns, to be read in Python, who keeps the owner alive; no copy is made.
-inline py::array view(const Eigen::VectorXd& values, int rows, int columns, const py::object& owner) {
-  py::array_t<double> out({rows, columns}, values.data(), owner);
-  py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return std::move(out);
-}
+/// A map over the candidates.
+struct Map {
+  Eigen::VectorXd values;
+  int rows;
+  int columns;
+};
 
-inline Array copied(const Eigen::VectorXd& values, int rows, int columns) {
-  Array out({rows, columns});
-  std::copy(values.data(), values.data() + values.size(), out.mutable_data());
-  return out;
+/// The array keeps the values, and nothing else.
+inline Array array_of(Map map) {
+  auto* const kept = new Eigen::VectorXd(std::move(map.values));
+  const py::capsule owner(kept, [](void* values) { delete static_cast<Eigen::VectorXd*>(values); });
+  return Array({map.rows, map.columns}, kept->data(), owner);
 }
 
 /// What Python has for a value of a config: numbers, truth values, texts, and quantities as texts with their units.
@@ -57,11 +59,10 @@ inline py::object python_of(const Tree& tree) {
   const std::string& text = tree.text;
   if (tree.quoted || text.empty()) return py::str(text);
   if (text == "true" || text == "false") return py::bool_(text == "true");
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (*end != '\0') return py::str(text);
+  if (decimal_length(text) != text.size()) return py::str(text);
+  // Python reads them: what the C library takes for a decimal point is up to the locale, which belongs to the caller.
   if (text.find_first_not_of("-0123456789") == std::string::npos) return py::int_(py::str(text));
-  return py::float_(number);
+  return py::float_(py::str(text));
 }
 
 /// A column of a table by its name: numbers with NaN for null, or what Python has for it.

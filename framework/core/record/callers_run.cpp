@@ -57,6 +57,7 @@ class Held final : public CallersRun {
   }
 
   bool finished() const override { return report_.has_value(); }
+  bool pending() const override { return tap_.has_value(); }
   FromAbove& experiment() override { return from_above_of(*begun_.experiment, directory().string()); }
   const ResolvedConfig& config() const override { return config_; }
   const std::filesystem::path& directory() const override { return begun_.directory->path(); }

@@ -41,6 +41,8 @@ class CallersRun {
   /// Writes what ends a run, its budget reached or not, and reports it. Later calls report the same.
   virtual const RunReport& finish() = 0;
   virtual bool finished() const = 0;
+  /// Whether begin() has returned a tap whose result end() has not taken.
+  virtual bool pending() const = 0;
 
   virtual FromAbove& experiment() = 0;
   virtual const ResolvedConfig& config() const = 0;

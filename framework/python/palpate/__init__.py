@@ -19,22 +19,20 @@ What is computed is what the program `palpate` computes: the same config and see
 
 from __future__ import annotations
 
+import atexit as _atexit
 import json as _json
+import operator as _operator
 import os as _os
-import pty as _pty
-import re as _re
-import select as _select
-import signal as _signal
-import subprocess as _subprocess
-import tempfile as _tempfile
 
 import numpy as _np
 
-from . import _palpate
+from . import _palpate, _program
 from ._palpate import Error, InputError, Tap
 
 __all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep", "Tap", "describe", "load", "load_sweep", "run", "sweep"]
 __version__ = _palpate.version
+
+_atexit.register(_palpate.end_calls)  # other threads may be computing
 
 Error.__doc__ = """What went wrong in one line: `place`, `reason` and `remedy` (perhaps "") say where, what and how."""
 InputError.__doc__ = """An Error by input that can be mended, a ValueError as well: an argument, a config, a file. What failed
@@ -47,11 +45,7 @@ chose it, "initial", "acquisition", "fallback" or "caller"; `why`: of a fallback
 
 
 def _overrides(overrides, settings):
-    return [*overrides, *(f"{key}={_value(value)}" for key, value in settings.items())]
-
-
-def _value(value):
-    return value if isinstance(value, str) else _json.dumps(value)
+    return [*overrides, *(f"{key}={_program.value_text(value)}" for key, value in settings.items())]
 
 
 def _json_file(path):
@@ -99,12 +93,24 @@ class Maps:
 
 
 class Run:
-    """A recorded run: load() opens one. Nothing is read before it is asked for, but for the taps."""
+    """A recorded run: load() opens one. Nothing is read before it is asked for, but for the taps.
+
+    Threads may share it. Another process, forked or by pickle, opens it for itself.
+    """
 
     def __init__(self, directory):
         self.directory = _os.fspath(directory)
-        self._record = _palpate.Record(self.directory)
+        self._opened = _palpate.Record(self.directory)
         self.id = self._record.id()
+
+    def __reduce__(self):  # another process opens it for itself
+        return Run, (_os.path.abspath(self.directory),)
+
+    @property
+    def _record(self):
+        if not self._opened.is_here():  # in the child of a fork
+            self._opened = _palpate.Record(self.directory)
+        return self._opened
 
     def __repr__(self):
         return f"<palpate.Run {self.directory}: {len(self)} taps>"
@@ -172,6 +178,9 @@ class Sweep:
         self.directory = self._record.directory()
         self.keys = self._record.keys()
 
+    def __reduce__(self):
+        return Sweep, (_os.path.abspath(self.directory),)
+
     def __repr__(self):
         return f"<palpate.Sweep {self.directory}: {len(self)} jobs>"
 
@@ -230,63 +239,25 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     `progress(done, jobs)` is called as jobs end. Ctrl-C ends it after the taps under way; the same call carries it on.
     Failed jobs are in the table. Raises Error.
     """
-    words = [*axes, *(f"{key}={','.join(map(_value, value)) if isinstance(value, (list, tuple, range)) else _value(value)}"
-                      for key, value in settings.items())]
+    words = [*axes, *(f"{key}={_program.values_text(value)}" for key, value in settings.items())]
+    workers = workers if workers is None else _operator.index(workers)
     if workers is not None and workers < 1:
         raise _error("sweep", f"workers is {workers}", "give at least 1")
     directory, _ = _palpate.plan(_os.fspath(config), words, _os.fspath(runs))
     command = [_palpate.program, "sweep", _os.fspath(config), *words, "--runs", _os.fspath(runs)]
     if workers is not None:
         command += ["-j", str(workers)]
-    status, said = _conducted(command, progress)
+    status, said = _program.conduct(command, progress)
     if status not in (0, 1):  # 1: jobs failed, or what the config expects does not hold
         raise _error(directory, f"the sweep ended with status {status}: {said}", "see what it says", Error)
     return Sweep(directory)
 
 
-def _conducted(command, progress):
-    """Runs a sweep; its exit status and its last line. Its errors come by a terminal: to one it tells of every job."""
-    terminal, its = _pty.openpty()
-    with _tempfile.TemporaryFile() as out:
-        # A session of its own: Ctrl-C in a terminal would reach it twice.
-        child = _subprocess.Popen(command, stdin=_subprocess.DEVNULL, stdout=out, stderr=its, start_new_session=True)
-        _os.close(its)
-        said, told, interrupted = b"", None, None
-        try:
-            while True:
-                try:
-                    if not _select.select([terminal], [], [], 0.2)[0]:
-                        continue
-                    some = _os.read(terminal, 65536)
-                except OSError:  # nobody has the other end any more
-                    break
-                except KeyboardInterrupt as interrupt:
-                    interrupted = interrupt
-                    child.send_signal(_signal.SIGINT)
-                    continue
-                said = (said + some)[-4096:]
-                counts = _re.findall(rb"(\d+) of (\d+) jobs done, \d+ running, (\d+) failed", said)
-                if progress is not None and counts and interrupted is None:
-                    now = int(counts[-1][0]) + int(counts[-1][2]), int(counts[-1][1])
-                    if now != told:
-                        told = now
-                        progress(*now)
-        except BaseException:
-            child.send_signal(_signal.SIGINT)
-            raise
-        finally:
-            _os.close(terminal)
-            child.wait()
-        if interrupted is not None:
-            raise interrupted
-        lines = said.decode(errors="replace").strip().splitlines()
-        return child.returncode, lines[-1] if lines else ""
-
-
 class Belief:
-    """What an Experiment believes now: read-only maps, of rows x columns, that are true until the next tell().
+    """What an Experiment believes now: maps of rows x columns, each as of the moment at which it is asked for.
 
-    No map is copied: copy what is to be kept (`belief.probability.copy()`). To look changes neither taps nor record.
+    A map stays as it is, whatever is told later and when the experiment is closed. It is read-only: to change it would
+    change nothing. To look changes neither taps nor record.
     """
 
     __slots__ = ("_asked",)
@@ -334,8 +305,9 @@ class Experiment:
     """An experiment whose taps the caller makes: ask() says where, tell() takes what came of it.
 
     The config's backend is replaced by `caller`; of its scene only area and desk count. The record is that of `palpate
-    run`, in `runs`: it can be replayed, reported, and carried on by Experiment.resume(). As a context manager it is
-    finished at the end, unless by an exception: then it can be carried on.
+    run`, in `runs`: it can be replayed, reported, and carried on by Experiment.resume(). As a context manager it
+    is closed at the end, and finished before, unless by an exception or while a tap is still to be told (after `break`):
+    then it can be carried on. Threads may share it: one call at a time is at work. The child of a fork may not use it.
     """
 
     def __init__(self, config, *overrides, runs="runs", force=False, **settings):
@@ -358,9 +330,7 @@ class Experiment:
         return self
 
     def __exit__(self, kind, *_):
-        if kind is None and not self._asked.finished():
-            self.finish()
-        self.close()
+        self._asked.close(kind is None)
 
     @property
     def belief(self) -> Belief:
@@ -409,7 +379,7 @@ class Experiment:
 
     def close(self) -> None:
         """Lets go of the record. What is not finished can be carried on."""
-        self._asked.close()
+        self._asked.close(False)
 
 
 def _error(place, reason, remedy, kind=InputError):

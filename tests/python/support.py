@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""What the tests of the Python module share. Where it is built: PALPATE_BUILD."""
+
+import csv
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import palpate
+
+BUILD = pathlib.Path(os.environ["PALPATE_BUILD"])
+CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
+DEFAULT = CONFIGS / "default.yaml"
+
+
+def program(*words, code=0):
+    done = subprocess.run([BUILD / "palpate", *map(str, words)], capture_output=True, text=True)
+    assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def cells(file):
+    with open(file, encoding="utf-8", newline="") as text:
+        return list(csv.DictReader(text))
+
+
+class InFolder(unittest.TestCase):
+    """A test with a folder of its own for its runs."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def begun(self, *overrides, config=DEFAULT, **settings):
+        experiment = palpate.Experiment(config, *overrides, runs=self.folder, **settings)
+        self.addCleanup(experiment.close)
+        return experiment
+
+    def refuses(self, place, reason, remedy, action):
+        with self.assertRaises(palpate.Error) as caught:
+            action()
+        for part, of in ((place, caught.exception.place), (reason, caught.exception.reason),
+                         (remedy, caught.exception.remedy)):
+            self.assertIn(part, of)
+            self.assertIn(part, str(caught.exception))

@@ -1,0 +1,351 @@
+# SPDX-License-Identifier: MIT
+"""The Python module where several threads and processes use it, and at the end of each."""
+
+import json
+import os
+import pathlib
+import pickle
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import numpy as np
+import palpate
+
+from support import CONFIGS, DEFAULT, InFolder, program
+
+MAPS = ("uncertainty", "weight", "probability", "height_mean", "height_variance")
+
+
+def taps_of(directory):
+    lines = (pathlib.Path(directory) / "taps.jsonl").read_text().splitlines()
+    return [(tap["tap"], tap["outcome"]) for tap in map(json.loads, lines)]
+
+
+def in_threads(count, work):
+    """What `work(number)` returned or raised in each of `count` threads."""
+    out = [None] * count
+
+    def keep(number):
+        try:
+            out[number] = work(number)
+        except Exception as trouble:  # the caller looks at it
+            out[number] = trouble
+
+    threads = [threading.Thread(target=keep, args=(number,)) for number in range(count)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return out
+
+
+class Shared(InFolder):
+    def in_fork(self, work):
+        """The text that `work` returns, or the error that it raises, in a forked child."""
+        hear, say = os.pipe()
+        child = os.fork()
+        if child == 0:
+            try:
+                try:
+                    text = str(work())
+                except Exception as trouble:  # the parent looks at it
+                    text = f"{type(trouble).__name__}: {trouble}"
+                os.write(say, text.encode())
+            finally:
+                os._exit(0)
+        os.close(say)
+        with open(hear, encoding="utf-8") as heard:
+            text = heard.read()
+        os.waitpid(child, 0)
+        return text
+
+    def ended(self, script, *words, seconds=100):
+        return subprocess.run([sys.executable, "-c", script, *map(str, words)], capture_output=True, text=True,
+                              timeout=seconds)
+
+    def test_a_forked_child_may_not_go_on_with_the_experiment_of_its_parent(self):
+        experiment = self.begun("taps=4")
+        experiment.ask()
+        experiment.tell(0.0)
+        for use in (lambda: experiment.ask(), lambda: experiment.tell(0.0), lambda: experiment.finish(),
+                    lambda: experiment.belief.weight):
+            self.assertIn("palpate.Error: experiment: was opened by the process that this one was forked from",
+                          "palpate." + self.in_fork(use))
+        self.assertEqual(self.in_fork(lambda: experiment.close() or "closed"), "closed")
+        while experiment.ask():
+            experiment.tell(0.0)
+        self.assertEqual([tap for tap, outcome in taps_of(experiment.directory) if outcome == "contact"], [1, 2, 3, 4])
+
+    def test_an_experiment_is_free_once_it_is_closed_though_a_forked_child_lives(self):
+        experiment = self.begun("taps=2")
+        wait, go = os.pipe()
+        child = os.fork()
+        if child == 0:
+            os.close(go)
+            os.read(wait, 1)
+            os._exit(0)
+        try:
+            experiment.close()
+            palpate.Experiment.resume(experiment.directory).close()
+        finally:
+            os.close(go)
+            os.waitpid(child, 0)
+            os.close(wait)
+
+    def test_another_process_opens_a_run_for_itself(self):
+        run = palpate.run(DEFAULT, "taps=5", "threads=2", runs=self.folder)
+        surface = run.surface
+        self.assertEqual(self.in_fork(lambda: np.array_equal(run.after(5).surface, surface)), "True")
+        again = pickle.loads(pickle.dumps(run))
+        np.testing.assert_array_equal(again.surface, surface)
+
+    def test_a_lock_that_was_removed_ends_the_run_that_had_it_before_its_next_tap(self):
+        experiment = self.begun("taps=4")
+        experiment.ask()
+        experiment.tell(0.0)
+        os.unlink(pathlib.Path(experiment.directory) / "lock")
+        with palpate.Experiment.resume(experiment.directory) as other:
+            self.refuses("lock", "was removed while a run was writing beside it", "palpate resume", experiment.ask)
+            while other.ask():
+                other.tell(0.0)
+        self.assertEqual([tap for tap, outcome in taps_of(experiment.directory) if outcome == "contact"], [1, 2, 3, 4])
+
+    def test_a_map_of_the_belief_stays_as_it_was_after_later_taps_and_the_end(self):
+        with self.begun("taps=6") as experiment:
+            kept = []
+            while experiment.ask():
+                maps = [getattr(experiment.belief, name) for name in MAPS]
+                kept += [(one, one.copy()) for one in maps]
+                experiment.tell(0.03)
+        del experiment
+        others = [np.full(kept[0][0].shape, 7.0) for _ in range(300)]
+        for one, copy in kept:
+            np.testing.assert_array_equal(one, copy)
+        self.assertEqual(len(others), 300)
+
+    def test_threads_that_share_a_run_get_the_maps_that_they_ask_for(self):
+        run = palpate.run(DEFAULT, "taps=8", runs=self.folder)
+        maps = {taps: run.after(taps).height_mean for taps in range(9)}
+
+        def look(number):
+            order = np.random.default_rng(number).integers(0, 9, 12)
+            return all(np.array_equal(run.after(int(taps)).height_mean, maps[taps]) for taps in order)
+        self.assertEqual(in_threads(8, look), [True] * 8)
+
+    def test_the_belief_can_be_looked_at_while_another_thread_asks_and_tells(self):
+        experiment = self.begun("taps=12")
+        over = threading.Event()
+
+        def work(number):
+            if number > 0:
+                while not over.is_set():
+                    if not all(np.isfinite(getattr(experiment.belief, name)).all() for name in MAPS):
+                        return "a number that is none"
+                return None
+            try:
+                while experiment.ask():
+                    experiment.tell(0.02)
+            finally:
+                over.set()
+            return len(experiment)
+        self.assertEqual(in_threads(4, work), [12, None, None, None])
+        self.assertIn("all equal", program("replay", experiment.directory))
+
+    def test_several_threads_compose_configs_run_and_sweep_at_once(self):
+        configs = [DEFAULT, CONFIGS / "paper" / "object_i.yaml"]
+        plans = [palpate._palpate.plan(str(config), ["seed=1,2"], "runs") for config in configs]
+
+        def plan(number):
+            return all(palpate._palpate.plan(str(configs[one % 2]), ["seed=1,2"], "runs") == plans[one % 2]
+                       for one in range(number, number + 20))
+        self.assertEqual(in_threads(8, plan), [True] * 8)
+
+        def work(number):
+            if number % 2:
+                return len(palpate.run(DEFAULT, "taps=3", name=f"run_{number}", runs=self.folder))
+            done = palpate.sweep(DEFAULT, taps=2, seed=range(3), name=f"sweep_{number}", workers=1, runs=self.folder)
+            return list(done.table["status"])
+        self.assertEqual(in_threads(8, work), [["done"] * 3, 3] * 4)
+
+    def test_eight_threads_over_a_run_an_experiment_and_a_sweep_get_answers_or_errors(self):
+        """PALPATE_SECONDS=60 goes on for a minute, as under sanitizers; else each thread does a few things."""
+        seconds = float(os.environ.get("PALPATE_SECONDS", "0"))
+        until = time.monotonic() + seconds
+        sweep = palpate.sweep(DEFAULT, taps=4, seed=range(2), runs=self.folder)
+        run = sweep[0]
+        maps = [{name: getattr(run.after(taps), name) for name in MAPS[:4]} for taps in range(5)]
+        told = {}  # heights by their taps
+
+        def go_on(made):
+            return time.monotonic() < until if seconds else made < 12
+
+        def work(number):
+            nonlocal experiment
+            random, made = np.random.default_rng(number), 0
+            while go_on(made):
+                made += 1
+                kind = int(random.integers(0, 6))
+                try:
+                    if kind == 0:
+                        taps = int(random.integers(0, 5))
+                        after = run.after(taps)
+                        for name, values in maps[taps].items():
+                            np.testing.assert_array_equal(getattr(after, name), values)
+                    elif kind == 1:
+                        self.assertEqual(sweep[1].id, sweep.table["id"][1])
+                        self.assertEqual(len(run.taps), 4)
+                    elif kind == 2:
+                        name = MAPS[int(random.integers(0, len(MAPS)))]
+                        self.assertTrue(np.isfinite(getattr(experiment.belief, name)).all())
+                    elif kind == 5 and len(experiment) > 8:
+                        experiment.close()  # under the others' hands
+                        experiment = palpate.Experiment.resume(experiment.directory)
+                    elif tap := experiment.ask():
+                        height = float(np.round(random.uniform(0.0, 0.1), 6))
+                        told.setdefault(tap.number, set()).add(height)
+                        experiment.tell(height)
+                except palpate.Error:
+                    pass  # closed, told by another thread, or held for a moment
+            return made
+
+        experiment = self.begun("taps=40")
+        for made in in_threads(8, work):
+            self.assertIsInstance(made, int)
+        experiment.close()
+        contacts = [tap for tap in palpate.load(experiment.directory).taps if tap["outcome"] == "contact"]
+        for tap in contacts:
+            self.assertTrue(any(tap["height"] in heights for heights in told.values()))
+        self.assertIn("all equal", program("replay", experiment.directory))
+
+    def test_a_config_that_was_changed_is_read_again(self):
+        own = self.folder / "own.yaml"
+        for taps in (2, 3):
+            text = DEFAULT.read_text(encoding="utf-8")
+            own.write_text(re.sub("^taps: .*", f"taps: {taps}", text, flags=re.MULTILINE), encoding="utf-8")
+            self.assertEqual(len(palpate.run(own, runs=self.folder / "runs")), taps)
+
+    def test_the_interpreter_ends_while_daemon_threads_ask_and_run(self):
+        script = ("import sys, threading, time, palpate\n"
+                  "e = palpate.Experiment(sys.argv[1], 'taps=200', 'footprint.particles=3000', runs=sys.argv[2])\n"
+                  "begun = threading.Event()\n"
+                  "def ask():\n"
+                  "    while e.ask(): e.tell(0.05); begun.set()\n"
+                  "def run(): palpate.run(sys.argv[1], 'taps=200', name='daemon', runs=sys.argv[2], progress=lambda n: None)\n"
+                  "for work in (ask, run): threading.Thread(target=work, daemon=True).start()\n"
+                  "begun.wait(); time.sleep(float(sys.argv[3]))\n")
+        for seconds in (0.0, 0.02, 0.05):
+            done = self.ended(script, DEFAULT, self.folder / str(seconds), seconds)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), seconds)
+
+    def test_with_closes_an_experiment_however_it_is_left(self):
+        with self.begun("taps=4", name="broken") as experiment:
+            while tap := experiment.ask():
+                if tap.number == 3:
+                    break
+                experiment.tell(0.0)
+        self.assertIsNone(palpate.load(experiment.directory).summary)
+        with palpate.Experiment.resume(experiment.directory) as again:
+            self.assertEqual(len(again), 3, "the tap that nobody told is one of outcome unknown")
+            again.close()
+        with self.begun("taps=4", name="between") as experiment:
+            experiment.ask()
+            experiment.tell(0.0)
+        self.assertEqual(palpate.load(experiment.directory).summary["stop_reason"], "ended by the caller")
+
+    def test_a_text_with_commas_is_one_value_of_a_sweep(self):
+        done = palpate.sweep(DEFAULT, taps=2, name="cup, left: blue", seed=[1, 2], runs=self.folder)
+        self.assertEqual([run.config["name"] for run in done], ["cup, left: blue"] * 2)
+        self.assertEqual(palpate.sweep(DEFAULT, taps=2, seed="range(4,6)", runs=self.folder).table["seed"].tolist(), [4, 5])
+        self.assertEqual(palpate.run(DEFAULT, "taps=2", name="a, b", runs=self.folder).config["name"], "a, b")
+
+    def test_a_range_of_very_many_values_is_refused_before_they_are_made(self):
+        self.refuses("command line", "has more than a million values", "wider step",
+                     lambda: palpate.sweep(DEFAULT, taps=2, seed=range(10**9), runs=self.folder))
+
+    def test_a_sweep_needs_no_terminal_and_no_low_file_numbers(self):
+        script = ("import os, pty, resource, sys, palpate\n"
+                  "def none(*_): raise OSError('out of pty devices')\n"
+                  "os.openpty = pty.openpty = none\n"
+                  "resource.setrlimit(resource.RLIMIT_NOFILE, (1500, 1500))\n"
+                  "keep = [open(os.devnull) for _ in range(1100)]\n"
+                  "heard = []\n"
+                  "palpate.sweep(sys.argv[1], taps=2, seed=range(3), runs=sys.argv[2], progress=lambda *n: heard.append(n))\n"
+                  "print(heard[-1])\n")
+        if resource.getrlimit(resource.RLIMIT_NOFILE)[1] < 1500:
+            self.skipTest("needs 1500 open files")
+        done = self.ended(script, DEFAULT, self.folder)
+        self.assertEqual((done.stdout, done.stderr), ("(3, 3)\n", ""))
+
+    def test_a_sweep_ends_with_an_interpreter_that_is_killed(self):
+        script = ("import sys, palpate\n"
+                  "palpate.sweep(sys.argv[1], taps=200, seed=range(100), workers=1, runs=sys.argv[2],\n"
+                  "              progress=lambda *n: print('on', flush=True))\n")
+        killed = subprocess.Popen([sys.executable, "-c", script, DEFAULT, self.folder], stdout=subprocess.PIPE)
+        killed.stdout.readline()
+        killed.kill()
+        killed.communicate()
+        sweep = palpate.load_sweep("default", runs=self.folder)
+        until = time.monotonic() + 60.0  # the tap under way is made
+        while self.at_work() and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertEqual(self.at_work(), [])
+        self.assertLess(sum(sweep.table["status"] == "done"), 100)
+
+    def at_work(self):
+        """Command lines of processes that are about this test's folder."""
+        out = []
+        for process in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                words = process.read_bytes()
+            except OSError:
+                continue
+            if str(self.folder).encode() in words and b"sweep" in words.split(b"\0"):
+                out.append(words)
+        return out
+
+    def test_integers_of_numpy_are_integers(self):
+        run = palpate.run(DEFAULT, taps=np.int64(3), seed=np.uint8(4), runs=self.folder)
+        self.assertEqual((run.config["taps"], run.config["seed"]), (3, 4))
+        self.assertEqual(run.after(np.int32(2)).taps, 2)
+        done = palpate.sweep(DEFAULT, taps=np.int64(2), seed=np.arange(2), workers=np.int64(1), runs=self.folder)
+        self.assertEqual(len(done[np.int64(1)]), 2)
+        with self.begun(taps=np.int16(1), seed=np.int64(9)) as experiment:
+            experiment.ask()
+            experiment.tell(np.float32(0.0), force=np.int64(8))
+
+    def test_a_locale_with_decimal_commas_changes_no_number(self):
+        folder = self.folder / "locales"
+        folder.mkdir()
+        if shutil.which("localedef") is None or not os.path.exists("/usr/share/i18n/locales/de_DE"):
+            self.skipTest("needs the package locales")
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", folder / "decimal_comma"], capture_output=True)
+        run = palpate.run(CONFIGS / "paper" / "object_i.yaml", "taps=4", runs=self.folder)
+        script = ("import json, locale, sys, palpate\n"
+                  "directory, config, name = sys.argv[1:]\n"
+                  "locale.setlocale(locale.LC_ALL, name)\n"
+                  "run = palpate.load(directory)\n"
+                  "sobol = 'sweep.sobol={samples: 4, keys: {kernel.length_scale: \"uniform(1.5cm, 4.5cm)\"}}'\n"
+                  "again = palpate.run(config, 'taps=4', 'backend={type: replay, record: ' + directory + '}',\n"
+                  "                    runs=directory + '.' + name)\n"
+                  "print(json.dumps([locale.localeconv()['decimal_point'], run.config, run.summary['rmse_m'],\n"
+                  "                  run.surface.tolist(), again.taps['height'].tolist(),\n"
+                  "                  palpate._palpate.plan(config, [sobol], directory)[0]]))\n")
+        heard = []
+        for name in ("C", "decimal_comma"):
+            done = subprocess.run([sys.executable, "-c", script, run.directory, CONFIGS / "paper" / "object_i.yaml", name],
+                                  capture_output=True, text=True, env={**os.environ, "LOCPATH": str(folder)})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            heard.append(json.loads(done.stdout))
+        self.assertEqual([one[0] for one in heard], [".", ","])
+        for one, other in zip(heard[0][1:], heard[1][1:]):
+            self.assertEqual(one, other)
+
+
+if __name__ == "__main__":
+    unittest.main()
