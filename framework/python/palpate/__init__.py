@@ -26,7 +26,7 @@ import os as _os
 
 import numpy as _np
 
-from . import _palpate, _program
+from . import _palpate, _program, _show
 from ._palpate import Error, InputError, Tap
 
 __all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep", "Tap", "describe", "load", "load_sweep", "run", "sweep"]
@@ -115,6 +115,20 @@ class Run:
     def __repr__(self):
         return f"<palpate.Run {self.directory}: {len(self)} taps>"
 
+    def _repr_html_(self):
+        end = self.summary or {"status": "unfinished"}
+        shown = ("status", "stop_reason", "rmse_m", "rmse_on_surface_m", "footprint_iou", "robot_seconds")
+        rows = [("run", self.directory), ("taps", len(self))] + [(name, end[name]) for name in shown if name in end]
+        try:
+            return _show.table(rows) + _show.image(self.surface, "surface")
+        except Error:  # a run from any side has no maps
+            return _show.table(rows)
+
+    def plot(self):
+        """A figure of matplotlib: the surface with its taps, its standard deviation and, where the truth is known, its
+        error. Raises Error where matplotlib is missing, and for a run from any side."""
+        return _plotted(lambda: _show.draw_run(self))
+
     def __len__(self):
         return self._record.size()
 
@@ -183,6 +197,28 @@ class Sweep:
 
     def __repr__(self):
         return f"<palpate.Sweep {self.directory}: {len(self)} jobs>"
+
+    def _repr_html_(self):
+        jobs = self.table
+        names = ["job", *self.keys, *(name for name in ("status", "taps", "rmse_m", "footprint_iou")
+                                      if name in jobs.dtype.names and name not in self.keys)]
+        ended = [int(job) for job in jobs["job"][jobs["status"] == "done"]]
+        text = f"{len(ended)} of {len(jobs)} jobs done in {self.directory}"
+        out = _show.table([(text,)]) + _show.table(jobs[names][:20].tolist(), names)
+        if len(jobs) > 20:
+            out += _show.table([(f"and {len(jobs) - 20} more",)])
+        try:
+            return out + (_show.image(self[ended[0]].surface, f"surface of job {ended[0]}") if ended else "")
+        except Error:  # a run from any side has no maps
+            return out
+
+    def plot(self, metric="rmse_m"):
+        """A figure of matplotlib: a field of the table, of each finished job, in a column per setting (all keys that differ
+        but the seed), with its mean. Raises Error where matplotlib is missing."""
+        jobs = self.table
+        if metric not in jobs.dtype.names or jobs[metric].dtype.kind not in "biuf":
+            raise _error("plot", f"the table has no numbers '{metric}'", "name a column of sweep.table")
+        return _plotted(lambda: _show.draw_sweep(jobs, self.keys, metric))
 
     def __len__(self):
         return self._record.size()
@@ -326,6 +362,13 @@ class Experiment:
     def __repr__(self):
         return f"<palpate.Experiment {self.directory}>"
 
+    def _repr_html_(self):
+        try:
+            rows = [("experiment", self.directory), ("taps", len(self)), ("finished", self.finished)]
+            return _show.table(rows) + _show.image(self.belief.height_mean, "mean of the height")
+        except Error as trouble:  # it is closed
+            return _show.table([("experiment", self.directory), (trouble.place, trouble.reason)])
+
     def __enter__(self):
         return self
 
@@ -380,6 +423,13 @@ class Experiment:
     def close(self) -> None:
         """Lets go of the record. What is not finished can be carried on."""
         self._asked.close(False)
+
+
+def _plotted(draw):
+    try:
+        return draw()
+    except ImportError as trouble:
+        raise _error("plot", "matplotlib is missing", "install it: apt install python3-matplotlib", Error) from trouble
 
 
 def _error(place, reason, remedy, kind=InputError):

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+# mypy: ignore-errors
 """The program `palpate`: what it is told, and how Python has it run a sweep."""
 
 import json
