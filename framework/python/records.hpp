@@ -4,6 +4,7 @@
 
 #include "experiment/from_above.hpp"
 #include "experiment/metrics.hpp"
+#include "record/json.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
 #include "record/run_files.hpp"
