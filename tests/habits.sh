@@ -11,7 +11,7 @@ found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
 
 # A folder uses those above it in this list, which is that of framework/README.md, never those below.
-folders="answers children regular config plugin scene view gp experiment space record sweep launch analysis calibrate report watch cli"
+folders="answers children reading regular config plugin scene view gp experiment space record sweep launch analysis calibrate report watch cli"
 for file in $(git ls-files 'framework/core/*.[ch]pp' 'framework/lab/*.[ch]pp' 'framework/desk/*.[ch]pp' 'framework/cli/*.[ch]pp'); do
   [ ! -f "$file" ] || sed -n "s|^#include \"\([a-z_]*\)/.*|$file \1|p" "$file"
 done | awk -v folders="$folders" '
@@ -22,6 +22,14 @@ done | awk -v folders="$folders" '
 # Plugins see what their authors see, and each other's folders.
 git grep -nE '^#include "(config|plugin|scene|view|gp|experiment|space|record|sweep|launch|analysis|report|watch|cli)/' -- plugins |
   sed 's|:.*"\(.*\)"|: a plugin includes \1, which is not for plugins|' >"$found/plugins" || true
+
+# Files of others are read by the bounded reader alone (shared/reading): regular ones, up to a limit, through no link in a
+# record. record/files.cpp and recorded.cpp open what they write; the devices named here are nobody's.
+git grep -nE 'std::i?fstream|fopen *\(|(^|[ =(!])::open(at)?\(|directory_iterator|opendir *\(|LoadFile *\(' -- \
+  'framework/*.[ch]pp' 'plugins/*.[ch]pp' |
+  grep -vE '^(framework/shared/reading/reading|framework/core/record/files|plugins/backends/process/recorded)\.cpp:' |
+  grep -vE '"/dev/(null|full)"' |
+  sed 's|^\([^:]*:[0-9]*\):.*|\1: opens a file or lists a folder itself, which is for shared/reading|' >"$found/reading" || true
 
 if [ "${1:-}" = --all ]; then
   changed=$(git ls-files framework plugins tests)

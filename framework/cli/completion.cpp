@@ -3,6 +3,7 @@
 
 #include "cli/key_completion.hpp"
 #include "config/trouble.hpp"
+#include "reading/reading.hpp"
 #include "record/fields.hpp"
 #include "record/run_directory.hpp"
 
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -118,14 +118,14 @@ std::vector<Completion> files(const std::string& typed, const Take& take) {
   std::vector<Completion> out;
   const Place place = place_of(typed);
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(place.folder, none)) {
-    const std::string name = entry.path().filename().string();
+  for (const fs::path& path : list_folder(place.folder)) {
+    const std::string name = path.filename().string();
     if (name.front() == '.' && !place.hidden) continue;
     const std::string word = place.typed + name;
     if (!starts_with(word, typed)) continue;
-    if (entry.is_directory(none)) {
+    if (fs::is_directory(path, none)) {
       out.push_back({word + "/", ""});
-    } else if (const std::optional<std::string> meaning = take(entry.path())) {
+    } else if (const std::optional<std::string> meaning = take(path)) {
       out.push_back({word, *meaning});
     }
   }
@@ -155,13 +155,11 @@ std::string record_at(const fs::path& folder, Records asked) {
 /// Runs and sweeps below runs/, where they are made; where none is meant, folder by folder.
 std::vector<Completion> records(const std::string& typed, Records asked) {
   std::vector<Completion> out;
-  std::error_code none;
-  for (const auto& name : fs::directory_iterator("runs", none)) {
-    for (const auto& id : fs::directory_iterator(name.path(), none)) {
-      const std::string word = id.path().string();
+  for (const fs::path& name : list_folder("runs")) {
+    for (const fs::path& id : list_folder(name)) {
+      const std::string word = id.string();
       if (!starts_with(word, typed)) continue;
-      if (std::string meaning = record_at(id.path(), asked); !meaning.empty())
-        out.push_back({word, std::move(meaning)});
+      if (std::string meaning = record_at(id, asked); !meaning.empty()) out.push_back({word, std::move(meaning)});
     }
   }
   if (!out.empty()) {
@@ -187,7 +185,7 @@ std::vector<Completion> summary_columns(const std::string& behind = "") {
 /// The columns of results.csv between those that name the job and those of its summary.
 std::vector<Completion> swept_keys(const fs::path& sweep) {
   std::vector<Completion> out;
-  std::ifstream in(sweep / "results.csv");
+  std::istringstream in(read_bounded(sweep / "results.csv", kMostLogBytes, Origin::record).text);
   std::string header;
   std::getline(in, header);
   std::istringstream names(header);

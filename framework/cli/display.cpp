@@ -2,6 +2,7 @@
 #include "cli/display.hpp"
 
 #include "cli/output.hpp"
+#include "reading/reading.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
 
@@ -77,7 +78,12 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
   flush_output();
 }
 
-void mention(const std::string& text) { std::fputs(text.c_str(), stderr); }
+std::string displayable(std::string_view text) {
+  const bool clears = text.substr(0, kClearLine.size()) == kClearLine;
+  return std::string(clears ? kClearLine : "") + printable(text.substr(clears ? kClearLine.size() : 0));
+}
+
+void mention(const std::string& text) { std::fputs(displayable(text).c_str(), stderr); }
 
 std::string record_line(const RunReport& report) {
   return fmt::format("{} {}", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
@@ -86,7 +92,7 @@ std::string record_line(const RunReport& report) {
 void print_summary(const RunReport& report) {
   const Row& row = report.summary;
   // The live line of a tap that was broken off and is made again.
-  std::string text = report.interrupted && ::isatty(STDOUT_FILENO) != 0 ? kClearLine : "";
+  std::string text = report.interrupted && ::isatty(STDOUT_FILENO) != 0 ? std::string(kClearLine) : "";
   if (report.already_done) {
     text += fmt::format("already done, nothing was repeated: {}\n", report.directory.string());
   }

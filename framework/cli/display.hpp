@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace palpate::cli {
 
@@ -25,12 +26,15 @@ class TapTable final : public Journal {
   bool header_ = false;
 };
 
-/// Writes on stderr what only accompanies the work. That nobody can read it any more, because the terminal is closed,
-/// is no reason to break the work off, as fmt::print would.
-void mention(const std::string& text);
-
 /// Takes the line of a terminal away on which something was shown for a while.
-constexpr const char* kClearLine = "\r\x1b[K";
+constexpr std::string_view kClearLine = "\r\x1b[K";
+
+/// Returns `text` as printable() has it, but for kClearLine, which it may begin with.
+std::string displayable(std::string_view text);
+
+/// Writes on stderr, as displayable() has it, what only accompanies the work. That nobody can read it any more, because
+/// the terminal is closed, is no reason to break the work off, as fmt::print would.
+void mention(const std::string& text);
 
 /// Where the record of a run is, or how it goes on.
 std::string record_line(const RunReport& report);

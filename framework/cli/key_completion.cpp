@@ -4,11 +4,12 @@
 #include "config/describe.hpp"
 #include "config/trouble.hpp"
 #include "experiment/experiment_options.hpp"
+#include "reading/reading.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <sstream>
 
 namespace palpate::cli {
 namespace {
@@ -157,7 +158,7 @@ std::vector<Completion> values(const Program& program, const std::filesystem::pa
 }  // namespace
 
 std::string purpose_of(const std::filesystem::path& config) {
-  std::ifstream in(config);
+  std::istringstream in(read_bounded(config, kMostConfigBytes, Origin::user).text);
   std::string out;
   for (std::string line; std::getline(in, line) && line.rfind("# ", 0) == 0;) {
     out += (out.empty() ? "" : " ") + line.substr(2);

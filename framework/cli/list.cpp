@@ -4,6 +4,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/trouble.hpp"
+#include "reading/reading.hpp"
 #include "record/catalogue.hpp"
 #include "record/files.hpp"
 #include "report/words/words.hpp"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 void print_json(const std::vector<Row>& rows) {
   std::vector<std::string> lines;
   for (const Row& row : rows) lines.push_back("  " + to_json_line(row));
-  print_out("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n");
+  print_data(fmt::format("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n"));
 }
 
 /// Why fewer are listed than there are folders.
@@ -38,7 +39,7 @@ int list_runs(Program&, const ListArguments& arguments) {
   const fs::path folder = arguments.folder;
   if (!is_there(folder)) throw Error(folder.string(), "is no folder", "'palpate run' makes runs/, or name another");
   std::error_code trouble_there;
-  const fs::directory_iterator readable(folder, trouble_there);
+  list_folder(folder, trouble_there);
   if (trouble_there) throw Error(folder.string(), trouble_there.message(), "name a folder with runs");
   std::optional<Condition> where;
   if (arguments.where) where = Condition::of_command_line(*arguments.where);

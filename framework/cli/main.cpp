@@ -490,7 +490,7 @@ int perform(const CommandLine& line, bool asked, int argc, char** argv) {
 int complete(const CLI::App& app, int argc, char** argv) {
   if (argc < 3) return kDone;
   return with_program(argc, argv, [&](Program& program) {
-    print_text(completion_lines(argv[2], usage_of(app), program, {argv + 3, argv + argc}));
+    print_data(completion_lines(argv[2], usage_of(app), program, {argv + 3, argv + argc}));
     return kDone;
   });
 }

@@ -2,6 +2,7 @@
 // A plugin to begin with: the one of its kind in plugins/starters, under the name that is asked for.
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
 
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 
 namespace palpate::cli {
 namespace {
@@ -55,9 +55,7 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
     throw Error(name, trouble ? "cannot be made: " + trouble.message() : "is there already", "take another name");
   }
   const auto write = [&](const fs::path& from, const std::string& to) {
-    std::ostringstream read;
-    read << std::ifstream(from).rdbuf();
-    std::string text = read.str();
+    std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;
     if (text.empty()) throw Error(from.string(), "cannot be read", "install palpate again");
     replace_all(text, "KIND", kind);
     replace_all(text, "starter", name);

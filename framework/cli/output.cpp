@@ -35,7 +35,9 @@ void occupy_standard_files() {
   }
 }
 
-void print_text(std::string_view text) {
+void print_text(std::string_view text) { print_data(displayable(text)); }
+
+void print_data(std::string_view text) {
   errno = 0;
   if (failure == 0 && std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) note_failure();
 }

@@ -15,8 +15,11 @@ namespace palpate::cli {
 /// gets such a number, and printing fails instead of going nowhere. To be called first.
 void occupy_standard_files();
 
-/// Prints on stdout. The reason of the first failure is kept, and what follows it is dropped. Never throws for that.
+/// Prints text for people on stdout, as printable() has it: parts of it may come from a stranger. The reason of the
+/// first failure is kept, and what follows it is dropped. Never throws for that.
 void print_text(std::string_view text);
+/// The same for programs, byte for byte: JSON, YAML, the words of a completion.
+void print_data(std::string_view text);
 template <class... Arguments>
 void print_out(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   print_text(fmt::format(format, std::forward<Arguments>(arguments)...));

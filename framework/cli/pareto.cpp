@@ -55,8 +55,9 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
       pareto.more_is_better() ? "lower 95 % bound of {} is at least {}" : "upper 95 % bound of {} is at most {}";
   print_out("# {}\n# The cheapest setting of {} whose {}:\n", chosen.name, sweep.directory.string(),
             fmt::format(fmt::runtime(kept), pareto.error.name, bound_words(pareto, bound)));
-  print_out("# {}; {}; {}, of which this is the first.\n{}", error_words(pareto, chosen), cost_words(pareto, chosen),
-            units_words(chosen.error.clusters, pareto.by_seed), to_yaml(config));
+  print_out("# {}; {}; {}, of which this is the first.\n", error_words(pareto, chosen), cost_words(pareto, chosen),
+            units_words(chosen.error.clusters, pareto.by_seed));
+  print_data(to_yaml(config));
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ int plugins(Program& program, const std::string& what, bool json) {
   if (json) {
     Tree list = Tree::list();
     for (const PluginListing& row : rows) list.items.push_back(row_tree(program.host, row));
-    print_text(to_json(list));
+    print_data(to_json(list));
   } else if (!name.empty() && !broken) {
     print_one(program.host, rows.front());
   } else {

@@ -50,7 +50,8 @@ Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector
                        (mentions(one.path + ":") || mentions("'" + one.value.text + "'"));
     // A comma between digits is more often that of a number.
     if (!about || mentions("decimal comma")) continue;
-    if (parse_axis(texts[i]).values.size() < 2) continue;
+    ValueCount count;
+    if (parse_axis(texts[i], count).values.size() < 2) continue;
     return Error(trouble.where(), fmt::format("{} has several values, and a run takes one", one.path),
                  "'palpate sweep' runs all of them");
   }
@@ -101,7 +102,7 @@ int run(Program& program, const RunArguments& arguments) {
     if (arguments.origins) {
       print_origins(program.composer.groups(), config);
     } else {
-      print_text(to_yaml(config.tree));
+      print_data(to_yaml(config.tree));
       print_models(program, config);
     }
     return kDone;
@@ -139,7 +140,7 @@ int conduct_run(const Program& program, const ResolvedConfig& config, const RunO
   if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
   name_record(record_line(report));
-  if (output.json) print_text(to_json_text(report.summary));
+  if (output.json) print_data(to_json_text(report.summary));
   if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;
   runs.front().summary = report.summary;

@@ -105,7 +105,7 @@ int schema(Program& program) {
   for (const std::string& kind : PluginHost::kinds()) definitions.at(kind) = kind_schema(program.host, kind);
   out.at("$schema") = Tree::quote("http://json-schema.org/draft-07/schema#");
   out.at("title") = Tree::quote("palpate experiment");
-  print_text(to_json(out));
+  print_data(to_json(out));
   return kDone;
 }
 

@@ -57,7 +57,7 @@ void SweepLine::show(const SweepProgress& progress) {
     line += fmt::format(", {}", rate_words(rate));
     if (ended < progress.jobs) line += fmt::format(", {} left", duration_words((progress.jobs - ended) / rate));
   }
-  mention((terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
+  mention(std::string(terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
 }
 
 std::string values_text(const Sweep& sweep, const Job& job, const char* gap) {

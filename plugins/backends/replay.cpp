@@ -2,6 +2,7 @@
 // Answers from a record instead of a robot: a former run, or any table of contacts that has the same columns. A dense
 // scan of a real object, recorded once, becomes a bench for strategies.
 #include "answers/answer.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
@@ -11,10 +12,10 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <vector>
 
 namespace palpate::backends {
@@ -63,8 +64,12 @@ std::string unguarded(const std::string& cell) {
 /// The rows of a CSV file by column name; only what a contact needs.
 class Table {
  public:
-  explicit Table(const std::string& file) : file_(file), in_(file) {
-    if (!in_ || !read_row()) throw Error(file, "cannot be read", "backend.record names a run directory or a CSV file");
+  explicit Table(const std::string& file) : file_(file) {
+    Reading reading = read_bounded(file, kMostLogBytes, Origin::user);
+    const char* const hint = "backend.record names a run directory or a CSV file";
+    if (!reading) throw Error(file, words_of(reading, kMostLogBytes).reason, hint);
+    in_.str(std::move(reading.text));
+    if (!read_row()) throw Error(file, "cannot be read", hint);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (!columns_.emplace(cells_[i], i).second)
         throw Error(file, "has two columns '" + cells_[i] + "'", "take one away, or name it otherwise");
@@ -111,7 +116,7 @@ class Table {
  private:
   /// False at the end of the file. A cell in quotes may hold commas, line ends and, doubled, quotes.
   bool read_row() {
-    if (in_.peek() == std::ifstream::traits_type::eof()) return false;
+    if (in_.peek() == std::istringstream::traits_type::eof()) return false;
     line_ = next_line_;
     cells_.assign(1, {});
     bool quoted = false;
@@ -134,7 +139,7 @@ class Table {
   }
 
   std::string file_;
-  std::ifstream in_;
+  std::istringstream in_;
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string> cells_;
   int line_ = 1;       ///< where the row begins

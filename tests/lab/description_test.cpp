@@ -16,6 +16,12 @@
 namespace palpate {
 namespace {
 
+/// Of a sweep that has no other values.
+ValueCount& fresh() {
+  static ValueCount count;
+  return count = {};
+}
+
 SweepDescription described(const std::string& sweep, const std::vector<std::string>& words = {}) {
   const Tree tree = sweep.empty() ? Tree::map() : parse_yaml("sweep:" + sweep, "c.yaml");
   return SweepDescription(tree.find("sweep"), parse_sweep_words(words));
@@ -132,7 +138,8 @@ TEST(Where, RefusesWhatItCannotKnowYet) {
 
 TEST(Sobol, FillsEveryBinaryBoxAlike) {
   // A (t, m, s)-net in base 2: of the first 2^m points each half, quarter, ... of an axis holds the same number.
-  const auto axes = sobol_axes(parse_yaml("{samples: 64, keys: {a: 'uniform(0, 1)', b: 'uniform(0, 1)'}}", "c.yaml"));
+  const auto axes =
+      sobol_axes(parse_yaml("{samples: 64, keys: {a: 'uniform(0, 1)', b: 'uniform(0, 1)'}}", "c.yaml"), fresh());
   ASSERT_EQ(axes.size(), 2U);
   for (const Axis& axis : axes) {
     std::map<int, int> cells;
@@ -149,7 +156,7 @@ TEST(Sobol, FillsEveryBinaryBoxAlike) {
 
 TEST(Sobol, SpreadsALogarithmicRangeInTheLogarithmAndKeepsToItsEnds) {
   const auto axes =
-      sobol_axes(parse_yaml("{samples: 32, keys: {a: 'log(1cm, 10cm)', b: 'uniform(-2 mm, 3 mm)'}}", "c"));
+      sobol_axes(parse_yaml("{samples: 32, keys: {a: 'log(1cm, 10cm)', b: 'uniform(-2 mm, 3 mm)'}}", "c"), fresh());
   int below = 0;
   for (std::size_t i = 0; i < 32; ++i) {
     const double a = std::atof(axes[0].values[i].text.c_str());
@@ -168,7 +175,7 @@ TEST(Sobol, GivesTheSamePointsEveryTimeAndFewerAreTheFirstOfMore) {
   const auto values = [](int samples) {
     std::vector<std::string> out;
     const std::string text = "{samples: " + std::to_string(samples) + ", keys: {a: 'log(1,9)', b: 'uniform(0,1)'}}";
-    for (const Axis& axis : sobol_axes(parse_yaml(text, "c"))) {
+    for (const Axis& axis : sobol_axes(parse_yaml(text, "c"), fresh())) {
       for (std::size_t i = 0; i < 5; ++i) out.push_back(axis.values[i].text);
     }
     return out;

@@ -17,11 +17,17 @@ Texts texts(const std::vector<Tree>& values) {
   return out;
 }
 
-Texts expanded(const std::string& value) {
-  return texts(expand_values(*parse_yaml("k: " + value, "c.yaml").find("k"), "k"));
+/// Of a sweep that has no other values.
+ValueCount& fresh() {
+  static ValueCount count;
+  return count = {};
 }
 
-Texts typed(const std::string& text) { return texts(parse_axis(text).values); }
+Texts expanded(const std::string& value) {
+  return texts(expand_values(*parse_yaml("k: " + value, "c.yaml").find("k"), "k", fresh()));
+}
+
+Texts typed(const std::string& text) { return texts(parse_axis(text, fresh()).values); }
 
 std::string refused_value(const std::string& value) {
   return error_of([&] { expanded(value); });
@@ -67,7 +73,7 @@ TEST(Expand, RefusesRangesThatAreNotUnderstood) {
 }
 
 TEST(Expand, RefusesARangeThatYamlCutAtItsComma) {
-  EXPECT_EQ(error_of([] { expand_values(*parse_yaml("{k: range(0,3)}", "c.yaml").find("k"), "k"); }),
+  EXPECT_EQ(error_of([] { expand_values(*parse_yaml("{k: range(0,3)}", "c.yaml").find("k"), "k", fresh()); }),
             "c.yaml:1:5: k: 'range(0' lacks its ')', within braces, where commas part entries, put it into quotes: "
             "\"range(...)\"");
 }
@@ -103,7 +109,7 @@ TEST(Expand, RefusesNothing) {
 
 TEST(AxisText, SplitsAtCommas) {
   EXPECT_EQ(typed("seed=1,2, 3"), (Texts{"1", "2", "3"}));
-  EXPECT_EQ(parse_axis("kernel.length_scale=1cm,2cm").key, "kernel.length_scale");
+  EXPECT_EQ(parse_axis("kernel.length_scale=1cm,2cm", fresh()).key, "kernel.length_scale");
 }
 
 TEST(AxisText, DoesNotSplitInBracketsOrQuotes) {
@@ -115,16 +121,17 @@ TEST(AxisText, DoesNotSplitInBracketsOrQuotes) {
 }
 
 TEST(AxisText, RefusesAGapBetweenCommas) {
-  EXPECT_EQ(error_of([] { parse_axis("seed=1,,2"); }), "command line: seed: has no value, write [value, value]");
+  EXPECT_EQ(error_of([] { parse_axis("seed=1,,2", fresh()); }),
+            "command line: seed: has no value, write [value, value]");
 }
 
 TEST(AxisText, IsWrittenAsWhatReadsBackAsTheSame) {
   const auto again = [](const std::string& text) {
-    const Axis axis = parse_axis(text);
+    const Axis axis = parse_axis(text, fresh());
     Tree sweep = Tree::map();
     sweep.at("k") = axis.written;
     const Tree file = parse_yaml(to_yaml(sweep), "c.yaml");
-    EXPECT_EQ(texts(expand_values(*file.find("k"), "k")), texts(axis.values)) << text;
+    EXPECT_EQ(texts(expand_values(*file.find("k"), "k", fresh())), texts(axis.values)) << text;
   };
   for (const char* text : {"seed=range(0,3)", "seed=range(0,2),7", "a=1", "a=x,y", "a=[1, 2],[3, 4]", "a=[1, 2]",
                            "a='x,y',z", "a=log(1cm,5cm,3)", "kernel={type: rbf},matern52"}) {

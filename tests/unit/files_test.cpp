@@ -199,9 +199,10 @@ TEST_F(ReadFile, ReturnsEveryByte) {
 }
 
 TEST_F(ReadFile, RefusesWhatIsMissingOrNoFile) {
-  for (const fs::path& file : {folder_.path() / "missing", folder_.path()}) {
-    EXPECT_EQ(error_of([&] { read_file(file); }), file.string() + ": cannot be read");
-  }
+  const fs::path missing = folder_.path() / "missing";
+  EXPECT_EQ(error_of([&] { read_file(missing); }), missing.string() + ": cannot be read");
+  EXPECT_EQ(error_of([&] { read_file(folder_.path()); }),
+            folder_.path().string() + ": is not a regular file, put a file in its place, or remove it");
 }
 
 using Appending = InFolder;

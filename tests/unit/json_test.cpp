@@ -73,6 +73,31 @@ TEST_F(JsonLinesFile, RefusesADamagedLineInTheMiddleAndAMissingFile) {
   EXPECT_EQ(error_of([] { read_json_lines("/nonexistent/taps.jsonl"); }), "/nonexistent/taps.jsonl: cannot be read");
 }
 
+TEST_F(JsonLinesFile, RefusesALineThatIsTooLongTooDeepOrHoldsTooMuch) {
+  const auto refusal = [&](const std::string& line) {
+    const auto file = folder_.write("taps.jsonl", "{}\n" + line + "\n");
+    return error_of([&] { read_json_lines(file); }).substr(file.string().size());
+  };
+  const auto nested = [](int levels) {
+    std::string open, close;
+    for (int i = 0; i < levels; ++i) open += "{\"a\":", close += "}";
+    return open + "1" + close;
+  };
+  const auto fields = [](int count) {
+    std::string out = "{";
+    for (int i = 0; i < count; ++i) out += (i == 0 ? "\"" : ",\"") + std::to_string(i) + "\":0";
+    return out + "}";
+  };
+  EXPECT_EQ(read_json_lines(folder_.write("sound", nested(100) + "\n" + fields(4096) + "\n")).rows.size(), 2U);
+  EXPECT_EQ(refusal(nested(101)), ":2: is nested too deeply: at most 100 levels, the file is damaged");
+  EXPECT_EQ(refusal(nested(150'000)), ":2: is nested too deeply: at most 100 levels, the file is damaged");
+  EXPECT_EQ(refusal(fields(4097)), ":2: holds too many values: at most 4096, the file is damaged");
+  EXPECT_EQ(refusal("{\"" + std::string(1025, 'a') + "\": 1}"),
+            ":2: has a name of more than 1 KiB, the file is damaged");
+  EXPECT_EQ(refusal("{\"a\": \"" + std::string(1 << 20, 'a') + "\"}"),
+            ":2: is too long: a line has at most 1 MiB, the file is damaged");
+}
+
 TEST(JsonTree, KeepsPlainScalarsAndQuotesTheOthers) {
   const Tree tree = parse_yaml("a: 1\nb: '1'\nc: [true, 'x y']\nd: {}\ne: []\nf:\n", "c.yaml");
   EXPECT_EQ(to_json(tree),
@@ -106,7 +131,7 @@ TEST(JsonTree, IsRefusedInOneLineWhereItsFileIsDamaged) {
     EXPECT_EQ(json_refusal(text), "manifest.json: is not a JSON object" + remedy) << text;
   std::string deep = "{\"a\": ";
   for (int i = 0; i < 100'000; ++i) deep += "[";
-  EXPECT_EQ(json_refusal(deep), "manifest.json: is nested too deeply" + remedy);
+  EXPECT_EQ(json_refusal(deep), "manifest.json: is nested too deeply: at most 100 levels" + remedy);
   std::string many = "{\"a\": [0";
   for (int i = 0; i < 1'000'000; ++i) many += ",0";
   EXPECT_EQ(json_refusal(many + "]}"), "manifest.json: holds too many values" + remedy);

@@ -153,6 +153,13 @@ TEST(Yaml, RefusesAnAliasBombBeforeItUnfolds) {
   EXPECT_EQ(yaml_refusal(bomb), "c.yaml:1:37: too many values, aliases unfold to over 100000");
 }
 
+TEST(Yaml, RefusesAliasesThatUnfoldToMuchText) {
+  const std::string text = "a: &x " + std::string(500'000, 'y') + "\nb: [*x";
+  EXPECT_EQ(yaml_refusal(text + ", *x]\n"), "accepted");
+  EXPECT_EQ(yaml_refusal(text + repeated(", *x", 100'000) + "]\n"),
+            "c.yaml:1:4: too much text, aliases unfold to over 4 MiB");
+}
+
 TEST(Yaml, RefusesAnUnknownAlias) {
   // yaml-cpp 0.8 names it, 0.7 does not.
   EXPECT_THAT(yaml_refusal("a: *x\n"),

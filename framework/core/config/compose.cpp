@@ -2,6 +2,7 @@
 #include "config/compose.hpp"
 
 #include "config/yaml.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
 
@@ -51,6 +52,9 @@ fs::path shown(const fs::path& path) {
   return near.empty() || *near.begin() == ".." ? path : near;
 }
 
+/// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
+constexpr Layer kLayersOfGroup = 16;
+
 /// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
 /// name, and for a file that is being read already.
 void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
@@ -58,17 +62,16 @@ void add_link(const std::string& group, const std::string& name, const Place& pl
   const std::string link = group + "/" + name;
   const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
   chain.push_back(link);
-  if (!cyclic) return;
-  throw Error(place.text(), "defaults form a cycle", fmt::format("{}", fmt::join(chain, " -> ")));
+  if (cyclic) throw Error(place.text(), "defaults form a cycle", fmt::format("{}", fmt::join(chain, " -> ")));
+  if (chain.size() <= static_cast<std::size_t>(kLayersOfGroup)) return;
+  throw Error(place.text(), fmt::format("groups build on each other more than {} deep", kLayersOfGroup),
+              "put what they hold into fewer files");
 }
 
 template <class Container, class Holds>
 void drop(Container& from, const Holds& holds) {
   from.erase(std::remove_if(from.begin(), from.end(), holds), from.end());
 }
-
-/// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
-constexpr Layer kLayersOfGroup = 16;
 
 /// Whether a folder is there and gives all of these rights.
 bool gives(const fs::path& folder, fs::perms rights) {
@@ -115,6 +118,11 @@ void check_path(const std::string& path, const std::string& place) {
   const bool has_gap =
       path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos;
   if (has_gap) throw Error(place, fmt::format("'{}' is not a dotted path", path), "write it like kernel.length_scale");
+  constexpr std::size_t kMostBytes = 1024;
+  constexpr std::ptrdiff_t kMostLevels = 100;
+  if (path.size() <= kMostBytes && std::count(path.begin(), path.end(), '.') < kMostLevels) return;
+  throw Error(place, fmt::format("'{}...' is too long a path", path.substr(0, 40)),
+              "a path has at most 100 levels and 1024 characters");
 }
 
 Override parse_override(const std::string& text) {
@@ -183,9 +191,8 @@ std::map<std::string, fs::path> Composer::files_of(const std::string& group, con
   std::map<std::string, fs::path> out;
   for (const fs::path& folder : folders_of(group)) {
     for (const fs::path& root : roots(beside).safe) {
-      std::error_code none;
-      for (const auto& entry : fs::directory_iterator(root / folder, none)) {
-        if (entry.path().extension() == ".yaml") out.emplace(entry.path().stem().string(), entry.path());
+      for (const fs::path& file : list_folder(root / folder)) {
+        if (file.extension() == ".yaml") out.emplace(file.stem().string(), file);
       }
     }
   }
@@ -224,7 +231,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
       throw Error(base.value.place.text(), fmt::format("a {} may build only on another {}", group, group),
                   fmt::format("write '- {}: name'", group));
     }
-    Tree below = group_content(group, base.value.text, base.value.place, root_of(file, group), chain);
+    Tree below = base_content(group, base.value, root_of(file, group), chain);
     below.shift_layer(static_cast<int>(i) - static_cast<int>(bases.size()));
     content.merge(below);
   }
@@ -240,6 +247,16 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
     content.merge(entry.value);
   }
   chain.pop_back();
+  return content;
+}
+
+Tree Composer::base_content(const std::string& group, const Tree& name, const fs::path& beside,
+                            std::vector<std::string>& chain) {
+  const std::array<std::string, 3> key{group, name.text, beside.string()};
+  if (const auto known = bases_.find(key); known != bases_.end()) return known->second;
+  Tree content = group_content(group, name.text, name.place, beside, chain);
+  // A plugin without a file has the place of whoever names it.
+  if (!find_group(group, name.text, name.place, beside).empty()) bases_.emplace(key, content);
   return content;
 }
 

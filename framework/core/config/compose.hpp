@@ -25,7 +25,7 @@ struct Override {
 /// Splits and reads `KEY=VALUE` as typed. Throws Error for a missing '=' or an empty key.
 Override parse_override(const std::string& text);
 
-/// Throws Error, with `place`, for what is no dotted path.
+/// Throws Error, with `place`, for what is no dotted path, and for one of more than 100 levels or 1024 characters.
 void check_path(const std::string& path, const std::string& place);
 
 /// Reads config files, once each, and composes them.
@@ -54,7 +54,8 @@ class Composer {
   /// A group chosen by an override takes the place of the group chosen before at that path; what the file itself says
   /// there stays, as far as the new type has that option (see resolve()). A map given for a group is laid over it; any
   /// other value takes the place of what was there. `file` is taken as found() has it. Throws Error for missing files,
-  /// unknown groups and cycles.
+  /// unknown groups, cycles and
+  /// groups that build on each other more than 16 deep.
   Tree compose(const std::filesystem::path& file, const std::vector<Override>& overrides);
 
   /// `file`, or where there is none of a relative name configs/..., the program's own of that name: what a checkout has
@@ -106,6 +107,9 @@ class Composer {
   /// What a group's file says, on layer 0, laid over what it builds on, on the layers below.
   Tree group_content(const std::string& group, const std::string& name, const Place& place,
                      const std::filesystem::path& beside, std::vector<std::string>& chain);
+  /// The same for the group of that name that another builds on.
+  Tree base_content(const std::string& group, const Tree& name, const std::filesystem::path& beside,
+                    std::vector<std::string>& chain);
 
   /// Whether a path leads into a group, as kernel.kernels.0.kernel does: to a plugin inside another.
   bool is_inner(const std::string& path) const;
@@ -113,6 +117,9 @@ class Composer {
   std::filesystem::path shipped_;
   const ConfigKeys& keys_;
   std::map<std::filesystem::path, Tree> files_;
+  /// Of group, name and folder: the content of a group that another builds on. Each is composed once, though many may
+  /// build on it.
+  std::map<std::array<std::string, 3>, Tree> bases_;
   std::map<std::string, Tree> brought_;  ///< by the strategy of this composition, for keys of the run
   std::vector<Group> groups_;
   /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.

@@ -13,7 +13,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMaxValues = 1'000'000;
+constexpr std::size_t kMaxValues = 1'000'000;        ///< of an axis
+constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< of all axes
 constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
 
 [[noreturn]] void refuse(const Tree& tree, const std::string& key, const std::string& reason, const std::string& hint) {
@@ -63,12 +64,14 @@ double as_decimal(double value) {
   return out;
 }
 
-std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key) {
+std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
+                               ValueCount& counted) {
   const double step = from.size() == 3 ? from[2].value : 1.0;
   // (1.3 - 1) / 0.1 is 3.0000000000000004: rounding must not let the end in.
   const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
   if (!(count >= 1.0)) refuse(tree, key, "has no value", "the end must lie beyond the start");
   if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "take a wider step");
+  counted.add(static_cast<std::size_t>(count), tree.place, key);
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
     out.push_back(number(as_decimal(from[0].value + i * step), from[0].unit, tree));
@@ -76,13 +79,15 @@ std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree,
   return out;
 }
 
-std::vector<Tree> expand_log(const std::vector<Bound>& from, const Tree& tree, const std::string& key) {
+std::vector<Tree> expand_log(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
+                             ValueCount& counted) {
   const double first = from[0].value;
   const double last = from[1].value;
   const double count = from[2].value;
   if (!(first > 0.0) || !(last > 0.0) || count < 2.0 || count != std::floor(count) || count > 10000.0) {
     refuse(tree, key, "needs two positive ends and a count of 2 to 10000", kHowTo);
   }
+  counted.add(static_cast<std::size_t>(count), tree.place, key);
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
     const double share = i / (count - 1.0);
@@ -118,30 +123,37 @@ Tree number(double value, const std::string& unit, const Tree& like) {
   return out;
 }
 
-std::vector<Tree> expand_values(const Tree& value, const std::string& key) {
+void ValueCount::add(std::size_t values, const Place& place, const std::string& key) {
+  all_ += values;
+  if (all_ <= kMostValues) return;
+  throw Error(place.text(), fmt::format("{}: the sweep names more than two million values", key), "take fewer values");
+}
+
+std::vector<Tree> expand_values(const Tree& value, const std::string& key, ValueCount& count) {
   if (value.kind == Tree::Kind::list) {
     if (value.items.empty())
       throw Error(value.place.text(), fmt::format("{}: the list of values is empty", key), "write [value, value]");
+    count.add(value.items.size(), value.place, key);
     return value.items;
   }
   if (value.kind == Tree::Kind::null)
     throw Error(value.place.text(), fmt::format("{}: has no value", key), "write [value, value]");
   const std::optional<Call> call = parse_call(value, key, {"range", "log"}, kHowTo);
-  if (!call) return {value};
+  if (!call) return count.add(1, value.place, key), std::vector<Tree>{value};
   const std::vector<Bound>& parts = call->bounds;
   const bool is_range = call->name == "range";
   const bool right_count = is_range ? parts.size() == 2 || parts.size() == 3 : parts.size() == 3;
   const bool same_unit = right_count && parts[0].unit == parts[1].unit &&
                          (parts.size() < 3 || parts[2].unit == (is_range ? parts[0].unit : std::string()));
   if (!same_unit) refuse(value, key, "is not understood", kHowTo);
-  return is_range ? expand_range(parts, value, key) : expand_log(parts, value, key);
+  return is_range ? expand_range(parts, value, key, count) : expand_log(parts, value, key, count);
 }
 
-Axis parse_axis(const std::string& text) {
+Axis parse_axis(const std::string& text, ValueCount& count) {
   Override whole = parse_override(text);
   const std::string value = text.substr(text.find('=') + 1);
   const std::vector<std::string> parts = split_top(value);
-  if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path), whole.value};
+  if (parts.size() == 1) return {whole.path, expand_values(whole.value, whole.path, count), whole.value};
   Axis axis{whole.path, {}, Tree::list()};
   for (const std::string& part : parts) {
     const Override one = parse_override(whole.path + "=" + boost::trim_copy(part));
@@ -150,7 +162,7 @@ Axis parse_axis(const std::string& text) {
       axis.values.push_back(one.value);
       continue;
     }
-    for (Tree& tree : expand_values(one.value, whole.path)) axis.values.push_back(std::move(tree));
+    for (Tree& tree : expand_values(one.value, whole.path, count)) axis.values.push_back(std::move(tree));
   }
   axis.written.items = axis.values;
   axis.written.place = axis.values.front().place;

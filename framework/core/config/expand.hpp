@@ -5,6 +5,7 @@
 #include "config/compose.hpp"
 #include "config/tree.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,14 +39,24 @@ std::optional<Call> parse_call(const Tree& value, const std::string& key, const 
 /// A number as people write it, with its unit, at the place of `like`.
 Tree number(double value, const std::string& unit, const Tree& like);
 
+/// Counts the values of all axes of a sweep before they are made: a line of text can name a million.
+class ValueCount {
+ public:
+  /// Throws Error, with `place` and `key`, for more than two million values together.
+  void add(std::size_t values, const Place& place, const std::string& key);
+
+ private:
+  std::size_t all_ = 0;
+};
+
 /// The values of a list, of `range(first, end)`, `range(first, end, step)` (end excluded) or of
 /// `log(first, last, count)` (both included, evenly spaced in the logarithm; both with the same unit); any other value
 /// is the only one. Throws Error.
-std::vector<Tree> expand_values(const Tree& value, const std::string& key);
+std::vector<Tree> expand_values(const Tree& value, const std::string& key, ValueCount& count);
 
 /// `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=log(1cm,5cm,8)`: as typed behind `palpate sweep`. A list among
 /// several values is one value.
-Axis parse_axis(const std::string& text);
+Axis parse_axis(const std::string& text, ValueCount& count);
 
 /// The text of a swept value as it stands in results.csv.
 std::string value_text(const Tree& value);

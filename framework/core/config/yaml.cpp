@@ -12,8 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <cerrno>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,10 +23,11 @@
 namespace palpate {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 1 << 20;
 /// Nine lines of aliases can unfold to 10^9 values: what is unfolded counts.
 constexpr int kMaxValues = 100'000;
 constexpr std::size_t kMaxDepth = 100;
+/// Of all texts, unfolded; to_yaml() writes no config of more than a quarter of it.
+constexpr std::size_t kMaxTextBytes = 4 << 20;
 /// Nobody writes so many, and keys are looked for one after the other.
 constexpr std::size_t kMaxKeys = 1000;
 
@@ -79,6 +79,7 @@ class Reader final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { put(mark, "", anchor, Tree()); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    if (refused_) return;                      // what it stands for may be long
     const auto found = anchors_.find(anchor);  // none where it stands for what it is a part of
     if (found == anchors_.end()) refuse(place(mark), "nested too deeply", "at most 100 levels");
     put(mark, "", YAML::NullAnchor, found == anchors_.end() ? Tree() : found->second);
@@ -158,6 +159,9 @@ class Reader final : public YAML::EventHandler {
   void count(const Tree& value, std::size_t depth) {
     if (++values_ > kMaxValues) refuse(value.place, "too many values", "aliases unfold to over 100000");
     if (depth > kMaxDepth) refuse(value.place, "nested too deeply", "at most 100 levels");
+    text_bytes_ += value.text.size();
+    for (const Tree::Entry& entry : value.entries) text_bytes_ += entry.key.size();
+    if (text_bytes_ > kMaxTextBytes) refuse(value.place, "too much text", "aliases unfold to over 4 MiB");
     if (refused_) return;
     for (const Tree& item : value.items) count(item, depth + 1);
     for (const Tree::Entry& entry : value.entries) count(entry.value, depth + 1);
@@ -183,6 +187,7 @@ class Reader final : public YAML::EventHandler {
   std::string_view text_;
   int documents_ = 0;  ///< that were read
   int values_ = 0;
+  std::size_t text_bytes_ = 0;  ///< in them
   Tree tree_;
   std::vector<Open> open_;  ///< the innermost last
   std::map<YAML::anchor_t, Tree> anchors_;
@@ -273,12 +278,10 @@ void append_block(std::string& out, const Tree& tree, std::size_t column) {
 /// The config beside `missing` whose name is nearest to its own, as a hint.
 std::string similar_file(const std::filesystem::path& missing) {
   std::vector<std::string> names;
-  std::error_code none;
   const std::filesystem::path folder = missing.has_parent_path() ? missing.parent_path() : ".";
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().filename().string());
+  for (const std::filesystem::path& file : list_folder(folder)) {
+    if (file.extension() == ".yaml") names.push_back(file.filename().string());
   }
-  std::sort(names.begin(), names.end());
   const std::string near = nearest(missing.filename().string(), names);
   return near.empty() ? "name a YAML file" : fmt::format("did you mean '{}'?", near);
 }
@@ -308,23 +311,30 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
   }
 }
 
-Tree read_yaml(const std::filesystem::path& path) {
+Tree read_yaml(const std::filesystem::path& path, Origin origin) {
   const std::string name = path.lexically_normal().string();
-  std::error_code trouble;
-  const auto status = std::filesystem::status(path, trouble);
-  if (trouble == std::errc::permission_denied)
-    throw Error(name, "cannot be read", "check the permissions of its folder");
-  const auto fail = [&] { throw Error(name, "cannot be read: " + trouble.message(), {}, Error::Kind::run); };
-  if (trouble == std::errc::io_error) fail();
-  if (!std::filesystem::exists(status)) throw Error(name, "no such file", similar_file(path));
-  if (!std::filesystem::is_regular_file(status)) throw Error(name, "not a regular file", "name a YAML file");
-  const auto bytes = std::filesystem::file_size(path, trouble);
-  if (trouble) fail();
-  if (bytes > kMaxBytes) throw Error(name, "too large for a config", "at most 1 MiB");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(name, "cannot be read", "check its permissions");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  return parse_yaml(text, name);
+  const Reading reading = read_bounded(path, kMostConfigBytes, origin);
+  const int reason = reading.reason.value();
+  std::error_code none;
+  switch (reading.kind) {
+    case Reading::Kind::whole:
+      return parse_yaml(reading.text, name);
+    case Reading::Kind::absent:
+      throw Error(name, "no such file", similar_file(path));
+    case Reading::Kind::not_regular:
+      throw Error(name, "not a regular file", "name a YAML file");
+    case Reading::Kind::too_large:
+      throw Error(name, "too large for a config", "at most 1 MiB");
+    case Reading::Kind::failed:
+      if (reason == EIO) break;
+      throw Error(
+          name, "cannot be read",
+          std::filesystem::exists(path, none) ? "check its permissions" : "check the permissions of its folder");
+    case Reading::Kind::link:
+      break;
+  }
+  const auto [words, remedy] = words_of(reading, kMostConfigBytes);
+  throw Error(name, words, remedy, reason == EIO ? Error::Kind::run : Error::Kind::usage);
 }
 
 void check_readable(const Tree& config, const std::string& file) {
@@ -333,7 +343,7 @@ void check_readable(const Tree& config, const std::string& file) {
   if (config.canonical().size() < kSmall) return;
   int values = 0;  // as Reader counts them
   for_all(config, [&](const Tree&) { ++values; });
-  if (to_yaml(config).size() <= kMaxBytes && values <= kMaxValues) return;
+  if (to_yaml(config).size() <= kMostConfigBytes && values <= kMaxValues) return;
   throw Error(file, "too large with all that it leaves to defaults", "at most 1 MiB and 100000 values in config.yaml");
 }
 

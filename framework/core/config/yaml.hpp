@@ -4,6 +4,7 @@
 #pragma once
 
 #include "config/tree.hpp"
+#include "reading/reading.hpp"
 
 #include <filesystem>
 #include <string>
@@ -13,8 +14,8 @@ namespace palpate {
 /// Parses one document; an empty one is an empty map. `file` is what places will name. Throws Error.
 Tree parse_yaml(const std::string& text, const std::string& file);
 
-/// Reads and parses a file, which must be a regular file of at most 1 MiB. Throws Error.
-Tree read_yaml(const std::filesystem::path& path);
+/// Reads and parses a file, which must be a regular file of at most 1 MiB; that of a record is no link. Throws Error.
+Tree read_yaml(const std::filesystem::path& path, Origin origin = Origin::user);
 
 /// Throws Error, naming `file`, for a config that read_yaml() would not read once to_yaml() has written it.
 void check_readable(const Tree& config, const std::string& file);

@@ -5,6 +5,7 @@
 #include "config/tree.hpp"
 #include "plugin/loaded_hash.hpp"
 #include "plugin/named.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
@@ -17,10 +18,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
+#include <sstream>
+#include <utility>
 #include <vector>
 
 #include <boost/algorithm/string/split.hpp>
@@ -65,12 +66,10 @@ std::string stamp_difference(const std::string& theirs, const std::string& ours)
 }
 
 std::string read_library(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in) refuse(file, "opening", std::strerror(errno));
-  std::string out(static_cast<std::size_t>(in.tellg()), '\0');
-  in.seekg(0);
-  if (!in.read(out.data(), static_cast<std::streamsize>(out.size()))) refuse(file, "reading", std::strerror(errno));
-  return out;
+  Reading reading = read_bounded(file, kMostLibraryBytes, Origin::user);
+  if (!reading)
+    refuse(file, "opening", reading.reason ? reading.reason.message() : words_of(reading, kMostLibraryBytes).reason);
+  return std::move(reading.text);
 }
 
 /// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
@@ -159,9 +158,8 @@ std::string trouble_of_folder(const fs::path& folder) {
   if (!plugins_of_build(folder).empty()) return "";
   const std::vector<std::string> all = PluginHost::kinds();
   const bool any = std::any_of(all.begin(), all.end(), [&](const std::string& kind) {
-    const fs::directory_iterator entries(folder / kind, none);
-    return std::any_of(begin(entries), end(entries),
-                       [](const auto& entry) { return entry.path().extension() == ".so"; });
+    const std::vector<fs::path> files = list_folder(folder / kind);
+    return std::any_of(files.begin(), files.end(), [](const fs::path& file) { return file.extension() == ".so"; });
   });
   return any ? "" : "holds no plugin, which is KIND/NAME.so in it";
 }
@@ -170,7 +168,7 @@ std::string trouble_of_folder(const fs::path& folder) {
 
 PluginNames plugins_of_build(const fs::path& folder) {
   PluginNames out;
-  std::ifstream in(folder / "plugins.txt");
+  std::istringstream in(read_bounded(folder / "plugins.txt", kMostConfigBytes, Origin::user).text);
   for (std::string line; std::getline(in, line);) {
     const auto slash = line.find('/');
     if (slash != std::string::npos) out.emplace(line.substr(0, slash), line.substr(slash + 1));
@@ -243,9 +241,8 @@ std::vector<std::string> PluginHost::kinds() {
 std::vector<std::pair<std::string, fs::path>> PluginHost::files(const std::string& kind) const {
   std::vector<std::pair<std::string, fs::path>> out;
   for (const fs::path& folder : folders_) {
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(folder / kind, none)) {
-      if (entry.path().extension() == ".so") out.emplace_back(entry.path().stem().string(), entry.path());
+    for (const fs::path& file : list_folder(folder / kind)) {
+      if (file.extension() == ".so") out.emplace_back(file.stem().string(), file);
     }
   }
   std::sort(out.begin(), out.end());

@@ -37,7 +37,7 @@ Tree libraries() {
 /// leaves the program's bytes alone.
 Tree read_stamp(const Installation& installation) {
   const fs::path file = installation.plugins / "build.json";
-  return is_there(file) ? read_json(file) : Tree::map();
+  return is_there(file) ? read_json(file, Origin::user) : Tree::map();
 }
 
 Tree describe_plugins(const PluginHost& host, const PluginNames& plugins) {

@@ -15,7 +15,10 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <sys/stat.h>
@@ -58,11 +61,10 @@ bool collect_records(const fs::path& folder, int levels, Catalogue& out) {
   }
   bool any = false;
   std::error_code none;
-  fs::directory_iterator one(folder, none);
-  for (; levels > 0 && one != fs::directory_iterator(); one.increment(none)) {
-    const bool hidden = one->path().filename().string().front() == '.';
-    if (hidden || one->is_symlink(none) || !one->is_directory(none)) continue;
-    any = collect_records(one->path(), levels - 1, out) || any;
+  for (const fs::path& one : levels > 0 ? list_folder(folder) : std::vector<fs::path>()) {
+    const bool hidden = one.filename().string().front() == '.';
+    if (hidden || fs::symlink_status(one, none).type() != fs::file_type::directory) continue;
+    any = collect_records(one, levels - 1, out) || any;
   }
   if (!any && levels == kLevels - 1) ++out.strangers;
   return any;
@@ -113,10 +115,7 @@ Error several(const std::string& words, const std::string& base, std::vector<fs:
 /// What could be meant by a name that nothing has.
 Error unknown(const std::string& words, const std::string& name, const fs::path& runs) {
   std::vector<std::string> known;
-  std::error_code none;
-  for (fs::directory_iterator one(runs, none); one != fs::directory_iterator(); one.increment(none))
-    known.push_back(one->path().filename().string());
-  std::sort(known.begin(), known.end());
+  for (const fs::path& one : list_folder(runs)) known.push_back(one.filename().string());
   const std::string near = nearest(name, known);
   const bool misspelt = name.find('@') != std::string::npos;
   return Error(words, fmt::format("is no folder, and in {} nothing has that name", runs.string()),
@@ -128,15 +127,21 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
 }  // namespace
 
 std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
+  // A config of a stranger may have 100,000 values: none is looked for one by one.
+  std::vector<std::unordered_map<std::string_view, const Scalar*>> values(configs.size());
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    for (const auto& [key, value] : configs[i].fields) values[i].emplace(key, &value);
+  }
   std::vector<std::string> out;
+  std::unordered_set<std::string_view> seen;
   for (const Row& config : configs) {
     for (const auto& [key, value] : config.fields) {
-      const auto same = [&, at = &key, there = &value](const Row& other) {
-        const Scalar* found = other.find(*at);
-        return found != nullptr && *found == *there;
+      if (!seen.insert(key).second) continue;
+      const auto same = [&, at = &key, there = &value](const auto& other) {
+        const auto found = other.find(*at);
+        return found != other.end() && *found->second == *there;
       };
-      const bool known = std::find(out.begin(), out.end(), key) != out.end();
-      if (!known && !std::all_of(configs.begin(), configs.end(), same)) out.push_back(key);
+      if (!std::all_of(values.begin(), values.end(), same)) out.push_back(key);
     }
   }
   std::stable_partition(out.begin(), out.end(), [](const std::string& key) { return key == "seed"; });

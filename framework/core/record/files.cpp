@@ -29,7 +29,8 @@ namespace {
 
 /// Opens above the standard files, which a process may have been started without.
 Descriptor open_file(const fs::path& file, int flags) {
-  return above_standard(::open(file.c_str(), flags | O_CLOEXEC, 0666));
+  // Nobody waits for the other end of a pipe that lies in the place of a file.
+  return above_standard(::open(file.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
 }
 
 /// Opens what is to be written, but no link: whoever made that would choose what is overwritten.
@@ -147,10 +148,9 @@ void write_file(const fs::path& file, const Text& text, bool sync) {
 
 void remove_temporaries(const fs::path& folder) {
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    const fs::path& file = entry.path();
+  for (const fs::path& file : list_folder(folder)) {
     if (!is_temporary(file.filename().string())) continue;
-    const Descriptor left = open_file(file, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY);
+    const Descriptor left = open_file(file, O_RDWR | O_NOFOLLOW);
     if (left && ::fcntl(left.number(), F_OFD_SETLK, &kWholeFile) == 0) fs::remove(file, none);
   }
 }
@@ -197,29 +197,16 @@ std::string read_file(const fs::path& file, std::uintmax_t most_bytes) {
   return std::move(*text);
 }
 
-std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes) {
-  const auto refuse = [&] {
-    if (errno == EIO || errno == ESTALE || errno == ENOLCK) fail(file, "cannot be read");
-    throw Error(file.string(), "cannot be read");
-  };
-  const Descriptor in = open_file(file, O_RDONLY);
-  if (!in && errno == ENOENT) return std::nullopt;
-  if (!in && errno != EIO && !is_there(file)) return std::nullopt;
-  struct stat what {};
-  if (!in || ::fstat(in.number(), &what) != 0) refuse();
-  const auto bytes = static_cast<std::uintmax_t>(what.st_size);
-  if (bytes > most_bytes)
-    throw Error(file.string(), "is too large for what it should hold", "the file is damaged: put it back as it was");
-  // One more byte than a file has shows its end; of a pipe nothing is known before.
-  std::string text(bytes + 1, '\0');
-  for (std::size_t read = 0;;) {
-    const ssize_t more = ::read(in.number(), text.data() + read, text.size() - read);
-    if (more < 0 && errno == EINTR) continue;
-    if (more < 0) refuse();  // a folder can be opened, too
-    read += static_cast<std::size_t>(more);
-    if (more == 0) return text.resize(read), text;
-    if (read == text.size()) text.resize(2 * text.size() + 4096);
-  }
+std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
+  Reading reading = read_bounded(file, most_bytes, origin);
+  if (reading) return std::move(reading.text);
+  const int reason = reading.reason.value();
+  if (reading.kind == Reading::Kind::absent && reason == ENOENT) return std::nullopt;
+  const bool fails = reason == EIO || reason == ESTALE || reason == ENOLCK;
+  if (reason != 0 && !fails && !is_there(file)) return std::nullopt;
+  if (reading.kind == Reading::Kind::failed && !fails) throw Error(file.string(), "cannot be read");
+  const auto [words, remedy] = words_of(reading, most_bytes);
+  throw Error(file.string(), words, remedy, fails ? Error::Kind::run : Error::Kind::usage);
 }
 
 AppendFile::AppendFile(const fs::path& file)

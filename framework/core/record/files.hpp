@@ -5,12 +5,12 @@
 #pragma once
 
 #include "children/child_process.hpp"
+#include "reading/reading.hpp"
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -71,14 +71,13 @@ std::filesystem::path make_folder(const std::filesystem::path& folder);
 /// The same for a part of a record. Throws Error, where it is a link, too.
 std::filesystem::path make_inner_folder(const std::filesystem::path& folder);
 
-constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
+/// Returns the whole content of a part of a record. Throws Error for what read_bounded() does not read; of kind `run`
+/// where the file system fails.
+std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes);
 
-/// The whole content. Throws Error, for a file of more than `most_bytes`, too; of kind `run` where the file system
-/// fails.
-std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes = kAnySize);
-
-/// The same; none where is_there() says that there is none.
-std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kAnySize);
+/// The same; none where is_there() says that there is none. Files of the user and of the installation may be links.
+std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
+                                         Origin origin = Origin::record);
 
 /// A file that only grows, by whole lines.
 class AppendFile {

@@ -16,12 +16,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Far beyond what is ever written, and little enough to be held in memory.
-constexpr std::uintmax_t kMostBytes = 64 << 20;
-constexpr std::size_t kMostValues = 1'000'000;
+// Far beyond what is ever written, and little enough to be held in memory.
+constexpr std::size_t kMostValues = 1'000'000;  ///< of a tree
 constexpr std::size_t kMostLevels = 100;
-/// Of all names in a row: what is nested deeply repeats in each the names of all that is around it.
-constexpr std::size_t kMostNameBytes = 1 << 20;
+constexpr std::size_t kMostRowValues = 4096;
+constexpr std::size_t kMostNameBytes = 1024;  ///< of a name in a row, which repeats those of all that is around it
+constexpr std::size_t kMostLines = 1'100'000;
+constexpr std::size_t kMostLineValues = 20'000'000;  ///< of all lines of a file
+
+constexpr const char* kNoObject = "is not a JSON object";
+constexpr const char* kTooDeep = "is nested too deeply: at most 100 levels";
+constexpr const char* kDamaged = "the file is damaged";
 
 /// Takes the events of the parser as they come: a tree of all values would cost more than the reading itself. Returns
 /// false for what is no row, which ends the parsing.
@@ -41,10 +46,12 @@ class RowReader final : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
   bool start_object(std::size_t) override {
+    if (prefixes_.size() == kMostLevels) return refuse(kTooDeep);
     prefixes_.push_back(prefixes_.empty() ? "" : name_ + ".");
     return true;
   }
   bool key(string_t& key) override {
+    if (prefixes_.back().size() + key.size() > kMostNameBytes) return refuse("has a name of more than 1 KiB");
     name_.assign(prefixes_.back()).append(key);
     return true;
   }
@@ -53,19 +60,24 @@ class RowReader final : public nlohmann::json_sax<Json> {
     return true;
   }
 
+  const char* reason = kNoObject;  ///< for which it was refused
+
  private:
   template <class T>
   bool add(T value) {
-    name_bytes_ += name_.size();
-    if (prefixes_.empty() || name_bytes_ > kMostNameBytes) return false;
+    if (prefixes_.empty()) return false;
+    if (row_.fields.size() == kMostRowValues) return refuse("holds too many values: at most 4096");
     row_.fields.emplace_back(name_, std::move(value));
     return true;
+  }
+  bool refuse(const char* why) {
+    reason = why;
+    return false;
   }
 
   Row& row_;
   std::string name_;                   ///< of the value to come, dotted
   std::vector<std::string> prefixes_;  ///< of the names in the open objects: "a." in {"a": {...
-  std::size_t name_bytes_ = 0;         ///< of the fields so far
 };
 
 constexpr const char* kPutBack = "the file is damaged: put it back as it was, or remove it";
@@ -108,8 +120,8 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   }
   Tree& put(Tree value) {
     const auto refuse = [&](const char* reason) { throw Error(file_.string(), reason, kPutBack); };
-    if (open_.empty() && !value.is_map()) refuse("is not a JSON object");
-    if (open_.size() > kMostLevels) refuse("is nested too deeply");
+    if (open_.empty() && !value.is_map()) refuse(kNoObject);
+    if (open_.size() > kMostLevels) refuse(kTooDeep);
     if (++values_ > kMostValues) refuse("holds too many values");
     return place() = std::move(value);
   }
@@ -160,36 +172,50 @@ void append(std::string& out, const Tree& tree, const std::string& indent) {
 
 }  // namespace
 
-std::optional<Row> parse_json_row(const std::string& text) {
+std::optional<Row> parse_json_row(const std::string& text, std::string* reason) {
   Row row;
   RowReader reader(row);
-  if (!Json::sax_parse(text, &reader)) return std::nullopt;
-  return row;
+  if (Json::sax_parse(text, &reader)) return row;
+  if (reason != nullptr) *reason = reader.reason;
+  return std::nullopt;
+}
+
+std::string RowLines::place() const { return fmt::format("{}:{}", file_.string(), number_); }
+
+Row RowLines::read(const std::string& line) {
+  ++number_;
+  std::string reason = "is too long: a line has at most 1 MiB";
+  std::optional<Row> row;
+  if (line.size() <= kMostLineBytes) row = parse_json_row(line, &reason);
+  if (!row) throw Error(place(), reason, kDamaged);
+  values_ += row->fields.size();
+  if (number_ > kMostLines || values_ > kMostLineValues)
+    throw Error(place(), "the file holds too much: at most 1.1 million lines and 20 million values", kDamaged);
+  return std::move(*row);
 }
 
 JsonLines read_json_lines(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   JsonLines out;
-  for (std::size_t end; (end = text.find('\n', out.bytes)) != std::string::npos; out.bytes = end + 1) {
-    std::optional<Row> row = parse_json_row(text.substr(out.bytes, end - out.bytes));
-    const std::size_t line = out.rows.size() + 1;
-    if (!row) throw Error(fmt::format("{}:{}", file.string(), line), "is not a JSON object", "the file is damaged");
-    out.rows.push_back(std::move(*row));
-  }
+  RowLines lines(file);
+  for (std::size_t end; (end = text.find('\n', out.bytes)) != std::string::npos; out.bytes = end + 1)
+    out.rows.push_back(lines.read(text.substr(out.bytes, end - out.bytes)));
   return out;
 }
 
 std::optional<Row> read_json_row(const std::filesystem::path& file, const std::string& remedy) {
-  const std::optional<std::string> text = read_if_there(file, kMostBytes);
+  const std::optional<std::string> text = read_if_there(file, kMostSummaryBytes);
   if (!text) return std::nullopt;
-  std::optional<Row> row = parse_json_row(*text);
-  if (!row) throw Error(file.string(), "is not a JSON object", remedy);
+  std::string reason;
+  std::optional<Row> row = parse_json_row(*text, &reason);
+  if (!row) throw Error(file.string(), reason, remedy);
   return row;
 }
 
-Tree read_json(const std::filesystem::path& file) {
-  const std::string text = read_file(file, kMostBytes);
-  return parse_json(text, 0, text.size(), file);
+Tree read_json(const std::filesystem::path& file, Origin origin) {
+  const std::optional<std::string> text = read_if_there(file, kMostManifestBytes, origin);
+  if (!text) throw Error(file.string(), "cannot be read");
+  return parse_json(*text, 0, text->size(), file);
 }
 
 Tree parse_json(const std::string& text, std::size_t begin, std::size_t end, const std::filesystem::path& file) {

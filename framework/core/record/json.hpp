@@ -3,21 +3,47 @@
 #pragma once
 
 #include "config/tree.hpp"
+#include "reading/reading.hpp"
 #include "record/row.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate {
 
-/// One JSON object as a row: nested objects joined by dots. None for anything that is not one valid object without
-/// lists, or whose names take over 1 MiB once they are joined.
-std::optional<Row> parse_json_row(const std::string& text);
+/// One JSON object as a row: nested objects joined by dots. None, with `reason`, for anything that is not one valid
+/// object without lists, that holds more than 4096 values, is nested deeper than 100 levels, or has a name of more than
+/// 1 KiB once it is joined.
+std::optional<Row> parse_json_row(const std::string& text, std::string* reason = nullptr);
 
-/// The same of a file of at most 64 MiB; none where there is no file. Throws Error for anything else, with `remedy`.
+/// The same of a file of at most 1 MiB; none where there is no file. Throws Error for anything else, with `remedy`.
 std::optional<Row> read_json_row(const std::filesystem::path& file, const std::string& remedy);
+
+/// Reads the lines of a file one by one, an object each, and bounds what they hold together.
+class RowLines {
+ public:
+  explicit RowLines(std::filesystem::path file) : file_(std::move(file)) {}
+
+  /// Passes over a line that is read by somebody else.
+  void skip() { ++number_; }
+  /// Returns the row of the next line. Throws Error, naming file and line, for one that is no object, for one of more
+  /// than 1 MiB, and for more than 1.1 million lines or 20 million values.
+  Row read(const std::string& line);
+
+  /// "FILE:LINE" of the last line.
+  std::string place() const;
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+  std::size_t number_ = 0;  ///< of the last line, from 1
+  std::size_t values_ = 0;
+};
 
 /// The objects of a file, one a line. A last line without its line end was cut off by a kill and is left out; `bytes`
 /// then says where it begins. Throws Error for any other line that is no object.
@@ -29,7 +55,7 @@ JsonLines read_json_lines(const std::filesystem::path& file);
 
 /// The JSON object in a file of at most 64 MiB, in which nothing is nested deeper than 100 levels: what to_json() wrote
 /// comes back as it was. Throws Error.
-Tree read_json(const std::filesystem::path& file);
+Tree read_json(const std::filesystem::path& file, Origin origin = Origin::record);
 
 /// The same of what lies from `begin` to `end` in the text of a file. Throws Error.
 Tree parse_json(const std::string& text, std::size_t begin, std::size_t end, const std::filesystem::path& file);

@@ -11,7 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <list>
 #include <string_view>
+#include <unordered_map>
 
 namespace palpate {
 namespace {
@@ -198,36 +201,47 @@ std::string to_json_text(const Row& row) {
 }
 
 std::vector<std::string> names_of(const std::vector<Row>& rows) {
-  std::vector<std::string> names;
+  std::list<std::string> names;  // nothing in it moves
+  std::unordered_map<std::string_view, std::list<std::string>::iterator> places;
   for (const Row& row : rows) {
-    std::size_t at = 0;  // where the next field of this row is expected
+    auto at = names.begin();  // where the next field of this row is expected
     for (const auto& [name, value] : row.fields) {
-      if (at >= names.size() || names[at] != name) {
-        const auto found = std::find(names.begin(), names.end(), name);
-        at = found != names.end() ? static_cast<std::size_t>(found - names.begin()) : at;
-        if (found == names.end()) names.insert(names.begin() + static_cast<std::ptrdiff_t>(at), name);
+      if (at == names.end() || *at != name) {
+        const auto known = places.find(name);
+        if (known != places.end()) at = known->second;
+        if (known == places.end()) {
+          at = names.insert(at, name);
+          places.emplace(*at, at);
+        }
       }
       ++at;
     }
   }
-  return names;
+  return {std::make_move_iterator(names.begin()), std::make_move_iterator(names.end())};
 }
 
 std::string to_csv(const std::vector<Row>& rows) {
   const std::vector<std::string> header = names_of(rows);
   if (header.empty()) return {};
+  std::unordered_map<std::string_view, std::size_t> columns;
   std::string out;
-  for (const std::string& name : header) out += (out.empty() ? "" : ",") + csv_text(guarded(name));
+  for (const std::string& name : header) {
+    columns.emplace(name, columns.size());
+    out += (out.empty() ? "" : ",") + csv_text(guarded(name));
+  }
   out += "\n";
+  std::vector<const Scalar*> cells(header.size());
   for (const Row& row : rows) {
-    std::size_t near = 0;
-    for (const std::string& name : header) {
-      const Scalar* value = row.find(name, near);
-      if (value != nullptr) {
-        append_cell(out, *value);
-        ++near;
-      }
-      out += &name == &header.back() ? '\n' : ',';
+    std::fill(cells.begin(), cells.end(), nullptr);
+    std::size_t column = 0;  // of the next field, if it follows the one before it in the header, too
+    for (const auto& [name, value] : row.fields) {
+      if (column == header.size() || header[column] != name) column = columns.at(name);
+      const Scalar*& cell = cells[column++];
+      if (cell == nullptr) cell = &value;
+    }
+    for (const Scalar*& cell : cells) {
+      if (cell != nullptr) append_cell(out, *cell);
+      out += &cell == &cells.back() ? '\n' : ',';
     }
   }
   return out;

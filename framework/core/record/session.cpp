@@ -50,7 +50,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
 Tree read_run_config(const fs::path& directory) {
   const fs::path file = directory / "config.yaml";
   if (!is_there(file)) throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
-  Tree config = read_yaml(file);
+  Tree config = read_yaml(file, Origin::record);
   check_format(config);
   return config;
 }

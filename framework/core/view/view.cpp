@@ -2,6 +2,7 @@
 #include "view/view.hpp"
 
 #include "config/hash.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
 
@@ -9,26 +10,21 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <utility>
 
 namespace palpate {
 namespace {
 
 std::string bytes_of(const std::string& file) {
-  std::error_code none;
-  const auto type = std::filesystem::status(file, none).type();
-  if (type == std::filesystem::file_type::not_found)
+  Reading reading = read_bounded(file, kMostViewBytes, Origin::user);
+  if (reading) return std::move(reading.text);
+  if (reading.kind == Reading::Kind::absent)
     throw Error(file, "no such file", "a relative path starts in the current folder");
-  if (type != std::filesystem::file_type::regular) throw Error(file, "not a regular file", "name a PLY");
-  std::ifstream in(file, std::ios::binary);
-  std::string out{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw Error(file, std::string("cannot be read: ") + std::strerror(errno));
-  return out;
+  if (reading.kind == Reading::Kind::not_regular) throw Error(file, "not a regular file", "name a PLY");
+  if (reading.kind == Reading::Kind::too_large)
+    throw Error(file, "is too large for a view: at most 64 MiB are read", "reduce the number of points");
+  throw Error(file, words_of(reading, kMostViewBytes).reason);
 }
 
 // An object's is a square that is above the desk by so many of its deviations, the desk's one that is not by fewer:

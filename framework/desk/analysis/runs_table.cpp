@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace palpate {
 namespace {
@@ -133,8 +134,11 @@ ListedRecord list_record(const fs::path& directory) {
   const Row config = read_settings(directory);
   (is_sweep(directory) ? add_sweep : add_run)(out, directory, config);
   out.row.add("directory", directory.string());
+  // Of the hundred thousand values that a config may have none is looked for one by one.
+  std::unordered_set<std::string> known;
+  for (const auto& field : out.beside.fields) known.insert(field.first);
   for (const auto& field : config.fields) {
-    if (out.beside.find(field.first) == nullptr) out.beside.fields.push_back(field);
+    if (known.insert(field.first).second) out.beside.fields.push_back(field);
   }
   return out;
 }

@@ -17,6 +17,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMaxCombinations = 1'000'000;
+constexpr std::size_t kMaxSettings = 20'000'000;  ///< of all combinations: one per combination and key
 /// Of a group or a type that is swept: above the options that are swept beside it.
 constexpr Layer kChoiceLayer = kSweepLayer + 1;
 
@@ -50,13 +51,13 @@ std::vector<Combination> product(const std::vector<Combination>& slower, const s
 }
 
 /// Every key of a map with its values.
-std::vector<Axis> read_axes(const Tree& described, const std::string& name, const char* hint) {
+std::vector<Axis> read_axes(const Tree& described, const std::string& name, const char* hint, ValueCount& count) {
   if (!described.is_map()) {
     throw Error(described.place.text(), fmt::format("{}: expects a map of keys to values", name), hint);
   }
   std::vector<Axis> axes;
   for (const Tree::Entry& entry : described.entries) {
-    axes.push_back({entry.key, expand_values(entry.value, entry.key), entry.value});
+    axes.push_back({entry.key, expand_values(entry.value, entry.key, count), entry.value});
   }
   return axes;
 }
@@ -97,6 +98,7 @@ void take_out(Tree& blocks, const std::string& key) {
 
 SweepWords parse_sweep_words(const std::vector<std::string>& words) {
   SweepWords out;
+  ValueCount count;
   for (const std::string& word : words) {
     const std::string path = word.substr(0, word.find('='));
     if (is_below(path, "sweep")) {
@@ -109,7 +111,7 @@ SweepWords parse_sweep_words(const std::vector<std::string>& words) {
       out.blocks.emplace_back(name, std::move(block.value));
       continue;
     }
-    Axis axis = parse_axis(word);
+    Axis axis = parse_axis(word, count);
     if (!is_below(path, "expect")) {
       out.axes.push_back(std::move(axis));
       continue;
@@ -123,7 +125,8 @@ SweepWords parse_sweep_words(const std::vector<std::string>& words) {
   return out;
 }
 
-SweepDescription::Block SweepDescription::read_block(const std::string& name, const Tree& described) {
+SweepDescription::Block SweepDescription::read_block(const std::string& name, const Tree& described,
+                                                     ValueCount& count) {
   const std::string full = "sweep." + name;
   Block block{name, {}};
   if (name == "list") {
@@ -131,11 +134,11 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
     if (described.kind != Tree::Kind::list) {
       throw Error(described.place.text(), full + ": expects a list of settings", hint);
     }
-    for (const Tree& item : described.items) block.parts.push_back({read_axes(item, full, hint), false});
+    for (const Tree& item : described.items) block.parts.push_back({read_axes(item, full, hint, count), false});
   } else if (name == "sobol") {
-    block.parts.push_back({sobol_axes(described), true});
+    block.parts.push_back({sobol_axes(described, count), true});
   } else {
-    block.parts.push_back({read_axes(described, full, "write seed: range(0,10), a key a line"), name == "zip"});
+    block.parts.push_back({read_axes(described, full, "write seed: range(0,10), a key a line", count), name == "zip"});
   }
   if (name == "zip") {
     const std::vector<Axis>& axes = block.parts.front().axes;
@@ -165,9 +168,10 @@ SweepDescription::SweepDescription(const Tree* config, const SweepWords& words)
     if (written_.find("grid") == nullptr) written_.at("grid") = Tree::map();
     if (Tree& grid = written_.at("grid"); grid.is_map()) grid.at(axis.key) = axis.written;
   }
+  ValueCount count;
   for (const Tree::Entry& entry : blocks) {
     if (entry.key != "where") {
-      blocks_.push_back(read_block(entry.key, entry.value));
+      blocks_.push_back(read_block(entry.key, entry.value, count));
       continue;
     }
     const bool many = entry.value.kind == Tree::Kind::list;
@@ -203,8 +207,12 @@ void SweepDescription::combine() {
       std::vector<Combination> rows{{}};
       for (const Axis& axis : part.axes) {
         const std::size_t size = part.together ? axis.values.size() : rows.size() * axis.values.size();
-        if ((own.size() + size) * combinations_.size() > kMaxCombinations) {
-          throw Error(place_of(axis).text(), fmt::format("{}: the sweep has more than a million jobs", axis.key),
+        const std::size_t all = (own.size() + size) * combinations_.size();
+        if (all > kMaxCombinations || all * keys_.size() > kMaxSettings) {
+          throw Error(place_of(axis).text(),
+                      all > kMaxCombinations
+                          ? fmt::format("{}: the sweep has more than a million jobs", axis.key)
+                          : fmt::format("{}: the sweep has {} jobs of {} keys", axis.key, all, keys_.size()),
                       "take fewer values");
         }
         if (part.together) {

@@ -80,7 +80,7 @@ class SweepDescription {
     std::vector<Part> parts;
   };
 
-  static Block read_block(const std::string& name, const Tree& described);
+  static Block read_block(const std::string& name, const Tree& described, ValueCount& count);
   void list_keys();
   void combine();
   bool depends(const std::string& name, const std::string& choice) const;

@@ -28,12 +28,12 @@ constexpr const char* kPrefix = ".sweep-";
 void remove_abandoned(const fs::path& runs) {
   constexpr auto kYoung = std::chrono::minutes(1);
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(runs, none)) {
-    if (entry.path().filename().string().rfind(kPrefix, 0) != 0) continue;
-    const fs::path lock = entry.path() / "lock";
+  for (const fs::path& draft : list_folder(runs)) {
+    if (draft.filename().string().rfind(kPrefix, 0) != 0) continue;
+    const fs::path lock = draft / "lock";
     const auto made = fs::last_write_time(lock, none);
     if (!none && fs::file_time_type::clock::now() - made > kYoung && !FileLock::is_held(lock)) {
-      fs::remove_all(entry.path(), none);
+      fs::remove_all(draft, none);
     }
   }
 }

@@ -71,7 +71,7 @@ std::int64_t read_samples(const Tree& described, const Place& place) {
 
 }  // namespace
 
-std::vector<Axis> sobol_axes(const Tree& described) {
+std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
   if (!described.is_map()) {
     throw Error(described.place.text(), "sweep.sobol: expects samples and keys",
                 "write sobol: {samples: 64, keys: {kernel.length_scale: \"log(1cm, 10cm)\"}}");
@@ -89,6 +89,7 @@ std::vector<Axis> sobol_axes(const Tree& described) {
                 "sweep.sobol.keys: expects a map of 1 to 1000 keys to ranges",
                 "write keys: {kernel.length_scale: \"log(1cm, 10cm)\"}");
   }
+  count.add(keys->entries.size() * static_cast<std::size_t>(samples), keys->place, "sweep.sobol");
   std::vector<Axis> axes;
   std::vector<Range> ranges;
   // As for the first taps: one random pattern of bits an axis, added without carry to every point, keeps the points

@@ -13,6 +13,6 @@ namespace palpate {
 /// axis a key with as many values as samples, the i-th values of all keys being the i-th point. A Sobol sequence with
 /// a fixed digital shift, so the same points every time, and fewer samples are the first of more. `samples` is 1 to
 /// 100000; of a range both ends have the same unit, and the first lies below the last (above 0 with log). Throws Error.
-std::vector<Axis> sobol_axes(const Tree& described);
+std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count);
 
 }  // namespace palpate

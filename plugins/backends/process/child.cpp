@@ -2,6 +2,7 @@
 #include "process/child.hpp"
 
 #include "process/protocol.hpp"
+#include "reading/reading.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,6 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <thread>
@@ -60,13 +60,10 @@ bool glance(const Descriptor& descriptor, short events, Clock::time_point until)
 /// All of this machine that have not ended, as they are now, and who is the parent of each.
 std::vector<std::pair<pid_t, pid_t>> processes() {
   std::vector<std::pair<pid_t, pid_t>> out;
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc", none)) {
-    const std::string name = entry.path().filename().string();
+  for (const std::filesystem::path& folder : list_folder("/proc")) {
+    const std::string name = folder.filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    std::ifstream in(entry.path() / "stat");
-    std::string line;
-    if (!std::getline(in, line)) continue;
+    const std::string line = read_bounded(folder / "stat", kMostSystemBytes, Origin::user).text;
     // PID (NAME) STATE PARENT ..., where the name may hold anything.
     const std::size_t behind = line.rfind(')');
     if (behind == std::string::npos || behind + 4 > line.size()) continue;
@@ -77,8 +74,8 @@ std::vector<std::pair<pid_t, pid_t>> processes() {
 }
 
 bool carries(pid_t pid, const std::string& mark) {
-  std::ifstream in("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
-  const std::string all = '\0' + std::string(std::istreambuf_iterator<char>(in), {});
+  const std::string file = "/proc/" + std::to_string(pid) + "/environ";
+  const std::string all = '\0' + read_bounded(file, kMostSystemBytes, Origin::user).text;
   return all.find('\0' + mark + '\0') != std::string::npos;
 }
 

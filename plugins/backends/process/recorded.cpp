@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "process/recorded.hpp"
 
+#include "reading/reading.hpp"
+
 #include <palpate/error.hpp>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <thread>
 
 #include <fcntl.h>
@@ -95,9 +96,10 @@ void note_holder(const Descriptor& lock, pid_t holder) {
 }
 
 std::string noted_holder(const std::string& file) {
-  std::ifstream in(file);
-  std::string holder;
-  return std::getline(in, holder) ? holder : "?";
+  constexpr std::uintmax_t kMostBytes = 64;
+  const std::string text = read_bounded(file, kMostBytes, Origin::record).text;
+  const std::string holder = text.substr(0, text.find('\n'));
+  return holder.empty() ? "?" : holder;
 }
 
 }  // namespace palpate::process

@@ -2,6 +2,7 @@
 #include "triangles.hpp"
 
 #include "children/child_process.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
 
@@ -14,7 +15,6 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <sstream>
@@ -166,7 +166,7 @@ void limit(int resource, rlim_t most) {
 void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*out_of_memory)()) {
 #ifndef PALPATE_SANITIZED  // for a sanitizer's own memory has terabytes of addresses, of which it takes more at will
   std::size_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
+  std::istringstream(read_bounded("/proc/self/statm", kMostSystemBytes, Origin::user).text) >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 512'000'000 + 64 * bytes);
   std::set_new_handler(out_of_memory);
 #endif

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "options.hpp"
 
+#include "reading/reading.hpp"
+
 #include <palpate/error.hpp>
 
-#include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -41,31 +41,20 @@ fs::path place_of(const std::string& file) {
 }  // namespace
 
 std::string read_file(const std::string& file) {
-  constexpr std::uintmax_t kMostBytes = 500'000'000;
-  std::error_code trouble;
-  const fs::path place = place_of(file);
-  const fs::file_status status = fs::status(place, trouble);
-  if (status.type() == fs::file_type::not_found) {
+  Reading reading = read_bounded(place_of(file), kMostMeshBytes, Origin::user);
+  if (reading.kind == Reading::Kind::absent) {
     std::string hint;
     if (fs::path(file).is_relative())
       hint = "a relative path starts in the current folder, " + fs::current_path().string();
     throw Error(file, "no such file", hint);
   }
-  if (status.type() != fs::file_type::regular) {
-    throw Error(file, trouble ? trouble.message() : "not a regular file", "name a file in the format STL, OBJ or PLY");
-  }
-  const std::uintmax_t size = fs::file_size(place, trouble);
-  if (!trouble && size > kMostBytes) {
-    throw Error(file, "has " + std::to_string(size / 1'000'000) + " MB, at most 500 are read",
-                "reduce the number of triangles");
-  }
-  std::ifstream in(place, std::ios::binary);
-  std::string bytes(trouble ? 0 : size, '\0');
-  if (trouble || !in || !in.read(bytes.data(), static_cast<std::streamsize>(size))) {
-    throw Error(file, std::string("cannot be read: ") + std::strerror(errno));
-  }
-  if (bytes.empty()) throw Error(file, "is empty", "export it again");
-  return bytes;
+  if (reading.kind == Reading::Kind::not_regular)
+    throw Error(file, "not a regular file", "name a file in the format STL, OBJ or PLY");
+  if (reading.kind == Reading::Kind::too_large)
+    throw Error(file, "has more than 500 MB", "reduce the number of triangles");
+  if (!reading) throw Error(file, words_of(reading, kMostMeshBytes).reason);
+  if (reading.text.empty()) throw Error(file, "is empty", "export it again");
+  return std::move(reading.text);
 }
 
 void MeshOptions::list(Fields& fields) {

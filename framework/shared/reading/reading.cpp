@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "reading/reading.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Reading failed(int reason) {
+  // What this user may not look at is not there for him; see is_there().
+  const bool absent = reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG;
+  return {absent ? Reading::Kind::absent : Reading::Kind::failed, {}, {reason, std::generic_category()}};
+}
+
+bool is_link(const fs::path& path) {
+  struct stat what {};
+  return ::lstat(path.c_str(), &what) == 0 && S_ISLNK(what.st_mode);
+}
+
+/// Whether a link leads to a file of a job, jobs/<id>/NAME: what a sweep names lies within its folder.
+bool job_is_linked(const fs::path& file) {
+  constexpr std::size_t kIdLength = 12;
+  const fs::path job = file.parent_path();
+  const std::string id = job.filename().string();
+  if (id.size() != kIdLength || id.find_first_not_of("0123456789abcdef") != std::string::npos) return false;
+  const fs::path jobs = job.parent_path();
+  return jobs.filename() == "jobs" && (is_link(job) || is_link(jobs));
+}
+
+/// Reads up to `most_bytes`; the size is a hint: files grow, and those of /proc have none.
+Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes) {
+  Reading out{Reading::Kind::whole, {}};
+  if (size > most_bytes) return {Reading::Kind::too_large, {}};
+  std::string& text = out.text;
+  text.resize(size + 1);  // one byte more than a file has shows its end
+  for (std::size_t read = 0;;) {
+    const ssize_t more = ::read(number, text.data() + read, text.size() - read);
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0) return failed(errno);
+    read += static_cast<std::size_t>(more);
+    if (read > most_bytes) return {Reading::Kind::too_large, {}};
+    if (more == 0) return text.resize(read), out;
+    if (read == text.size()) text.resize(2 * text.size() + 4096);
+  }
+}
+
+}  // namespace
+
+Reading read_bounded(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
+  const bool inner = origin == Origin::record;
+  struct stat seen {};
+  // Looked at before it is opened: to open a device may already do something.
+  if ((inner ? ::lstat(file.c_str(), &seen) : ::stat(file.c_str(), &seen)) != 0) return failed(errno);
+  if (S_ISLNK(seen.st_mode) || (inner && job_is_linked(file))) return {Reading::Kind::link, {}};
+  if (!S_ISREG(seen.st_mode)) return {Reading::Kind::not_regular, {}};
+  const int number = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | (inner ? O_NOFOLLOW : 0));
+  if (number < 0) return failed(errno);
+  struct stat opened {};
+  Reading out = ::fstat(number, &opened) != 0 ? failed(errno)
+                : !S_ISREG(opened.st_mode)
+                    ? Reading{Reading::Kind::not_regular, {}}
+                    : read_descriptor(number, static_cast<std::uintmax_t>(opened.st_size), most_bytes);
+  ::close(number);
+  return out;
+}
+
+ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes) {
+  switch (reading.kind) {
+    case Reading::Kind::not_regular:
+      return {"is not a regular file", "put a file in its place, or remove it"};
+    case Reading::Kind::link:
+      return {"is a link, or lies in a linked folder, and records are read without links", "copy what it leads to"};
+    case Reading::Kind::too_large: {
+      const std::uintmax_t mebibyte = std::uintmax_t{1} << 20;
+      const std::string most = most_bytes < mebibyte ? std::to_string(most_bytes) + " bytes"
+                                                     : std::to_string(most_bytes / mebibyte) + " MiB";
+      return {"is too large for what it should hold: at most " + most + " are read",
+              "the file is damaged: put it back as it was"};
+    }
+    case Reading::Kind::whole:
+    case Reading::Kind::absent:
+    case Reading::Kind::failed:
+      break;
+  }
+  return {reading.reason ? "cannot be read: " + reading.reason.message() : "cannot be read", {}};
+}
+
+std::vector<fs::path> list_folder(const fs::path& folder, std::error_code& trouble) {
+  std::vector<fs::path> out;
+  fs::directory_iterator one(folder, trouble);
+  for (; !trouble && one != fs::directory_iterator(); one.increment(trouble)) out.push_back(one->path());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<fs::path> list_folder(const fs::path& folder) {
+  std::error_code none;
+  return list_folder(folder, none);
+}
+
+namespace {
+
+/// The code point that `text` begins with, and how many bytes it has (RFC 3629); no bytes where it is not UTF-8.
+std::pair<std::uint32_t, std::size_t> first_code_point(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return {lead, 1};
+  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return {0, 0};
+  std::uint32_t point = lead & (0xffU >> (length + 1));
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return {0, 0};
+    point = (point << 6) | (byte(i) & 0x3fU);
+  }
+  constexpr std::array<std::uint32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = point >= 0xd800 && point <= 0xdfff;
+  if (point < kLeast[length] || point > 0x10ffff || surrogate) return {0, 0};
+  return {point, length};
+}
+
+/// Unicode's Bidi_Control, and the separators that end a line.
+bool turns_text(std::uint32_t point) {
+  return point == 0x61c || point == 0x200e || point == 0x200f || (point >= 0x2028 && point <= 0x202e) ||
+         (point >= 0x2066 && point <= 0x2069);
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  std::array<char, 16> escape{};
+  for (std::size_t at = 0; at < text.size();) {
+    const auto [point, length] = first_code_point(text.substr(at));
+    const bool control = (point < 0x20 && point != '\n' && point != '\t') || (point >= 0x7f && point < 0xa0);
+    if (length == 0 || control) {
+      const unsigned number = length == 0 ? static_cast<unsigned char>(text[at]) : point;
+      std::snprintf(escape.data(), escape.size(), "\\x%02x", number);
+      out += escape.data();
+    } else if (turns_text(point)) {
+      std::snprintf(escape.data(), escape.size(), "\\u%04x", point);
+      out += escape.data();
+    } else {
+      out += text.substr(at, length);
+    }
+    at += std::max<std::size_t>(length, 1);
+  }
+  return out;
+}
+
+}  // namespace palpate
