@@ -138,5 +138,35 @@ TEST_F(Received, TextThatIsPrintedMovesNoCursorAndTurnsNoLine) {
   EXPECT_THAT(refusal_of({"run", test::paper(), "na\xc2\x9bme=a"}), HasSubstr("'na\\x9bme'"));
 }
 
+TEST_F(Received, TapsWithALineMissingDoubledOrOutOfOrderAreRefusedByFileAndLine) {
+  const auto changed = [&](int line, const std::function<void(std::vector<std::string>&)>& change, const char* reason) {
+    const fs::path file = run_again() / "taps.jsonl";
+    std::vector<std::string> lines;
+    std::istringstream in(text_of(file));
+    for (std::string one; std::getline(in, one);) lines.push_back(one + "\n");
+    change(lines);
+    std::string text;
+    for (const std::string& one : lines) text += one;
+    write(file, text);
+    fs::remove(here() / "run/summary.json");
+    for (const char* command : {"resume", "status", "report"}) {
+      EXPECT_EQ(refusal_of({command, here() / "run"}),
+                file.string() + ":" + std::to_string(line) + ": " + reason +
+                    ", put the file back as it was, or begin anew with 'palpate run --force'\n");
+    }
+    EXPECT_EQ(text_of(file), text) << "nothing is added to a damaged record";
+  };
+  using Lines = std::vector<std::string>;
+  changed(
+      3, [](Lines& lines) { lines.erase(lines.begin() + 2); }, "has tap 4 where tap 3 belongs: a line is missing");
+  changed(
+      1, [](Lines& lines) { lines.erase(lines.begin()); }, "has tap 2 where tap 1 belongs: a line is missing");
+  changed(
+      4, [](Lines& lines) { lines.insert(lines.begin() + 3, lines[2]); },
+      "has tap 3 a second time, where tap 4 belongs");
+  changed(
+      3, [](Lines& lines) { std::swap(lines[2], lines[3]); }, "has tap 4 where tap 3 belongs: a line is missing");
+}
+
 }  // namespace
 }  // namespace palpate

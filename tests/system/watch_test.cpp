@@ -242,7 +242,7 @@ TEST_F(WatchedRun, SaysWhatIsWrongWithARecordAndGoesOnOnceItIsPutRight) {
   const std::string good = text_of(directory / "taps.jsonl");
   append(directory, "no JSON\n");
   const json trouble = news(address, at);
-  EXPECT_THAT(trouble.at("trouble").get<std::string>(), HasSubstr("has a line that is no JSON object"));
+  EXPECT_THAT(trouble.at("trouble").get<std::string>(), HasSubstr("taps.jsonl:6: is not a JSON object"));
   write(directory / "taps.jsonl", good);
   EXPECT_EQ(news(address, trouble.at("at")).at("anew"), true);
   data(address, 6);

@@ -195,6 +195,29 @@ TEST_F(Files, OfARunWhoseTimesWereCutGetALineForEachTapWhenItIsCarriedOn) {
   }
 }
 
+TEST_F(Files, WhoseTapsDoNotCountUpAreRefusedByTheirLine) {
+  const std::string hint = ", put the file back as it was, or begin anew with 'palpate run --force'";
+  const auto refusal = [&](const std::string& lines) {
+    const fs::path file = folder_.write("run/taps.jsonl", lines);
+    const std::string said = error_of([&] { RunFiles(folder_.path() / "run").taps(); });
+    return said == "accepted" ? said : said.substr(file.string().size());
+  };
+  const std::string one = "{\"tap\": 1}\n";
+  const std::string two = "{\"tap\": 2}\n";
+  const std::string intent = "{\"tap\": 2, \"intent\": true}\n";
+  for (const std::string& sound : {one + two, one + intent + two, one + intent, one + intent + two + "{\"tap\": 4"})
+    EXPECT_EQ(refusal(sound), "accepted") << sound;
+  EXPECT_EQ(refusal(two), ":1: has tap 2 where tap 1 belongs: a line is missing" + hint);
+  EXPECT_EQ(refusal(one + "{\"tap\": 3}\n" + two), ":2: has tap 3 where tap 2 belongs: a line is missing" + hint);
+  EXPECT_EQ(refusal(one + one), ":2: has tap 1 a second time, where tap 2 belongs" + hint);
+  EXPECT_EQ(refusal(one + intent + intent), ":3: announces tap 2 a second time" + hint);
+  EXPECT_EQ(refusal(one + two + intent), ":3: announces tap 2, which is recorded already" + hint);
+  EXPECT_EQ(refusal(intent), ":1: has tap 2 where tap 1 belongs: a line is missing" + hint);
+  for (const char* number : {"\"2\"", "2.5", "null", "true", "-1", "0"})
+    EXPECT_NE(refusal(one + "{\"tap\": " + number + "}\n"), "accepted") << number;
+  EXPECT_EQ(refusal(one + "{\"x\": 1}\n"), ":2: has no number 'tap'" + hint);
+}
+
 TEST_F(Files, OfAJobThatAreDamagedAreRefusedByTheirLine) {
   folder_.write("job/record.jsonl", "{\"attempt\": 1}\n{\"manifest\": {\"a\": }}\n{\"tap\": 1\n{\"tap\": 2}\n");
   const RunFiles files(folder_.path() / "job");

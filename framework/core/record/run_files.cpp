@@ -3,6 +3,7 @@
 
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
+#include "record/tap_row.hpp"
 
 #include <fmt/format.h>
 
@@ -110,6 +111,9 @@ bool RunFiles::begun() const {
   return bytes && (!packed_ || *bytes > 0);
 }
 
+namespace {
+
+/// The row of a tap as JSON, without its times; none in a line of another part.
 std::optional<std::string> tap_in_line(std::string_view line) {
   if (begins_with(line, kAttemptLine) || begins_with(line, kManifestLine) || begins_with(line, kObjectLine)) return {};
   std::string out(line);
@@ -120,23 +124,46 @@ std::optional<std::string> tap_in_line(std::string_view line) {
   return out;
 }
 
+}  // namespace
+
+std::optional<Row> TapLines::read(std::string_view line) {
+  const std::optional<std::string> tap = tap_in_line(line);
+  if (!tap) return lines_.skip(), std::nullopt;
+  Row row = lines_.read(*tap);
+  check_order(row);
+  return row;
+}
+
+void TapLines::check_order(const Row& row) {
+  const Scalar* number = row.find("tap");
+  const auto* tap = number != nullptr ? std::get_if<std::int64_t>(number) : nullptr;
+  const bool announces = is_intent(row);
+  const std::int64_t next = taps_ + 1;
+  if (tap != nullptr && *tap == next && !(announces && announced_)) {
+    announced_ = announces;
+    taps_ += announces ? 0 : 1;
+    return;
+  }
+  const std::string found = tap == nullptr ? "has no number 'tap'"
+                            : *tap == next ? fmt::format("announces tap {} a second time", *tap)
+                            : *tap > next
+                                ? fmt::format("has tap {} where tap {} belongs: a line is missing", *tap, next)
+                            : announces ? fmt::format("announces tap {}, which is recorded already", *tap)
+                                        : fmt::format("has tap {} a second time, where tap {} belongs", *tap, next);
+  throw Error(lines_.place(), found, "put the file back as it was, or begin anew with 'palpate run --force'");
+}
+
 std::vector<Row> RunFiles::taps() const {
   std::vector<Row> out;
-  int number = 0;
+  TapLines lines(taps_file());
   for_lines(read_file(taps_file()), [&](std::string_view line, std::size_t) {
-    ++number;
-    const std::optional<std::string> tap = tap_in_line(line);
-    if (!tap) return;
-    std::optional<Row> row = parse_json_row(*tap);
-    if (!row) {
-      throw Error(fmt::format("{}:{}", taps_file().string(), number), "is not a JSON object", "the file is damaged");
-    }
-    out.push_back(std::move(*row));
+    if (std::optional<Row> row = lines.read(line)) out.push_back(std::move(*row));
   });
   return out;
 }
 
 Timings RunFiles::timings() const {
+  constexpr std::size_t kShown = 80;
   Timings out;
   const fs::path from = file(kTimings);
   if (!is_there(from)) return out;
@@ -146,7 +173,8 @@ Timings RunFiles::timings() const {
     if (packed_ && !begins_with(line, kTapLine)) return;
     const std::optional<TapTimes> times = packed_ ? read_packed_times(line) : read_times(line);
     if (!times) {
-      out.trouble = Error(from.string(), "has the line '" + std::string(line) + "'", "the file is damaged");
+      out.trouble =
+          Error(from.string(), "has the line '" + std::string(line.substr(0, kShown)) + "'", "the file is damaged");
     } else if (times->tap != 0) {
       out.taps.push_back(*times);
     }

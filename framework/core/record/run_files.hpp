@@ -8,10 +8,12 @@
 #include "config/tree.hpp"
 #include "record/fields.hpp"
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/row.hpp"
 
 #include <palpate/error.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -39,7 +41,8 @@ class RunFiles {
   /// Whether taps are recorded there, or about to be.
   bool begun() const;
 
-  /// A row a tap, announcements included, as far as the lines have their ends. Throws Error for a damaged line.
+  /// A row per tap, announcements included, as far as the lines have their ends. Throws Error for a damaged line, and
+  /// for taps that do not count 1, 2, 3 ...
   std::vector<Row> taps() const;
 
   Timings timings() const;
@@ -77,8 +80,24 @@ class RunFiles {
 /// Where taps are appended to as soon as there are some: to be followed while it grows.
 std::filesystem::path taps_file_to_come(const std::filesystem::path& directory);
 
-/// The row of a tap in a line of taps_file(), as JSON; none in a line of another part.
-std::optional<std::string> tap_in_line(std::string_view line);
+/// Reads the lines of taps_file() in their order.
+class TapLines {
+ public:
+  explicit TapLines(std::filesystem::path file) : lines_(std::move(file)) {}
+
+  /// Returns the row of a tap or of its announcement; none for a line of another part. Throws Error, naming file and
+  /// line, for a damaged one, and where taps do not count 1, 2, 3 ...: a line is missing, doubled or out of order.
+  std::optional<Row> read(std::string_view line);
+
+  const std::filesystem::path& file() const { return lines_.file(); }
+
+ private:
+  void check_order(const Row& row);
+
+  RowLines lines_;
+  std::int64_t taps_ = 0;   ///< whose results were read
+  bool announced_ = false;  ///< the next one was announced
+};
 
 /// The same record held by this process, which adds to it.
 class HeldFiles : public RunFiles {
