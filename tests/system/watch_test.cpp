@@ -248,6 +248,30 @@ TEST_F(WatchedRun, SaysWhatIsWrongWithARecordAndGoesOnOnceItIsPutRight) {
   data(address, 6);
 }
 
+TEST_F(WatchedRun, TellsAPageAtAPlaceThatIsNoneToBeginAnew) {
+  const fs::path directory = under_way(5);
+  const Address address = watch({directory});
+  const std::string now = data(address, 6).at("live");
+  EXPECT_EQ(now.substr(0, 4), "1.6.");
+  for (const char* at : {"1.-99999999.1", "1.-1.1", "-1.1.1", "1.+1.1", "1.1", "1.1.1.", "1..1", "", "99999999999.1.1"})
+    EXPECT_EQ(news(address, at).at("anew"), true) << at;
+  EXPECT_EQ(news(address, "1.5.0").at("moments").size(), 1U) << "it is there still";
+}
+
+TEST_F(WatchedRun, IsShownToWhoHasTheAddressHoweverManyConnectionsWithoutItAreOpen) {
+  const Address address = watch({ran("taps=3")});
+  std::vector<std::unique_ptr<test::Connection>> open;
+  for (int i = 0; i < 100; ++i)
+    open.push_back(std::make_unique<test::Connection>(address.port(), i % 2 == 0 ? "" : "GET /0123 HTTP/1.1\r\nHo"));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(address.get("").status, 200);
+  std::vector<std::unique_ptr<test::Connection>> waiting;
+  for (int i = 0; i < 20; ++i)
+    waiting.push_back(address.begin("news?at=" + data(address).at("live").get<std::string>()));
+  for (int i = 0; i < 100; ++i) open.push_back(std::make_unique<test::Connection>(address.port(), ""));
+  EXPECT_EQ(address.get("").status, 200);
+  EXPECT_EQ(open.front()->rest(), "") << "the oldest were closed";
+}
+
 TEST_F(WatchedRun, EndsAtOnceWhileAPageWaits) {
   const fs::path directory = under_way(5);
   const Address address = watch({directory});

@@ -11,8 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <chrono>
-#include <cstdio>
+#include <system_error>
 #include <utility>
 
 namespace palpate {
@@ -30,12 +31,19 @@ struct Position {
   int revision = 0;
 };
 
-/// Zeros for what is none.
+/// Zeros for what is none: three numbers of digits alone, as RunFollower::at() writes them.
 Position parse_position(const std::string& at) {
   Position out;
-  int read = 0;
-  const int count = std::sscanf(at.c_str(), "%9d.%9d.%9d%n", &out.generation, &out.moments, &out.revision, &read);
-  return count == 3 && static_cast<std::size_t>(read) == at.size() ? out : Position{};
+  const char* next = at.data();
+  const char* const end = next + at.size();
+  for (int* const number : {&out.generation, &out.moments, &out.revision}) {
+    if (number != &out.generation && (next == end || *next++ != '.')) return {};
+    if (next == end || *next < '0' || *next > '9') return {};  // from_chars() takes a minus
+    const auto read = std::from_chars(next, end, *number);
+    if (read.ec != std::errc()) return {};
+    next = read.ptr;
+  }
+  return next == end ? out : Position{};
 }
 
 }  // namespace

@@ -48,7 +48,9 @@ constexpr double kLookFor = 0.05;        ///< seconds; who asks meanwhile waits 
 constexpr double kFirstLook = 1.0;       ///< before a page is made: most then begin with all there is
 constexpr seconds kAnswerWithin(25);     ///< a question for news, where there are none
 constexpr seconds kMostSilence(10);      ///< of a caller who is to ask or to read
+constexpr seconds kTokenWithin(5);       ///< of a caller who is to show the token
 constexpr std::size_t kMostCallers = 64;
+constexpr std::size_t kMostStrangers = 16;  ///< of them without the token; the oldest of more makes way for the next
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 
 std::string random_token() {
@@ -123,6 +125,7 @@ struct Server::Room {
   Room(Site& pages, const ServerOptions& wishes) : site(pages), options(wishes) {}
 
   void accept();
+  void make_way();
   bool is_own_name(const std::string& host) const;
   void look();
   void look_again_after(Clock::duration wait);
@@ -148,13 +151,17 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
 
   void begin() {
     parser_.header_limit(kMostHeader);
-    stream_.expires_after(kMostSilence);
+    stream_.expires_after(kTokenWithin);
     // The header alone: nothing that somebody sends is of interest.
     http::async_read_header(stream_, buffer_, parser_, [self = shared_from_this()](beast::error_code trouble, auto) {
       if (trouble) return self->leave();
       self->answer(self->parser_.get());
     });
   }
+
+  /// Whether it has not shown the token.
+  bool is_stranger() const { return !has_token_; }
+  Clock::time_point begun() const { return begun_; }
 
   /// What it waits for news of; null if it does not.
   const std::shared_ptr<Watched>& waits_for() const { return waits_for_; }
@@ -168,6 +175,12 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
     }
   }
 
+  void leave() {
+    waits_for_.reset();
+    stream_.close();
+    room_.callers.erase(shared_from_this());
+  }
+
  private:
   void answer(const http::request<http::empty_body>& request) {
     const auto text = [](auto view) { return std::string_view(view.data(), view.size()); };
@@ -178,6 +191,7 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
     target.remove_prefix(!target.empty() && target.front() == '/' ? 1 : 0);
     const std::string_view said = target.substr(0, target.find_first_of("/?"));
     if (!same_in_constant_time(said, room_.token)) return refuse(http::status::forbidden);
+    has_token_ = true;
     target.remove_prefix(said.size());
     if (target.empty() || target.front() != '/') return refuse(http::status::not_found);
     const Question question = question_of(target.substr(1));
@@ -234,12 +248,6 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
     });
   }
 
-  void leave() {
-    waits_for_.reset();
-    stream_.close();
-    room_.callers.erase(shared_from_this());
-  }
-
   Room& room_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kMostHeader};
@@ -247,6 +255,8 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
   http::response<http::string_body> response_;
   std::array<char, 1024> ignored_{};
   bool hears_ = false;
+  bool has_token_ = false;
+  Clock::time_point begun_ = Clock::now();
   std::string at_;
   std::shared_ptr<Watched> waits_for_;
   Clock::time_point until_;
@@ -261,6 +271,7 @@ void Server::Room::accept() {
       });
       return;
     }
+    make_way();
     if (callers.size() < kMostCallers) {
       const auto caller = std::make_shared<Caller>(*this, std::move(socket));
       callers.insert(caller);
@@ -268,6 +279,18 @@ void Server::Room::accept() {
     }
     accept();
   });
+}
+
+/// Connections without the token, however many are opened and left open, shut nobody out who has it.
+void Server::Room::make_way() {
+  std::shared_ptr<Caller> oldest;
+  std::size_t strangers = 0;
+  for (const auto& caller : callers) {
+    if (!caller->is_stranger()) continue;
+    ++strangers;
+    if (!oldest || caller->begun() < oldest->begun()) oldest = caller;
+  }
+  if (oldest && (strangers >= kMostStrangers || callers.size() >= kMostCallers)) oldest->leave();
 }
 
 bool Server::Room::is_own_name(const std::string& host) const {
