@@ -4,6 +4,7 @@
 #include "record/session.hpp"
 #include "report/history.hpp"
 #include "support/runs.hpp"
+#include "support/testing.hpp"
 #include "watch/growing_log.hpp"
 #include "watch/server.hpp"
 
@@ -80,11 +81,11 @@ TEST_F(AGrowingLog, LosesNothingWhenHalfALineIsCutOffAndMadeAnew) {
 TEST_F(AGrowingLog, BeginsAnewWhereItIsAnotherOne) {
   append("{\"tap\": 1}\n{\"tap\": 2}\n");
   EXPECT_THAT(read(), ElementsAre(1, 2));
-  folder_.write("taps.jsonl", "{\"tap\": 7}\n{\"tap\": 8}\n{\"tap\": 9}\n");  // in the same file
-  EXPECT_THAT(read(), ElementsAre(7, 8, 9));
+  folder_.write("taps.jsonl", "{\"tap\": 1, \"x\": 7}\n{\"tap\": 2}\n{\"tap\": 3}\n");  // in the same file
+  EXPECT_THAT(read(), ElementsAre(1, 2, 3));
   EXPECT_TRUE(anew_);
-  folder_.write("taps.jsonl", "{\"tap\": 7}\n");  // shorter
-  EXPECT_THAT(read(), ElementsAre(7));
+  folder_.write("taps.jsonl", "{\"tap\": 1, \"x\": 7}\n");  // shorter
+  EXPECT_THAT(read(), ElementsAre(1));
   EXPECT_TRUE(anew_);
   fs::remove(file_);
   EXPECT_THAT(read(), IsEmpty());
@@ -98,6 +99,14 @@ TEST_F(AGrowingLog, GoesOnWhereACopyWithMoreTakesItsPlace) {
   fs::rename(folder_.path() / "copy", file_);
   EXPECT_THAT(read(), ElementsAre(2));
   EXPECT_FALSE(anew_);
+}
+
+TEST_F(AGrowingLog, SaysWhereTapsDoNotCountUpAcrossItsReads) {
+  append("{\"tap\": 1}\n{\"tap\": 2}\n");
+  EXPECT_THAT(read(), ElementsAre(1, 2));
+  append("{\"tap\": 4}\n");
+  EXPECT_THAT(test::error_of([&] { read(); }),
+              testing::HasSubstr("taps.jsonl:3: has tap 4 where tap 3 belongs: a line is missing"));
 }
 
 TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceThatIsPutRight) {

@@ -28,7 +28,7 @@ class AStrangeRecord : public Shell {
   }
 
   static std::string refusal(const fs::path& link) {
-    return link.string() + ": is a link, and nothing is written through one, remove it\n";
+    return link.string() + ": is a link, and nothing in a record is read or written through one, remove it\n";
   }
 
   fs::path victim_ = write("victim", "mine");

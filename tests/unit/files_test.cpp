@@ -172,7 +172,8 @@ TEST_F(InnerFolder, IsMadeButNeverALink) {
   EXPECT_TRUE(fs::is_directory(folder_.path() / "a"));
   fs::create_directory_symlink(folder_.path() / "a", folder_.path() / "b");
   EXPECT_EQ(error_of([&] { make_inner_folder(folder_.path() / "b"); }),
-            (folder_.path() / "b").string() + ": is a link, and nothing is written through one, remove it");
+            (folder_.path() / "b").string() +
+                ": is a link, and nothing in a record is read or written through one, remove it");
 }
 
 TEST_F(WriteFile, SaysWhyAPlaceCannotBeWrittenOrAFolderReplaced) {
@@ -229,7 +230,8 @@ TEST_F(Appending, AndLockAndCutFollowNoLink) {
   const fs::path victim = folder_.write("victim", "mine");
   const fs::path link = folder_.path() / "log";
   fs::create_symlink(victim, link);
-  const std::string words = link.string() + ": is a link, and nothing is written through one, remove it";
+  const std::string words =
+      link.string() + ": is a link, and nothing in a record is read or written through one, remove it";
   EXPECT_EQ(error_of([&] { AppendFile(link).append("x", false); }), words);
   EXPECT_EQ(error_of([&] { FileLock{link}; }), words);
   EXPECT_EQ(error_of([&] { cut_file(link, 0); }), words);

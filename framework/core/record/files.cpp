@@ -176,7 +176,8 @@ std::optional<std::uintmax_t> size_if_there(const char* path) {
 void refuse_link(const fs::path& path) {
   std::error_code none;
   if (!fs::is_symlink(path, none)) return;
-  throw Error(path.string(), "is a link, and nothing is written through one", "remove it", Error::Kind::run);
+  throw Error(path.string(), "is a link, and nothing in a record is read or written through one", "remove it",
+              Error::Kind::run);
 }
 
 fs::path make_folder(const fs::path& folder) {

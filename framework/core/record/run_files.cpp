@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/run_files.hpp"
 
+#include "config/trouble.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/tap_row.hpp"
@@ -197,8 +198,11 @@ std::optional<Tree> RunFiles::manifest() const {
 
 int RunFiles::attempts() const {
   int out = 0;
-  // Asking how often is no time to fail.
-  for_lines(read_if_there(file(kAttempts)).value_or(""), [&](std::string_view line, std::size_t) {
+  // Asking how often is no time to fail, unless the file system does: who adds an attempt tells what is wrong.
+  std::string text;
+  const auto trouble = trouble_in([&] { text = read_if_there(file(kAttempts)).value_or(""); });
+  if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
+  for_lines(text, [&](std::string_view line, std::size_t) {
     if (packed_ && !begins_with(line, kAttemptLine)) return;
     const std::optional<Row> row = parse_json_row(std::string(line));
     out += row && row->find("end") != nullptr ? 0 : 1;

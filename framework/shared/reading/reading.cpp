@@ -80,7 +80,7 @@ ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes) {
     case Reading::Kind::not_regular:
       return {"is not a regular file", "put a file in its place, or remove it"};
     case Reading::Kind::link:
-      return {"is a link, or lies in a linked folder, and records are read without links", "copy what it leads to"};
+      return {"is a link, and nothing in a record is read or written through one", "remove it"};
     case Reading::Kind::too_large: {
       const std::uintmax_t mebibyte = std::uintmax_t{1} << 20;
       const std::string most = most_bytes < mebibyte ? std::to_string(most_bytes) + " bytes"
