@@ -69,8 +69,10 @@ TEST_F(List, OfAFolderWithoutRunsIsOneLine) {
 
 TEST_F(List, NamesStandForARunOrASweepInEveryCommandThatTakesOne) {
   const fs::path run = ran({"taps=12", "name=a b"});
+  const fs::path folder = run.parent_path();
   for (const char* command : {"status", "resume", "replay", "report", "export", "calibrate"}) {
-    for (const char* words : {"a b", "a b@latest", "runs/a-b", "runs"}) {
+    for (const std::string& words : {std::string("a b"), std::string("a b@latest"), folder.filename().string(),
+                                     folder.string(), std::string("runs")}) {
       const Ended ended = palpate({command, words});
       EXPECT_NE(ended.status, 2) << command << " " << words << ": " << ended.err;
     }

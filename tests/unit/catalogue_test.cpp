@@ -2,6 +2,7 @@
 // Which run or sweep is meant by a folder or a name. The folders are written by hand, and with the times that they
 // need.
 #include "record/catalogue.hpp"
+#include "record/resolved.hpp"
 
 #include "support/testing.hpp"
 
@@ -69,11 +70,12 @@ TEST_F(Records, AreFoundFromAnyFolderAboveWhileThereIsOneBelow) {
 
 TEST_F(Records, AreFoundByNameAlsoWhereAFolderCannotBeCalledSo) {
   const fs::path plain = run("first/000000000001", 1);
-  const fs::path spaced = run("my-run/000000000002", 2, "name: my run\n");
+  const fs::path spaced = run(slug("my run") + "/000000000002", 2, "name: my run\n");
   const fs::path dashed = run("my-run/000000000003", 3, "name: my-run\n");
   EXPECT_EQ(found("first"), plain);
   EXPECT_EQ(found("my run"), spaced);
-  EXPECT_THAT(refusal("my-run"), HasSubstr("my-run: stands for 2 runs: ")) << "both lie in the folder of that name";
+  EXPECT_EQ(found("my-run"), dashed);
+  EXPECT_EQ(found(slug("my run")), spaced) << "the folder's own name";
   EXPECT_THAT(refusal("my  run"), HasSubstr("nothing has that name"));
 }
 

@@ -117,11 +117,15 @@ TEST(Belief, ThatNobodyAskedForOrThatIsOldIsNotRead) {
   EXPECT_THROW(belief.weight(), std::logic_error);
   prepared.experiment.ask(Quantity::weight);
   EXPECT_NO_THROW(belief.weight());
-  prepared.journal.announcing = [&](const TapRecord&) { EXPECT_NO_THROW(belief.weight()); };
   prepared.journal.recording = [&](const TapRecord&) {
-    EXPECT_THROW(belief.weight(), std::logic_error) << "the models have not taken in the tap yet";
+    EXPECT_NO_THROW(belief.weight()) << "a tap is recorded before it is taken in";
   };
-  prepared.run();
+  std::optional<TapRecord> tap = prepared.experiment.begin(prepared.journal);
+  ASSERT_TRUE(tap);
+  EXPECT_NO_THROW(belief.weight());
+  tap->contact = contact_at(0.0);
+  prepared.experiment.end(*tap, prepared.journal);
+  EXPECT_THROW(belief.weight(), std::logic_error) << "it has taken in the tap, and nobody has inferred since";
 }
 
 TEST(Experiment, APreviewTellsWhatTheModelsExpectAndBuildsNone) {

@@ -175,7 +175,8 @@ fs::path find_record(const std::string& words, Wanted wanted, const fs::path& ru
   const std::string base = latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
   const bool is_path = is_there(base);
   if (is_path && is_record(base)) return base;
-  std::vector<fs::path> records = read_catalogue(is_path ? fs::path(base) : runs / slug(base)).records;
+  const fs::path folder = is_path ? fs::path(base) : is_there(runs / base) ? runs / base : runs / slug(base);
+  std::vector<fs::path> records = read_catalogue(folder).records;
   if (records.empty()) {
     if (is_path || base.find('/') != std::string::npos) return base;
     throw unknown(words, base, runs);
