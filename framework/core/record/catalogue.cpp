@@ -175,7 +175,9 @@ fs::path find_record(const std::string& words, Wanted wanted, const fs::path& ru
   const std::string base = latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
   const bool is_path = is_there(base);
   if (is_path && is_record(base)) return base;
-  const fs::path folder = is_path ? fs::path(base) : is_there(runs / base) ? runs / base : runs / slug(base);
+  const bool is_slug =
+      base.find('~') != std::string::npos && base.find('/') == std::string::npos && is_there(runs / base);
+  const fs::path folder = is_path ? fs::path(base) : is_slug ? runs / base : runs / slug(base);
   std::vector<fs::path> records = read_catalogue(folder).records;
   if (records.empty()) {
     if (is_path || base.find('/') != std::string::npos) return base;
