@@ -107,6 +107,16 @@ TEST(Reaction, LearnsLittleFromAContactWhoseForceRisesSlowly) {
   EXPECT_NEAR(reaction.noticing(), before, 0.02);
 }
 
+TEST(Reaction, IsFiniteAlsoWhereTheProgramWasLateAtTheNotice) {
+  Reaction reaction;
+  std::vector<Reaction::Period> periods = contact(0.015, 4000.0, 5.0, 0.1);
+  periods.erase(periods.end() - 12, periods.end() - 1);
+  reaction.learn_noticing(periods, 0.0, 5.0, 4000.0);
+  EXPECT_TRUE(reaction.measured());
+  EXPECT_GT(reaction.noticing(), 0.1);
+  EXPECT_LT(reaction.noticing(), 0.4);
+}
+
 TEST(Reaction, FollowsARobotThatNoticesLaterAtOnceAndOneThatNoticesEarlierWithinTenContacts) {
   Reaction reaction;
   EXPECT_EQ(reaction.noticing(), Reaction::kFirstNoticing) << "nothing was measured";

@@ -195,8 +195,7 @@ void Tapper::learn_sign() {
         std::string(sign_ > 0.0 ? "rises: positive" : "falls: negative"));
 }
 
-/// What the force reads beside while the arm comes down in the air at `speed` (m/s) is no contact: from now on it
-/// counts as zero then.
+/// What the force reads beside while the arm comes down in the air is no contact: from now on it counts as zero then.
 void Tapper::learn_moving(double difference) {
   const bool much = std::abs(difference) >= kMostMoving * motion_.threshold;
   moving_ = much ? 0.0 : difference;

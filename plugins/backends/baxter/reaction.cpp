@@ -83,7 +83,8 @@ double rise(const Periods& periods, double began, const Line& descent, double th
       std::find_if(periods.begin(), periods.end() - 1, [began](const auto& one) { return one.height <= began; });
   const double on_average = threshold / std::max(kLeastNoticing, noticed - first->time);
   const double rigid = stiffness * std::abs(descent.velocity);
-  return std::clamp(stiffness * fit(behind).velocity, std::min(on_average, rigid), rigid);
+  const double latest = behind.size() < 2 ? 0.0 : stiffness * fit(behind).velocity;  // few where the program was late
+  return std::clamp(latest, std::min(on_average, rigid), rigid);
 }
 
 }  // namespace
