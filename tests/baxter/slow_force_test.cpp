@@ -130,6 +130,33 @@ TEST(AForce, ThatIsRenewedSeldomAndFreezesAtAContactIsFoundBeforeTheReflex) {
   }
 }
 
+TEST(AnArm, ThatPressesOnSomethingHardIsNotTakenForOneThatStands) {
+  struct Case {
+    const char* what;
+    double speed, fine_speed, threshold, fine_threshold, filter;
+    tapping::MotionOptions::Type type;
+  };
+  using Type = tapping::MotionOptions::Type;
+  for (const Case& one : {Case{"slow", 0.002, 0.002, 5.0, 5.0, 0.0, Type::continuous},
+                          Case{"late", 0.015, 0.015, 8.0, 8.0, 0.2, Type::continuous},
+                          Case{"slow at the end", 0.015, 0.002, 5.0, 3.0, 0.0, Type::two_stage},
+                          Case{"late in steps", 0.01, 0.01, 5.0, 5.0, 0.2, Type::paper}}) {
+    BaxterOptions options = fake_options();
+    options.motion.type = one.type;
+    options.motion.speed = one.speed;
+    options.motion.fine_speed = one.fine_speed;
+    options.motion.threshold = one.threshold;
+    options.motion.fine_threshold = one.fine_threshold;
+    options.motion.timeout = 120.0;
+    Desk desk(kHard, options);
+    if (one.filter > 0.0) desk.inject(fmt::format("wrench_filter={}", one.filter));
+    for (int tap = 0; tap < 3; ++tap) {
+      const Contact contact = desk.tap();
+      EXPECT_EQ(contact.outcome, Outcome::contact) << one.what << ": " << contact.reason;
+    }
+  }
+}
+
 TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasuredFigure) {
   BaxterOptions options = fake_options();
   options.motion.threshold = 10.0;

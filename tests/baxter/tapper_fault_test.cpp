@@ -90,7 +90,7 @@ TEST_P(TroubleInATap, LeavesTheArmWithMassesAsSafe) {
 INSTANTIATE_TEST_SUITE_P(OnTheWayDown, TroubleInATap, testing::ValuesIn(palpate::test::kTroubles),
                          [](const auto& trouble) { return name_of(trouble.param); });
 
-TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedWithinTwoSeconds) {
+TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedBeforeItCanJump) {
   for (const double filter : {0.0, 0.1, 0.2}) {  // of the force, s: the later a contact is noticed the slower it is
     Bench bench(fake_options(),
                 [](test::BodyOptions& body) { body.mechanics.type = fake_baxter::MechanicsOptions::Type::springs; });
@@ -105,9 +105,9 @@ TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedWithinTwoSeconds) 
     };
     const Contact contact = bench.tap(kOnObject);
     ASSERT_GT(stood, 0.0);
-    EXPECT_THAT(contact.reason, HasSubstr("the arm does not follow")) << filter;
+    EXPECT_THAT(contact.reason, HasSubstr("the arm does not follow, it stays ")) << filter;
     EXPECT_TRUE(contact.ends_run) << filter;
-    EXPECT_LT(bench.robot.body.now() - stood, 2.0 + 0.5) << filter << ": and the joints are held for 0.5 s";
+    EXPECT_LT(bench.robot.body.now() - stood, 2.5 + 0.5) << filter << ": and the joints are held for 0.5 s";
   }
 }
 

@@ -23,11 +23,13 @@ constexpr double kPulledFor = 0.12;
 constexpr double kEvenFrom = 0.7;  ///< s after which an arm that trails by 0.35 s comes down evenly
 constexpr double kEvenTo = 1.0;    ///< s until which its force is averaged, longer if there are fewer readings than
 constexpr std::size_t kFewestEven = 10;
-constexpr std::size_t kLookedBack = 100;   ///< periods in which an arm that is sent down evenly must have come down
-constexpr double kLeastOfWay = 1.0 / 3.0;  ///< of that way; onto something rigid its force would be noticed before
-constexpr int kQuiet = 3;                  ///< readings below half the threshold, one after the other
-constexpr double kSteady = 1.5;            ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
-constexpr double kLeastMoved = 2.5;        ///< N that the zero may move, whatever the threshold: noise makes 0.4
+/// An arm that its springs hold presses with at least half of its stiffness times the way by which it stays behind; so
+/// much more than the threshold, N, must be felt of it. Less than kLeastBehind, m, may be a posture that sags more.
+constexpr double kPressed = 2.0;
+constexpr double kLeastBehind = 0.003;
+constexpr int kQuiet = 3;  ///< readings within half the threshold, one after the other: no contact has fewer above it
+constexpr double kSteady = 1.5;      ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
+constexpr double kLeastMoved = 2.5;  ///< N that the zero may move, whatever the threshold: noise makes 0.4
 
 /// The mean force along z of a descent from when the arm, which trails its set-point, comes down evenly until shortly
 /// after. Where it rises meanwhile a contact begins: that is no force of a moving arm.
@@ -55,24 +57,37 @@ class EvenDescent {
 /// The periods in which the set-point comes down evenly, those up to now and those up to the latest notice.
 struct EvenPeriods {
   std::vector<Reaction::Period> now;
+  std::vector<double> lags;  ///< m by which the tip trails its set-point in each of them
+  double least_lag = 0.0;    ///< m, of them all
   std::vector<Reaction::Period> at_notice;
   int noticed = 0;
   double begin = 0.0;  ///< s
 
   /// `even_for`: since when it comes down so, seconds; 0 if it does not.
-  void add(const Reaction::Period& period, double even_for) {
-    if (even_for < kEvenFrom) now.clear();
-    if (even_for >= kEvenFrom && period.time >= begin) now.push_back(period);
+  void add(const Reaction::Period& period, double set_point, double even_for) {
+    if (even_for < kEvenFrom) clear();
+    if (even_for < kEvenFrom || period.time < begin) return;
+    const double lag = period.height - set_point;
+    least_lag = now.empty() ? lag : std::min(least_lag, lag);
+    now.push_back(period);
+    lags.push_back(lag);
+  }
+  void clear() {
+    now.clear();
+    lags.clear();
   }
   /// Begins anew once an arm that is slowed down at `time` comes down evenly again.
   void restart(double time) {
-    now.clear();
+    clear();
     begin = time + kEvenFrom;
   }
-  /// How far it came down in the last kLookedBack of them, metres; nothing while they are fewer.
-  std::optional<double> came() const {
-    if (now.size() <= kLookedBack) return std::nullopt;
-    return now[now.size() - 1 - kLookedBack].height - now.back().height;
+  /// How much farther than at its nearest the tip trailed its set-point `ago` (s), metres; 0 while it did not come
+  /// down.
+  double behind(double ago) const {
+    for (std::size_t i = now.size(); i > 0; --i) {
+      if (now[i - 1].time <= now.back().time - ago) return lags[i - 1] - least_lag;
+    }
+    return 0.0;
   }
   void notice(int count) {
     noticed = count;
@@ -156,6 +171,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
       "ms later, messages come up to {:.0f} ms late; at most {} are expected",
       request.number, 1e3 * motion.speed, 1e-3 * stiffness, 1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(),
       1e3 * reaction_.lateness(), newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
+  lately_ = {std::abs(moving_), motion.speed};
   const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
   WayDown way{column, motion, stiffness, plan, SignedTap(motion, plan, sign_), seen_.endpoint->force, {}};
   way.command = way.at(plan.hover);
@@ -175,7 +191,7 @@ void Tapper::lead(WayDown& way) {
   const double beside = coming_down ? moving_ : 0.0;
   const double felt = seen_.endpoint->force.z() - beside;
   measure_time();
-  way.periods.add({seen_.now, height()}, way.tap.tap().even_for());
+  way.periods.add({seen_.now, height()}, way.set_point, way.tap.tap().even_for());
   const double before = std::exchange(way.set_point, way.tap.next(height(), felt, watch_.fresh()));
   if (way.tap.tap().noticed() > way.periods.noticed) way.periods.notice(way.tap.tap().noticed());
   if (!taring && !way.tap.tap().presses_no_further()) slow_down(way);
@@ -198,15 +214,16 @@ void Tapper::lead(WayDown& way) {
   expect_descent(way);
 }
 
-/// An arm that was sent down and feels nothing must come down: later it would make up for all of the way at once.
+/// An arm that falls behind and feels nothing stands for another reason than a contact. When it comes free it would
+/// jump down to its set-point.
 void Tapper::expect_descent(const WayDown& way) const {
-  const std::optional<double> came = way.periods.came();
-  const double sent = static_cast<double>(kLookedBack) * kPeriod * way.speed;
-  if (!came || *came >= kLeastOfWay * sent || way.quiet < kQuiet) return;
+  if (way.quiet < kQuiet || way.tap.tap().done()) return;
+  const double behind = way.periods.behind(reaction_.noticing() + reaction_.lateness());
+  if (behind < std::max(kLeastBehind, 2.0 * (way.motion.threshold + kPressed) / way.stiffness)) return;
   throw Fault{
-      fmt::format("the arm does not follow, it came down by {:.1f} mm where it was sent {:.1f} mm: see what blocks "
-                  "it, and whether others command it",
-                  1e3 * *came, 1e3 * sent),
+      fmt::format("the arm does not follow, it stays {:.1f} mm behind its set-point and feels nothing: see what "
+                  "blocks it, and whether others command it",
+                  1e3 * behind),
       Then::hold};
 }
 
@@ -235,7 +252,9 @@ void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_dow
   const double zero = way.tap.zero();
   const double against = sign_ == 0.0 ? std::abs(felt - zero) : sign_ * (felt - zero);
   peak_ = std::max(peak_.value_or(0.0), against);
-  way.quiet = against < 0.5 * way.motion.threshold ? way.quiet + 1 : 0;
+  const bool two_stage = way.motion.type == tapping::MotionOptions::Type::two_stage;
+  const double least = two_stage ? std::min(way.motion.threshold, way.motion.fine_threshold) : way.motion.threshold;
+  way.quiet = std::abs(felt - zero) < 0.5 * least ? way.quiet + 1 : 0;
   // Of an arm that is being stopped the force is the contact's, and noise may take that above force_stop.
   if (way.tap.tap().presses_no_further()) {
     watch_.forget_tare();
@@ -247,7 +266,7 @@ void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_dow
   if (!way.moving && way.plan.start >= way.plan.hover) {
     const auto mean = way.even.add(way.tap.tap().even_for(), seen_.endpoint->force.z());
     if (mean) way.moving = *mean - zero_.z();
-    if (mean) lately_ = {std::min(std::abs(*way.moving), way.motion.threshold), way.speed};
+    if (mean) lately_ = {std::abs(*way.moving), way.speed};
   }
   // An arm that goes up rubs the other way, which is no pull.
   way.pulled = coming_down && sign_ * (felt - zero) < -way.motion.threshold ? way.pulled + 1 : 0;
@@ -270,7 +289,10 @@ Contact Tapper::judge(const WayDown& way, const Contact& contact) {
                   "the contact may be none");
   }
   if (way.moving) learn_moving(*way.moving);
-  reaction_.learn_noticing(way.periods.at_notice, contact.height, way.motion.threshold, way.stiffness);
+  // The height of the other motions is not that of the beginning.
+  const bool at_onset = way.motion.type == tapping::MotionOptions::Type::continuous;
+  reaction_.learn_noticing(way.periods.at_notice, at_onset ? std::optional<double>(contact.height) : std::nullopt,
+                           way.motion.threshold, way.stiffness);
   shown_sign_ = way.tap.sign();
   return contact;
 }

@@ -30,7 +30,7 @@ constexpr double kGentle = 0.01;   ///< m/s: an arm of 6.4 kN/m that is held fee
 constexpr double kSpeedUp = 0.15;  ///< m/s^2, afterwards
 /// N that an arm reads less when it goes up faster, by its speed, and behind a zero that changes by 50 N/m.
 constexpr double kFaster = 2.0;
-constexpr double kMovingNoise = 0.5;     ///< N, of what an arm reads beside while it comes down
+constexpr double kMovingNoise = 0.5;     ///< N of it that may be noise: two deviations of 30 readings
 constexpr double kLatest = 0.2;          ///< of a force that is followed, the part of the latest reading
 constexpr double kToRest = 0.015;        ///< m/s, of the centimetre before a rest, where nothing should be
 constexpr double kFirstThreshold = 5.0;  ///< N, until a contact was measured
@@ -131,7 +131,9 @@ void Tapper::learn_rubbing(const Path& column) {
 /// joints rub, and what it was seen to read beside while it moves.
 double Tapper::most_pull(const Path& way, double along) const {
   if (!rubbing_) return options_.force_stop;
-  return motion_.threshold + lately_.beside + kRubs * 2 * *rubbing_ * turned(way, along);
+  const double beside =
+      std::max(std::abs(moving_), lately_.beside < kMostMoving * motion_.threshold ? lately_.beside : 0);
+  return motion_.threshold + beside + kRubs * 2 * *rubbing_ * turned(way, along);
 }
 
 /// m/s at which an arm that goes up freely reads at most kFaster less than it is known to: that grows with its speed.

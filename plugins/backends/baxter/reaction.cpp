@@ -5,19 +5,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace palpate::baxter {
 namespace {
 
 constexpr std::size_t kMotions = 5;      ///< the latest, whose worst counts
-constexpr std::size_t kContacts = 10;    ///< the latest
+constexpr std::size_t kContacts = 10;    ///< the latest: of a soft object five leave 0.1 s open
 constexpr double kFades = 30.0;          ///< s in which a lateness fades to a third
 constexpr std::size_t kFewest = 30;      ///< periods of a free descent
 constexpr double kClear = 0.001;         ///< m above that height that counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and the period in which they are looked at
-constexpr double kOnePeriod = 0.01;      ///< s, which a measured time may be too short
 constexpr double kRiseFor = 0.1;         ///< s before a notice in which the rise of the force is measured
 constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: what takes longer was no steady rise
+/// s, two standard deviations of what is assumed before a contact; and the weight of that, 1/s^2.
+constexpr double kFirst = Reaction::kFirstNoticing - kLeastNoticing;
+constexpr double kFirstWeight = 4.0 / (kFirst * kFirst);
 /// s that joints trail at least on a Baxter (measured: 0.3 to 0.4 s), and the share of a lag that they go on by after a
 /// stop: those of a critically damped joint, 1 / (2 e).
 constexpr double kLeastLag = 0.3;
@@ -71,20 +74,20 @@ Line fit(const Periods& periods) {
   return out;
 }
 
-/// How fast the force rose at the notice, N/s: by how fast the tip stayed behind its `descent`, and at least the
-/// threshold since the contact began; at most as on something rigid.
+/// How fast the force rose at the notice, N/s: by how fast the tip stayed behind its `descent`. Of an arm that shows no
+/// springs, by the threshold and the time since the contact began at the height `began`.
 double rise(const Periods& periods, double began, const Line& descent, double threshold, double stiffness) {
-  const double noticed = periods.back().time;
+  const Reaction::Period& notice = periods.back();
+  const double rigid = stiffness * std::abs(descent.velocity);
   Periods behind;
   for (const Reaction::Period& one : periods) {
-    if (one.time > noticed - kRiseFor) behind.push_back({one.time, one.height - descent.at(one.time)});
+    if (one.time > notice.time - kRiseFor) behind.push_back({one.time, one.height - descent.at(one.time)});
   }
+  const bool shows = stiffness * (notice.height - descent.at(notice.time)) > 0.5 * threshold;
+  if (shows && behind.size() > 1) return std::clamp(stiffness * fit(behind).velocity, 0.0, rigid);
   const auto first =
       std::find_if(periods.begin(), periods.end() - 1, [began](const auto& one) { return one.height <= began; });
-  const double on_average = threshold / std::max(kLeastNoticing, noticed - first->time);
-  const double rigid = stiffness * std::abs(descent.velocity);
-  const double latest = behind.size() < 2 ? 0.0 : stiffness * fit(behind).velocity;  // few where the program was late
-  return std::clamp(latest, std::min(on_average, rigid), rigid);
+  return std::min(rigid, threshold / std::max(kLeastNoticing, notice.time - first->time));
 }
 
 }  // namespace
@@ -111,11 +114,11 @@ void Reaction::learn_trailing(const std::vector<Step>& motion) {
   keep(trailing_, std::max(0.0, area / way.norm()), kMotions);
 }
 
-void Reaction::learn_noticing(const Periods& periods, double began, double threshold, double stiffness) {
+void Reaction::learn_noticing(const Periods& periods, std::optional<double> began, double threshold, double stiffness) {
   if (periods.empty()) return;
   const Period& notice = periods.back();
-  // Something soft may have been touched that far above.
-  const Periods free = last_free(periods, std::max(began, notice.height + threshold / tapping::GuardedTap::kSoftest));
+  const double softest = notice.height + threshold / tapping::GuardedTap::kSoftest;
+  const Periods free = last_free(periods, std::max(began.value_or(softest), softest));
   if (free.empty()) return;
   const Line descent = fit(free);
   double reached = notice.time;  // when the true force was at the threshold
@@ -124,25 +127,35 @@ void Reaction::learn_noticing(const Periods& periods, double began, double thres
     reached = it->time;
   }
   const double seconds = std::clamp(notice.time - reached, kLeastNoticing, kMostNoticing + kRenewals * renewal_);
-  keep(noticing_, {seconds, rise(periods, began, descent, threshold, stiffness)}, kContacts);
+  keep(noticing_, {seconds, rise(periods, began.value_or(softest), descent, threshold, stiffness)}, kContacts);
 }
+
+/// s, of a contact. A force that is renewed seldom has crossed the threshold up to one renewal ago.
+double Reaction::deviation(const Notice& one) const {
+  return std::hypot(kNoise / std::max(one.rise, 1e-3), renewal_ / std::sqrt(12.0));
+}
+
+/// 1/s^2, the inverse of the variance.
+double Reaction::weight() const {
+  return std::accumulate(noticing_.begin(), noticing_.end(), 0.0, [this](double sum, const Notice& one) {
+    return sum + 1.0 / (deviation(one) * deviation(one));
+  });
+}
+
+bool Reaction::measured() const { return weight() >= kFirstWeight; }
 
 double Reaction::noticing() const {
   const double renewals = kRenewals * renewal_;
   const double least = std::max(kLeastNoticing, renewals);
-  const double first = kFirstNoticing - kLeastNoticing;  // two standard deviations of what is assumed before a contact
-  if (!measured()) return least + first;
-  double weights = 4.0 / (first * first);
-  double sum = weights * least;
+  if (noticing_.empty()) return least + kFirst;
+  double sum = kFirstWeight * least;
   double surely = 0.0;
   for (const Notice& one : noticing_) {
-    // A force that is renewed seldom has crossed the threshold up to one renewal ago.
-    const double deviation = std::hypot(kNoise / one.rise, renewal_ / std::sqrt(12.0));
-    weights += 1.0 / (deviation * deviation);
-    sum += one.seconds / (deviation * deviation);
-    surely = std::max(surely, one.seconds - 2.0 * deviation);
+    sum += one.seconds / (deviation(one) * deviation(one));
+    surely = std::max(surely, one.seconds - 2.0 * deviation(one));
   }
-  return std::max({sum / weights + 2.0 / std::sqrt(weights), surely, renewals}) + kOnePeriod;
+  const double weights = kFirstWeight + weight();
+  return std::max({sum / weights + 2.0 / std::sqrt(weights), surely, renewals}) + tapping::GuardedTap::kPeriod;
 }
 
 double Reaction::trailing() const { return most(trailing_, kFirstTrailing); }

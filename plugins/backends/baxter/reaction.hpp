@@ -8,12 +8,10 @@
 // - noticing: from the true force being at the threshold to the set-point that stops the arm. It holds the filter of
 //   the force, the delay of its messages and the readings that make a contact. Within a contact the true force follows
 //   from positions alone, which no filter delays: k times the distance by which the tip stays behind its free descent.
-//   The force is noisy: where it rises slowly, as on something soft, a contact is noticed much too early or too late by
-//   chance and says little of how late one with something rigid would be noticed. So each contact counts by how steeply
-//   its force rose.
-// - stopping: from that set-point to standstill. It holds the delay of commands and of joints, and what the joints go
-// on
-//   by. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less what
+//   The force is noisy. Where it rises slowly, as on something soft, noise makes a notice much too early or too late.
+//   So each contact counts by how steeply its force rose.
+// - stopping: from that set-point to standstill. It holds the delay of commands and of joints, and how far the joints
+//   go on. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less what
 //   is certain to be the lag of its joints.
 // - lateness: by how much messages, or this program, may come later than they did then.
 #pragma once
@@ -21,6 +19,7 @@
 #include <Eigen/Core>
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 namespace palpate::baxter {
@@ -47,10 +46,10 @@ class Reaction {
   /// s of noticing and trailing until they were measured: those of the slowest robot that is driven and that renews its
   /// force a hundred times a second.
   static constexpr double kFirstNoticing = 0.23;
+  static constexpr double kFirstTrailing = 0.55;
   /// N, the standard deviation of the force at which a contact is noticed: noise of 1.5 N makes 0.5 to 0.9, the more
   /// the steeper the force rises.
   static constexpr double kNoise = 0.7;
-  static constexpr double kFirstTrailing = 0.55;
 
   /// Takes how late messages or this program are at `now`, seconds; the worst counts, and fades within kFades.
   void late(double seconds, double now);
@@ -70,17 +69,22 @@ class Reaction {
   /// shows nothing.
   void learn_trailing(const std::vector<Step>& motion);
 
-  /// Learns from a contact that was noticed in the last of `periods` and began at the height `began` (m). `stiffness`
-  /// in N/m, `threshold` in N. Too short a descent shows nothing.
-  void learn_noticing(const std::vector<Period>& periods, double began, double threshold, double stiffness);
+  /// Learns from a contact that was noticed in the last of `periods` and began at the height `began` (m), if that is
+  /// known. `stiffness` in N/m, `threshold` in N. Too short a descent shows nothing.
+  void learn_noticing(const std::vector<Period>& periods, std::optional<double> began, double threshold,
+                      double stiffness);
 
-  /// Whether a contact has shown how late it is noticed.
-  bool measured() const { return !noticing_.empty(); }
+  /// Whether contacts have shown as much of how late they are noticed as is assumed before: one with something hard is
+  /// enough, one with something soft is not.
+  bool measured() const;
   /// m/s, of which an arm that would have to be slower is rejected.
   double slowest() const { return measured() ? kSlowest : kSlowestFirst; }
-  /// s: the mean of the latest kContacts contacts and of what was assumed before them, each by the inverse of its
-  /// variance, and two standard deviations of that mean; at least what one of them shows beyond two of its own, since a
-  /// robot may become later, and at least kRenewals; and one period, which a measured time may be too short.
+  /// s, and one period, which a measured time may be too short. The largest of
+  /// - the mean of the latest kContacts contacts and of what is assumed before them, each by the inverse of its
+  /// variance,
+  ///   and two standard deviations of that mean;
+  /// - what one contact shows beyond two of its own deviations, since a robot may become later;
+  /// - kRenewals renewals.
   double noticing() const;
   double trailing() const;  ///< s, the longest of the latest kMotions motions
   double stopping() const;  ///< s
@@ -99,6 +103,9 @@ class Reaction {
     double seconds;
     double rise;
   };
+
+  double deviation(const Notice& one) const;
+  double weight() const;
 
   std::deque<Notice> noticing_;
   std::deque<double> trailing_;

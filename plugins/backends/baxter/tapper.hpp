@@ -126,7 +126,8 @@ class Tapper {
   double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
   double moving_ = 0.0;  ///< N along z that it reads beside while the arm comes down in the air
-  /// Of the latest descent that showed it: how much it read beside, N, and how fast it was, m/s.
+  /// Of this descent as soon as it shows it, of earlier ones before: how much it read beside, N, and how fast it was,
+  /// m/s.
   struct {
     double beside = 0.0;
     double speed = 0.0;

@@ -136,7 +136,7 @@ class Watch {
   static constexpr double kTrail = 0.8;         ///< s
   static constexpr double kZeroFollows = 0.5;   ///< s
   static constexpr double kRiseFollows = 0.25;  ///< s, of an arm that goes up
-  static constexpr double kMostDrift = 50.0;    ///< N/m, by which the zero may change on the way up
+  static constexpr double kMostDrift = 50.0;    ///< N/m by which the zero may change on the way up
   /// How much more force counts the same sideways, where the robot's estimate is at its worst, while the arm goes up or
   /// down: friction of 0.4 Nm makes 12 N of it.
   static constexpr double kSideways = 1.5;
@@ -167,7 +167,8 @@ class Watch {
   /// the sign of it when something presses the tool upwards, and the pull (N) from which it stops the arm. The joints
   /// rub the other way than when the zero was felt, which reads as a pull of up to 13 N at 0.4 Nm; so where the arm has
   /// begun to go up freely the zero is felt anew, and `follows` as in Zero, but by no more than a pose can change it:
-  /// kMostDrift times the way up. A force that changes faster is that of a spring.
+  /// kMostDrift times the way up, which is less than what is allowed on the way down: the limit has room for the rest.
+  /// A force that changes faster is that of a spring.
   struct Rise {
     double zero;
     double sign;
