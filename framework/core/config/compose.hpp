@@ -54,8 +54,7 @@ class Composer {
   /// A group chosen by an override takes the place of the group chosen before at that path; what the file itself says
   /// there stays, as far as the new type has that option (see resolve()). A map given for a group is laid over it; any
   /// other value takes the place of what was there. `file` is taken as found() has it. Throws Error for missing files,
-  /// unknown groups, cycles and
-  /// groups that build on each other more than 16 deep.
+  /// unknown groups, cycles and groups that build on each other more than 16 deep.
   Tree compose(const std::filesystem::path& file, const std::vector<Override>& overrides);
 
   /// `file`, or where there is none of a relative name configs/..., the program's own of that name: what a checkout has

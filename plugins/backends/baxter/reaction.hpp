@@ -11,8 +11,8 @@
 //   The force is noisy. Where it rises slowly, as on something soft, noise makes a notice much too early or too late.
 //   So each contact counts by how steeply its force rose.
 // - stopping: from that set-point to standstill. It holds the delay of commands and of joints, and how far the joints
-//   go on. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less what
-//   is certain to be the lag of its joints.
+//   go on. All of them make the arm trail its set-point, so it is bounded by the time by which the arm trails, less
+//   what is certain to be the lag of its joints.
 // - lateness: by how much messages, or this program, may come later than they did then.
 #pragma once
 
