@@ -52,10 +52,8 @@ killed() {
   "$program" run $paper --runs "$work/killed" --quiet
   run=$(echo "$work"/killed/*/*)
   rm "$run/summary.json"
-  for rows in taps.csv:11 taps.jsonl:10; do
-    head -n "${rows#*:}" "$run/${rows%:*}" >"$work/rows"
-    cp "$work/rows" "$run/${rows%:*}"
-  done
+  sed '/^{"tap": 11,/,$d' "$run/record.jsonl" >"$work/lines"
+  cp "$work/lines" "$run/record.jsonl"
   echo "$run"
 }
 

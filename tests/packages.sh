@@ -44,7 +44,7 @@ palpate --version
 palpate run configs/default.yaml >printed
 diff $share/capture printed
 palpate run configs/paper/object_i.yaml --quiet
-grep -q 'EIGEN_MAX_ALIGN_BYTES=16;' runs/object_i/*/manifest.json # no instructions but those of every amd64
+grep -q 'EIGEN_MAX_ALIGN_BYTES=16;' runs/object_i/*/record.jsonl # no instructions but those of every amd64
 END
 cat >"$share/plugin" <<END
 set -eux

@@ -157,7 +157,7 @@ int explain(Program& program, const std::string& directory, int tap);
 
 int calibrate(Program& program, const std::vector<std::string>& directories);
 
-/// `to`: a folder; "" for export/ of the run.
-int export_run(Program& program, const std::string& directory, const std::string& to);
+/// `format`: "ply" or "csv"; `to`: a folder; "" for export/ of the run.
+int export_run(Program& program, const std::string& directory, const std::string& format, const std::string& to);
 
 }  // namespace palpate::cli

@@ -147,9 +147,10 @@ enum class Records { runs, sweeps, both };
 /// What lies in a folder, if it is asked for: a word on it; "" if it is none.
 std::string record_at(const fs::path& folder, Records asked) {
   std::error_code none;
+  bool ended = false;
   if (is_sweep(folder.string())) return asked == Records::runs ? "" : "a sweep";
   if (asked == Records::sweeps || !fs::exists(folder / "config.yaml", none)) return "";
-  return fs::exists(folder / "summary.json", none) ? "a run, ended" : "a run, not ended";
+  return trouble_in([&] { ended = read_ending(folder).end.has_value(); }), ended ? "a run, ended" : "a run, not ended";
 }
 
 /// Runs and sweeps below runs/, where they are made; where none is meant, folder by folder.

@@ -38,7 +38,9 @@ int compare(Program& program, const CompareArguments&) { return hand_over(progra
 int report(Program& program, const ReportArguments&) { return hand_over(program); }
 int explain(Program& program, const std::string&, int) { return hand_over(program); }
 int calibrate(Program& program, const std::vector<std::string>&) { return hand_over(program); }
-int export_run(Program& program, const std::string&, const std::string&) { return hand_over(program); }
+int export_run(Program& program, const std::string&, const std::string&, const std::string&) {
+  return hand_over(program);
+}
 int resume_sweep(Program& program, const ResumeArguments&) { return hand_over(program); }
 int status_of_sweep(Program& program, const std::string&) { return hand_over(program); }
 std::size_t jobs_of_sweep(Program& program, const std::string&) { return hand_over(program); }

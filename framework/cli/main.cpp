@@ -58,6 +58,7 @@ struct CommandLine {
   ListArguments list;
   std::string directory;  ///< of a command that has no arguments of its own
   std::string to;
+  std::string format = "ply";
   std::vector<std::string> configs;
   std::vector<std::string> runs;
   std::string plugin;
@@ -364,19 +365,17 @@ void add_about_one(CommandLine& line) {
   show(sub, {"palpate calibrate runs/bare_desk/*", "palpate calibrate runs/bare_desk/* runs/block/*"});
 
   sub = line.add("export", "Write the surface and the taps of a run for other programs", all_about(line.directory),
-                 export_run, line.directory, line.to);
+                 export_run, line.directory, line.format, line.to);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
-  sub->add_option("--format", "ply, which is the only one, for programs that show meshes")
+  sub->add_option("--format", line.format,
+                  "ply, for programs that show meshes; or csv, the parts of the record as tables: taps, timings, "
+                  "objects, attempts")
       ->type_name("NAME")
-      ->check(CLI::Validator(
-          [](const std::string& format) -> std::string {
-            if (format == "ply") return {};
-            return format == "csv" ? "the tables are surface.csv (log.surface=true) and taps.csv of the run itself"
-                                   : fmt::format("{} is not known, write ply", format);
-          },
-          "{ply}"));
+      ->check(CLI::IsMember({"ply", "csv"}))
+      ->capture_default_str();
   sub->add_option("--to", line.to, "the folder to write into; if not given, export/ of the run")->type_name("FOLDER");
-  show(sub, {"palpate export runs/first/*", "palpate export runs/first/* --to surfaces"});
+  show(sub, {"palpate export runs/first/*", "palpate export runs/first/* --to surfaces",
+             "palpate export runs/first/* --format csv"});
 }
 
 /// All commands, or of those that scripts give by the thousand only the one that is named.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "record/run_directory.hpp"
 
@@ -19,6 +20,10 @@ int status(Program& program, const std::string& directory) {
   const std::string reason = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
   print_out("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"),
             reason);
+  if (status.cut) {
+    mention((std::filesystem::path(directory) / kRecordFile).string() +
+            ": was cut, as summary.json says that the run had ended; 'palpate resume' makes what is missing again\n");
+  }
   return kDone;
 }
 

@@ -180,7 +180,7 @@ void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
     if (!config) continue;
     campaign.one_at_a_time = campaign.one_at_a_time || campaign.program.host.one_at_a_time(config->notes.plugins);
     std::optional<Error> objection;
-    trouble_in([&] { objection = objection_to_build(campaign.program, *config, directory); });
+    trouble_in([&] { objection = objection_to_build(campaign.program, *config, read_run_record(directory)); });
     if (objection && !campaign.options.force) throw *objection;
   }
 }

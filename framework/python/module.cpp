@@ -130,6 +130,7 @@ PYBIND11_MODULE(_palpate, module) {
       .def("id", &Record::id)
       .def("taps", &Record::taps)
       .def("manifest", &Record::manifest)
+      .def("summary", &Record::summary)
       .def("size", &Record::size)
       .def("after",
            [](Record& self, int taps) {

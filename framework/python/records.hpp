@@ -7,7 +7,6 @@
 #include "record/json.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
-#include "record/run_files.hpp"
 #include "shop.hpp"
 #include "sweep/sweep.hpp"
 #include "threads.hpp"
@@ -56,8 +55,13 @@ class Record {
   int size() const { return static_cast<int>(recording_.rows.size()); }
   /// None where there is none.
   py::object manifest() const {
-    const std::optional<Tree> manifest = RunFiles(recording_.directory).manifest();
+    const std::optional<Tree>& manifest = recording_.manifest;
     return manifest ? py::module_::import("json").attr("loads")(to_json(*manifest)) : py::none();
+  }
+  /// As it stands now; None of a run that has not ended.
+  py::object summary() const {
+    const std::optional<Row> summary = read_summary(recording_.directory);
+    return summary ? py::module_::import("json").attr("loads")(to_json_line(*summary)) : py::none();
   }
   bool is_here() const { return owned_.is_here(); }
 

@@ -134,7 +134,7 @@ TEST(DefaultOnTheArm, IsSimulatedByWhatCalibrateMakesOfFortyOfItsTaps) {
   if (palpate::test::kSanitized) GTEST_SKIP() << "many descents, too slow under sanitizers: release makes them";
   const auto of_block = words(3, 40, {"scene=block", "acquisition=random", "scene.effects=" + kEffects + "}"});
   auto arm = on_the_arm(of_block);
-  Recording recording{"the arm", arm.config, {}, {}, {}};
+  Recording recording{"the arm", arm.config, {}, {}, {}, {}, {}};
   for (const TapRecord& tap : arm.taps) {
     recording.rows.push_back(tap_row(tap));
     recording.taps.push_back(tap);

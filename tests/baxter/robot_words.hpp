@@ -3,6 +3,7 @@
 #pragma once
 
 #include "record/json.hpp"
+#include "support/parts.hpp"
 #include "support/support.hpp"
 
 #include <string>
@@ -28,14 +29,8 @@ inline std::vector<std::string> run_words(int taps, const std::vector<std::strin
   return out;
 }
 
-/// The results among the lines of a run's log, without the announcements.
-inline std::vector<Row> results(const std::filesystem::path& run) {
-  std::vector<Row> out;
-  for (const Row& row : read_json_lines(run / "taps.jsonl").rows) {
-    if (row.find("intent") == nullptr) out.push_back(row);
-  }
-  return out;
-}
+/// The taps of a run that have a result.
+inline std::vector<Row> results(const std::filesystem::path& run) { return rows_of(run, "tap"); }
 
 /// One field of them as text, "" for null.
 inline std::string field(const Row& row, const char* name) {

@@ -3,6 +3,7 @@
 // killed, interrupted, or somebody has to see to the robot.
 #include "robot_lab.hpp"
 #include "robot_words.hpp"
+#include "support/parts.hpp"
 #include "support/programs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/terminal.hpp"
@@ -56,10 +57,10 @@ fs::path found(const fs::path& runs, const char* name) {
   return {};
 }
 
-/// The lines in the log of the only run, so far.
+/// The announcements and taps of the only run, so far.
 long lines(const RobotLab& lab) {
-  const fs::path log = found(lab.folder() / "runs", "taps.jsonl");
-  const std::string text = log.empty() ? "" : text_of(log);
+  const fs::path log = found(lab.folder() / "runs", "record.jsonl");
+  const std::string text = log.empty() ? "" : test::lasting_part_of(log.parent_path());
   return std::count(text.begin(), text.end(), '\n');
 }
 
@@ -260,7 +261,7 @@ TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
   EXPECT_THAT(terminal.screen(), HasSubstr("stop at 5.0 N above the tare: a contact\r\n      press with at most "));
   EXPECT_THAT(terminal.screen(), HasSubstr("\r\n      stop on the way down when the force changes by 14.0 N upwards"));
   EXPECT_EQ(commanded(lab), 0);
-  EXPECT_EQ(text_of(run_of(lab) / "taps.jsonl"), "") << "no tap is announced";
+  EXPECT_EQ(test::lasting_part_of(run_of(lab)), "") << "no tap is announced";
   terminal.type("\n");
   ASSERT_TRUE(terminal.shows("Enter taps, q ends: ", 2)) << terminal.screen();
   const int moves = commanded(lab);

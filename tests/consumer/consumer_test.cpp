@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The outside project in this folder, built against the installed program: what the tutorial of plugins/README.md
 // promises to plugin authors.
+#include "support/parts.hpp"
 #include "support/sanitizers.hpp"
 #include "support/support.hpp"
 
@@ -90,7 +91,7 @@ TEST_F(Consumer, ProgramTellsVersionCommitAndBuildAndRunsItsOwnConfigsAnywhere) 
   ASSERT_FALSE(fs::exists(here() / "configs"));
   const Ended ended = installed({"run", "configs/paper/object_i.yaml", "taps=4", "--quiet"});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(text_of(only_run(here() / "runs") / "manifest.json"),
+  EXPECT_THAT(part_of(only_run(here() / "runs"), "manifest"),
               HasSubstr("\"build_without_plugins\": \"" + build + "\""));
   EXPECT_EQ(installed({"sweep", "configs/paper/object_i.yaml", "seed=1,2", "taps=4", "--quiet"}).status, 0);
   const Ended mesh = installed({"run", "configs/paper/object_i.yaml", "scene=cup", "taps=4", "name=cup", "--quiet"});

@@ -272,9 +272,9 @@ def lost_taps(bench):
     made = bench.noted_taps()
     if len(set(made)) != len(made):
         return f"made {made}"
-    with open(os.path.join(bench.directory(), "taps.jsonl")) as lines:
+    with open(os.path.join(bench.directory(), "record.jsonl")) as lines:
         rows = [json.loads(line) for line in lines]
-    taps = [row for row in rows if not row.get("intent")]
+    taps = [row for row in rows if "tap" in row]
     if [row["tap"] for row in taps] != list(range(1, TAPS + 1)):
         return f"recorded {[row['tap'] for row in taps]}"
     told = [row["tap"] for row in taps if row["outcome"] != "unknown"]

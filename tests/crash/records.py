@@ -6,8 +6,10 @@ import json
 import os
 import shutil
 
-CLOCKS = {"wall_seconds", "compute_seconds", "compute", "peak_rss_bytes", "seconds", "command_line", "resumed",
-          "origins", "of_summary"}
+CLOCKS = {"wall_seconds", "compute_seconds", "compute", "peak_rss_bytes", "at", "command_line", "origins", "of_summary",
+          "attempt", "robot", "fit", "infer", "acquire", "log"}
+# Of a record that was broken off and carried on there may be more, or fewer, of these.
+ATTEMPTS = {"attempt", "setup", "timing", "note"}
 
 
 def without_clocks(value):
@@ -21,16 +23,16 @@ def lasting(path):
     name = os.path.basename(path)
     with open(path, "rb") as file:
         text = file.read().decode(errors="replace")
-    if name == "record.jsonl" or name == "taps.jsonl" or name == "attempts.jsonl":
+    if name == "record.jsonl":
         # The last line may be a half one: readers pass over it.
         rows = [json.loads(line) for line in text.split("\n")[:-1]]
-        rows = [without_clocks(row) for row in rows if "attempt" not in row]
-        last = {row.get("object", "manifest"): row for row in rows if "manifest" in row or "object" in row}
-        return str(list(last.values()) + [row for row in rows if "manifest" not in row and "object" not in row])
+        rows = [row for row in rows if next(iter(row)) not in ATTEMPTS]
+        # Only the last end and the last objects hold.
+        rows = [row for i, row in enumerate(rows)
+                if next(iter(row)) not in ("end", "objects") or all(next(iter(row)) not in other for other in rows[i + 1:])]
+        return str([without_clocks(row) for row in rows])
     if name.endswith(".json"):
         return str(without_clocks(json.loads(text)))
-    if name == "timings.csv":
-        return [line.split(",")[0] for line in text.split("\n")]
     if name.endswith(".csv"):
         rows = list(csv.reader(io.StringIO(text)))
         if text and not text.endswith("\n") or any(len(row) != len(rows[0]) for row in rows):
@@ -65,7 +67,7 @@ def halves(folder, whole):
     out = []
     for path, kept in found.items():
         name = os.path.basename(path)
-        if name.endswith((".tmp", ".jsonl", "timings.csv", "lock")) and name != "manifest.jsonl":
+        if name.endswith((".tmp", ".jsonl", "lock")) and name != "manifest.jsonl":
             continue  # on its way, or growing
         wrong = isinstance(kept, str) and kept.startswith("half: ")
         if name in ("config.yaml", "surface.csv", "manifest.jsonl"):
@@ -74,7 +76,7 @@ def halves(folder, whole):
             run = os.path.dirname(path)
             wrong = kept != whole.get(path) or any(
                 found.get(other) != whole[other] for other in whole
-                if os.path.dirname(other) == run and os.path.basename(other) in ("taps.jsonl", "taps.csv", "surface.csv"))
+                if os.path.dirname(other) == run and os.path.basename(other) in ("record.jsonl", "taps.csv", "surface.csv"))
         if wrong:
             out.append(name)
     return out

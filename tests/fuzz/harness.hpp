@@ -19,8 +19,8 @@ struct Door {
 void config(const std::string& bytes);
 /// A word behind `palpate run` and `palpate sweep`, and a condition as in `where`.
 void words(const std::string& bytes);
-/// Files of a run: taps.jsonl, summary.json, manifest.json, timings.csv (the first byte says which) in a run whose
-/// other files are sound, read as status, replay and report read them.
+/// record.jsonl or config.yaml of a run (the first byte says which) whose other file is sound, read as status, replay
+/// and report read them.
 void record(const std::string& bytes);
 /// manifest.jsonl and config.yaml of a sweep.
 void plan(const std::string& bytes);

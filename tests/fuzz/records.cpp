@@ -89,11 +89,11 @@ std::pair<std::string, std::string> divided(const std::string& bytes, const std:
 
 void record(const std::string& bytes) {
   static const fs::path run = sound_run();
-  static const std::array<const char*, 4> files{"taps.jsonl", "summary.json", "manifest.json", "timings.csv"};
+  static const std::array<const char*, 2> files{"record.jsonl", "config.yaml"};
   const auto [name, content] = divided(bytes, files);
   const Changed changed(run / name, content);
   attempt([&] { read_status(run); });
-  attempt([&] { objection_to_build(workshop(), load_run(host(), run), run); });
+  attempt([&] { objection_to_build(workshop(), load_run(host(), run), read_run_record(run)); });
   attempt([&] { replay_run(workshop(), run); });
 }
 

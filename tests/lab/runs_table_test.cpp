@@ -2,6 +2,7 @@
 // What `palpate list` shows of a run: folders written by hand, of which every cell is known.
 #include "analysis/runs_table.hpp"
 
+#include "support/parts.hpp"
 #include "support/testing.hpp"
 
 #include <cstdlib>
@@ -31,8 +32,13 @@ class RunsTable : public InFolder {
                                                  "acquisition: {type: mixture}\n"
                                                  "scene: {objects: [{type: wave}, {type: box}, {type: wave}]}\n");
     begin(config, hours);
-    if (!summary.empty()) folder_.write(name + "/summary.json", summary);
+    if (!summary.empty()) folder_.write(name + "/record.jsonl", ended(summary));
     return config.parent_path();
+  }
+  /// A record that ends so; "{" is no end.
+  static std::string ended(const std::string& summary, const std::string& manifest = R"({"manifest": 1})") {
+    const std::string how = summary.find("failed") == std::string::npos ? "done" : "failed";
+    return manifest + "\n{\"end\": \"" + how + "\", \"summary\": " + summary + "}\n";
   }
   static void begin(const fs::path& config, int hours) {
     constexpr std::time_t kFirstOfMarch = 1772323200;
@@ -53,9 +59,9 @@ class RunsTable : public InFolder {
 
 TEST_F(RunsTable, IsThisLetterByLetter) {
   const fs::path killed = run("killed", 26);
-  folder_.write("killed/taps.jsonl",
-                "{\"tap\": 1, \"outcome\": \"contact\"}\n{\"tap\": 2, \"outcome\": \"contact\"}\n{");
-  folder_.write("failed/summary.json", R"({"status": "failed", "taps": 3, "rmse_m": null})");
+  folder_.write("killed/record.jsonl",
+                begun_record() + "{\"tap\": 1, \"outcome\": \"contact\"}\n{\"tap\": 2, \"outcome\": \"contact\"}\n{");
+  folder_.write("failed/record.jsonl", ended(R"({"status": "failed", "taps": 3, "rmse_m": null})"));
   const std::vector<Row> rows{list_record(done("first", 1, "0.0123")).row, list_record(killed).row,
                               list_record(run("failed", 27)).row};
   const std::string in = folder_.path().string() + "/";
@@ -75,11 +81,14 @@ TEST_F(RunsTable, IsThisLetterByLetter) {
 
 TEST_F(RunsTable, CallsStrategyAndSceneAsTheGroupsAreThatTheConfigNamed) {
   const fs::path one = done("first", 1, "0.01");
-  folder_.write("first/manifest.json", R"({"origins": {"acquisition.type": "configs/acquisition/fill.yaml:3:9",
-                                           "scene.area.width": "default", "scene.desk": "a b/scene/ring.yaml:1:1"}})");
+  const std::string summary = R"({"status": "done", "taps": 30})";
+  folder_.write(
+      "first/record.jsonl",
+      ended(summary, R"({"manifest": 1, "origins": {"acquisition.type": "configs/acquisition/fill.yaml:3:9", )"
+                     R"("scene.area.width": "default", "scene.desk": "a b/scene/ring.yaml:1:1"}})"));
   EXPECT_EQ(list_record(one).row.text("strategy"), "fill");
   EXPECT_EQ(list_record(one).row.text("scene"), "ring");
-  folder_.write("first/manifest.json", "{");
+  folder_.write("first/record.jsonl", ended(summary, "{"));
   EXPECT_EQ(list_record(one).row.text("strategy"), "mixture") << "a damaged manifest costs no more than these names";
 }
 
@@ -99,12 +108,12 @@ TEST_F(RunsTable, ConditionsNameColumnsFieldsOfTheSummaryAndKeysOfTheConfigWithT
 
 TEST_F(RunsTable, OfADamagedRunIsAnError) {
   EXPECT_THAT(error_of([&] { list_record(run("first", 1, "{")); }),
-              StartsWith((folder_.path() / "first/summary.json: is not a JSON object").string()));
-  folder_.write("second/summary.json", "{}");
+              StartsWith((folder_.path() / "first/record.jsonl: its last line is not a JSON object").string()));
+  folder_.write("second/record.jsonl", ended("{}"));
   EXPECT_THAT(error_of([&] { list_record(folder_.path() / "second"); }), HasSubstr("is not a run directory"));
   run("third", 3);
-  folder_.write("third/taps.jsonl", "what\n");
-  EXPECT_THAT(error_of([&] { list_record(folder_.path() / "third"); }), HasSubstr("taps.jsonl:1"));
+  folder_.write("third/record.jsonl", "what\n");
+  EXPECT_THAT(error_of([&] { list_record(folder_.path() / "third"); }), HasSubstr("record.jsonl:1"));
 }
 
 }  // namespace

@@ -247,8 +247,9 @@ TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
   one.submit({0, 1, 2, 3, 4, 5, 6, 7, 8});
   EXPECT_EQ(heard_[0].tasks, 3);
   EXPECT_EQ(heard_[0].jobs, 9);
-  folder_.write("runs/name/id/jobs/job1/summary.json", "{}");
-  folder_.write("runs/name/id/jobs/job4/summary.json", "{}");
+  const std::string ended = "{\"manifest\": 1}\n{\"end\": \"failed\"}\n";
+  folder_.write("runs/name/id/jobs/job1/record.jsonl", ended);
+  folder_.write("runs/name/id/jobs/job4/record.jsonl", ended);
   // Task 2 is gone; 1 waits, and what it will find is not looked at; somebody else's task has the same index.
   folder_.write("queue", "100|0|R\n100|1|PD\n55|2|R\n");
   Launcher::State state;

@@ -3,6 +3,7 @@
 // between, and a server that is left alone.
 #include "record/session.hpp"
 #include "report/history.hpp"
+#include "support/parts.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 #include "watch/growing_log.hpp"
@@ -24,6 +25,8 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
+const std::string kBegun = test::begun_record();
+
 class AGrowingLog : public ::testing::Test {
  protected:
   void append(const std::string& text) const {
@@ -33,19 +36,21 @@ class AGrowingLog : public ::testing::Test {
   std::vector<int> read() {
     anew_ = false;
     std::vector<int> out;
-    for (const Row& row : log_.read(anew_)) out.push_back(static_cast<int>(row.number("tap").value()));
+    for (const RecordLine& line : log_.read(anew_)) {
+      if (line.kind == LineKind::tap) out.push_back(static_cast<int>(line.row.number("tap").value()));
+    }
     return out;
   }
 
   const test::TemporaryFolder folder_;
-  const fs::path file_ = folder_.path() / "taps.jsonl";
+  const fs::path file_ = folder_.path() / "record.jsonl";
   GrowingLog log_{file_};
   bool anew_ = false;
 };
 
 TEST_F(AGrowingLog, HasEachTapOnceWhenItsLineIsWhole) {
   EXPECT_THAT(read(), IsEmpty()) << "before there is a file";
-  append("{\"tap\": 1}\n{\"tap\": 2}\n{\"ta");
+  append(kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n{\"ta");
   EXPECT_THAT(read(), ElementsAre(1, 2));
   EXPECT_FALSE(anew_);
   append("p\": 3}");
@@ -56,22 +61,24 @@ TEST_F(AGrowingLog, HasEachTapOnceWhenItsLineIsWhole) {
   EXPECT_FALSE(anew_);
 }
 
-TEST_F(AGrowingLog, OfAJobHasItsTapsAndNothingElseOfItsRecord) {
-  append("{\"attempt\": 1, \"pid\": 7}\n{\"manifest\": {\"models\": [1]}}\n{\"tap\": 1, \"intent\": true}\n");
-  EXPECT_THAT(read(), IsEmpty());
-  append("{\"tap\": 1, \"seconds\": {\"robot\": 0.5}, \"x\": 0.1}\n{\"object\": 0}\n");
-  const std::vector<Row> rows = log_.read(anew_);
-  ASSERT_EQ(rows.size(), 1U);
-  EXPECT_EQ(to_json_line(rows[0]), "{\"tap\": 1, \"x\": 0.1}") << "as a run of its own has it";
-  append("{\"attempt\": 1, \"end\": \"done\"}\n");
+TEST_F(AGrowingLog, HasEveryLineWithItsKind) {
+  append(test::begun_record(true) + "{\"intent\": 1}\n");
+  std::vector<LineKind> kinds;
+  for (const RecordLine& line : log_.read(anew_)) kinds.push_back(line.kind);
+  EXPECT_THAT(kinds, ElementsAre(LineKind::manifest, LineKind::attempt, LineKind::setup, LineKind::intent));
+  append("{\"tap\": 1, \"x\": 0.1}\n{\"objects\": []}\n");
+  const std::vector<RecordLine> lines = log_.read(anew_);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(to_json_line(lines[0].row), "{\"tap\": 1, \"x\": 0.1}");
+  append("{\"end\": \"interrupted\"}\n");
   EXPECT_THAT(read(), IsEmpty());
   EXPECT_FALSE(anew_);
 }
 
 TEST_F(AGrowingLog, LosesNothingWhenHalfALineIsCutOffAndMadeAnew) {
-  append("{\"tap\": 1}\n{\"tap\": 2, \"x\": 0.1");
+  append(kBegun + "{\"tap\": 1}\n{\"tap\": 2, \"x\": 0.1");
   EXPECT_THAT(read(), ElementsAre(1));
-  fs::resize_file(file_, 11);
+  fs::resize_file(file_, kBegun.size() + 11);
   EXPECT_THAT(read(), IsEmpty());
   append("{\"tap\": 2}\n");
   EXPECT_THAT(read(), ElementsAre(2));
@@ -79,12 +86,12 @@ TEST_F(AGrowingLog, LosesNothingWhenHalfALineIsCutOffAndMadeAnew) {
 }
 
 TEST_F(AGrowingLog, BeginsAnewWhereItIsAnotherOne) {
-  append("{\"tap\": 1}\n{\"tap\": 2}\n");
+  append(kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");
   EXPECT_THAT(read(), ElementsAre(1, 2));
-  folder_.write("taps.jsonl", "{\"tap\": 1, \"x\": 7}\n{\"tap\": 2}\n{\"tap\": 3}\n");  // in the same file
+  folder_.write("record.jsonl", kBegun + "{\"tap\": 1, \"x\": 7}\n{\"tap\": 2}\n{\"tap\": 3}\n");  // in the same file
   EXPECT_THAT(read(), ElementsAre(1, 2, 3));
   EXPECT_TRUE(anew_);
-  folder_.write("taps.jsonl", "{\"tap\": 1, \"x\": 7}\n");  // shorter
+  folder_.write("record.jsonl", kBegun + "{\"tap\": 1, \"x\": 7}\n");  // shorter
   EXPECT_THAT(read(), ElementsAre(1));
   EXPECT_TRUE(anew_);
   fs::remove(file_);
@@ -93,26 +100,26 @@ TEST_F(AGrowingLog, BeginsAnewWhereItIsAnotherOne) {
 }
 
 TEST_F(AGrowingLog, GoesOnWhereACopyWithMoreTakesItsPlace) {
-  append("{\"tap\": 1}\n");
+  append(kBegun + "{\"tap\": 1}\n");
   EXPECT_THAT(read(), ElementsAre(1));
-  folder_.write("copy", "{\"tap\": 1}\n{\"tap\": 2}\n");  // as rsync brings it
+  folder_.write("copy", kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");  // as rsync brings it
   fs::rename(folder_.path() / "copy", file_);
   EXPECT_THAT(read(), ElementsAre(2));
   EXPECT_FALSE(anew_);
 }
 
 TEST_F(AGrowingLog, SaysWhereTapsDoNotCountUpAcrossItsReads) {
-  append("{\"tap\": 1}\n{\"tap\": 2}\n");
+  append(kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");
   EXPECT_THAT(read(), ElementsAre(1, 2));
   append("{\"tap\": 4}\n");
   EXPECT_THAT(test::error_of([&] { read(); }),
-              testing::HasSubstr("taps.jsonl:3: has tap 4 where tap 3 belongs: a line is missing"));
+              testing::HasSubstr("record.jsonl:6: has tap 4 where tap 3 belongs: a line is missing"));
 }
 
 TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceThatIsPutRight) {
-  append("{\"tap\": 1}\nnonsense\n");
+  append(kBegun + "{\"tap\": 1}\nnonsense\n");
   EXPECT_THROW(read(), Error);
-  folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n");
+  folder_.write("record.jsonl", kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");
   EXPECT_THAT(read(), ElementsAre(1, 2));
   log_.forget();
   EXPECT_THAT(read(), ElementsAre(1, 2));
@@ -133,11 +140,11 @@ class Watching : public ::testing::Test {
 
 TEST_F(Watching, AHistoryThatGrowsIsAtEachTapThatOfARunThatEndsThere) {
   const Recording whole = read_recording(workshop_, made("paper/object_i.yaml", {"taps=9"}));
-  Recording growing{whole.directory, whole.config, {whole.rows.front()}, {whole.taps.front()}, {}};
+  Recording growing{whole.directory, whole.config, {whole.rows.front()}, {whole.taps.front()}, {}, {}, {}};
   HistoryGrower grower(workshop_, growing);
   grower.advance();
   for (std::size_t taps = 1;; ++taps) {
-    Recording until{whole.directory, whole.config, {}, {}, {}};
+    Recording until{whole.directory, whole.config, {}, {}, {}, {}, {}};
     until.rows.assign(whole.rows.begin(), whole.rows.begin() + static_cast<std::ptrdiff_t>(taps));
     until.taps.assign(whole.taps.begin(), whole.taps.begin() + static_cast<std::ptrdiff_t>(taps));
     const History expected = make_history(workshop_, until, [](int, int) {});

@@ -26,6 +26,12 @@ def cells(file):
         return list(csv.DictReader(text))
 
 
+def lines_of(directory):
+    """The taps of a run, and what is known of its objects: the lines of its record that do not depend on clocks."""
+    lines = (pathlib.Path(directory) / "record.jsonl").read_text(encoding="utf-8").splitlines()
+    return [line for line in lines if line.startswith(('{"tap"', '{"objects"'))]
+
+
 class InFolder(unittest.TestCase):
     """A test with a folder of its own for its runs."""
 

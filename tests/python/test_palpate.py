@@ -17,17 +17,19 @@ import unittest
 import numpy as np
 import palpate
 
-from support import CONFIGS, DEFAULT, InFolder, cells, program
+from support import CONFIGS, DEFAULT, InFolder, cells, lines_of, program
 
 
 class Module(InFolder):
     def test_a_run_from_python_leaves_the_bytes_that_the_program_leaves(self):
         by_python = palpate.run(DEFAULT, "taps=12", seed=3, runs=self.folder / "a")
         program("run", DEFAULT, "taps=12", "seed=3", "--quiet", "--runs", self.folder / "b")
-        for name in ("taps.csv", "taps.jsonl", "surface.csv", "objects.csv", "config.yaml"):
+        for name in ("taps.csv", "surface.csv", "config.yaml"):
             one = pathlib.Path(by_python.directory) / name
             other = next((self.folder / "b").glob("*/*/" + name))
             self.assertEqual(one.read_bytes(), other.read_bytes(), name)
+        record = next((self.folder / "b").glob("*/*"))
+        self.assertEqual(lines_of(by_python.directory), lines_of(record))
         self.assertIn("12 taps", program("replay", by_python.directory))
         self.assertIn("already done", program("resume", by_python.directory), "it is a run of the same build")
 
@@ -113,7 +115,7 @@ class Module(InFolder):
                                 with self.assertRaises(ValueError):
                                     values[0, 0] = 1.0
                         experiment.tell(0.04 if math.hypot(tap.x - 0.115, tap.y - 0.115) < 0.05 else 0.0, 8.0, 2.0)
-                records.append((pathlib.Path(experiment.directory) / "taps.jsonl").read_bytes())
+                records.append(lines_of(experiment.directory))
             self.assertEqual(records[0], records[1], config)
 
     def test_scores_of_the_caller_choose_and_the_record_can_be_played_again(self):
@@ -166,7 +168,7 @@ class Module(InFolder):
     def test_what_no_arm_can_have_measured_is_a_value_error_and_the_tap_is_still_to_be_told(self):
         experiment = self.begun("taps=3")
         tap = experiment.ask()
-        record = pathlib.Path(experiment.directory) / "taps.jsonl"
+        record = pathlib.Path(experiment.directory) / "record.jsonl"
         asked = record.read_bytes()
         wrong = [({"height": height}, "is outside -0.04 to 0.135 m", "millimetres")
                  for height in (40.0, 1e300, -1e300, -3.0, -0.0401, 0.1351, math.inf, math.nan)]
@@ -233,7 +235,7 @@ class Module(InFolder):
                     experiment = palpate.Experiment.resume(experiment.directory)
             experiment.finish()
             experiment.close()
-            return (pathlib.Path(experiment.directory) / "taps.jsonl").read_bytes()
+            return lines_of(experiment.directory)
         self.assertEqual(taps("broken", broken_off=3), taps("whole", broken_off=None))
 
     def test_who_ends_a_run_carries_it_on_only_when_told_to(self):

@@ -23,8 +23,8 @@ MAPS = ("uncertainty", "weight", "probability", "height_mean", "height_variance"
 
 
 def taps_of(directory):
-    lines = (pathlib.Path(directory) / "taps.jsonl").read_text().splitlines()
-    return [(tap["tap"], tap["outcome"]) for tap in map(json.loads, lines)]
+    lines = (pathlib.Path(directory) / "record.jsonl").read_text().splitlines()
+    return [(tap["tap"], tap["outcome"]) for tap in map(json.loads, lines) if "tap" in tap]
 
 
 def in_threads(count, work):
@@ -105,13 +105,17 @@ class Shared(InFolder):
         again = pickle.loads(pickle.dumps(run))
         np.testing.assert_array_equal(again.surface, surface)
 
-    def test_a_lock_that_was_removed_ends_the_run_that_had_it_before_its_next_tap(self):
+    def test_a_record_that_was_replaced_ends_the_run_that_had_it_before_its_next_tap(self):
         experiment = self.begun("taps=4")
         experiment.ask()
         experiment.tell(0.0)
-        os.unlink(pathlib.Path(experiment.directory) / "lock")
+        record = pathlib.Path(experiment.directory) / "record.jsonl"
+        text = record.read_bytes()
+        record.unlink()
+        record.write_bytes(text)  # as a copy is brought back
         with palpate.Experiment.resume(experiment.directory) as other:
-            self.refuses("lock", "was removed while a run was writing beside it", "palpate resume", experiment.ask)
+            self.refuses(experiment.directory, "was moved or removed while a run was writing there", "palpate resume",
+                         experiment.ask)
             while other.ask():
                 other.tell(0.0)
         self.assertEqual([tap for tap, outcome in taps_of(experiment.directory) if outcome == "contact"], [1, 2, 3, 4])

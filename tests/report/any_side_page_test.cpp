@@ -5,6 +5,7 @@
 #include "record/recording.hpp"
 #include "report/browser.hpp"
 #include "report/history.hpp"
+#include "support/parts.hpp"
 #include "support/programs.hpp"
 
 #include <fmt/format.h>
@@ -97,22 +98,21 @@ class AnySideLive : public test::Reports {};
 
 TEST_F(AnySideLive, ThePageGrowsWithItsRun) {
   const fs::path directory = touched(folder_);
-  const std::string taps = text_of(directory / "taps.jsonl");
-  const fs::path whole = folder_.path() / "taps.jsonl";
-  fs::rename(directory / "taps.jsonl", whole);
+  const std::string record = test::text_of(directory / "record.jsonl");
+  const std::string first = test::record_until(record, 6);
+  const fs::path rest = folder_.path() / "rest";
+  write_file(rest, test::record_until(record, kTaps).substr(first.size()));
   fs::remove(directory / "summary.json");
-  std::size_t end = 0;
-  for (int i = 0; i < 6; ++i) end = taps.find('\n', end) + 1;
-  write_file(directory / "taps.jsonl", taps.substr(0, end));
+  write_file(directory / "record.jsonl", first);
   test::Child server({test::program_file().string(), "watch", directory.string()}, folder_.path());
   ASSERT_TRUE(test::eventually([&] { return server.out().find('\n') != std::string::npos || !server.running(); }));
   const std::string line = server.out();
-  const Browsed live = test::browse(
-      line.substr(0, line.find('\n')),
-      {drawn(6), "window.mark = 1",
-       fmt::format("shell sed -n 7,{}p {} >> {}", kTaps, whole.string(), (directory / "taps.jsonl").string()),
-       drawn(kTaps), "return window.mark", kMesh},
-      true);
+  const Browsed live =
+      test::browse(line.substr(0, line.find('\n')),
+                   {drawn(6), "window.mark = 1",
+                    fmt::format("shell cat {} >> {}", rest.string(), (directory / "record.jsonl").string()),
+                    drawn(kTaps), "return window.mark", kMesh},
+                   true);
   ASSERT_EQ(live.trouble, "");
   EXPECT_THAT(live.severe, IsEmpty());
   report(directory);

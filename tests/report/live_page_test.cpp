@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page that `palpate watch` serves, in a browser, while its record grows.
 #include "report/browser.hpp"
+#include "support/parts.hpp"
 #include "support/programs.hpp"
 
 #include <fmt/format.h>
@@ -14,12 +15,6 @@ namespace {
 using test::eventually;
 using ::testing::IsEmpty;
 
-std::string first_lines(const std::string& text, std::size_t count) {
-  std::size_t end = 0;
-  for (; count > 0; --count) end = text.find('\n', end) + 1;
-  return text.substr(0, end);
-}
-
 class LivePage : public test::Reports {
  protected:
   /// A run of 17 taps of which the first `taps` are recorded.
@@ -30,14 +25,17 @@ class LivePage : public test::Reports {
     whole_ = folder_.path() / "whole";
     fs::copy(directory_, whole_, fs::copy_options::recursive);
     fs::remove(directory_ / "summary.json");
-    fs::remove(directory_ / "taps.jsonl");
-    std::ofstream(directory_ / "taps.jsonl") << first_lines(text_of(whole_ / "taps.jsonl"), taps);
+    fs::remove(directory_ / "record.jsonl");
+    std::ofstream(directory_ / "record.jsonl")
+        << test::record_until(test::text_of(whole_ / "record.jsonl"), static_cast<int>(taps));
     return directory_;
   }
   /// The step that records taps from one number up to another.
   std::string grow(std::size_t first, std::size_t last) const {
-    return fmt::format("shell sed -n {},{}p {} >> {}", first, last, (whole_ / "taps.jsonl").string(),
-                       (directory_ / "taps.jsonl").string());
+    std::string patterns;
+    for (std::size_t tap = first; tap <= last; ++tap) patterns += fmt::format(" -e '\"t[a-z]*\": {},'", tap);
+    return fmt::format("shell grep -h{} {} >> {}", patterns, (whole_ / "record.jsonl").string(),
+                       (directory_ / "record.jsonl").string());
   }
   std::string serve(const fs::path& directory) {
     server_ = std::make_unique<test::Child>(
@@ -86,7 +84,7 @@ TEST_F(LivePage, ShowsATapThatIsRecordedWithoutBeingLoadedAgainAndStaysWhereItsR
 
 TEST_F(LivePage, HasTheMapsAndCurvesOfTheReportWhenTheRunHasEnded) {
   const std::string url = serve(under_way(3));
-  const std::string end = fmt::format("shell cp {} {}", (whole_ / "summary.json").string(), directory_.string());
+  const std::string end = fmt::format("shell cp {} {}", (whole_ / "record.jsonl").string(), directory_.string());
   const std::string curves =
       "return [...document.querySelectorAll('#curves .plot')].map((plot) => plot.data.map((trace) => trace.y))";
   const std::string words = "return document.getElementById('standing').textContent";
@@ -130,7 +128,7 @@ TEST_F(LivePage, GoesOnWhereTheRunWasKilledAndCarriedOnWithoutBeingLoadedAgain) 
       fmt::format("shell {} resume {} --quiet --force", test::program_file().string(), directory.string());
   const Browsed seen =
       test::browse(url,
-                   {drawn(4), kMark, "shell printf '{\"tap\": 5, \"ha' >> " + (directory / "taps.jsonl").string(),
+                   {drawn(4), kMark, "shell printf '{\"tap\": 5, \"ha' >> " + (directory / "record.jsonl").string(),
                     resume, drawn(17), kMarked, kAt},
                    false);
   ASSERT_EQ(seen.trouble, "");
@@ -158,10 +156,13 @@ TEST_F(LivePage, OfASweepFillsUpAndLeadsToThePagesOfItsJobs) {
   ASSERT_EQ(swept.status, 0) << swept.err;
   const fs::path directory = test::only_run(folder_.path() / "runs");
   const std::vector<Cells> jobs = csv_rows(text_of(directory / "results.csv"));
-  const auto summary = [&](std::size_t job) { return directory / "jobs" / jobs.at(job).at("id") / "summary.json"; };
-  for (std::size_t job = 1; job < 4; ++job) fs::rename(summary(job), folder_.path() / std::to_string(job));
+  const auto record = [&](std::size_t job) { return directory / "jobs" / jobs.at(job).at("id") / "record.jsonl"; };
+  for (std::size_t job = 1; job < 4; ++job) {
+    fs::copy_file(record(job), folder_.path() / std::to_string(job));
+    test::forget_end(record(job).parent_path());
+  }
   const auto ends = [&](std::size_t job) {
-    return fmt::format("shell mv {} {}", (folder_.path() / std::to_string(job)).string(), summary(job).string());
+    return fmt::format("shell mv {} {}", (folder_.path() / std::to_string(job)).string(), record(job).string());
   };
   const std::string url = serve(directory);
   const auto done = [](int count) {

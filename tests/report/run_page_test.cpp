@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page of a run in a browser: it draws, moves, shows what the record says, and takes text for text.
 #include "report/browser.hpp"
+#include "support/parts.hpp"
 
 #include <fmt/format.h>
 
@@ -194,11 +195,10 @@ TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
 TEST_F(ReportedRun, KeepsToItsAxesNamesAllHyperparametersAndTakesTimesByTheirTap) {
   const fs::path directory = made(folder_, {"seed=4", "scene.desk=-50cm", "kernel=swell_and_texture", "taps=20"});
   report(directory);
-  std::string timings = text_of(directory / "timings.csv");
-  const auto line = timings.find("\n6,");
-  timings.erase(line, timings.find('\n', line + 1) - line);  // the program was killed during this tap
-  const std::string infer = timings.substr(timings.find("\n9,") + 1);
-  folder_.write(fs::relative(directory / "timings.csv", folder_.path()).string(), timings);
+  std::string record = test::text_of(directory / "record.jsonl");
+  const auto line = record.find("{\"timing\": 6,");
+  record.erase(line, record.find('\n', line) + 1 - line);  // the program was killed during this tap
+  folder_.write(fs::relative(directory / "record.jsonl", folder_.path()).string(), record);
   report(directory);
   const Browsed seen = test::browse(
       directory / "report.html",
@@ -222,10 +222,9 @@ TEST_F(ReportedRun, KeepsToItsAxesNamesAllHyperparametersAndTakesTimesByTheirTap
   const json& times = seen.values.at(3);
   ASSERT_EQ(times.size(), 21U);
   EXPECT_TRUE(times.at(6).is_null());
-  std::istringstream cells(infer);
-  std::string cell;
-  for (int column = 0; column < 4; ++column) std::getline(cells, cell, ',');  // tap, robot, fit, infer
-  EXPECT_NEAR(times.at(9).get<double>(), 1000.0 * std::stod(cell), 1e-9);
+  const Row ninth = test::rows_of(directory, "timing").at(7);
+  EXPECT_EQ(ninth.number("timing"), 9.0);
+  EXPECT_NEAR(times.at(9).get<double>(), 1000.0 * ninth.number("infer").value(), 1e-9);
 }
 
 TEST_P(RunPage, TakesTextOfConfigsAndPathsForTextAndNothingElse) {

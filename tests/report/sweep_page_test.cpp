@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page of a sweep in a browser: what it plots are the numbers of results.csv, and it follows its controls.
 #include "report/sweep_pages.hpp"
+#include "support/parts.hpp"
 
 #include <numeric>
 
@@ -214,7 +215,7 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   // The last of them in the order of cost: without it the setting is cheaper still.
   const auto lost =
       std::find_if(by_time.rbegin(), by_time.rend(), [&](const Cells& row) { return of(row) == of(*beaten); });
-  fs::remove(directory / "jobs" / lost->at("id") / "summary.json");
+  test::forget_end(directory / "jobs" / lost->at("id"));
   ASSERT_EQ(
       test::palpate({"pareto", directory.string(), "--cost", "robot_seconds", "--error", "rmse_m"}, folder_.path())
           .status,

@@ -3,6 +3,7 @@
 #include "report/page/sweep_page.hpp"
 #include "report/sweep_pages.hpp"
 #include "support/large_sweep.hpp"
+#include "support/parts.hpp"
 #include "support/programs.hpp"
 
 #include <set>
@@ -24,7 +25,7 @@ TEST_P(SweepTrouble, OffersWhatParetoTakesAndShowsFailedAndMissingJobs) {
                                    {plugins});
   std::vector<Cells> rows = csv_rows(text_of(directory / "results.csv"));
   ASSERT_EQ(rows.size(), 16U);
-  fs::remove(directory / "jobs" / rows[0].at("id") / "summary.json");
+  test::forget_end(directory / "jobs" / rows[0].at("id"));
   fs::remove_all(directory / "jobs" / rows[1].at("id"));
   ASSERT_EQ(rows[0].at("status"), "done");
   ASSERT_EQ(rows[1].at("status"), "done");
@@ -113,8 +114,7 @@ TEST_P(SweepTrouble, TakesTextOfNamesValuesAndReasonsForTextAndNothingElse) {
   const fs::path directory = swept({"<u>config.yaml", "taps=4", "candidates.count=8"});
   const std::string reason = "it said: <img src=x onerror=alert(5)> \u202E</li></script>\n";
   const std::vector<Cells> rows = csv_rows(text_of(directory / "results.csv"));
-  folder_.write((directory / "jobs" / rows.at(5).at("id") / "summary.json").string(),
-                json({{"status", "failed"}, {"stop_reason", reason}}).dump());
+  test::set_end(directory / "jobs" / rows.at(5).at("id"), json({{"status", "failed"}, {"stop_reason", reason}}).dump());
   report(directory);
   EXPECT_EQ(text_of(directory / "report.html").find("alert("), std::string::npos);
   const std::string foreign_elements = "return document.querySelectorAll('img, i, u, b[onmouseover]').length";

@@ -29,7 +29,7 @@ constexpr const char* kPace = "backend.pace=0.02";
 
 std::vector<int> attempts_in(const Sweep& sweep) {
   std::vector<int> out;
-  for (const Job& job : sweep.jobs) out.push_back(attempts_of(job_directory(sweep, job)));
+  for (const Job& job : sweep.jobs) out.push_back(lines(part_of(job_directory(sweep, job), "attempt")));
   return out;
 }
 
@@ -38,7 +38,7 @@ int number_at(const Row& row, const char* name) { return static_cast<int>(row.nu
 /// The numbers of the recorded taps, in their order.
 std::vector<int> taps_of(const fs::path& job) {
   std::vector<int> out;
-  for (const Row& row : rows_of(job, "taps.jsonl")) out.push_back(number_at(row, "tap"));
+  for (const Row& row : rows_of(job, "tap")) out.push_back(number_at(row, "tap"));
   return out;
 }
 
@@ -48,7 +48,7 @@ std::vector<int> range(int first, int last) {
   return out;
 }
 
-int recorded(const fs::path& job) { return lines(part_of(job, "taps.jsonl")); }
+int recorded(const fs::path& job) { return lines(part_of(job, "tap")); }
 
 /// The arrays that were submitted, as palpate says.
 std::vector<int> arrays_in(const std::string& out) {
@@ -79,7 +79,7 @@ TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
   constexpr std::size_t kVictim = 2;
   const fs::path victim = job_at(sweep, kVictim);
   ASSERT_TRUE(eventually([&] { return recorded(victim) >= 3; })) << text_of(sweep.directory / "slurm/1/1_2.log");
-  const auto begun = rows_of(victim, "attempts.jsonl");
+  const auto begun = rows_of(victim, "attempt");
   ASSERT_EQ(begun.size(), 1U);
   ASSERT_EQ(::kill(parent_of(number_at(begun.front(), "pid")), SIGKILL), 0);
   ASSERT_TRUE(lab.becomes_idle());
@@ -89,7 +89,7 @@ TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
                     HasSubstr("failed: job 7"), HasSubstr("does not fit into the area")));
   EXPECT_EQ(attempts_in(sweep), std::vector<int>(8, 1));
   EXPECT_FALSE(fs::exists(sweep.directory / "results.csv")) << "before all have ended";
-  const std::string before = part_of(victim, "taps.jsonl");
+  const std::string before = part_of(victim, "tap");
 
   const Ended resumed = lab.palpate(on_slurm({"resume", directory}));
   ASSERT_EQ(resumed.status, 0) << resumed.err;
@@ -105,9 +105,9 @@ TEST_F(Slurm, OfAnArrayOnlyTheKilledJobIsSubmittedAgainAndNothingRunsTwice) {
   EXPECT_EQ(lab.indices(std::stoi(twin.out)), range(0, 7));
   EXPECT_EQ(attempts_in(sweep), (std::vector<int>{1, 1, 2, 1, 1, 1, 1, 1}));
   for (std::size_t job = 0; job < 7; ++job) EXPECT_EQ(taps_of(job_at(sweep, job)), range(1, 17)) << job;
-  EXPECT_EQ(part_of(victim, "taps.jsonl").substr(0, before.size()), before);
-  const auto attempts = rows_of(victim, "attempts.jsonl");
-  ASSERT_EQ(attempts.size(), 3U);  // begun, begun, ended
+  EXPECT_EQ(part_of(victim, "tap").substr(0, before.size()), before);
+  const auto attempts = rows_of(victim, "attempt");
+  ASSERT_EQ(attempts.size(), 2U);
   EXPECT_EQ(number_at(attempts[1], "after_tap"), lines(before));
   EXPECT_THAT(lab.palpate({"status", directory}).out, StartsWith("8 jobs, 7 done, 0 running, 1 failed, 0 unfinished"));
   EXPECT_EQ(lines(text_of(sweep.directory / "results.csv")), 1 + 8) << "left by the task that ended last";
@@ -149,7 +149,7 @@ TEST_F(Slurm, TasksRunSeveralJobsEachAndAnArrayIsSplitWhereTheClusterTakesNoMore
   EXPECT_EQ(lines(text_of(sweep.directory / "results.csv")), 1 + 41);
 
   // Of a chunk that is done but for one job, only that one runs.
-  fs::remove(job_at(sweep, 22) / "summary.json");
+  test::forget_end(job_at(sweep, 22));
   EXPECT_THAT(lab.palpate(on_slurm({"resume", sweep.directory.string()}, {"--jobs-per-task", "4"})).out,
               HasSubstr(": 1 task, 1 job,"));
   ASSERT_TRUE(lab.becomes_idle());
@@ -189,9 +189,9 @@ TEST_F(Slurm, AJobThatFailedBeforeIsAwaitedUntilItHasBeenTriedAgain) {
   const SlurmLab lab;
   ASSERT_EQ(lab.palpate({"sweep", paper(), kPace, "seed=range(0,2)", "--quiet"}).status, 0);
   const Sweep sweep = sweep_in(lab.folder());
-  std::ofstream(job_at(sweep, 1) / "summary.json") << R"({"status": "failed", "stop_reason": "the arm was unplugged"})";
   const fs::path record = job_at(sweep, 1) / "record.jsonl";
   fs::resize_file(record, text_of(record).find("{\"tap\": 2"));
+  test::set_end(job_at(sweep, 1), R"({"status": "failed", "stop_reason": "the arm was unplugged"})");
   const Ended ended = lab.palpate(on_slurm({"resume", sweep.directory.string(), "--retry-failed"}, {"--wait"}));
   EXPECT_EQ(ended.status, 0) << ended.out;
   EXPECT_THAT(lab.indices(1), ElementsAre(0));
@@ -214,7 +214,7 @@ TEST_F(Slurm, CtrlCCancelsWhatIsWaitedFor) {
   const std::vector<int> attempts = attempts_in(sweep);
   EXPECT_EQ(std::accumulate(attempts.begin() + 2, attempts.end(), 0), 0) << "what waited did not begin";
   EXPECT_EQ(text_of(job_at(sweep, 0) / "record.jsonl").back(), '\n');
-  EXPECT_THAT(part_of(job_at(sweep, 0), "attempts.jsonl"), HasSubstr("\"end\": \"interrupted\"")) << "after its tap";
+  EXPECT_THAT(part_of(job_at(sweep, 0), "end"), HasSubstr("\"end\": \"interrupted\"")) << "after its tap";
 }
 
 TEST_F(Slurm, ATerminalThatIsClosedEndsTheWaitingAndNotTheJobs) {

@@ -9,7 +9,6 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <sstream>
 
 #include <unistd.h>
 
@@ -18,14 +17,6 @@ namespace palpate::test {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Each line up to its first comma: the number of each tap.
-std::string first_column(const std::string& text) {
-  std::string out;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) out += line.substr(0, line.find(',')) + "\n";
-  return out;
-}
 
 std::string without_clocks(const Row& row) {
   std::string out;
@@ -45,12 +36,11 @@ std::string without_clocks(const std::vector<Cells>& rows) {
   return out;
 }
 
-/// A manifest without what tells of attempts. Where values were written is told by who begins: of a job whose sweep was
-/// killed before, that is `palpate resume`, which reads them in the job's own config.yaml.
-std::string identity(const std::string& text, bool of_job) {
-  const std::size_t words = text.find("\"command_line\"");
-  const std::size_t origins = text.find(of_job ? "\"models\"" : "\"origins\"");
-  return text.substr(0, words) + text.substr(origins, text.find("\"resumed\"") - origins);
+/// A manifest without when and by which words the run was begun.
+std::string identity(const std::string& manifest) {
+  const std::size_t at = manifest.find("\"at\"");
+  const std::size_t version = manifest.find("\"version\"");
+  return manifest.substr(0, at) + manifest.substr(version, manifest.find("\"command_line\"") - version);
 }
 
 }  // namespace
@@ -58,16 +48,11 @@ std::string identity(const std::string& text, bool of_job) {
 std::string lasting(const fs::path& file) {
   const std::string text = text_of(file);
   const std::string name = file.filename().string();
-  const bool of_job = file.parent_path().parent_path().filename() == "jobs";
-  if (name == "timings.csv") return first_column(text);
-  if (name == "record.jsonl") {
-    const fs::path job = file.parent_path();
-    return part_of(job, "taps.jsonl") + identity(part_of(job, "manifest.json"), of_job) + part_of(job, "objects.csv");
-  }
+  const fs::path run = file.parent_path();
+  if (name == "record.jsonl") return identity(part_of(run, "manifest")) + lasting_part_of(run);
   if (name == "summary.json") return without_clocks(parse_json_row(text).value());
   if (name == "results.csv") return without_clocks(csv_rows(text));
-  if (name == "manifest.json" && text.find("\"resumed\"") != std::string::npos) return identity(text, of_job);
-  return name == "attempts.jsonl" ? "there" : text;
+  return text;
 }
 
 void run_and_kill(const std::vector<std::string>& words, const fs::path& folder, int microseconds) {

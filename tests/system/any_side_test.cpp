@@ -5,6 +5,7 @@
 #include "support/programs.hpp"
 #include "support/sanitizers.hpp"
 #include "system/shell.hpp"
+#include "system/watching.hpp"
 
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ class AnySide : public Shell {
   /// Where the tool started, tap by tap.
   static std::vector<double> starts_of(const fs::path& run) {
     std::vector<double> out;
-    for (const Row& row : rows_of(run, "taps.jsonl")) out.push_back(row.number("x").value());
+    for (const Row& row : rows_of(run, "tap")) out.push_back(row.number("x").value());
     return out;
   }
   fs::path touched(const Words& more) const {
@@ -38,7 +39,7 @@ class AnySide : public Shell {
 
 TEST_F(AnySide, ARunTellsOfEachTapWhereItBeganInWhichDirectionAndHowFarItWent) {
   const fs::path run = touched("taps=12");
-  const std::vector<Row> rows = rows_of(run, "taps.jsonl");
+  const std::vector<Row> rows = rows_of(run, "tap");
   ASSERT_EQ(rows.size(), 12U);
   int on = 0;
   for (const Row& row : rows) {
@@ -86,7 +87,7 @@ TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
   std::istringstream points(text_of(run / "export/taps.ply"));
   for (std::string line; line != "end_header";) std::getline(points, line);
   int contacts = 0;
-  for (const Row& row : rows_of(run, "taps.jsonl")) {
+  for (const Row& row : rows_of(run, "tap")) {
     if (row.text("outcome") != "contact") continue;
     double x = 0, y = 0, z = 0, nx = 0, ny = 0, nz = 0;
     int tap = 0, on = 0;
@@ -106,7 +107,7 @@ TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
 
 TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
   const fs::path run = touched(test::kSanitized ? "taps=7" : "taps=12");
-  const std::vector<Row> rows = rows_of(run, "taps.jsonl");
+  const std::vector<Row> rows = rows_of(run, "tap");
   int places = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Ended ended = palpate({"explain", run, std::to_string(i + 1)});
@@ -184,8 +185,8 @@ TEST_F(AnySide, ARunThatFailedByItsArmIsPlayedAgainToItsEnd) {
 TEST_F(AnySide, OnAHighDeskAndOverAnAreaThatIsNoSquareEverythingIsWhereItIs) {
   const fs::path flat = touched("taps=12");
   const fs::path run = touched("taps=12 scene.desk=70cm name=high");
-  const std::vector<Row> low = rows_of(flat, "taps.jsonl");
-  const std::vector<Row> high = rows_of(run, "taps.jsonl");
+  const std::vector<Row> low = rows_of(flat, "tap");
+  const std::vector<Row> high = rows_of(run, "tap");
   ASSERT_EQ(high.size(), low.size());
   for (std::size_t i = 0; i < high.size(); ++i) {
     EXPECT_EQ(high[i].text("outcome"), low[i].text("outcome")) << i;
@@ -204,7 +205,7 @@ TEST_F(AnySide, OnAHighDeskAndOverAnAreaThatIsNoSquareEverythingIsWhereItIs) {
 
   const fs::path wide = touched("taps=24 scene.area.width=40cm name=wide");
   int on = 0;
-  for (const Row& row : rows_of(wide, "taps.jsonl")) {
+  for (const Row& row : rows_of(wide, "tap")) {
     if (row.text("outcome") != "contact") continue;
     EXPECT_EQ(row.flag("on_surface"), row.flag("true_on_surface"));
     on += *row.flag("on_surface") ? 1 : 0;
@@ -233,7 +234,7 @@ TEST_F(AnySide, ARunThatMetNothingLeavesNoSurfaceAndEveryPageAndFileOfIt) {
 TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedRunAndAReplayHaveTheSameView) {
   const Words seen{"taps=4", "space.view={}", "space.moves=20"};
   const fs::path whole = touched(seen + "name=whole");
-  for (const Row& row : rows_of(whole, "taps.jsonl")) EXPECT_EQ(row.text("source"), "acquisition");
+  for (const Row& row : rows_of(whole, "tap")) EXPECT_EQ(row.text("source"), "acquisition");
   const fs::path broken = touched(seen + "name=broken");
   break_off(broken);
   ASSERT_EQ(resume(broken).status, 0);
@@ -245,9 +246,8 @@ TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedR
   // From another side another first tap; without a view the first one is drawn.
   const fs::path other = touched(
       Words{"taps=4", "space.view={azimuth: 10 deg, elevation: 50 deg, rays: 225}", "space.moves=20", "name=other"});
-  EXPECT_NE(rows_of(other, "taps.jsonl")[0].number("x"), rows_of(whole, "taps.jsonl")[0].number("x"));
-  EXPECT_EQ(rows_of(touched("taps=1 space.moves=20 name=none initial.count=1"), "taps.jsonl")[0].text("source"),
-            "initial");
+  EXPECT_NE(rows_of(other, "tap")[0].number("x"), rows_of(whole, "tap")[0].number("x"));
+  EXPECT_EQ(rows_of(touched("taps=1 space.moves=20 name=none initial.count=1"), "tap")[0].text("source"), "initial");
 }
 
 TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes) {
@@ -291,7 +291,7 @@ TEST_F(AnySide, EachRuleTakesApproachesOfItsOwnAfterTheSameFirstOnes) {
   std::vector<std::vector<Row>> runs;
   for (const Words& rule :
        {Words("acquisition=random"), Words("acquisition=uncertainty"), Words("acquisition=discovery")}) {
-    runs.push_back(rows_of(touched(rule + "taps=12"), "taps.jsonl"));
+    runs.push_back(rows_of(touched(rule + "taps=12"), "tap"));
   }
   // The first ones go on until an object is hit, which happens to all of them at the same tap.
   const auto start = [&](std::size_t run, std::size_t tap) { return runs[run][tap].number("x").value(); };
@@ -327,9 +327,44 @@ TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
   EXPECT_EQ(compared, 1);
 }
 
+TEST_F(AnySide, ARecordIsReadByAllThatReadOneWithoutItsBackendBeingBuilt) {
+  const std::string built = (here() / "built").string();
+  environment_ = {test::with_plugin("connects"), "PALPATE_BUILT=" + built};
+  const fs::path run = ran({"backend.type=connects", "scene=any_bowl", "space.approaches=200", "space.moves=50",
+                            "taps=6", "acquisition=discovery"},
+                           config());
+  ASSERT_TRUE(fs::exists(built)) << "else this tests nothing";
+  for (const Row& row : rows_of(run, "tap")) {
+    EXPECT_THAT(row.text("unreached"), testing::MatchesRegex("[0-9a-f]*[1-9a-f]"));
+    EXPECT_GT(row.number("direction.x"), -0.2);
+  }
+  fs::remove(built);
+  const Ended replayed = palpate({"replay", run});
+  EXPECT_THAT(replayed.out, testing::EndsWith("all equal\n")) << "and among the same lines: " << replayed.out;
+  for (const Words& command :
+       {Words{"report", run}, Words{"explain", run, "3"}, Words{"export", run}, Words{"status", run}, Words{"list"}})
+    EXPECT_EQ(palpate(command).status, 0) << command[0];
+  {
+    const auto server = begin(Words{"watch", run});
+    ASSERT_TRUE(test::eventually([&] { return lines(server->out()) > 0; })) << server->err();
+    const test::Address address(server->out());
+    EXPECT_TRUE(test::eventually(
+        [&] { return address.get("news?at=1.6.0&now").body.find("\"moments\"") != std::string::npos; }));
+    server->signal(SIGTERM);
+    server->wait();
+  }
+  EXPECT_FALSE(fs::exists(built)) << "somebody has built the backend of a record";
+
+  // Carried on, it chooses among the lines that were drawn then.
+  const std::string taps = part_of(run, "tap");
+  break_off(run);
+  ASSERT_EQ(resume(run).status, 0);
+  EXPECT_EQ(part_of(run, "tap"), taps);
+}
+
 TEST_F(AnySide, ARecordThatHasLostTheLineOfATapIsSaidToBeDamaged) {
   const fs::path run = touched("taps=4");
-  replace(run / "taps.jsonl", "\"z\": ", "\"lost\": ");
+  replace(run / "record.jsonl", "\"z\": ", "\"lost\": ");
   for (const Words& command : {Words{"report", run}, Words{"export", run}, Words{"explain", run, "1"}}) {
     const Ended ended = palpate(command);
     EXPECT_EQ(ended.status, 1);
@@ -337,11 +372,11 @@ TEST_F(AnySide, ARecordThatHasLostTheLineOfATapIsSaidToBeDamaged) {
                 testing::HasSubstr("a tap of a run from any side has no z and no direction, its record is damaged"));
   }
   const fs::path other = touched("taps=4 name=other");
-  std::string taps = text_of(other / "taps.jsonl");
+  std::string taps = part_of(other, "tap");
   const std::string lost = "\"along\": ";
   for (auto at = taps.find(lost); at != std::string::npos; at = taps.find(lost))
     taps.replace(at, lost.size(), "\"lost\": ");
-  write(other / "taps.jsonl", taps);
+  test::write_part(other, "tap", taps);
   for (const char* const command : {"report", "replay", "export"}) {
     EXPECT_THAT(refused({command, other}),
                 testing::HasSubstr("has no number 'along', how far the tool went to its contact, the file is damaged"));

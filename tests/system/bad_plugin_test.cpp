@@ -253,7 +253,7 @@ TEST_F(BadPlugin, ThrowingWhenToldOfATapLosesNoTap) {
   const Ended ended = palpate({"run", test::config("default.yaml"), "footprint=throws_when_told", "--runs", "runs"});
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.err, "footprint/throws_when_told: no touch today\n");
-  const std::string taps = text_of(directory("runs") / "taps.jsonl");
+  const std::string taps = part_of(directory("runs"), "tap");
   EXPECT_EQ(std::count(taps.begin(), taps.end(), '\n'), 3);
 }
 

@@ -160,7 +160,7 @@ TEST_F(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
   // As after a job that was run again: its summary is another.
   const fs::path job = job_of(directory, 0);
   const std::string kept = text_of(job / "summary_at_8.json");
-  replace(job / "summary.json", "\"wall_seconds\": ", "\"wall_seconds\": 123");
+  replace(job / "record.jsonl", "\"wall_seconds\": ", "\"wall_seconds\": 123");
   const Ended after = compare(directory, words);
   EXPECT_THAT(after.err, HasSubstr("1 of 1 jobs done"));
   EXPECT_EQ(after.out, before.out);

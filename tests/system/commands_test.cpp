@@ -45,16 +45,16 @@ TEST_F(Commands, ThatDoNotTapEndAtOnceAtTheFirstSignal) {
 
 TEST_F(Resume, OfAFinishedRunRepeatsNothing) {
   const fs::path directory = ran();
-  const std::string before = text_of(directory / "taps.jsonl");
+  const std::string before = part_of(directory, "tap");
   const Ended ended = palpate({"resume", directory});
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.out, StartsWith("already done"));
-  EXPECT_EQ(text_of(directory / "taps.jsonl"), before);
+  EXPECT_EQ(part_of(directory, "tap"), before);
 }
 
 TEST_F(Resume, RefusesAChangedConfigAndAnotherBuild) {
   const fs::path directory = ran();
-  fs::remove(directory / "summary.json");
+  test::forget_end(directory);
   replace(directory / "config.yaml", "taps: 17", "taps: 18");
   EXPECT_THAT(refused({"resume", directory}), HasSubstr("config.yaml was changed"));
 
@@ -62,7 +62,8 @@ TEST_F(Resume, RefusesAChangedConfigAndAnotherBuild) {
   make_of_another_build(directory);
   EXPECT_THAT(refused({"resume", directory}), HasSubstr("another build"));
   EXPECT_EQ(resume(directory, "--force").status, 0);
-  EXPECT_THAT(text_of(directory / "manifest.json"), HasSubstr("\"after_tap\": 17"));
+  EXPECT_THAT(part_of(directory, "attempt"), HasSubstr("\"after_tap\": 17"));
+  EXPECT_THAT(part_of(directory, "attempt"), HasSubstr("\"forced\": true"));
 }
 
 TEST_F(Resume, OfWhatIsNoRunSaysSo) {

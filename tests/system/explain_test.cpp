@@ -48,9 +48,8 @@ class Explain : public Shell {
 
   static std::vector<json> taps_of(const fs::path& directory) {
     std::vector<json> out;
-    for (const std::string& line : lines_of(text_of(directory / "taps.jsonl"))) {
-      json row = json::parse(line);
-      if (!row.contains("intent")) out.push_back(std::move(row));
+    for (const std::string& line : lines_of(part_of(directory, "tap"))) {
+      out.push_back(json::parse(line));
     }
     return out;
   }
@@ -314,8 +313,8 @@ TEST_F(Explain, ReadsARunThatIsNotDone) {
   const fs::path directory = ran();
   const std::string whole = explain(directory, 9);
   // What a kill leaves: no summary, and half a line.
-  const std::string taps = text_of(directory / "taps.jsonl");
-  write(directory / "taps.jsonl", taps.substr(0, taps.find("{\"tap\": 10,")) + "{\"tap\": 10, \"sou");
+  const std::string record = text_of(directory / "record.jsonl");
+  write(directory / "record.jsonl", record.substr(0, record.find("{\"tap\": 10,")) + "{\"tap\": 10, \"sou");
   fs::remove(directory / "summary.json");
   const std::string cut = explain(directory, 9);
   EXPECT_THAT(cut, HasSubstr("Tap 9 of 9 so far, run object_i ("));

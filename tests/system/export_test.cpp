@@ -142,15 +142,41 @@ TEST_F(Export, OfARunThatIsNotDoneSaysWhatItStandsOn) {
   const fs::path directory = ran();
   ASSERT_EQ(exported(directory).status, 0);
   const std::string whole = text_of(directory / "export" / "surface.ply");
-  std::string cut = text_of(directory / "taps.jsonl");
-  for (int i = 0; i < 6; ++i) cut = cut.substr(0, cut.rfind('\n', cut.size() - 2) + 1);
-  write(directory / "taps.jsonl", cut);
+  write(directory / "record.jsonl", test::record_until(text_of(directory / "record.jsonl"), 11));
   fs::remove(directory / "summary.json");
   const Ended ended = exported(directory);
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err, "this run is unfinished; what is written is what its first 11 taps tell\n");
   EXPECT_THAT(text_of(directory / "export" / "taps.ply"), HasSubstr("element vertex 11\n"));
   EXPECT_TRUE(text_of(directory / "export" / "surface.ply") != whole);
+}
+
+TEST_F(Export, OfTablesHasThePartsOfARecordAndNeedsNoTap) {
+  const fs::path directory = ran("taps=5");
+  break_off(directory);
+  ASSERT_EQ(resume(directory).status, 0);
+  const Words words{"export", directory, "--format", "csv"};
+  const Ended ended = palpate(words);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(lines(ended.out), 4);
+  const fs::path tables = directory / "export";
+  EXPECT_EQ(text_of(tables / "taps.csv"), text_of(directory / "taps.csv"));
+  const auto times = csv_rows(text_of(tables / "timings.csv"));
+  const std::vector<Row> recorded = rows_of(directory, "timing");
+  ASSERT_EQ(times.size(), recorded.size());
+  EXPECT_THAT(text_of(tables / "timings.csv"), StartsWith("tap,robot,fit,infer,acquire,log\n"));
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_EQ(std::stod(times[i].at("infer")), recorded[i].number("infer"));
+  EXPECT_THAT(text_of(tables / "objects.csv"), StartsWith("object,type,cells,"));
+  const auto attempts = csv_rows(text_of(tables / "attempts.csv"));
+  ASSERT_EQ(attempts.size(), 2U);
+  EXPECT_EQ(attempts[0].at("end"), "") << "it was killed";
+  EXPECT_EQ(attempts[1].at("end"), "done");
+  EXPECT_NE(attempts[1].at("after_tap"), "0");
+
+  write(directory / "record.jsonl", test::record_until(text_of(directory / "record.jsonl"), 0));
+  EXPECT_EQ(palpate(words + Words{"--to", "empty"}).status, 0);
+  EXPECT_EQ(csv_rows(text_of(here() / "empty" / "attempts.csv")).size(), 1U);
 }
 
 TEST_F(Export, OfARunThatFailedSaysSoAndLeavesOutATruthThatNobodyKnows) {
@@ -180,9 +206,7 @@ TEST_F(Export, WritesOverItsOwnFilesAndOverNoRecord) {
 TEST_F(Export, RefusesInOneLineWhatItCannotExport) {
   const fs::path directory = ran();
   const Words words{"export", directory};
-  EXPECT_THAT(refused(words + "--format obj"), HasSubstr("--format: obj is not known, write ply"));
-  EXPECT_THAT(refused(words + "--format csv"),
-              HasSubstr("--format: the tables are surface.csv (log.surface=true) and taps.csv of the run itself"));
+  EXPECT_THAT(refused(words + "--format obj"), HasSubstr("--format: obj not in {ply,csv}"));
   EXPECT_THAT(refused("export nowhere"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
   EXPECT_FALSE(fs::exists(here() / "nowhere"));
   EXPECT_THAT(refused(words + Words{"--to", directory / "summary.json"}, 1), HasSubstr("cannot be made"));

@@ -44,7 +44,7 @@ const std::vector<Words>& sweeps() {
 
 /// The recorded taps of a run: whole lines only, half a line at the end may go.
 std::string complete_lines(const fs::path& runs) {
-  const std::string text = text_of(run_in(runs) / "taps.jsonl");
+  const std::string text = part_of(run_in(runs), "tap");
   return text.substr(0, text.find_last_of('\n') + 1);
 }
 
@@ -107,7 +107,7 @@ for ask in asks():
                             "backend.repeatable=true", "log.sync=tap", "taps=3"});
   const auto recorded = [&] {
     const fs::path run = run_in(here() / "runs");
-    return run.empty() ? 0 : lines(text_of(run / "taps.jsonl"));
+    return run.empty() ? 0 : lines(part_of(run, "tap"));
   };
   EXPECT_TRUE(test::eventually([&] { return recorded() == 1; })) << child->err();
   child->signal(SIGKILL);

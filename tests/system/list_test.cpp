@@ -40,7 +40,7 @@ TEST_F(List, OfWhatIsDamagedSaysSoAndShowsTheRest) {
   const fs::path killed = ran("taps=3 seed=2");
   break_off(killed);
   const fs::path damaged = ran("taps=3 seed=3");
-  write(damaged / "summary.json", "{");
+  write(damaged / "record.jsonl", "{\"manifest\": 1}\n{\"end\": \n");
   write("runs/notes/text.md", "");
   const fs::path sweep = swept("name=many taps=3 seed=1,2");
   replace(sweep / "config.yaml", "taps: ", "taps: 1");
@@ -48,7 +48,7 @@ TEST_F(List, OfWhatIsDamagedSaysSoAndShowsTheRest) {
   EXPECT_EQ(lines(all.out), 3) << all.out;
   EXPECT_THAT(all.out, ContainsRegex("object_i .* 1 +unfinished +runs/object_i/"));
   EXPECT_EQ(lines(all.err), 3) << all.err;
-  EXPECT_THAT(all.err, HasSubstr("summary.json: is not a JSON object, the file is damaged"));
+  EXPECT_THAT(all.err, HasSubstr("record.jsonl: its last line is not a JSON object, put the file back"));
   EXPECT_THAT(all.err, HasSubstr("config.yaml or manifest.jsonl was changed since this sweep began"));
   EXPECT_THAT(all.err, HasSubstr("runs: not listed: 1 folder without a run\n"));
 }

@@ -135,7 +135,7 @@ using Builds = Shell;
 
 TEST_F(Builds, AJobOfASweepIsOfTheBuildOfARun) {
   const auto build = [](const fs::path& run) {
-    const std::string manifest = part_of(run, "manifest.json");
+    const std::string manifest = part_of(run, "manifest");
     return manifest.substr(manifest.find("\"build\": \""), 30);
   };
   EXPECT_EQ(build(ran("taps=3")), build(jobs_of(swept("taps=3 seed=1,2")).front()));

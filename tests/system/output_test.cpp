@@ -30,10 +30,9 @@ class Output : public Shell {
   static Words run_words() { return Words{"run", paper(), "taps=5"}; }
 
   void expect_whole(const fs::path& run, int taps = 5) const {
-    EXPECT_EQ(text_of(run / "lock"), "");
-    EXPECT_THAT(text_of(run / "taps.jsonl"), StartsWith("{\"tap\": 1,"));
-    EXPECT_THAT(text_of(run / "taps.jsonl"), Not(HasSubstr("max sd cm"))) << "the printed table";
-    EXPECT_EQ(lines(text_of(run / "taps.jsonl")), taps);
+    EXPECT_THAT(text_of(run / "record.jsonl"), StartsWith("{\"manifest\": 1, "));
+    EXPECT_THAT(text_of(run / "record.jsonl"), Not(HasSubstr("max sd cm"))) << "the printed table";
+    EXPECT_EQ(lines(part_of(run, "tap")), taps);
     EXPECT_THAT(text_of(run / "summary.json"), HasSubstr("\"status\": \"done\""));
   }
 };
@@ -86,7 +85,7 @@ TEST_F(Output, WithoutAReaderStillSaysHowAnInterruptedRunGoesOn) {
                           here());
   EXPECT_TRUE(test::eventually([&] {
     const fs::path run = fs::exists(here() / "runs" / "object_i") ? directory() : fs::path();
-    return !run.empty() && lines(text_of(run / "taps.jsonl")) > 1;
+    return !run.empty() && lines(part_of(run, "tap")) > 1;
   }));
   ASSERT_EQ(::kill(std::stoi(text_of(here() / "pid")), SIGTERM), 0);
   EXPECT_TRUE(test::eventually([&] { return text_of(here() / "status") == "130\n"; })) << text_of(here() / "status");
@@ -103,9 +102,9 @@ TEST_F(Output, AFileThatMayGrowNoMoreFailsTheRunAndCanBeResumed) {
   // Of 20 kB, which the log outgrows.
   const Ended ended = shell("ulimit -f 40; exec \"$@\"", Words{"run", paper(), "taps=40", "--quiet"});
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, ContainsRegex("taps.jsonl: cannot be written: File too large\n$"));
+  EXPECT_THAT(ended.err, ContainsRegex("record.jsonl: cannot be written: File too large\n$"));
   EXPECT_EQ(lines(ended.err), 1);
-  EXPECT_THAT(text_of(directory() / "taps.jsonl"), EndsWith("}\n")) << "no half line";
+  EXPECT_THAT(text_of(directory() / "record.jsonl"), EndsWith("}\n")) << "no half line";
   EXPECT_EQ(resume(directory(), {"--retry-failed"}).status, 0);
   expect_whole(directory(), 40);
 }

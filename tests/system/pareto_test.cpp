@@ -105,7 +105,7 @@ TEST_F(Pareto, AsksForTheLowerBoundOfWhatIsBetterWhenItIsMore) {
 
 TEST_F(Pareto, NotesJobsThatHaveNotEndedAndComparesOnlyTheOthers) {
   const fs::path directory = settings();
-  fs::remove(job_of(directory, 0) / "summary.json");
+  test::forget_end(job_of(directory, 0));
   const Ended ended = pareto(directory);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, StartsWith("1 of 16 jobs have not ended"));

@@ -69,7 +69,7 @@ for ask in asks():
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.err, "backend/process: protective stop: free the arm\n");
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\ntap 4\n") << "it is asked for no other tap";
-  const std::string before = text_of(directory() / "taps.jsonl");
+  const std::string before = part_of(directory(), "tap");
   EXPECT_THAT(before, HasSubstr(R"("outcome": "aborted", "reason": "protective stop: free the arm")"));
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
 
@@ -77,7 +77,7 @@ for ask in asks():
   write("cleared", "");
   const Ended resumed = retry();
   ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_THAT(text_of(directory() / "taps.jsonl"), StartsWith(before));
+  EXPECT_THAT(part_of(directory(), "tap"), StartsWith(before));
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\ntap 4\nbegin\ntap 5\ntap 6\ntap 7\n");
   const std::vector<std::string> expected{"contact", "contact", "contact", "aborted", "contact", "contact", "contact"};
   EXPECT_EQ(outcomes(directory()), expected);
@@ -146,7 +146,7 @@ time.sleep(60)  # and does not care that its run is gone
                              "taps=100000 candidates.count=300 backend.start=2s acquisition=random");
   const auto child = begin(words);
   ASSERT_TRUE(eventually([&] { return lines(notes()) == 2; })) << child->err();
-  ASSERT_TRUE(eventually([&] { return lines(text_of(directory() / "taps.jsonl")) > 4; }));
+  ASSERT_TRUE(eventually([&] { return lines(part_of(directory(), "tap")) > 4; }));
   child->signal(SIGKILL);
   child->wait();
   const std::string pid = notes().substr(6, notes().size() - 7);
@@ -236,8 +236,7 @@ TEST_F(AKilledRun, AsksForNoTapTwiceAndLosesNone) {
   EXPECT_EQ(made["end"], made["begin"]) << "each program saw the end of its run";
   int unknown = 0;
   int contacts = 0;
-  for (const Row& row : read_json_lines(directory() / "taps.jsonl").rows) {
-    if (is_intent(row)) continue;
+  for (const Row& row : rows_of(directory(), "tap")) {
     const int number = contacts + unknown + 1;
     EXPECT_EQ(*row.find("tap"), Scalar{std::int64_t{number}}) << "none lost, none twice";
     const bool touched = *row.find("outcome") == Scalar{std::string("contact")};

@@ -43,7 +43,7 @@ TEST_F(ProcessRun, TheExampleTapsItsDomeFromTheProjectsFolder) {
     EXPECT_EQ(ended.err, "");
     const std::string taps = text_of(only_run(where) / "taps.csv");
     EXPECT_EQ(text_of(only_run(where) / "process.stderr.txt"), "");
-    EXPECT_THAT(text_of(only_run(where) / "taps.jsonl"), Not(HasSubstr("intent"))) << "it is repeatable";
+    EXPECT_EQ(part_of(only_run(where), "intent"), "") << "it is repeatable";
     if (first.empty()) first = taps;
     EXPECT_EQ(taps, first);
   }
@@ -79,7 +79,7 @@ for ask in asks():
   const std::vector<std::string> expected{"contact", "aborted",    "aborted", "contact", "timeout",
                                           "aborted", "no_contact", "aborted", "contact", "contact"};
   EXPECT_EQ(outcomes(directory()), expected);
-  const std::string taps = text_of(directory() / "taps.jsonl");
+  const std::string taps = part_of(directory(), "tap");
   EXPECT_THAT(taps, HasSubstr(R"(which has no NaN and no Infinity: '{\"tap\": 2)"));
   EXPECT_THAT(taps, HasSubstr(R"(its last words: 'no arm, \"not\" today')"));
   EXPECT_THAT(taps, HasSubstr(R"("reason": "an \"end\",  of way")"));
@@ -125,7 +125,7 @@ for ask in asks():
   const Ended ended = resume(directory());
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "contact", "unknown", "contact", "contact"}));
-  EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("\"intent\": true"));
+  EXPECT_NE(part_of(directory(), "intent"), "");
   const Cells unknown = csv_rows(text_of(directory() / "taps.csv"))[2];
   EXPECT_EQ(unknown.at("height"), "");
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"failed_taps\": 1"));
@@ -139,15 +139,13 @@ TEST_F(ProcessRun, InterruptedWhileItWaitsTheRunEndsAtOnceAndLeavesNoProgram) {
       "print(os.getpid(), file=sys.stderr, flush=True)\n"
       "for ask in asks():\n    if ask['tap'] == 2: time.sleep(60)\n    contact(ask)");
   const auto child = begin(process({program, "backend.repeatable=false"}));
-  EXPECT_TRUE(eventually([&] {
-    return !left_nothing() && !diary().empty() &&
-           text_of(directory() / "taps.jsonl").find("\"tap\": 2") != std::string::npos;
-  }));
+  EXPECT_TRUE(
+      eventually([&] { return !left_nothing() && !diary().empty() && lines(part_of(directory(), "intent")) == 2; }));
   child->signal(SIGINT);
   EXPECT_EQ(child->wait().status, 130);
   EXPECT_FALSE(test::running(std::stol(diary())));
   EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "aborted"}));
-  EXPECT_THAT(text_of(directory() / "taps.jsonl"), HasSubstr("\"reason\": \"interrupted\""));
+  EXPECT_THAT(part_of(directory(), "tap"), HasSubstr("\"reason\": \"interrupted\""));
 }
 
 TEST_F(ProcessRun, ASweepInThreadsHasAProgramForEachRun) {

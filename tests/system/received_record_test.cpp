@@ -54,7 +54,7 @@ class Received : public Shell {
 
 TEST_F(Received, ARecordWithAPipeOrADeviceInThePlaceOfAFileIsToldOfAtOnce) {
   for (const bool device : {false, true}) {
-    for (const char* name : {"config.yaml", "taps.jsonl", "manifest.json", "summary.json", "timings.csv"}) {
+    for (const char* name : {"config.yaml", "record.jsonl"}) {
       const fs::path file = run_again() / name;
       fs::remove(file);
       if (device) {
@@ -91,16 +91,26 @@ TEST_F(Received, ARecordDoesNotLeadToFilesOfItsReader) {
 }
 
 TEST_F(Received, ARecordThatIsNestedDeeplyOrHoldsManyValuesTakesNoMemory) {
-  fs::path run = run_again();
-  write(run / "summary.json", many_times("{\"a\":", 100'000) + "1" + many_times("}", 100'000));
-  EXPECT_THAT(bounded({"status", run}).out, HasSubstr("summary.json: is nested too deeply"));
-  write(run / "summary.json", "{\"a\": 1" + many_times(",\"a\":1", 190'000) + "}");
-  EXPECT_THAT(bounded({"status", run}).out, HasSubstr("summary.json: is too large"));
-  write(run / "summary.json", "{\"a\": 1" + many_times(",\"a\":1", 19'000) + "}");
-  EXPECT_THAT(bounded({"status", run}).out, HasSubstr("summary.json: holds too many values"));
-  run = run_again();
-  write(run / "taps.jsonl", many_times("{\"a\":", 200'000) + "1" + many_times("}", 200'000) + "\n");
-  EXPECT_THAT(refusal_of({"status", run}), HasSubstr("taps.jsonl:1: is too long"));
+  const fs::path run = run_again();
+  const std::string begun = test::begun_record();
+  const auto said = [&](const std::string& line) {
+    write(run / "record.jsonl", begun + line + "\n");
+    EXPECT_THAT(bounded({"list", here(), "--json"}).err, HasSubstr("record.jsonl: its last line ")) << "by that alone";
+    return refusal_of({"status", run});
+  };
+  const std::string end = "{\"end\": ";
+  EXPECT_THAT(said(end + many_times("{\"a\":", 100'000) + "1" + many_times("}", 100'001)),
+              HasSubstr("record.jsonl:4: is nested too deeply"));
+  EXPECT_THAT(said(end + "1" + many_times(",\"a\":1", 190'000) + "}"), HasSubstr("record.jsonl:4: is too long"));
+  EXPECT_THAT(said(end + "1" + many_times(",\"a\":1", 19'000) + "}"),
+              HasSubstr("record.jsonl:4: holds too many values"));
+  const std::string list = many_times("[", 100'000) + many_times("]", 100'000);
+  for (const char* kind : {"objects", "setup", "weather"}) {
+    write(run / "record.jsonl", begun + "{\"" + kind + "\": " + list + "}\n");
+    EXPECT_THAT(refusal_of({"status", run}), HasSubstr("record.jsonl:4: is nested too deeply")) << kind;
+  }
+  write(run / "record.jsonl", "{\"manifest\": [" + many_times("1,", 2'000'000) + "1]}\n");
+  EXPECT_THAT(refusal_of({"status", run}), HasSubstr("record.jsonl:1: holds too many values"));
 }
 
 TEST_F(Received, ADottedPathOfManyLevelsIsRefused) {
@@ -135,15 +145,16 @@ TEST_F(Received, GroupsThatManyBuildOnAreComposedOnce) {
 
 TEST_F(Received, TextThatIsPrintedMovesNoCursorAndTurnsNoLine) {
   const fs::path run = run_again();
-  write(run / "summary.json",
-        "{\"status\": \"failed\", \"stop_reason\": \"a\\u001b[31mb\\u0007\\u009b2Jc\\u202ed \\u00e4\"}");
+  write(
+      run / "record.jsonl",
+      test::begun_record() + "{\"end\": \"failed\", \"reason\": \"a\\u001b[31mb\\u0007\\u009b2Jc\\u202ed \\u00e4\"}\n");
   EXPECT_THAT(bounded({"status", run}).out, EndsWith(": a\\x1b[31mb\\x07\\x9b2Jc\\u202ed \xc3\xa4\n"));
   EXPECT_THAT(refusal_of({"run", test::paper(), "na\xc2\x9bme=a"}), HasSubstr("'na\\x9bme'"));
 }
 
-TEST_F(Received, TapsWithALineMissingDoubledOrOutOfOrderAreRefusedByFileAndLine) {
+TEST_F(Received, ARecordWithALineMissingDoubledOrOutOfOrderIsRefusedByFileAndLine) {
   const auto changed = [&](int line, const std::function<void(std::vector<std::string>&)>& change, const char* reason) {
-    const fs::path file = run_again() / "taps.jsonl";
+    const fs::path file = run_again() / "record.jsonl";
     std::vector<std::string> lines;
     std::istringstream in(text_of(file));
     for (std::string one; std::getline(in, one);) lines.push_back(one + "\n");
@@ -151,7 +162,6 @@ TEST_F(Received, TapsWithALineMissingDoubledOrOutOfOrderAreRefusedByFileAndLine)
     std::string text;
     for (const std::string& one : lines) text += one;
     write(file, text);
-    fs::remove(here() / "run/summary.json");
     for (const char* command : {"resume", "status", "report"}) {
       EXPECT_EQ(refusal_of({command, here() / "run"}),
                 file.string() + ":" + std::to_string(line) + ": " + reason +
@@ -159,16 +169,18 @@ TEST_F(Received, TapsWithALineMissingDoubledOrOutOfOrderAreRefusedByFileAndLine)
     }
     EXPECT_EQ(text_of(file), text) << "nothing is added to a damaged record";
   };
+  // Manifest, attempt and set-up; then each tap with its times.
   using Lines = std::vector<std::string>;
   changed(
-      3, [](Lines& lines) { lines.erase(lines.begin() + 2); }, "has tap 4 where tap 3 belongs: a line is missing");
+      8, [](Lines& lines) { lines.erase(lines.begin() + 7); }, "has the times of tap 3, and does not follow it");
   changed(
-      1, [](Lines& lines) { lines.erase(lines.begin()); }, "has tap 2 where tap 1 belongs: a line is missing");
+      4, [](Lines& lines) { lines.erase(lines.begin() + 3, lines.begin() + 5); },
+      "has tap 2 where tap 1 belongs: a line is missing");
   changed(
-      4, [](Lines& lines) { lines.insert(lines.begin() + 3, lines[2]); },
+      9, [](Lines& lines) { lines.insert(lines.begin() + 8, lines[7]); },
       "has tap 3 a second time, where tap 4 belongs");
   changed(
-      3, [](Lines& lines) { std::swap(lines[2], lines[3]); }, "has tap 4 where tap 3 belongs: a line is missing");
+      8, [](Lines& lines) { std::swap(lines[7], lines[9]); }, "has tap 4 where tap 3 belongs: a line is missing");
 }
 
 }  // namespace

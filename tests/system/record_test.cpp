@@ -28,18 +28,18 @@ TEST_F(Record, OfVeryManyObjectsIsReadByEveryCommand) {
   const std::string file = std::string(200, 'x') + ".yaml";
   write(file, many_objects(1000));
   const fs::path directory = ran({}, file);
-  EXPECT_GT(fs::file_size(directory / "manifest.json"), 1U << 20) << "more than configs may have";
+  EXPECT_GT(part_of(directory, "manifest").size(), 1U << 20) << "more than configs may have";
   const std::string taps = text_of(directory / "taps.csv");
   for (const char* command : {"status", "replay", "report", "resume"}) {
     const Ended ended = palpate({command, directory});
     EXPECT_EQ(ended.status, 0) << command << ": " << ended.err;
   }
   EXPECT_THAT(run({}, file).out, HasSubstr("already done"));
-  fs::remove(directory / "summary.json");
+  test::forget_end(directory);
   const Ended resumed = resume(directory);
   EXPECT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_EQ(text_of(directory / "taps.csv"), taps);
-  EXPECT_THAT(text_of(directory / "manifest.json"), HasSubstr("\"after_tap\": 3"));
+  EXPECT_THAT(part_of(directory, "attempt"), HasSubstr("\"after_tap\": 3"));
 }
 
 TEST_F(Record, ThatCouldNotBeReadAgainIsNotBegun) {
@@ -52,33 +52,50 @@ TEST_F(Record, ThatCouldNotBeReadAgainIsNotBegun) {
 
 TEST_F(Record, WithAStrayByteBehindItsManifestIsRefusedInOneLine) {
   const fs::path directory = ran("taps=4");
-  const std::string manifest = text_of(directory / "manifest.json");
-  write(directory / "manifest.json", manifest + ",");
-  fs::remove(directory / "summary.json");
-  for (const char* command : {"report", "resume"}) {
+  std::string record = text_of(directory / "record.jsonl");
+  write(directory / "record.jsonl", record.insert(record.find('\n'), ","));
+  for (const char* command : {"report", "resume", "replay", "status"}) {
     EXPECT_EQ(refused({command, directory}),
-              (directory / "manifest.json").string() + ":" + std::to_string(lines(manifest) + 1) +
-                  ":1: is not valid JSON, the file is damaged: put it back as it was, or remove it\n");
+              (directory / "record.jsonl").string() + ":1: is not a JSON object, the file is damaged\n");
   }
 }
 
-TEST_F(Record, OfWhichTapsWereCutOffIsNotTakenForTheWholeRun) {
+TEST_F(Record, OfWhichTheEndWasCutOffIsNotTakenForTheWholeRun) {
   const fs::path directory = ran();
-  const std::string whole = text_of(directory / "taps.jsonl");
-  std::size_t end = 0;
-  for (int i = 0; i < 8; ++i) end = whole.find('\n', end) + 1;
+  const std::string whole = text_of(directory / "record.jsonl");
+  const std::string taps = part_of(directory, "tap");
+  const std::size_t end = whole.find("{\"tap\": 9,");
   for (const std::size_t cut : {end, end + 10}) {
-    fs::resize_file(directory / "taps.jsonl", cut);
-    for (const char* command : {"status", "resume", "replay", "report"}) {
-      EXPECT_EQ(refused({command, directory}),
-                (directory / "taps.jsonl").string() +
-                    ": holds 8 of the 17 taps that were made, the file was cut: put it back, or remove "
-                    "summary.json, and 'palpate resume' makes the others again\n");
-    }
-    fs::remove(directory / "summary.json");
+    fs::resize_file(directory / "record.jsonl", cut);
+    const Ended status = status_of(directory);
+    EXPECT_THAT(status.out, HasSubstr("unfinished after 8 of 17 taps"));
+    EXPECT_THAT(status.err, HasSubstr("record.jsonl: was cut, as summary.json says that the run had ended"));
     EXPECT_EQ(resume(directory).status, 0);
-    EXPECT_EQ(text_of(directory / "taps.jsonl"), whole);
+    EXPECT_EQ(part_of(directory, "tap"), taps);
+    EXPECT_EQ(status_of(directory).err, "");
   }
+}
+
+TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
+  const fs::path directory = ran();
+  const auto whole = test::lasting_files(directory);
+  const std::string record = text_of(directory / "record.jsonl");
+  const auto harm = [&] {
+    fs::remove(directory / "summary.json");
+    fs::resize_file(directory / "taps.csv", 100);
+    write(directory / "surface.csv", std::string(fs::file_size(directory / "surface.csv"), '\0'));
+  };
+  for (const Words& words : {Words{"run", paper()}, Words{"resume", directory}}) {
+    harm();
+    EXPECT_THAT(status_of(directory).out, HasSubstr("done after 17 of 17 taps")) << "the record decides";
+    const Ended ended = palpate(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    for (const char* name : {"taps.csv", "surface.csv", "summary.json"})
+      EXPECT_THAT(ended.out, HasSubstr(std::string("made again from the record: ") + name + "\n"));
+    EXPECT_EQ(test::lasting_files(directory), whole);
+    EXPECT_EQ(text_of(directory / "record.jsonl"), record) << "nothing is added";
+  }
+  EXPECT_THAT(palpate({"run", paper()}).out, Not(HasSubstr("made again")));
 }
 
 class KilledBeforeItsSummary : public Shell, public testing::WithParamInterface<std::pair<std::string, Words>> {};
@@ -87,7 +104,7 @@ TEST_P(KilledBeforeItsSummary, ARunIsSummedUpAsTheUnbrokenOneByteForByte) {
   const fs::path directory = ran(GetParam().second, config(GetParam().first));
   const auto whole = test::lasting_files(directory);
   for (int kill = 0; kill < 2; ++kill) {
-    fs::remove(directory / "summary.json");
+    test::forget_end(directory);
     fs::remove(directory / "surface.csv");
     const Ended resumed = resume(directory);
     EXPECT_EQ(resumed.status, 0) << resumed.err;

@@ -38,9 +38,9 @@ TEST_F(Replay, SearchesAgainWhereTheRunDid) {
 
 TEST_F(Replay, NoticesANumberThatWasTamperedWithAndAFieldThatNoReplayHas) {
   const fs::path directory = ran("seed=3", config("paper/object_i_right.yaml"));
-  const std::string taps = text_of(directory / "taps.jsonl");
+  const std::string taps = part_of(directory, "tap");
   const auto tampered = [&](const std::string& text) {
-    write(directory / "taps.jsonl", text);
+    test::write_part(directory, "tap", text);
     const Ended ended = palpate({"replay", directory});
     EXPECT_EQ(ended.status, 1);
     return ended.out;
@@ -71,7 +71,7 @@ TEST_F(Replay, KnowsWhatABackendReadWhoeverChoseTheSecondTap) {
   environment_ = {test::with_plugin("cannot_go_on")};
   for (const char* initial : {"initial.count=1", "initial.count=3"}) {
     const fs::path run = replayed(Words("backend.type=cannot_go_on taps=4 acquisition=random") + initial);
-    const std::string taps = text_of(run / "taps.jsonl");
+    const std::string taps = part_of(run, "tap");
     EXPECT_THAT(taps.substr(taps.find('\n')), HasSubstr("\"height_process\": {\"kernel\"")) << "it is recorded";
   }
 }
@@ -83,7 +83,7 @@ TEST_F(Replay, KnowsWhatWasReadByARunThatStoppedAtItsFirstLook) {
 }
 
 TEST_F(Replay, AgreesWhereAForecastReadsNothingBeforeTheFirstHit) {
-  const std::string taps = text_of(replayed("surface=two_part stop.expected_rmse=1mm") / "taps.jsonl");
+  const std::string taps = part_of(replayed("surface=two_part stop.expected_rmse=1mm"), "tap");
   EXPECT_THAT(taps.substr(0, taps.find("{\"tap\": 7")), Not(HasSubstr("surface_process"))) << "the first hit is tap 8";
   EXPECT_THAT(taps, HasSubstr("surface_process"));
 }

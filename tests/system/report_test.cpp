@@ -35,7 +35,7 @@ class Report : public Shell {
 TEST_F(Report, OfASweepHoldsEveryJobItsStateAndItsNumbersAndTheNameOfTheCommandLine) {
   const fs::path directory = swept("acquisition=weighted,uncertainty seed=range(0,3) taps=6 name=other");
   const auto results = csv_rows(text_of(directory / "results.csv"));
-  fs::remove(directory / "jobs" / results.at(4).at("id") / "summary.json");  // as if killed before its end
+  test::forget_end(directory / "jobs" / results.at(4).at("id"));  // as if killed before its end
   const json data = reported(directory);
   EXPECT_EQ(data.at("name"), "other");
   EXPECT_EQ(data.at("id"), directory.filename().string());
@@ -62,16 +62,16 @@ TEST_F(Report, OfASweepHoldsEveryJobItsStateAndItsNumbersAndTheNameOfTheCommandL
 TEST_F(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   const fs::path directory = ran();
   fs::remove(directory / "summary.json");
-  std::string taps = text_of(directory / "taps.jsonl");
-  taps.resize(taps.find("{\"tap\": 6") + 20);  // the sixth line is being written
-  write(directory / "taps.jsonl", taps);
+  std::string record = text_of(directory / "record.jsonl");
+  record.resize(record.find("{\"tap\": 6") + 20);  // that line is being written
+  write(directory / "record.jsonl", record);
   const json data = reported(directory);
   EXPECT_EQ(data.at("taps").size(), 5U);
   EXPECT_EQ(data.at("moments").size(), 6U);
   EXPECT_TRUE(data.at("summary").is_null());
   EXPECT_EQ(data.at("state"), "unfinished");
   EXPECT_THAT(data.at("warnings").at(0).get<std::string>(), HasSubstr("has not ended: this is how it stands after 5"));
-  EXPECT_TRUE(text_of(directory / "taps.jsonl") == taps);
+  EXPECT_TRUE(text_of(directory / "record.jsonl") == record);
 }
 
 TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
@@ -103,8 +103,7 @@ TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
 
 TEST_F(Report, OfARunThatFailedWithoutAReasonSaysSo) {
   const fs::path directory = ran("taps=4");
-  replace(directory / "summary.json", "\"done\"", "\"failed\"");
-  replace(directory / "summary.json", "\"tap budget\"", "null");
+  test::set_end(directory, R"({"status": "failed", "stop_reason": null})");
   EXPECT_EQ(reported(directory).at("warnings").at(0), "The run failed and does not say why.");
 }
 

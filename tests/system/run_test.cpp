@@ -29,11 +29,13 @@ TEST_F(ARun, PrintsALineATapAndASummaryAndLeavesEveryFileOfTheContract) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");
   EXPECT_EQ(lines(ended.out), 1 + 17 + 4);
-  for (const char* name : {"config.yaml", "manifest.json", "summary.json"})
+  for (const char* name : {"config.yaml", "record.jsonl", "summary.json"})
     EXPECT_TRUE(fs::exists(directory() / name)) << name;
-  EXPECT_EQ(lines(text_of(directory() / "taps.jsonl")), 17);
+  EXPECT_EQ(lines(part_of(directory(), "tap")), 17);
   EXPECT_EQ(lines(text_of(directory() / "taps.csv")), 18);
-  EXPECT_EQ(lines(text_of(directory() / "timings.csv")), 18);
+  EXPECT_EQ(lines(part_of(directory(), "timing")), 17);
+  const auto entries = std::distance(fs::directory_iterator(directory()), fs::directory_iterator());
+  EXPECT_EQ(entries, 5) << "config.yaml, record.jsonl, taps.csv, surface.csv, summary.json";
   EXPECT_EQ(lines(text_of(directory() / "surface.csv")), 1 + 47 * 47);
   EXPECT_EQ(directory().parent_path().filename(), "object_i");
   EXPECT_EQ(directory().filename().string().size(), 12U);
@@ -103,10 +105,9 @@ TEST_F(ARun, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
   EXPECT_THAT(run("kernel.length_scale=1e-300m scene.objects.0.at=[30cm,5cm] --print-config").out,
               HasSubstr("# this config cannot be run: "));
 
-  EXPECT_THAT(text_of(ran() / "manifest.json"),
-              HasSubstr("\"models\": {\n    \"height process\": [\n      \"acquisition weighted\",\n"
-                        "      \"fallback uncertainty, from its first use on\"\n    ],\n"
-                        "    \"weight process\": [\n      \"acquisition weighted\"\n    ]\n  },"));
+  EXPECT_EQ(part_of(ran(), "setup"),
+            "{\"setup\": 1, \"announces\": false, \"models\": {\"height process\": [\"acquisition weighted\", "
+            "\"fallback uncertainty, from its first use on\"], \"weight process\": [\"acquisition weighted\"]}}\n");
 }
 
 TEST_F(ARun, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
@@ -136,7 +137,7 @@ TEST_F(ARun, TheReplayBackendRepeatsARecordedRunFromItsTable) {
   const fs::path second = ran({"backend={type: replay, record: " + first.string() + "}"});
   const auto contacts = [](const fs::path& run) {
     std::string out;
-    for (const Row& row : read_json_lines(run / "taps.jsonl").rows) {
+    for (const Row& row : rows_of(run, "tap")) {
       for (const char* name : {"x", "y", "outcome", "height", "score", "ties"}) out += csv_cell(*row.find(name)) + " ";
     }
     return out;
@@ -157,7 +158,7 @@ TEST_F(ARun, InterruptedInASimulationItEndsWith130AndResumedItEqualsTheUnbrokenO
   // Waits for the first tap; the second takes more than a second: the signal falls into it.
   EXPECT_TRUE(test::eventually([&] {
     const fs::path begun = test::run_in(here() / "runs");
-    return !begun.empty() && !text_of(begun / "taps.jsonl").empty();
+    return !begun.empty() && !part_of(begun, "tap").empty();
   }));
   child->signal(SIGINT);
   const Ended ended = child->wait();
@@ -167,14 +168,14 @@ TEST_F(ARun, InterruptedInASimulationItEndsWith130AndResumedItEqualsTheUnbrokenO
   EXPECT_THAT(status_of(directory()).out, HasSubstr("unfinished after "));
   EXPECT_THAT(refused(words), HasSubstr("'palpate resume' carries on"));
   ASSERT_EQ(resume(directory()).status, 0);
-  EXPECT_EQ(text_of(directory() / "taps.jsonl"), text_of(ran("taps=4 --runs unbroken") / "taps.jsonl"))
+  EXPECT_EQ(part_of(directory(), "tap"), part_of(ran("taps=4 --runs unbroken"), "tap"))
       << "the tap that was broken off was made again, as if nothing had happened";
 }
 
 TEST_F(ARun, ThatAnotherProcessHoldsEndsWith75) {
   const fs::path directory = ran();
-  const FileLock lock(directory / "lock");
-  fs::remove(directory / "summary.json");
+  test::forget_end(directory);
+  const FileLock lock(directory / "record.jsonl");
   for (const Words& words : {Words{"run", paper(), "--force"}, Words{"resume", directory}})
     EXPECT_THAT(refused(words, 75), HasSubstr("another process holds this run"));
   EXPECT_THAT(status_of(directory).out, HasSubstr("running"));

@@ -82,20 +82,18 @@ void Shell::break_off(const fs::path& run) const {
 }
 
 void cut_taps(const fs::path& run) {
-  const bool packed = fs::exists(run / "record.jsonl");
-  const fs::path file = run / (packed ? "record.jsonl" : "taps.jsonl");
+  const fs::path file = run / "record.jsonl";
   const std::string text = text_of(file);
   const std::size_t last = text.rfind("\n{\"tap\": ");
-  const std::size_t end = packed ? text.find('\n', last + 1) + 1 : text.size();
-  fs::resize_file(file, (text.find("{\"tap\": ") + end) / 2);
+  fs::resize_file(file, (text.find("{\"tap\": ") + text.find('\n', last + 1) + 1) / 2);
 }
 
 void Shell::make_of_another_build(const fs::path& run) const {
-  const fs::path file = run / (fs::exists(run / "record.jsonl") ? "record.jsonl" : "manifest.json");
-  std::string manifest = text_of(file);
-  char& first = manifest[manifest.find("\"build\": \"") + 10];
+  const fs::path file = run / "record.jsonl";
+  std::string record = text_of(file);
+  char& first = record[record.find("\"build\": \"") + 10];
   first = first == '0' ? '1' : '0';
-  write(file, manifest);
+  write(file, record);
 }
 
 fs::path job_of(const fs::path& sweep, int index) {

@@ -45,7 +45,7 @@ class StepRun : public Shell {
   }
 
   /// Announcements and results.
-  int logged() const { return lines(text_of(directory() / "taps.jsonl")); }
+  int logged() const { return lines(test::lasting_part_of(directory())); }
   bool program_asked() const { return fs::exists(here() / "asked"); }
 };
 
@@ -72,7 +72,7 @@ TEST_F(StepRun, ShowsEveryTapBeforeItIsAnnouncedMakesItAtEnterAndLeavesTheRecord
                     HasSubstr("tap 4 of 4 at ("), HasSubstr(") cm, chosen by the acquisition; expected height ")));
   const fs::path stepped = directory();
   ASSERT_EQ(palpate(robot("--force --quiet --runs others")).status, 0);
-  EXPECT_EQ(text_of(stepped / "taps.jsonl"), text_of(directory("others") / "taps.jsonl"));
+  EXPECT_EQ(part_of(stepped, "tap"), part_of(directory("others"), "tap"));
 }
 
 TEST_F(StepRun, EndsAtQWithoutATraceOfTheTapAndResumeCarriesOn) {

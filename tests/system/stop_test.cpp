@@ -20,7 +20,7 @@ TEST_F(Stops, AtTheExpectedErrorAreInTheRecordAndReplayed) {
   EXPECT_LT(summary["taps"], 60);
   EXPECT_LT(summary["expected_rmse_m"], 0.015);
 
-  for (const std::string& line : lines_of(text_of(directory / "taps.jsonl"))) {
+  for (const std::string& line : lines_of(part_of(directory, "tap"))) {
     const nlohmann::json tap = nlohmann::json::parse(line);
     ASSERT_TRUE(tap.contains("expected_rmse_m"));
     EXPECT_EQ(tap["expected_rmse_m"].is_null(), tap["tap"] <= summary["first_hit_tap"]);
@@ -31,7 +31,7 @@ TEST_F(Stops, AtTheExpectedErrorAreInTheRecordAndReplayed) {
 
 TEST_F(Stops, AddNothingToTheRecordOfOtherRuns) {
   const fs::path directory = ran("taps=5", config("default.yaml"));
-  for (const char* file : {"taps.jsonl", "taps.csv", "summary.json"})
+  for (const char* file : {"record.jsonl", "taps.csv", "summary.json"})
     EXPECT_THAT(text_of(directory / file), Not(HasSubstr("expected_rmse_m"))) << file;
 }
 

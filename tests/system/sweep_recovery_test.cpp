@@ -27,11 +27,7 @@ class Recovery : public Shell {
   Ended resume(const Words& more = {}) const { return Shell::resume(directory(), more); }
 
   /// How often a job was begun.
-  int attempts(int index) const {
-    int count = 0;
-    for (const Row& row : rows_of(job(index), "attempts.jsonl")) count += row.find("pid") != nullptr;
-    return count;
-  }
+  int attempts(int index) const { return lines(part_of(job(index), "attempt")); }
 
   /// A sweep over ways in which the process of a job ends in its fifth tap.
   Ended dying(const std::string& ways) const { return sweep("backend=dies --quiet backend.way=" + ways); }
@@ -46,8 +42,7 @@ class Recovery : public Shell {
   /// Begins such a sweep and waits until its first job has a tap.
   std::unique_ptr<test::Child> begun(int jobs, const std::string& pace = "0.006") const {
     auto child = begin(slow(jobs, pace));
-    EXPECT_TRUE(eventually([&] { return pids().size() == 2 && !part_of(job(0), "taps.jsonl").empty(); }))
-        << child->err();
+    EXPECT_TRUE(eventually([&] { return pids().size() == 2 && !part_of(job(0), "tap").empty(); })) << child->err();
     return child;
   }
   /// Of the processes that began jobs.
@@ -57,7 +52,7 @@ class Recovery : public Shell {
     // Step by step, because folders get other names meanwhile.
     for (fs::recursive_directory_iterator at(here(), none), end; at != end; at.increment(none)) {
       if (at->path().filename() != "record.jsonl") continue;
-      for (const Row& row : rows_of(at->path().parent_path(), "attempts.jsonl")) {
+      for (const Row& row : rows_of(at->path().parent_path(), "attempt")) {
         if (const Scalar* pid = row.find("pid")) out.insert(static_cast<long>(std::get<std::int64_t>(*pid)));
       }
     }
@@ -67,7 +62,7 @@ class Recovery : public Shell {
   void expect_done(int jobs) const {
     EXPECT_THAT(status(), StartsWith(std::to_string(jobs) + " jobs, " + std::to_string(jobs) + " done"));
     EXPECT_EQ(lines(text_of(directory() / "results.csv")), jobs + 1);
-    for (int i = 0; i < jobs; ++i) EXPECT_EQ(lines(part_of(job(i), "taps.jsonl")), 17);
+    for (int i = 0; i < jobs; ++i) EXPECT_EQ(lines(part_of(job(i), "tap")), 17);
   }
   /// The same, with the bytes of an unbroken sweep.
   void expect_whole(int jobs) const {
@@ -118,11 +113,11 @@ TEST_F(Recovery, AJobThatIsKilledIsBegunAgainButNotForEver) {
   EXPECT_THAT(ended.out, HasSubstr("was killed by signal 9 (Killed), as is done when memory runs out, in attempt 3"));
   EXPECT_EQ(attempts(0), 1);
   EXPECT_EQ(attempts(1), 3);
-  EXPECT_EQ(lines(part_of(job(1), "taps.jsonl")), 4) << "what was tapped before is kept, and not tapped again";
+  EXPECT_EQ(lines(part_of(job(1), "tap")), 4) << "what was tapped before is kept, and not tapped again";
   EXPECT_EQ(resume("--retry-failed").status, 1);
-  EXPECT_EQ(attempts(1), 4) << "whoever asks gets one more";
-  EXPECT_EQ(resume("--retry-failed --attempts 6").status, 1);
-  EXPECT_EQ(attempts(1), 6);
+  EXPECT_EQ(attempts(1), 6) << "whoever asks gets as many more";
+  EXPECT_EQ(resume("--retry-failed --attempts 2").status, 1);
+  EXPECT_EQ(attempts(1), 8);
 }
 
 TEST_F(Recovery, WhatFailedKeepsItsReasonAndIsTriedAgainOnRequestOnly) {
@@ -164,7 +159,7 @@ TEST_F(Recovery, AnInterruptEndsTheTapsUnderWayAndLeavesTheRest) {
   EXPECT_EQ(ended.status, 130);
   EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
   EXPECT_THAT(status(), StartsWith("5 jobs, 0 done, 0 running, 0 failed, 2 unfinished, 3 missing"));
-  EXPECT_THAT(part_of(job(0), "attempts.jsonl"), HasSubstr("\"end\": \"interrupted\""));
+  EXPECT_THAT(part_of(job(0), "end"), HasSubstr("\"end\": \"interrupted\""));
   ASSERT_EQ(resume().status, 0);
   expect_done(5);
 }
@@ -179,7 +174,7 @@ TEST_F(Recovery, TwoLaunchersShareTheWorkAndRunNoJobTwice) {
 
 TEST_F(Recovery, AChangedConfigOfAJobFailsThatJobAndOneOfTheSweepRefusesItAll) {
   ASSERT_EQ(dying("none,fail").status, 1);
-  fs::remove(job(0) / "summary.json");
+  test::forget_end(job(0));
   for (const char* name : {"summary.json", "record.jsonl"}) fs::remove(job(1) / name);
   replace(job(1) / "config.yaml", "taps: 17", "taps: 18");
   const Ended of_job = resume();
@@ -217,47 +212,32 @@ TEST_F(Recovery, SomeJobsAloneCanBeCarriedOn) {
   EXPECT_THAT(judged.err, HasSubstr("--jobs and --junit do not go together"));
 }
 
-/// With a file for each part, as older sweeps have them, or with one for all.
-class HalfALine : public Recovery, public testing::WithParamInterface<const char*> {};
-
-TEST_P(HalfALine, OfAnAttemptDoesNoHarm) {
+TEST_F(Recovery, HalfALineDoesNoHarm) {
   ASSERT_EQ(dying("none,fail").status, 1);
-  const fs::path file = job(1) / GetParam();
-  if (file.filename() == "attempts.jsonl") test::unpack(job(1));
+  const fs::path file = job(1) / "record.jsonl";
   const std::string whole = text_of(file);
   write(file, whole + "{\"attem");
   EXPECT_EQ(resume("--retry-failed").status, 1);
   EXPECT_EQ(attempts(1), 2);
   EXPECT_THAT(text_of(file), AllOf(StartsWith(whole), Not(HasSubstr("{\"attem{"))));
+  EXPECT_THAT(part_of(job(1), "attempt"), HasSubstr("\"cut\": 7}"));
 
   write(file, "{\"attem");
   EXPECT_EQ(resume("--retry-failed").status, 1);
   EXPECT_EQ(attempts(1), 1) << "half a line is no attempt, and the next begins a line of its own";
 }
 
-INSTANTIATE_TEST_SUITE_P(InEachLayout, HalfALine, testing::Values("record.jsonl", "attempts.jsonl"),
-                         [](const auto& one) { return std::string(one.param).substr(0, 6); });
-
-TEST_F(Recovery, ASweepOfAnOlderPalpateIsReadAndCarriedOnWithTheFilesThatItHas) {
-  const fs::path sweep = swept("seed=range(0,4)");
-  const Words compare = Words{"compare", sweep} + "--by seed --metric rmse_m --at 9";
-  const std::string compared = palpate(compare).out;
-  fs::remove(sweep / "results_at_9.csv");
-  for (int i = 0; i < 4; ++i) {
-    fs::remove(job(i) / "summary_at_9.json");
-    if (i != 3) test::unpack(job(i));
-  }
-  EXPECT_EQ(palpate(compare).out, compared);
-  EXPECT_EQ(palpate({"replay", job(0)}).status, 0);
-  for (int i = 0; i < 2; ++i) break_off(job(i));
-  EXPECT_THAT(status(), StartsWith("4 jobs, 2 done, 0 running, 0 failed, 2 unfinished"));
+TEST_F(Recovery, AJobThatWasKilledBetweenItsEndAndItsSummaryGetsThatAndIsNotRunAgain) {
+  const fs::path sweep = swept("seed=range(0,3)");
+  const std::string summary = text_of(job(1) / "summary.json");
+  const std::string taps = text_of(job(2) / "taps.csv");
+  fs::remove(job(1) / "summary.json");
+  fs::resize_file(job(2) / "taps.csv", 99);
+  EXPECT_THAT(status(), StartsWith("3 jobs, 3 done"));
   ASSERT_EQ(resume().status, 0);
-  expect_done(4);
-  for (int i = 0; i < 4; ++i) {
-    EXPECT_EQ(fs::exists(job(i) / "record.jsonl"), i == 3);
-    EXPECT_EQ(attempts(i), i < 2 ? 2 : 1);
-  }
-  EXPECT_EQ(palpate({"replay", job(0)}).status, 0);
+  EXPECT_EQ(text_of(job(1) / "summary.json"), summary);
+  EXPECT_EQ(text_of(job(2) / "taps.csv"), taps);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(attempts(i), 1);
 }
 
 TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
@@ -310,17 +290,19 @@ TEST_F(Recovery, AJobWhoseFolderWasDeletedIsRunAgainByTheSweepWithItsConfig) {
   EXPECT_EQ(palpate({"replay", job(0)}).status, 0);
 }
 
-TEST_F(Recovery, OfADamagedResultItIsSaidHowToMakeItAnew) {
+TEST_F(Recovery, OfADamagedResultItIsSaidWhichFileToPutBack) {
   swept("taps=4 seed=1,2");
-  write(job(1) / "summary.json", "");
+  const fs::path file = job(1) / "record.jsonl";
+  const std::string whole = text_of(file);
+  write(file, whole.substr(0, whole.size() - 2) + "\n");
   for (const Ended& ended : {status_of(directory()), resume()}) {
-    EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 1"), HasSubstr(job(1).string()),
-                                 HasSubstr("remove it, and 'palpate resume'")));
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 1"), HasSubstr(file.string() + ": its last line is not"),
+                                 HasSubstr("put the file back as it was")));
   }
   EXPECT_EQ(resume().status, 1);
-  fs::remove(job(1) / "summary.json");
+  write(file, whole);
   EXPECT_EQ(resume().status, 0);
-  EXPECT_EQ(lines(part_of(job(1), "taps.jsonl")), 4);
+  EXPECT_EQ(attempts(1), 1);
 }
 
 }  // namespace

@@ -113,15 +113,10 @@ TEST_P(Stress, EveryJobIsDoneNoneTwiceAndNoTapTwice) {
   int begun = 0, unknown = 0;
   for (const fs::path& job : jobs_of(directory())) {
     EXPECT_THAT(text_of(job / "summary.json"), testing::HasSubstr("\"status\": \"done\""));
-    int ends = 0;
-    for (const Row& row : rows_of(job, "attempts.jsonl")) {
-      begun += row.find("pid") != nullptr ? 1 : 0;
-      ends += row.find("end") != nullptr ? 1 : 0;
-    }
-    EXPECT_LE(ends, 1) << job << " ran to its end more than once";
+    begun += lines(part_of(job, "attempt"));
+    EXPECT_EQ(lines(part_of(job, "end")), 1) << job << " ran to its end more than once";
     std::int64_t next = 1;
-    for (const Row& row : rows_of(job, "taps.jsonl")) {
-      if (is_intent(row)) continue;
+    for (const Row& row : rows_of(job, "tap")) {
       EXPECT_EQ(whole(row, "tap"), next++) << job;
       unknown += row.text("outcome") == "unknown" ? 1 : 0;
     }

@@ -121,13 +121,13 @@ TEST_F(Sweeps, CarryOnWithWhatIsMissing) {
   EXPECT_EQ(palpate({"resume", directory}).status, 0);
   EXPECT_EQ(text_of(job / "taps.csv"), taps);
   EXPECT_EQ(lines(text_of(directory / "results.csv")), before);
-  for (const fs::path& other : jobs_of(directory)) EXPECT_EQ(lines(part_of(other, "attempts.jsonl")), 2);
+  for (const fs::path& other : jobs_of(directory)) EXPECT_EQ(lines(part_of(other, "attempt")), 1);
 }
 
 TEST_F(Sweeps, CalledAgainRunWhatIsMissingAndTellTheSame) {
   const Ended first = sweep("seed=range(0,3)");
   const fs::path before = directory();
-  fs::remove(jobs_of(before).front() / "summary.json");
+  test::forget_end(jobs_of(before).front());
   fs::remove(before / "results.csv");
   const Ended again = sweep("seed=range(0,3)");
   EXPECT_EQ(again.status, 0);
@@ -150,7 +150,7 @@ TEST_F(Sweeps, CarryOnAJobThatWasBrokenOffThoughOtherJobsUseOtherPlugins) {
     const Ended ended = palpate({"resume", directory});
     EXPECT_EQ(ended.status, 0) << ended.out;
     EXPECT_EQ(text_of(job / "taps.csv"), taps);
-    EXPECT_EQ(part_of(job, "manifest.json").find("/random.so") != std::string::npos,
+    EXPECT_EQ(part_of(job, "manifest").find("/random.so") != std::string::npos,
               text_of(job / "config.yaml").find("type: random") != std::string::npos)
         << "a manifest names the plugins of its own run";
   }

@@ -36,7 +36,7 @@ class UrArm : public Shell {
 
   fs::path log_file() const { return here() / "arm.txt"; }
   std::string log() const { return fs::exists(log_file()) ? text_of(log_file()) : ""; }
-  std::string record() const { return text_of(directory() / "taps.jsonl"); }
+  std::string record() const { return part_of(directory(), "tap"); }
   std::vector<Cells> taps() const { return csv_rows(text_of(directory() / "taps.csv")); }
 
   int noted(const std::string& what) const {

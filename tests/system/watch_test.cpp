@@ -32,8 +32,9 @@ class WatchedRun : public Shell {
   fs::path under_way(std::size_t taps, const Words& more = {}) {
     const fs::path directory = ran(more);
     fs::remove(directory / "summary.json");
-    lines_ = lines_of(text_of(directory / "taps.jsonl"));
-    write(directory / "taps.jsonl", "");
+    lines_ = lines_of(part_of(directory, "tap"));
+    begun_ = test::record_until(text_of(directory / "record.jsonl"), 0);
+    write(directory / "record.jsonl", begun_);
     record(directory, 0, taps);
     return directory;
   }
@@ -42,7 +43,7 @@ class WatchedRun : public Shell {
     for (std::size_t i = from; i < to; ++i) append(directory, lines_.at(i) + "\n");
   }
   static void append(const fs::path& directory, const std::string& text) {
-    std::ofstream(directory / "taps.jsonl", std::ios::app | std::ios::binary) << text << std::flush;
+    std::ofstream(directory / "record.jsonl", std::ios::app | std::ios::binary) << text << std::flush;
   }
 
   /// What a page lacks that is at `at`; it waits for it.
@@ -83,6 +84,7 @@ class WatchedRun : public Shell {
 
   std::unique_ptr<test::Child> server_;
   std::vector<std::string> lines_;
+  std::string begun_;  ///< what is recorded before the first tap
 };
 
 TEST_F(WatchedRun, HasAnAddressThatNobodyCanGuessOnThisMachineAlone) {
@@ -138,8 +140,8 @@ TEST_F(WatchedRun, IsShownToWhoHasTheAddressAndNothingElseIsToAnybody) {
   }
   EXPECT_EQ(get(root, ""), 403) << "without a host";
   EXPECT_EQ(get(root, own + own), 403) << "with two";
-  for (const char* rest : {"config.yaml", "taps.jsonl", "report.html", "../", "..%2f", "%2e%2e/", "../../../etc/passwd",
-                           "jobs/", "jobs/../", ".", "news/", "/etc/passwd"}) {
+  for (const char* rest : {"config.yaml", "record.jsonl", "report.html", "../", "..%2f", "%2e%2e/",
+                           "../../../etc/passwd", "jobs/", "jobs/../", ".", "news/", "/etc/passwd"}) {
     EXPECT_EQ(get(root + rest, own), 404) << rest;
   }
   EXPECT_EQ(get("/" + address.token(), own), 404);
@@ -198,11 +200,12 @@ TEST_F(WatchedRun, TellsOfATapWhenItsLineIsWholeWhatTheReportWouldHave) {
 
 TEST_F(WatchedRun, BeginsBeforeThereIsATapAndSaysWhatItWaitsFor) {
   const fs::path directory = under_way(0);
-  fs::remove(directory / "taps.jsonl");
+  fs::remove(directory / "record.jsonl");
   const Address address = watch({directory});
   const json begun = data(address);
   EXPECT_THAT(begun.at("waiting").get<std::string>(), HasSubstr("No tap is recorded yet"));
   EXPECT_EQ(begun.at("name"), "object_i");
+  append(directory, begun_);
   record(directory, 0, 1);
   EXPECT_EQ(news(address, begun.at("live")).at("anew"), true);
   data(address, 2);
@@ -229,7 +232,7 @@ TEST_F(WatchedRun, BeginsAnewWhereTheRecordIsAnotherOne) {
   const fs::path directory = under_way(5);
   const Address address = watch({directory});
   const std::string at = data(address, 6).at("live");
-  fs::remove(directory / "taps.jsonl");
+  write(directory / "record.jsonl", begun_);
   record(directory, 0, 2);
   EXPECT_EQ(news(address, at).at("anew"), true);
   data(address, 3);
@@ -239,11 +242,11 @@ TEST_F(WatchedRun, SaysWhatIsWrongWithARecordAndGoesOnOnceItIsPutRight) {
   const fs::path directory = under_way(5);
   const Address address = watch({directory});
   const std::string at = data(address, 6).at("live");
-  const std::string good = text_of(directory / "taps.jsonl");
+  const std::string good = text_of(directory / "record.jsonl");
   append(directory, "no JSON\n");
   const json trouble = news(address, at);
-  EXPECT_THAT(trouble.at("trouble").get<std::string>(), HasSubstr("taps.jsonl:6: is not a JSON object"));
-  write(directory / "taps.jsonl", good);
+  EXPECT_THAT(trouble.at("trouble").get<std::string>(), HasSubstr("record.jsonl:9: is not a JSON object"));
+  write(directory / "record.jsonl", good);
   EXPECT_EQ(news(address, trouble.at("at")).at("anew"), true);
   data(address, 6);
 }
@@ -302,11 +305,10 @@ TEST_F(WatchedRun, TakesThePortThatIsAskedForAndSaysWhereItCannot) {
 
 TEST_F(WatchedRun, OfASweepFillsUpAndHasAPageForEachJobAndForNothingElse) {
   const fs::path directory = swept("seed=range(0,3) taps=4");
-  std::vector<std::string> summaries;
+  std::vector<std::string> records;
   for (int job = 0; job < 3; ++job) {
-    const fs::path summary = job_of(directory, job) / "summary.json";
-    summaries.push_back(text_of(summary));
-    if (job > 0) fs::remove(summary);
+    records.push_back(text_of(job_of(directory, job) / "record.jsonl"));
+    if (job > 0) test::forget_end(job_of(directory, job));
   }
   const Address address = watch({directory});
   json begun = data(address);
@@ -316,7 +318,7 @@ TEST_F(WatchedRun, OfASweepFillsUpAndHasAPageForEachJobAndForNothingElse) {
     return out;
   };
   EXPECT_THAT(states(begun), ElementsAre("done", "unfinished", "unfinished"));
-  write(job_of(directory, 1) / "summary.json", summaries[1]);
+  write(job_of(directory, 1) / "record.jsonl", records[1]);
   const json then = news(address, begun.at("live"));
   EXPECT_THAT(states(then.at("sweep")), ElementsAre("done", "done", "unfinished"));
   const std::string id = begun.at("jobs").at(1).at("id");
@@ -366,7 +368,7 @@ TEST_F(WatchedRun, IsTheSameRunTapByTapAsOneThatNobodyWatches) {
   const fs::path watched = WatchedRun::directory("watched");
   const test::Watchers left(here());
   EXPECT_EQ(left.count(), 1U);
-  EXPECT_TRUE(text_of(alone / "taps.jsonl") == text_of(watched / "taps.jsonl"));
+  EXPECT_TRUE(part_of(alone, "tap") == part_of(watched, "tap"));
 }
 
 }  // namespace

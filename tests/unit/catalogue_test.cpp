@@ -118,7 +118,7 @@ TEST_F(Records, OfTheKindThatACommandTakesAreMeantWhereThereAreAny) {
 
 TEST_F(Records, ThatAreDamagedAreFoundForTheCommandToSaySo) {
   run("first/000000000001", 1, "name: [\n");
-  folder_.write("runs/second/000000000002/summary.json", "{");
+  folder_.write("runs/second/000000000002/record.jsonl", "{");
   EXPECT_EQ(found("first"), runs() / "first/000000000001");
   EXPECT_EQ(found("second"), runs() / "second/000000000002");
   EXPECT_THAT(refusal(runs()), StartsWith(runs().string() + ": stands for 2 runs: "));

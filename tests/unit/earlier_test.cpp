@@ -4,6 +4,7 @@
 
 #include "record/fields.hpp"
 #include "record/session.hpp"
+#include "support/parts.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
@@ -103,7 +104,7 @@ TEST_P(Earlier, HasItsShareOfTheTimes) {
   EXPECT_NEAR(number(earlier[1], "compute_seconds"), number(whole.summary, "compute_seconds") * before / all, 1e-9);
   EXPECT_EQ(cell(earlier[1], "peak_rss_bytes"), "") << "nobody measured it then";
   // Without its times a run is as good as before, but for those.
-  fs::resize_file(whole.directory / "timings.csv", 30);
+  write_part(whole.directory, "timing", "");
   const Row untimed = summaries_after(read_recording(workshop_, whole.directory), {9}).front();
   EXPECT_EQ(cell(untimed, "rmse_m"), cell(earlier[1], "rmse_m"));
   EXPECT_EQ(cell(untimed, "compute_seconds"), "");

@@ -4,6 +4,7 @@
 #include "children/child_process.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
+#include "support/parts.hpp"
 #include "support/testing.hpp"
 
 #include <fstream>
@@ -25,10 +26,17 @@ TapRecord tap(int number, double height) {
 
 constexpr std::array<double, kPhases> kSeconds{0.5, 0.0, 0.25, 0.125, 0.0625};
 
+/// Begins a run, or an attempt at it, as far as its first tap.
+void set_up(RunDirectory& run, bool announce) {
+  if (!run.before().manifest) run.begin(Tree::map());
+  run.begin_attempt("b", false);
+  run.set_up(announce, Tree::map());
+}
+
 /// Writes three taps as a living run does.
 void write_three(const fs::path& directory, bool announce) {
   RunDirectory run(directory);
-  run.open(announce);
+  set_up(run, announce);
   for (int i = 1; i <= 3; ++i) {
     run.announce(tap(i, 0.09));
     run.record(tap(i, 0.09), kSeconds);
@@ -55,29 +63,12 @@ TEST_F(RunFolder, RecoversTheTapsThatWereRecorded) {
   }
 }
 
-TEST_F(RunFolder, CutsOffHalfALineAtEveryLength) {
-  write_three(folder_.path() / "whole", false);
-  const std::string whole = text_of(folder_.path() / "whole" / "taps.jsonl");
-  const auto second_end = whole.find('\n', whole.find('\n') + 1) + 1;
-  for (std::size_t cut = second_end; cut < whole.size(); cut += 7) {
-    const fs::path file = folder_.write("cut/taps.jsonl", whole.substr(0, cut));
-    {
-      RunDirectory run(folder_.path() / "cut");
-      EXPECT_EQ(run.recover().size(), 2U) << cut;
-      EXPECT_EQ(text_of(file), whole.substr(0, second_end));
-      run.open(false);
-      run.record(tap(3, 0.09), kSeconds);
-    }
-    EXPECT_EQ(text_of(file), whole) << "what follows begins on a line of its own";
-    fs::remove_all(folder_.path() / "cut");
-  }
-}
-
 TEST_F(RunFolder, AnIntentWithoutResultBecomesATapOfUnknownOutcomeOnce) {
   write_three(folder_.path() / "run", true);
-  append(folder_.path() / "run" / "taps.jsonl", to_json_line(intent_row(tap(4, 0.0))) + "\n");
+  append(folder_.path() / "run" / "record.jsonl", to_json_line(intent_row(tap(4, 0.0))) + "\n");
   for (int i = 0; i < 2; ++i) {
     RunDirectory run(folder_.path() / "run");
+    set_up(run, true);
     const std::vector<PastTap> past = run.recover();
     ASSERT_EQ(past.size(), 4U);
     EXPECT_EQ(past[3].contact.outcome, Outcome::unknown);
@@ -92,37 +83,43 @@ void expect_nothing_is_written(RunDirectory& run, const std::string& words) {
   EXPECT_THAT(words_of([&] { run.announce(tap(2, 0.09)); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.record(tap(2, 0.09), kSeconds); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.write("summary.json", std::string("{}")); }), StartsWith(words));
-  EXPECT_THAT(words_of([&] { run.write_manifest(Tree::map()); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.begin(Tree::map()); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.begin_attempt("b", false); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.set_up(true, Tree::map()); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.note_learnt("a", "b"); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.write_objects({Row()}); }), StartsWith(words));
-  EXPECT_THAT(words_of([&] { run.files().add_attempt(Row()); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.end(Ending::How::done, "", Row()); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.write_made("taps.csv", ""); }), StartsWith(words));
 }
 
-TEST_F(RunFolder, IsWrittenToByNobodyWhoseLockWasRemovedOrTakenOver) {
+TEST_F(RunFolder, IsWrittenToByNobodyWhoseRecordWasRemovedOrTakenOver) {
   const fs::path folder = folder_.path() / "run";
-  const fs::path lock = folder / "lock";
+  const fs::path record = folder / "record.jsonl";
   RunDirectory run(folder);
-  run.open(true);
+  set_up(run, true);
   run.announce(tap(1, 0.09));
   run.record(tap(1, 0.09), kSeconds);
-  const std::string recorded = text_of(folder / "taps.jsonl");
-  fs::remove(lock);
-  expect_nothing_is_written(run, lock.string() + ": was removed while a run was writing beside it");
+  const std::string recorded = text_of(record);
+  fs::rename(record, folder_.path() / "kept");
+  expect_nothing_is_written(run, folder.string());
+  fs::copy_file(folder_.path() / "kept", record);
   {
     RunDirectory other(folder);
     EXPECT_EQ(other.recover().size(), 1U);
-    expect_nothing_is_written(run, lock.string() + ": was removed while a run was writing beside it");
+    expect_nothing_is_written(run, folder.string());
   }
-  EXPECT_EQ(text_of(folder / "taps.jsonl"), recorded);
+  EXPECT_EQ(text_of(record), recorded);
+  EXPECT_EQ(text_of(folder_.path() / "kept"), recorded);
   EXPECT_FALSE(fs::exists(folder / "summary.json"));
 }
 
 TEST_F(RunFolder, TakesTheResultOfATapWhereverItsFolderWasMovedMeanwhile) {
   RunDirectory run(folder_.path() / "run");
-  run.open(true);
+  set_up(run, true);
   run.announce(tap(1, 0.09));
   fs::rename(folder_.path() / "run", folder_.path() / "moved");
   run.record(tap(1, 0.09), kSeconds);
-  EXPECT_EQ(RunFiles(folder_.path() / "moved").taps().size(), 2U);
+  EXPECT_EQ(read_run_record(folder_.path() / "moved").taps.size(), 1U);
   EXPECT_THAT(error_of([&] { run.announce(tap(2, 0.09)); }, Error::Kind::run),
               testing::HasSubstr("was moved or removed while a run was writing there"));
 }
@@ -130,10 +127,10 @@ TEST_F(RunFolder, TakesTheResultOfATapWhereverItsFolderWasMovedMeanwhile) {
 TEST_F(RunFolder, IsWrittenToByNoForkedChildAndFreeAgainThoughThatLives) {
   const fs::path folder = folder_.path() / "run";
   auto run = std::make_unique<RunDirectory>(folder);
-  run->open(true);
+  set_up(*run, true);
   run->announce(tap(1, 0.09));
   run->record(tap(1, 0.09), kSeconds);
-  const std::string recorded = text_of(folder / "taps.jsonl");
+  const std::string recorded = text_of(folder / "record.jsonl");
   const auto child = ChildProcess::fork([&](const ChildProcess::Say& say) {
     expect_nothing_is_written(*run, folder.string() + ": is held by the process that this one was forked from");
     say(testing::Test::HasFailure() ? "written" : "refused");
@@ -142,7 +139,7 @@ TEST_F(RunFolder, IsWrittenToByNoForkedChildAndFreeAgainThoughThatLives) {
   while (child->said().empty() && !child->wait(0.001)) {
   }
   EXPECT_EQ(child->said(), "refused");
-  EXPECT_EQ(text_of(folder / "taps.jsonl"), recorded);
+  EXPECT_EQ(text_of(folder / "record.jsonl"), recorded);
   EXPECT_TRUE(is_running(folder));
   run.reset();
   EXPECT_FALSE(is_running(folder));
@@ -150,21 +147,22 @@ TEST_F(RunFolder, IsWrittenToByNoForkedChildAndFreeAgainThoughThatLives) {
 
 TEST_F(RunFolder, RefusesADamagedLineWithItsNumber) {
   write_three(folder_.path() / "run", false);
-  std::string text = text_of(folder_.path() / "run" / "taps.jsonl");
-  text[text.find('\n') + 5] = '\n';
-  folder_.write("run/taps.jsonl", text);
+  std::string text = text_of(folder_.path() / "run" / "record.jsonl");
+  text[text.find("{\"tap\": 2") + 30] = '\n';
+  folder_.write("run/record.jsonl", text);
   RunDirectory run(folder_.path() / "run");
-  EXPECT_THAT(error_of([&] { run.recover(); }), testing::HasSubstr("taps.jsonl:2: is not a JSON object"));
+  EXPECT_THAT(error_of([&] { run.recover(); }), testing::HasSubstr("record.jsonl:6: is not a JSON object"));
 }
 
 TEST_F(RunFolder, RefusesALineThatIsNoTap) {
-  folder_.write("run/taps.jsonl",
-                "{\"tap\": 1, \"source\": \"initial\", \"x\": \"here\", \"y\": 0, \"outcome\": \"contact\"}\n");
+  folder_.write(
+      "run/record.jsonl",
+      begun_record() + "{\"tap\": 1, \"source\": \"initial\", \"x\": \"here\", \"y\": 0, \"outcome\": \"contact\"}\n");
   RunDirectory run(folder_.path() / "run");
   EXPECT_THROW(run.recover(), Error);
 }
 
-TEST_F(RunFolder, TellsItsStateFromItsFilesAlone) {
+TEST_F(RunFolder, TellsItsStateFromItsRecordAlone) {
   const fs::path directory = folder_.path() / "run";
   EXPECT_EQ(read_status(directory).state, RunStatus::State::absent);
   write_three(directory, true);
@@ -174,11 +172,41 @@ TEST_F(RunFolder, TellsItsStateFromItsFilesAlone) {
     const RunDirectory held(directory);
     EXPECT_EQ(read_status(directory).state, RunStatus::State::running);
   }
-  folder_.write("run/summary.json", "{\"status\": \"failed\", \"stop_reason\": \"the arm was stopped\"}");
+  RunDirectory(directory).fail("the arm was stopped");
   EXPECT_EQ(read_status(directory).state, RunStatus::State::failed);
   EXPECT_EQ(read_status(directory).stop_reason, "the arm was stopped");
-  folder_.write("run/summary.json", "{\"status\": \"done\", \"stop_reason\": \"tap budget\"}");
+  {
+    RunDirectory run(directory);
+    set_up(run, true);
+    EXPECT_EQ(run.recover().size(), 3U);
+    Row summary;
+    summary.add("taps", 3);
+    run.end(Ending::How::done, "tap budget", summary);
+  }
   EXPECT_EQ(read_status(directory).state, RunStatus::State::done);
+  fs::remove(directory / "summary.json");
+  EXPECT_EQ(read_status(directory).state, RunStatus::State::done) << "that is a copy";
+  EXPECT_TRUE(lacks_files(directory, *read_ending(directory).end));
+}
+
+TEST_F(RunFolder, CanBeEndedAsFailedAtAnyTime) {
+  for (int steps = 0; steps < 5; ++steps) {
+    const fs::path directory = folder_.path() / std::to_string(steps);
+    {
+      RunDirectory run(directory);
+      if (steps > 0) run.begin(Tree::map());
+      if (steps > 1) run.begin_attempt("b", false);
+      if (steps > 2) run.set_up(true, Tree::map());
+      if (steps > 3) run.announce(tap(1, 0.09));
+      run.fail("the first time");
+    }
+    EXPECT_EQ(read_run_record(directory).end->reason, "the first time") << steps;
+    RunDirectory(directory).fail("the second time");
+    const RunRecord record = read_run_record(directory);
+    EXPECT_EQ(record.end->how, Ending::How::failed) << steps;
+    EXPECT_EQ(record.end->summary.text("stop_reason"), "the second time");
+    EXPECT_EQ(record.intent.has_value(), steps > 3);
+  }
 }
 
 TEST(TapRow, ReadsBackAsTheTapThatItTells) {
@@ -194,8 +222,8 @@ TEST(TapRow, ReadsBackAsTheTapThatItTells) {
 
 TEST(TapRow, AnIntentHoldsNoResult) {
   const Row row = intent_row(tap(1, 0.0));
-  EXPECT_TRUE(is_intent(row));
-  EXPECT_FALSE(is_intent(unknown_result_of(row)));
+  EXPECT_EQ(row.fields.front().first, "intent");
+  EXPECT_EQ(unknown_result_of(row).fields.front().first, "tap");
   EXPECT_EQ(*unknown_result_of(row).find("outcome"), Scalar{std::string("unknown")});
 }
 

@@ -204,7 +204,7 @@ void StopOptions::list(Fields& fields) {
 }
 
 void LogOptions::list(Fields& fields) {
-  fields.choice(sync, Field("sync", "when taps.jsonl is forced to disk"),
+  fields.choice(sync, Field("sync", "when the record is forced to disk"),
                 {{"auto", "around each tap where a tap cannot be repeated, else never", {}},
                  {"tap", "after each tap, and before it where it cannot be repeated", {}},
                  {"none", "never", {}}});

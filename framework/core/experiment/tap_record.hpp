@@ -66,6 +66,8 @@ struct PastTap {
   std::optional<Prediction> predicted = std::nullopt;  ///< of the height at the target, for a backend that wants it
   std::string why{};                                   ///< of a fallback
   std::optional<Approach> approach = std::nullopt;     ///< the way of the tool; none: straight down at the target
+  std::string
+      unreached{};  ///< with it, which of the lines that were drawn the backend refused: SpaceBelief::unreached()
 
   /// Whether it came along an approach all of whose way was free, which tells as much as a contact.
   bool is_missed() const { return approach && contact.outcome == Outcome::no_contact; }

@@ -3,9 +3,9 @@
 
 #include "config/trouble.hpp"
 #include "record/files.hpp"
+#include "record/record_reader.hpp"
 #include "record/resolved.hpp"
 #include "record/run_directory.hpp"
-#include "record/run_files.hpp"
 #include "record/session.hpp"
 
 #include <fmt/format.h>
@@ -34,9 +34,9 @@ constexpr const char* kLatest = "@latest";
 
 /// Damaged ones, too: what is wrong with them is for the command to say.
 bool is_record(const fs::path& folder) {
-  constexpr std::array<const char*, 3> kParts{"config.yaml", "manifest.jsonl", "summary.json"};
+  constexpr std::array<const char*, 3> kParts{"config.yaml", "manifest.jsonl", kSummaryFile};
   return std::any_of(kParts.begin(), kParts.end(), [&](const char* part) { return is_there(folder / part); }) ||
-         RunFiles(folder).begun();
+         size_if_there((folder / kRecordFile).c_str()).value_or(0) > 0;
 }
 
 bool is_moved_aside(const fs::path& directory) {

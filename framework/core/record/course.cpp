@@ -16,8 +16,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config, const Experiment& experiment) {
-  Tree out = describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_of(config.options).name);
+/// What is known before anything is built.
+Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config) {
+  Tree out = Tree::map(
+      {{"name", Tree::quote(config.options.name)}, {"id", Tree::quote(config.id)}, {"at", Tree::quote(now_text())}});
+  const Tree build =
+      describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_of(config.options).name);
+  out.entries.insert(out.entries.end(), build.entries.begin(), build.entries.end());
   const auto places = [](const std::vector<ResolveNotes::Origin>& of) {
     Tree all = Tree::map();
     for (const ResolveNotes::Origin& one : of) all.entries.push_back({one.path, {}, Tree::quote(one.place)});
@@ -27,33 +32,19 @@ Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config, const E
   for (const std::string& word : workshop.command_line) line.items.push_back(Tree::quote(word));
   out.at("origins") = places(config.notes.origins);
   out.at("dropped") = places(config.notes.dropped);
-  Tree& models = out.at("models") = Tree::map();
+  return out;
+}
+
+/// Notes that the experiment is built; a tap that cannot be repeated, and of which nobody saw the end, must leave a
+/// trace.
+void set_up(const Experiment& experiment, RunDirectory& directory) {
+  Tree models = Tree::map();
   for (const ModelReader& one : experiment.readers()) {
     Tree& who = models.at(one.model);
     who.kind = Tree::Kind::list;
     who.items.push_back(Tree::quote(one.who));
   }
-  out.at("resumed") = Tree::list();
-  return out;
-}
-
-/// Notes in the manifest that another process, perhaps of another build, went on at tap `from`.
-void note_resume(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& directory, int from) {
-  Tree manifest = directory.files().manifest().value();
-  manifest.at("resumed").kind = Tree::Kind::list;
-  manifest.at("resumed").items.push_back(
-      Tree::map({{"after_tap", Tree::scalar(std::to_string(from))},
-                 {"build", Tree::quote(build_hash(workshop.host, config.notes.plugins))}}));
-  directory.write_manifest(manifest);
-}
-
-/// Notes in the manifest what the taps have shown of the robot.
-void note_learnt(RunDirectory& directory, const std::vector<Backend::Learnt>& learnt) {
-  if (learnt.empty()) return;
-  Tree manifest = directory.files().manifest().value();
-  Tree& notes = manifest.at("learnt") = Tree::map();
-  for (const Backend::Learnt& one : learnt) notes.entries.push_back({one.name, {}, Tree::quote(one.value)});
-  directory.write_manifest(manifest);
+  directory.set_up(!experiment.backend().repeatable(), models);
 }
 
 /// Has what follows forced to disk where the config or the backend asks for it.
@@ -94,12 +85,6 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
 }
 
 }  // namespace
-
-std::string recorded_build(const fs::path& directory) {
-  const std::optional<Tree> manifest = RunFiles(directory).manifest();
-  const Tree* build = manifest ? manifest->find("build") : nullptr;
-  return build != nullptr ? build->text : std::string();
-}
 
 bool Relay::permits(const TapRecord& tap) {
   return company_.supervisor == nullptr || company_.supervisor->permits(tap, experiment_.preview(tap));
@@ -149,10 +134,7 @@ Course::Course(const ResolvedConfig& config, RunDirectory& directory, Experiment
       directory_(directory),
       experiment_(experiment),
       watch_(watch),
-      relay_(config.options, experiment, directory, company) {
-  // A tap that cannot be repeated, and of which nobody saw the end, must leave a trace.
-  directory.open(!experiment.backend().repeatable());
-}
+      relay_(config.options, experiment, directory, company) {}
 
 RunReport Course::finish(std::string failure) {
   RunResult result;
@@ -160,7 +142,7 @@ RunReport Course::finish(std::string failure) {
   directory_.check_in_place();
   // A model that failed once is not asked again.
   if (!failure.empty()) result = experiment_.counts();
-  note_learnt(directory_, experiment_.backend().learnt());
+  for (const Backend::Learnt& one : experiment_.backend().learnt()) directory_.note_learnt(one.name, one.value);
   RunReport report;
   report.directory = directory_.path();
   report.interrupted = result.interrupted;
@@ -168,18 +150,18 @@ RunReport Course::finish(std::string failure) {
       result,          config_, failure, watch_.wall_seconds(), watch_.cpu_seconds(), directory_.total_seconds(),
       peak_rss_bytes()};
   report.summary = summary_list().row(summary);
-  directory_.write("taps.csv", to_csv(directory_.rows()));
+  directory_.write_made(kTapsTable, to_csv(directory_.rows()));
   if (result.interrupted) {
-    directory_.files().flush();
+    directory_.end(Ending::How::interrupted, result.stop_reason, {});
     return report;
   }
   if (config_.options.log.surface && failure.empty()) {
     const auto [name, text] = surface_file(experiment_);
-    directory_.write(name, text);
+    directory_.write_made(name, whole_of(text));
   }
   directory_.write_objects(object_rows(summary));
-  directory_.files().flush();
-  directory_.write("summary.json", to_json_text(report.summary));
+  directory_.end(failure.empty() ? Ending::How::done : Ending::How::failed,
+                 failure.empty() ? result.stop_reason : failure, report.summary);
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
   return report;
 }
@@ -187,12 +169,12 @@ RunReport Course::finish(std::string failure) {
 Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
                 bool supervised) {
   const RunStatus status = read_status(directory);
-  if (status.state == RunStatus::State::running) FileLock{RunFiles(directory).lock_file()};  // throws: busy
+  if (status.state == RunStatus::State::running) FileLock{directory / kRecordFile};  // throws: busy
   if (status.state != RunStatus::State::absent && !force) {
     const std::string where = directory.string();
     switch (status.state) {
       case RunStatus::State::done:
-        if (recorded_build(directory) == build_hash(workshop.host, config.notes.plugins)) return {};
+        if (read_run_record(directory).build() == build_hash(workshop.host, config.notes.plugins)) return {};
         throw Error(where, "this run was finished by another build of palpate or its plugins",
                     "--force moves it aside and runs again");
       case RunStatus::State::failed:
@@ -214,37 +196,36 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
                 Error::Kind::busy);
   }
   sync_if_asked(config, *experiment, *held);
-  // The manifest first: only this process knows where each value was written, and without a config nobody carries on.
-  held->write_manifest(manifest_of(workshop, config, *experiment));
+  // The config first: a record without one cannot be carried on.
   held->write("config.yaml", to_yaml(config.tree));
+  held->begin(manifest_of(workshop, config));
+  held->begin_attempt(build_hash(workshop.host, config.notes.plugins), force);
+  set_up(*experiment, *held);
   return {std::move(held), std::move(experiment)};
 }
 
-/// The experiment as it was after the recorded taps of a directory that this process holds; none where the run is done.
 std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
                                   const ResumeOptions& options, Taps taps, bool supervised) {
   const fs::path& directory = held.path();
-  const RunStatus status = read_record(directory);
-  if (status.state == RunStatus::State::done) return nullptr;
+  const RunRecord& before = held.before();
+  if (before.end && before.end->how == Ending::How::done) return nullptr;
   check_who_taps(config, taps, "resume");
-  if (status.state == RunStatus::State::failed && !options.retry_failed) {
-    throw Error(directory.string(), fmt::format("this run failed: {}", status.stop_reason),
+  if (before.end && before.end->how == Ending::How::failed && !options.retry_failed) {
+    throw Error(directory.string(), fmt::format("this run failed: {}", before.end->reason),
                 "--retry-failed carries on all the same", Error::Kind::run);
   }
-  const auto objection = options.force ? std::nullopt : objection_to_build(workshop, config, directory);
+  const auto objection = options.force ? std::nullopt : objection_to_build(workshop, config, before);
   if (objection) throw *objection;
-  const std::vector<PastTap> past = held.recover();
+  // What it says does not hold any more, or is of a record that was cut.
+  std::error_code none;
+  fs::remove(directory / kSummaryFile, none);
+  if (!before.manifest) held.begin(manifest_of(workshop, config));
+  held.begin_attempt(build_hash(workshop.host, config.notes.plugins), options.force);
   std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
   if (supervised) check_worth_asking(config, *experiment);
-  experiment->resume(past);
   sync_if_asked(config, *experiment, held);
-  if (recorded_build(directory).empty()) {
-    held.write_manifest(manifest_of(workshop, config, *experiment));
-  } else {
-    note_resume(workshop, config, held, static_cast<int>(past.size()));
-  }
-  std::error_code none;
-  fs::remove(directory / "summary.json", none);
+  set_up(*experiment, held);
+  experiment->resume(held.recover());
   return experiment;
 }
 

@@ -48,7 +48,7 @@ class Relay final : public Journal {
 /// A run in a directory that this process holds, from its first tap here to what ends it.
 class Course {
  public:
-  /// Opens the record. All but `company` must outlive it.
+  /// All but `company` must outlive it; the directory is set up.
   Course(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, const Company& company,
          const Stopwatch& watch);
 
@@ -79,12 +79,9 @@ class Course {
   Relay relay_;
 };
 
-/// The build that began the run in `directory`, "" if that is not known.
-std::string recorded_build(const std::filesystem::path& directory);
-
 enum class Taps { by_backend, by_caller };
 
-/// An experiment, and the directory for its record; neither where the directory has the finished run.
+/// An experiment, and the directory for its record; neither where the directory has the finished run already.
 struct Begun {
   std::unique_ptr<RunDirectory> directory;
   std::unique_ptr<Experiment> experiment;

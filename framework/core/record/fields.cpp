@@ -220,6 +220,10 @@ FieldList<TapRecord> make_tap_list() {
       "direction.y", "the same", [](const Approach& a) { return a.line.direction.y(); }, Unit::none);
   of_approach(
       "direction.z", "the same", [](const Approach& a) { return a.line.direction.z(); }, Unit::none);
+  list.add_where([](const Tap& t) { return !t.unreached.empty(); }, "unreached",
+                 "from any side, which of the lines that were drawn the backend refused, if any: in hex, a digit for "
+                 "four lines in their order, the first of them its bit of 8",
+                 [](const Tap& t) { return t.unreached; });
   of_approach(
       "length", "how far it goes at most", [](const Approach& a) { return a.length; }, Unit::metre);
   list.add_where([](const Tap& t) { return t.contact.along.has_value(); }, "along", "how far it went",

@@ -28,13 +28,13 @@ struct Summary : RunResult {
   std::optional<std::int64_t> peak_rss_bytes;
 };
 
-/// Wall seconds of one tap by phase, as timings.csv has them.
+/// Wall seconds of one tap by phase, as its line `timing` has them.
 struct TapTimes {
   int tap = 0;
   std::array<double, kPhases> seconds{};
 };
 
-/// A line of objects.csv.
+/// One of the objects in the line `objects`.
 struct ObjectRow : ObjectResult {
   int object = 0;
   std::string type;

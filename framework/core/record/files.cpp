@@ -198,8 +198,9 @@ std::string read_file(const fs::path& file, std::uintmax_t most_bytes) {
   return std::move(*text);
 }
 
-std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
-  Reading reading = read_bounded(file, most_bytes, origin);
+namespace {
+
+std::optional<std::string> text_in(Reading reading, const fs::path& file, std::uintmax_t most_bytes) {
   if (reading) return std::move(reading.text);
   const int reason = reading.reason.value();
   if (reading.kind == Reading::Kind::absent && reason == ENOENT) return std::nullopt;
@@ -208,6 +209,32 @@ std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t mo
   if (reading.kind == Reading::Kind::failed && !fails) throw Error(file.string(), "cannot be read");
   const auto [words, remedy] = words_of(reading, most_bytes);
   throw Error(file.string(), words, remedy, fails ? Error::Kind::run : Error::Kind::usage);
+}
+
+}  // namespace
+
+std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
+  return text_in(read_bounded(file, most_bytes, origin), file, most_bytes);
+}
+
+std::optional<LastLine> last_line_if_there(const fs::path& file) {
+  // Holds the last line of nearly every record.
+  for (std::uintmax_t bytes = 8192;; bytes *= 16) {
+    const auto end = text_in(read_end_bounded(file, bytes, Origin::record), file, kMostLogBytes);
+    if (!end) return std::nullopt;
+    const bool all = end->size() < bytes;
+    const std::size_t last = end->rfind('\n');
+    const std::size_t before = last == 0 || last == std::string::npos ? std::string::npos : end->rfind('\n', last - 1);
+    if (!all && before == std::string::npos) continue;
+    LastLine out;
+    const std::uintmax_t skipped = all ? 0 : size_if_there(file.c_str()).value_or(end->size()) - end->size();
+    out.bytes = skipped + end->size();
+    if (last == std::string::npos) return out;
+    out.whole = skipped + last + 1;
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    out.text = end->substr(begin, last - begin);
+    return out;
+  }
 }
 
 AppendFile::AppendFile(const fs::path& file)

@@ -79,6 +79,16 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t most_byt
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
                                          Origin origin = Origin::record);
 
+/// The last whole line of a part of a record that grows by lines.
+struct LastLine {
+  std::uintmax_t bytes = 0;  ///< of the file
+  std::uintmax_t whole = 0;  ///< of its whole lines: what lies behind them a kill or a full disk cut off
+  std::string text;          ///< of the last one, without its line end; "" where there is none
+};
+
+/// Reads it without what is before it; none where there is no file. Throws Error as read_if_there().
+std::optional<LastLine> last_line_if_there(const std::filesystem::path& file);
+
 /// A file that only grows, by whole lines.
 class AppendFile {
  public:

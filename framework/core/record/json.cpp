@@ -203,15 +203,6 @@ JsonLines read_json_lines(const std::filesystem::path& file) {
   return out;
 }
 
-std::optional<Row> read_json_row(const std::filesystem::path& file, const std::string& remedy) {
-  const std::optional<std::string> text = read_if_there(file, kMostSummaryBytes);
-  if (!text) return std::nullopt;
-  std::string reason;
-  std::optional<Row> row = parse_json_row(*text, &reason);
-  if (!row) throw Error(file.string(), reason, remedy);
-  return row;
-}
-
 Tree read_json(const std::filesystem::path& file, Origin origin) {
   const std::optional<std::string> text = read_if_there(file, kMostManifestBytes, origin);
   if (!text) throw Error(file.string(), "cannot be read");

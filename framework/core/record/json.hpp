@@ -21,9 +21,6 @@ namespace palpate {
 /// 1 KiB once it is joined.
 std::optional<Row> parse_json_row(const std::string& text, std::string* reason = nullptr);
 
-/// The same of a file of at most 1 MiB; none where there is no file. Throws Error for anything else, with `remedy`.
-std::optional<Row> read_json_row(const std::filesystem::path& file, const std::string& remedy);
-
 /// Reads the lines of a file one by one, an object each, and bounds what they hold together.
 class RowLines {
  public:

@@ -2,8 +2,7 @@
 #include "record/recording.hpp"
 
 #include "record/fields.hpp"
-#include "record/run_directory.hpp"
-#include "record/run_files.hpp"
+#include "record/record_reader.hpp"
 #include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
@@ -19,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In the place of a backend: knows whether the scene was the truth, and makes no tap.
+/// In the place of a backend: knows whether the scene was the truth, and makes no tap. What the run's own backend
+/// reached is in the record.
 class Absent : public Backend {
  public:
   explicit Absent(bool truth_known) : truth_known_(truth_known) {}
@@ -34,32 +34,11 @@ class Absent : public Backend {
   bool truth_known_;
 };
 
-/// The same of a recorded run. Among which approaches a tap was chosen depends on which of them the run's own backend
-/// reached. Who tapped the very scene of the config is a simulator, and is asked; anybody else may move something when
-/// built, and is not: there all count as reached.
-class Played : public Absent {
- public:
-  Played(const PluginHost& host, const Recording& recording) : Absent(recording.truth_known()) {
-    const ExperimentOptions& options = recording.config.options;
-    if (!recording.truth_known() || options.scene.touch != SceneOptions::Touch::any) return;
-    const auto seed = static_cast<std::uint64_t>(options.seed);
-    scene_ = build_scene(options.scene, seed, host);
-    context_.emplace(Context{host, *scene_, seed, nullptr});
-    own_ = context_->create<Backend>(options.backend);
-  }
-  bool reaches(const Approach& approach) const override { return own_ == nullptr || own_->reaches(approach); }
-
- private:
-  std::unique_ptr<const Scene> scene_;
-  std::optional<Context> context_;
-  std::shared_ptr<const Backend> own_;  ///< of a run from any side that is simulated
-};
-
 /// Reads what the run's own backend read. The taps are those of the record, whatever the target: a target that differs
 /// shows.
-class Recorded final : public Played {
+class Recorded final : public Absent {
  public:
-  Recorded(const PluginHost& host, const Recording& recording) : Played(host, recording), recording_(recording) {}
+  explicit Recorded(const Recording& recording) : Absent(recording.truth_known()), recording_(recording) {}
   Quantities expects() const override {
     Quantities out;
     if (recording_.rows.front().number("predicted.height")) out = out | Quantity::height;
@@ -74,6 +53,15 @@ class Recorded final : public Played {
  private:
   const Recording& recording_;
 };
+
+/// Has an experiment from any side choose among the lines that the record tells of, for the taps from `first` to
+/// `last`, as far as they are recorded.
+void recall_lines(Experiment& experiment, const Recording& recording, int first, int last) {
+  auto* const any_side = dynamic_cast<FromAnySide*>(&experiment);
+  if (any_side == nullptr) return;
+  for (int i = first; i <= std::min(last, static_cast<int>(recording.taps.size())); ++i)
+    any_side->recall(i, recording.taps[static_cast<std::size_t>(i - 1)].unreached);
+}
 
 class Collector final : public Journal {
  public:
@@ -125,9 +113,9 @@ void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& re
 using Seconds = std::array<double, kPhases>;
 
 /// The seconds by phase up to each tap, before the first one included.
-std::vector<Seconds> seconds_until(const fs::path& directory) {
+std::vector<Seconds> seconds_until(const Recording& recording) {
   std::vector<Seconds> out(1);
-  for (const TapTimes& tap : RunFiles(directory).timings().taps) {
+  for (const TapTimes& tap : recording.timings) {
     Seconds sum = out.back();
     for (std::size_t i = 0; i < kPhases; ++i) sum[i] += tap.seconds[i];
     out.push_back(sum);
@@ -164,24 +152,24 @@ bool Recording::truth_known() const { return rows.front().flag("true_on_surface"
 bool Recording::failed() const { return summary && summary->text("status") == "failed"; }
 
 Recording read_recording(const Workshop& workshop, const fs::path& directory) {
-  const RunFiles files(directory);
-  Recording out{directory, load_run(workshop.host, directory), {}, {}, {}};
-  for (Row& row : files.taps()) {
-    if (!is_intent(row)) out.rows.push_back(std::move(row));
-  }
-  if (out.rows.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
-  out.taps = past_taps(out.rows, files.taps_file());
-  out.summary = read_summary(directory);
-  if (out.summary) check_complete(*out.summary, static_cast<int>(out.rows.size()), directory);
+  ResolvedConfig config = load_run(workshop.host, directory);
+  RunRecord record = read_run_record(directory);
+  if (record.taps.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
+  Recording out{directory, std::move(config),         std::move(record.taps),
+                {},        std::move(record.timings), std::move(record.manifest),
+                {}};
+  out.taps = past_taps(out.rows, record.file);
+  if (record.end && record.end->how != Ending::How::interrupted) out.summary = std::move(record.end->summary);
   return out;
 }
 
 Playback::Playback(const Workshop& workshop, const Recording& recording)
     : recording_(recording),
       experiment_(make_experiment(recording.config.options, workshop.host, workshop.interrupted,
-                                  std::make_shared<Played>(workshop.host, recording))) {}
+                                  no_backend(recording.truth_known()))) {}
 
 void Playback::advance_to(int taps) {
+  recall_lines(*experiment_, recording_, taps_ + 1, taps + 1);
   const auto begin = recording_.taps.begin();
   experiment_->resume({begin + taps_, begin + taps});
   taps_ = taps;
@@ -195,9 +183,10 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   // A run that ended by this rule failed by its arm: here its taps are compared like any other's.
   ExperimentOptions options = recording.config.options;
   options.stop.failed_in_a_row.reset();
-  const std::unique_ptr<Experiment> made_again = make_experiment(options, workshop.host, workshop.interrupted,
-                                                                 std::make_shared<Recorded>(workshop.host, recording));
+  const std::unique_ptr<Experiment> made_again =
+      make_experiment(options, workshop.host, workshop.interrupted, std::make_shared<Recorded>(recording));
   Experiment& experiment = *made_again;
+  recall_lines(experiment, recording, 1, made);
   const auto* const from_above = dynamic_cast<const FromAbove*>(made_again.get());
   Collector collector;
   for (std::size_t i = 0;; ++i) {
@@ -238,11 +227,10 @@ std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Rec
   const auto made = static_cast<int>(recording.rows.size());
   for (const Occasion& one : occasions) {
     if (one.taps().value_or(0) <= made) continue;
-    const std::string file = RunFiles(recording.directory).taps_file().filename().string();
-    throw Error(recording.directory.string(), "its " + file + " holds fewer taps than its summary says",
+    throw Error(recording.directory.string(), "its record holds fewer taps than its summary says",
                 "the file is damaged, run the job again");
   }
-  const std::vector<Seconds> seconds = seconds_until(recording.directory);
+  const std::vector<Seconds> seconds = seconds_until(recording);
   // A kill may have lost lines of the times, which no run depends on.
   const bool timed = seconds.size() == recording.taps.size() + 1;
   const double all = total(seconds.back());

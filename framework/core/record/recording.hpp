@@ -3,6 +3,7 @@
 // and for what it had come to after fewer taps.
 #pragma once
 
+#include "record/fields.hpp"
 #include "record/occasion.hpp"
 #include "record/resolved.hpp"
 #include "record/row.hpp"
@@ -20,9 +21,11 @@ namespace palpate {
 struct Recording {
   std::filesystem::path directory;
   ResolvedConfig config;
-  std::vector<Row> rows;       ///< of taps.jsonl, a tap each; announcements of taps are left out
-  std::vector<PastTap> taps;   ///< the same as the models see them
-  std::optional<Row> summary;  ///< of a run that ended
+  std::vector<Row> rows;          ///< of its record, a tap each
+  std::vector<PastTap> taps;      ///< the same as the models see them
+  std::vector<TapTimes> timings;  ///< of most of them
+  std::optional<Tree> manifest;   ///< none before a run has begun
+  std::optional<Row> summary;     ///< of a run that ended
 
   /// Whether the scene of the config is what was tapped.
   bool truth_known() const;
@@ -40,8 +43,9 @@ std::shared_ptr<Backend> no_backend(bool truth_known);
 Quantities recorded_quantities(const Row& row);
 
 /// Brings the models of a recorded run to the state that they had after any of its taps, from the taps alone: what is
-/// read of them there is what the run would have read. Writes nothing, moves nothing: there is no backend, but that of
-/// a run from any side whose truth is known, a simulator, says which approaches it reaches.
+/// read of them there is what the run would have read. Writes nothing, moves nothing, builds no backend: which
+/// approaches that of a run from any side reached is recorded with each tap. Behind the last tap it counts as reaching
+/// all.
 class Playback {
  public:
   /// Before the first tap. `workshop` and `recording` must outlive it. Throws Error for what only building finds out.
@@ -87,7 +91,7 @@ ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& d
 /// `posterior: auto` took for the run's own budget; where it would take another for less, numbers may differ as far as
 /// `accuracy` lets them.
 ///
-/// Of the rest the record knows this much: `compute.*` are the sums of timings.csv so far; `wall_seconds` and
+/// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and
 /// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody
 /// measured then, is null. The id is that of the run. Throws Error for a damaged record, and for more taps than it has.
 std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Recording& recording,

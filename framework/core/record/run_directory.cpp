@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "record/run_directory.hpp"
 
+#include "config/hash.hpp"
 #include "config/trouble.hpp"
+#include "record/build_info.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
 
@@ -9,13 +11,47 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include <unistd.h>
+
 namespace palpate {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kSummary = "summary.json";
+RunStatus status_of(std::optional<Ending> end, bool begun) {
+  RunStatus out;
+  if (end && end->how != Ending::How::interrupted) {
+    out.state = end->how == Ending::How::done ? RunStatus::State::done : RunStatus::State::failed;
+    out.stop_reason = end->reason;
+    out.end = std::move(end);
+  } else if (begun) {
+    out.state = RunStatus::State::unfinished;
+  }
+  return out;
+}
+
+/// Of a damaged one, that of a run which failed by it.
+RecordEnd end_of(const fs::path& directory) {
+  RecordEnd out;
+  if (const auto trouble = trouble_in([&] { out = read_record_end(directory); })) {
+    if (trouble->kind() == Error::Kind::run) throw *trouble;  // a file system that fails tells nothing of the run
+    out.begun = true;
+    out.end.emplace();
+    out.end->how = Ending::How::failed;
+    out.end->reason = trouble->what();
+    out.end->summary.add("status", "failed");
+    out.end->summary.add("stop_reason", trouble->what());
+  }
+  return out;
+}
+
+std::optional<Row> summary_of(RecordEnd record) {
+  if (!record.end || record.end->how == Ending::How::interrupted) return std::nullopt;
+  return std::move(record.end->summary);
+}
 
 }  // namespace
 
@@ -26,56 +62,29 @@ const char* state_name(RunStatus::State state) {
 
 bool is_sweep(const fs::path& directory) { return is_there(directory / "manifest.jsonl"); }
 
-std::optional<Row> read_summary(const fs::path& directory) {
-  // A power cut may leave its name without its content.
-  return read_json_row(directory / kSummary,
-                       "the file is damaged: remove it, and 'palpate resume' makes it anew from the taps");
+std::optional<Row> read_summary(const fs::path& directory) { return summary_of(read_record_end(directory)); }
+
+std::optional<Row> read_outcome(const fs::path& directory) { return summary_of(end_of(directory)); }
+
+RunStatus read_ending(const fs::path& directory) {
+  RecordEnd record = end_of(directory);
+  return status_of(std::move(record.end), record.begun);
 }
 
-std::optional<Row> read_outcome(const fs::path& directory) {
-  std::optional<Row> out;
-  if (const auto trouble = trouble_in([&] { out = read_summary(directory); })) {
-    if (trouble->kind() == Error::Kind::run) throw *trouble;  // a file system that fails tells nothing of the run
-    out.emplace().add("status", "failed");
-    out->add("stop_reason", trouble->what());
-  }
-  return out;
+bool lacks_files(const fs::path& directory, const Ending& end) {
+  if (!is_there(directory / kSummaryFile)) return true;
+  return std::any_of(end.files.begin(), end.files.end(), [&](const Ending::File& one) {
+    return size_if_there((directory / one.name).c_str()) != one.bytes;
+  });
 }
 
-void check_complete(const Row& summary, int recorded, const fs::path& directory) {
-  const std::optional<double> made = summary.number("taps");
-  if (summary.text("status") != "done" || !made || *made <= recorded) return;
-  throw Error(RunFiles(directory).taps_file().string(),
-              fmt::format("holds {} of the {} taps that were made", recorded, *made),
-              "the file was cut: put it back, or remove summary.json, and 'palpate resume' makes the others again");
-}
-
-namespace {
-
-RunStatus ending_of(const fs::path& directory, const RunFiles& files) {
-  RunStatus out;
-  if (const std::optional<Row> summary = read_outcome(directory)) {
-    out.state = summary->text("status") == "done" ? RunStatus::State::done : RunStatus::State::failed;
-    out.stop_reason = summary->text("stop_reason");
-  } else if (files.begun()) {
-    out.state = RunStatus::State::unfinished;
-  }
-  return out;
-}
-
-}  // namespace
-
-RunStatus read_ending(const fs::path& directory) { return ending_of(directory, RunFiles(directory)); }
-
-bool is_running(const fs::path& directory) { return FileLock::is_held(RunFiles(directory).lock_file()); }
+bool is_running(const fs::path& directory) { return FileLock::is_held(directory / kRecordFile); }
 
 RunStatus read_record(const fs::path& directory) {
-  const RunFiles files(directory);
-  RunStatus out = ending_of(directory, files);
-  if (out.state != RunStatus::State::absent && files.begun()) {
-    for (const Row& row : files.taps()) out.taps += is_intent(row) ? 0 : 1;
-  }
-  if (out.state == RunStatus::State::done) check_complete(read_summary(directory).value(), out.taps, directory);
+  RunRecord record = read_run_record(directory);
+  RunStatus out = status_of(std::move(record.end), record.manifest.has_value());
+  out.taps = static_cast<int>(record.taps.size());
+  out.cut = !out.end && is_there(directory / kSummaryFile);
   return out;
 }
 
@@ -87,54 +96,90 @@ RunStatus read_status(const fs::path& directory) {
   return out;
 }
 
-RunDirectory::RunDirectory(const fs::path& directory) : path_(directory), files_(path_) {
+RunDirectory::RunDirectory(const fs::path& directory) : path_(directory), record_(path_) {
   remove_temporaries(path_);
   remove_temporaries(path_ / "maps");
 }
 
-std::vector<PastTap> RunDirectory::recover() {
-  if (!files_.begun()) return {};
-  std::optional<Row> intent;
-  for (Row& row : files_.taps()) {
-    if (is_intent(row)) {
-      intent = std::move(row);
-      continue;
-    }
-    intent.reset();
-    rows_.push_back(std::move(row));
-  }
-  if (intent) {
-    rows_.push_back(unknown_result_of(*intent));
-    files_.add_tap(rows_.back(), nullptr, true);
-  }
-  if (rows_.empty()) return {};
-  files_.mend(rows_);
-  for (const TapTimes& tap : files_.timings().taps) {
-    for (std::size_t i = 0; i < kPhases; ++i) total_[i] += tap.seconds[i];
-  }
-  return past_taps(rows_, files_.taps_file());
-}
-
 void RunDirectory::sync() { sync_ = true; }
 
-void RunDirectory::open(bool announce) {
+void RunDirectory::begin(const Tree& manifest) {
+  Tree line = Tree::map({{"manifest", Tree::scalar(std::to_string(kRecordVersion))}});
+  line.entries.insert(line.entries.end(), manifest.entries.begin(), manifest.entries.end());
+  record_.add_manifest(line, sync_);
+}
+
+void RunDirectory::begin_attempt(const std::string& build, bool forced) {
+  Row row;
+  row.add("host", host_name());
+  row.add("pid", std::int64_t{::getpid()});
+  row.add("build", build);
+  row.add("forced", forced);
+  record_.add_attempt(row);
+}
+
+void RunDirectory::set_up(bool announce, const Tree& models) {
   announce_ = announce;
-  files_.open();
+  record_.add_setup(announce, models, sync_);
   // Lines that are on the disk are lost all the same if no name leads to them.
-  if (sync_) sync_names(path_);
+  if (sync_) record_.sync_name();
+}
+
+std::vector<PastTap> RunDirectory::recover() {
+  const RunRecord& before = record_.before();
+  rows_ = before.taps;
+  for (const TapTimes& tap : before.timings) {
+    for (std::size_t i = 0; i < kPhases; ++i) total_[i] += tap.seconds[i];
+  }
+  if (before.intent) rows_.push_back(unknown_result_of(*before.intent));
+  std::vector<PastTap> out = past_taps(rows_, before.file);
+  if (before.intent) record_.add_tap(rows_.back(), nullptr, true);
+  return out;
 }
 
 void RunDirectory::announce(const TapRecord& tap) {
   check_in_place();
-  if (announce_) files_.add_tap(intent_row(tap), nullptr, sync_);
+  if (announce_) record_.add_tap(intent_row(tap), nullptr, sync_);
 }
 
 void RunDirectory::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
   Row row = tap_row(tap);
   const TapTimes times{tap.number, seconds};
-  files_.add_tap(row, &times, sync_);
+  record_.add_tap(row, &times, sync_);
   rows_.push_back(std::move(row));
   for (std::size_t i = 0; i < kPhases; ++i) total_[i] += seconds[i];
+}
+
+void RunDirectory::note_learnt(const std::string& name, const std::string& value) {
+  Row note;
+  note.add("name", name);
+  note.add("value", value);
+  record_.add_note("learnt", note, sync_);
+}
+
+void RunDirectory::write_made(const std::string& name, const std::string& text) {
+  write(name, text);
+  made_.push_back({name, text.size(), hash_of(text)});
+}
+
+void RunDirectory::end(Ending::How how, const std::string& reason, const Row& summary) {
+  record_.add_end({how, reason, summary, std::exchange(made_, {})}, sync_);
+  if (!summary.fields.empty()) write(kSummaryFile, to_json_text(summary));
+}
+
+void RunDirectory::fail(const std::string& reason) {
+  const std::string id = fs::absolute(path_).lexically_normal().filename().string();
+  // A damaged record says how it ended all the same: its last line does.
+  const bool damaged = trouble_in([&] { before(); }).has_value();
+  if (!damaged && !record_.begun()) {
+    begin(Tree::map({{"id", Tree::quote(id)}, {"at", Tree::quote(now_text())}, {"version", Tree::quote(kVersion)}}));
+  }
+  if (!damaged && record_.ended()) begin_attempt({}, false);
+  Row row;
+  row.add("id", id);
+  row.add("status", "failed");
+  row.add("stop_reason", reason);
+  end(Ending::How::failed, reason, row);
 }
 
 }  // namespace palpate

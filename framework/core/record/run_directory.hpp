@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The directory of one run: its lock, its files, and what state it is in. runs/README.md describes every file.
+// The directory of one run: its record, the files that are made from it, and what state it is in. runs/README.md
+// describes every file.
 #pragma once
 
 #include "experiment/tap_record.hpp"
 #include "record/files.hpp"
+#include "record/held_record.hpp"
 #include "record/resolved.hpp"
 #include "record/row.hpp"
-#include "record/run_files.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -18,10 +19,10 @@ namespace palpate {
 /// Whether `directory` is that of a sweep, and so of many runs.
 bool is_sweep(const std::filesystem::path& directory);
 
-/// How far a run came, read from its directory alone.
+/// How far a run came, read from its record alone.
 struct RunStatus {
   enum class State {
-    absent,      ///< no such directory, or one without a tap
+    absent,      ///< no such directory, or one without a record
     running,     ///< a living process holds the lock
     unfinished,  ///< killed or interrupted
     done,
@@ -30,21 +31,25 @@ struct RunStatus {
   State state = State::absent;
   int taps = 0;             ///< recorded
   std::string stop_reason;  ///< of a finished run: why it stopped or failed
+  bool cut = false;         ///< there is a summary.json, and the record does not say that the run has ended
+  std::optional<Ending> end = std::nullopt;  ///< of a finished run
 };
 
-/// Its summary.json; none for a run that has not ended. Throws Error for a damaged one.
+/// The summary of a run that has ended, as the last line of its record has it; none of another. Throws Error for a
+/// damaged line.
 std::optional<Row> read_summary(const std::filesystem::path& directory);
 
 /// The same for who looks at many: a damaged one is that of a failed run, with the damage for its reason. Throws Error
 /// where the file system fails.
 std::optional<Row> read_outcome(const std::filesystem::path& directory);
 
-/// Throws Error if `summary` is that of a finished run in `directory` with more taps than are `recorded`.
-void check_complete(const Row& summary, int recorded, const std::filesystem::path& directory);
-
-/// State and reason of a run directory, as cheaply as they can be told: the taps are not counted, and it is not asked
-/// who holds it. Of a damaged summary, as read_outcome().
+/// State and reason of a run directory, as the last line of its record tells them: the taps are not counted, and it is
+/// not asked who holds it. Of a damaged line, as read_outcome().
 RunStatus read_ending(const std::filesystem::path& directory);
+
+/// Whether a file that was made from the record of an ended run is gone, or has not as many bytes as it had: a kill or
+/// a power cut came between.
+bool lacks_files(const std::filesystem::path& directory, const Ending& end);
 
 /// Whether a living process holds it.
 bool is_running(const std::filesystem::path& directory);
@@ -66,24 +71,34 @@ class RunDirectory final : public Journal {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// All of the record but config, summary and tables.
-  HeldFiles& files() { return files_; }
-
-  /// Reads the recorded taps and cuts off what a kill left behind: half a line, or an intent without its result, which
-  /// becomes a tap of outcome `unknown`. Throws Error for a damaged file.
-  std::vector<PastTap> recover();
+  /// What earlier processes have recorded. Throws Error for a damaged record.
+  const RunRecord& before() { return record_.before(); }
 
   /// From here on all that is written is forced to disk. Throws Error.
   void sync();
 
-  /// Opens the log for what follows. With `announce` each tap is announced before it is made.
-  void open(bool announce);
+  /// The beginning of a record. `manifest` holds what there is to know beside its version.
+  void begin(const Tree& manifest);
+
+  /// An attempt of this process, before it builds anything; `build` is its own.
+  void begin_attempt(const std::string& build, bool forced);
+
+  /// The same once it is built. With `announce` each tap is announced before it is made.
+  void set_up(bool announce, const Tree& models);
+
+  /// The taps that are recorded. One that was announced, and of which nobody saw the end, becomes a tap of outcome
+  /// `unknown`. Throws Error for a tap that is none.
+  std::vector<PastTap> recover();
 
   /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
-  void check_in_place() const { files_.check_in_place(); }
+  void check_in_place() const { record_.check_in_place(); }
 
   void announce(const TapRecord& tap) override;
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
+
+  /// What the taps have shown of the robot.
+  void note_learnt(const std::string& name, const std::string& value);
+  void write_objects(const std::vector<Row>& objects) { record_.add_objects(objects, sync_); }
 
   /// The rows of all taps, recovered ones included.
   const std::vector<Row>& rows() const { return rows_; }
@@ -93,17 +108,25 @@ class RunDirectory final : public Journal {
 
   template <class T>  // a text, or a Text
   void write(const std::string& name, const T& text) const {
-    files_.check_held();
+    record_.check_held();
     write_file(path_ / name, text, sync_);
   }
-  void write_manifest(const Tree& manifest) { files_.set_manifest(manifest, sync_); }
-  void write_objects(const std::vector<Row>& objects) { files_.set_objects(objects, sync_); }
+  /// A file that is made from the record: end() notes how many bytes it has and their hash.
+  void write_made(const std::string& name, const std::string& text);
+
+  /// Says how the run, or this attempt, ended, with its summary unless it was interrupted; then writes that into
+  /// summary.json.
+  void end(Ending::How how, const std::string& reason, const Row& summary);
+
+  /// Ends a run that failed before it could begin, or whose process died, and whose record may be damaged.
+  void fail(const std::string& reason);
 
  private:
   std::filesystem::path path_;
-  HeldFiles files_;
+  HeldRecord record_;
   std::vector<Row> rows_;
   std::array<double, kPhases> total_{};
+  std::vector<Ending::File> made_;
   bool announce_ = false;
   bool sync_ = false;
 };

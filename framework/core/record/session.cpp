@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/session.hpp"
 
+#include "config/hash.hpp"
 #include "config/yaml.hpp"
 #include "record/course.hpp"
 #include "record/recording.hpp"
@@ -24,7 +25,9 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   return course.finish(Course::failure_in([&] { experiment.run(course.journal()); }));
 }
 
-RunReport report_done(const fs::path& directory) { return {directory, true, false, read_summary(directory).value()}; }
+RunReport report_done(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held) {
+  return {held.path(), true, false, held.before().end->summary, restore_files(workshop, config, held)};
+}
 
 }  // namespace
 
@@ -43,7 +46,12 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
   check_who_taps(config, Taps::by_backend, "run");
   const Stopwatch watch;
   const Begun run = begin_run(workshop, config, directory, force, supervisor != nullptr);
-  if (!run.experiment) return report_done(directory);
+  if (!run.experiment) {
+    const RunStatus status = read_ending(directory);
+    if (!lacks_files(directory, status.end.value())) return {directory, true, false, status.end->summary};
+    RunDirectory held(directory);
+    return report_done(workshop, config, held);
+  }
   return carry_out(config, *run.directory, *run.experiment, {observer, supervisor}, watch);
 }
 
@@ -67,12 +75,40 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
 }
 
 std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
-                                        const fs::path& directory) {
-  const std::string build = recorded_build(directory);
-  if (build.empty() || build == build_hash(workshop.host, config.notes.plugins)) return std::nullopt;
-  if (read_record(directory).taps == 0) return std::nullopt;
-  return Error(directory.string(), "this run was begun by another build of palpate or its plugins",
-               "--force carries on all the same, and the manifest will say so");
+                                        const RunRecord& record) {
+  const std::string build = record.build();
+  if (build.empty() || build == build_hash(workshop.host, config.notes.plugins) || record.taps.empty())
+    return std::nullopt;
+  return Error(record.file.parent_path().string(), "this run was begun by another build of palpate or its plugins",
+               "--force carries on all the same, and the record will say so");
+}
+
+std::vector<std::string> restore_files(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held) {
+  const fs::path& directory = held.path();
+  const RunRecord& record = held.before();
+  std::vector<std::string> out;
+  const auto restore = [&](const std::string& name, const std::string& text) {
+    held.write(name, text);
+    out.push_back(name);
+  };
+  for (const Ending::File& one : record.end->files) {
+    const std::optional<std::string> now = read_if_there(directory / one.name);
+    if (now && now->size() == one.bytes && hash_of(*now) == one.hash) continue;
+    if (one.name == kTapsTable) {
+      restore(one.name, to_csv(record.taps));
+      continue;
+    }
+    const Recording recording = read_recording(workshop, directory);
+    Playback playback(workshop, recording);
+    playback.advance_to(static_cast<int>(recording.taps.size()));
+    playback.experiment().result();  // reads what the run read at its end
+    const auto [name, text] = surface_file(playback.experiment());
+    if (name == one.name && config.options.log.surface) restore(name, whole_of(text));
+  }
+  // Last, as a run does.
+  const std::string summary = to_json_text(record.end->summary);
+  if (read_if_there(directory / kSummaryFile) != summary) restore(kSummaryFile, summary);
+  return out;
 }
 
 RunReport resume_run(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options,
@@ -88,7 +124,7 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   const Stopwatch watch;
   const std::unique_ptr<Experiment> experiment =
       go_on(workshop, config, held, options, Taps::by_backend, supervisor != nullptr);
-  if (!experiment) return report_done(held.path());
+  if (!experiment) return report_done(workshop, config, held);
   return carry_out(config, held, *experiment, {observer, supervisor}, watch);
 }
 

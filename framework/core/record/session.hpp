@@ -33,9 +33,10 @@ struct Workshop {
 /// How a run ended.
 struct RunReport {
   std::filesystem::path directory;
-  bool already_done = false;  ///< nothing was run: the directory held the finished run
-  bool interrupted = false;   ///< it can be resumed; there is no summary
-  Row summary;                ///< the fields of summary.json
+  bool already_done = false;            ///< nothing was run: the directory held the finished run
+  bool interrupted = false;             ///< it can be resumed; there is no summary
+  Row summary;                          ///< the fields of summary.json
+  std::vector<std::string> restored{};  ///< files of a finished run that were gone or cut, and are made again
 };
 
 /// Somebody who is asked before every tap of a backend that moves what only a person can put right.
@@ -78,10 +79,13 @@ RunReport resume_run(const Workshop& workshop, const std::filesystem::path& dire
 RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held,
                       const ResumeOptions& options, Journal* observer, Supervisor* supervisor = nullptr);
 
-/// Why the run in `directory` is not to be carried on: it has taps of another build than this one. None if it has not.
-/// Throws Error for a damaged one.
+/// Why a run is not to be carried on: it has taps of another build than this one. None if it has not.
 std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
-                                        const std::filesystem::path& directory);
+                                        const RunRecord& record);
+
+/// Makes those files again that an ended run in a directory that this process holds has lost, and returns their names:
+/// a kill came between its last line and summary.json, or a power cut took what was never synced. Throws Error.
+std::vector<std::string> restore_files(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held);
 
 /// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
 Tree read_run_config(const std::filesystem::path& directory);

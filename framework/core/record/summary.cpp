@@ -121,6 +121,12 @@ std::pair<std::string, Text> surface_file(Experiment& experiment) {
   return {"surface.csv", [&above = from_above_of(experiment, "")](const TextOut& out) { surface_csv(above, out); }};
 }
 
+std::string whole_of(const Text& text) {
+  std::string out;
+  text([&](std::string_view piece) { out += piece; });
+  return out;
+}
+
 std::string maps_csv(const FromAbove& experiment) {
   const TapBelief& belief = experiment.belief();
   const Quantities known = belief.recorded();

@@ -31,6 +31,9 @@ std::int64_t peak_rss_bytes();
 /// deviation, on-surface probability, reconstruction, truth), or, of a run from any side, surface.ply.
 std::pair<std::string, Text> surface_file(Experiment& experiment);
 
+/// All pieces of a text.
+std::string whole_of(const Text& text);
+
 /// The maps of the models that are recorded, as CSV; "" if there are none.
 std::string maps_csv(const FromAbove& experiment);
 

@@ -51,6 +51,9 @@ PastTap past_tap(const Row& row, const std::string& where) {
       throw Error(where, "has no number 'along', how far the tool went to its contact", "the file is damaged");
   }
   out.why = row.text("why");
+  out.unreached = row.text("unreached");
+  if (out.unreached.find_first_not_of("0123456789abcdef") != std::string::npos)
+    throw Error(where, "has no valid 'unreached'", "the file is damaged");
   out.motion = static_cast<int>(row.number("motion").value_or(0.0));
   if (const std::optional<double> height = row.number("predicted.height")) {
     out.predicted = Prediction{*height, number_at(row, "predicted.standard_deviation", 0.0, where),
@@ -72,7 +75,7 @@ Row intent_row(const TapRecord& tap) {
   before.contact = {};
   before.on_surface.reset();
   Row row = tap_row(before);
-  row.fields.insert(row.fields.begin() + 1, {"intent", true});
+  row.fields.front().first = "intent";
   return row;
 }
 
@@ -85,11 +88,9 @@ std::optional<bool> label_now(const Row& row, const RunResult& counts) {
   return changed != *then;
 }
 
-bool is_intent(const Row& row) { return row.find("intent") != nullptr; }
-
 Row unknown_result_of(const Row& intent) {
   Row row = intent;
-  row.erase("intent");
+  row.fields.front().first = "tap";
   for (auto& [name, value] : row.fields) {
     if (name == "reason") value = std::string("the program ended during this tap");
   }

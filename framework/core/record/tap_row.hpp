@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Taps as rows of taps.jsonl and taps.csv, before and after they are made, and back; their fields are in fields.cpp.
+// Taps as lines of record.jsonl and rows of taps.csv, before and after they are made, and back; their fields are in
+// fields.cpp.
 #pragma once
 
 #include "experiment/tap_record.hpp"
@@ -15,15 +16,12 @@ namespace palpate {
 /// A tap after it was made.
 Row tap_row(const TapRecord& tap);
 
-/// The same before it is made: marked as an intent, without what only the tap can tell.
+/// The same before it is made: its first field is `intent`, and what only the tap can tell is null or left out.
 Row intent_row(const TapRecord& tap);
 
 /// Returns whether the contact of a row is one with an object as `counts` has it, which may read it otherwise than the
 /// row does; none where the tap made no contact.
 std::optional<bool> label_now(const Row& row, const RunResult& counts);
-
-/// Whether a row of taps.jsonl announces a tap instead of telling its result.
-bool is_intent(const Row& row);
 
 /// An intent as the result of a tap that nobody saw the end of.
 Row unknown_result_of(const Row& intent);

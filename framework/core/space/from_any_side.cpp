@@ -88,6 +88,7 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   }
   tap.approach = belief_.approaches()[static_cast<std::size_t>(tap.candidate)];
   tap.target = {tap.approach->line.origin.x(), tap.approach->line.origin.y()};
+  tap.unreached = belief_.unreached();
   if (backend_->scene_is_truth()) {
     const Line& line = tap.approach->line;
     const double end = std::min(distance_down_to(scene_->desk(), line), tap.approach->length);
@@ -111,6 +112,7 @@ void FromAnySide::observe(const PastTap& tap) {
 }
 
 void FromAnySide::resume(const std::vector<PastTap>& past) {
+  for (std::size_t i = 0; i < past.size(); ++i) recall(result_.taps + static_cast<int>(i) + 1, past[i].unreached);
   update();
   for (const PastTap& tap : past) {
     observe(tap);

@@ -37,6 +37,10 @@ class FromAnySide final : public Experiment {
   Preview preview(const TapRecord& tap) const override;
   std::vector<ModelReader> readers() const override;
 
+  /// Has the lines among which tap `tap` was chosen be those that its record tells of: what a backend reaches is not
+  /// asked. Those of other taps are all reached by a backend that stands in for one.
+  void recall(int tap, const std::string& unreached) { belief_.recall(tap, unreached); }
+
   const SpaceBelief& belief() const { return belief_; }
   /// Whether an object was seen or hit: before that the surface is anywhere.
   bool knows_object() const { return object_seen_ || result_.first_hit_tap; }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace palpate {
 namespace {
@@ -37,6 +38,20 @@ constexpr double kFeltLate = 0.03;
 /// Nats that a touch costs at most once contacts are known to err: less than a piece that floats, so that one contact
 /// in the air makes none. Two in a hundred that are a lie, anywhere on the way, are about as much.
 constexpr double kLie = 6.5;
+
+// Marks in hex: SpaceBelief::unreached().
+constexpr std::string_view kHexDigits = "0123456789abcdef";
+
+std::size_t bit_of(std::size_t line) { return std::size_t{8} >> line % 4; }
+
+bool is_marked(const std::string& marks, std::size_t line) {
+  return line / 4 < marks.size() && (kHexDigits.find(marks[line / 4]) & bit_of(line)) != 0;
+}
+
+void mark(std::string& marks, std::size_t line) {
+  marks.resize(std::max(marks.size(), line / 4 + 1), kHexDigits[0]);
+  marks[line / 4] = kHexDigits[kHexDigits.find(marks[line / 4]) | bit_of(line)];
+}
 
 /// A tool's tip is a tool's, whoever moves it.
 double tip_of(const Scene& scene) { return scene.effects().tip_radius ? scene.effects().tip_radius->radius : 0.0; }
@@ -193,6 +208,8 @@ void SpaceBelief::draw_approaches() {
   // A stream a tap: what is drawn depends on the touches alone, and a resumed run draws the same.
   Random random = context_.random("space/approaches", static_cast<std::uint64_t>(taps_));
   approaches_.clear();
+  unreached_.clear();
+  const auto recalled = recalled_.find(taps_ + 1);
   constexpr std::size_t kTries = 20;
   for (std::size_t tries = 0; approaches_.size() < count_; ++tries) {
     if (tries == kTries * count_) {
@@ -203,7 +220,12 @@ void SpaceBelief::draw_approaches() {
     if ((taps_ > 0 || seen_ > 0) && !goes_anywhere(approaches_.size())) line = along_normal(random);
     if (!line) line = random_line(random);
     const Approach approach{{line->origin + Vector3d(0.0, 0.0, desk_), line->direction}, 2.0 * region_.outside()};
-    if (backend_.reaches(approach)) approaches_.push_back(approach);
+    const bool refused = recalled != recalled_.end() ? is_marked(recalled->second, tries) : !backend_.reaches(approach);
+    if (refused) {
+      mark(unreached_, tries);
+    } else {
+      approaches_.push_back(approach);
+    }
   }
 }
 

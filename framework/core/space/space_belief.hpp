@@ -14,7 +14,9 @@
 #include <palpate/plugin.hpp>
 #include <palpate/surface_belief.hpp>
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace palpate {
@@ -46,6 +48,12 @@ class SpaceBelief final : public SurfaceBelief {
   /// Has the models take in what was observed, draws the approaches of the next tap, and says of them what of
   /// deviation, reduction and unseen is in `reads`.
   void update(Quantities reads);
+
+  /// Which of the lines that the last update() drew the backend refused, "" for none: in hex, a digit for four lines in
+  /// their order, the first of them its bit of 8; digits behind the last refused line are left out.
+  const std::string& unreached() const { return unreached_; }
+  /// Has the lines for tap `tap` be refused as it was recorded then: the backend is not asked.
+  void recall(int tap, const std::string& unreached) { recalled_[tap] = unreached; }
 
   // SurfaceBelief, as of the last update().
   const std::vector<Approach>& approaches() const override { return approaches_; }
@@ -117,6 +125,8 @@ class SpaceBelief final : public SurfaceBelief {
   std::size_t seen_ = 0;      ///< of the touches, before the first tap
   std::size_t taken_in_ = 0;  ///< of the touches, by the solids
   std::vector<Approach> approaches_;
+  std::string unreached_;
+  std::map<int, std::string> recalled_;  ///< by the number of the tap
   Eigen::VectorXd met_;  ///< how far along each approach the most probable composition is met, or else the end is
   Skin::Places places_;  ///< where it is met
   std::vector<Eigen::Index> meets_;  ///< the approaches that meet it there

@@ -6,8 +6,8 @@
 #include "launch/conduct.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
+#include "record/record_reader.hpp"
 #include "record/run_directory.hpp"
-#include "record/run_files.hpp"
 #include "sweep/sweep.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ std::string in_short(const std::vector<std::string>& names, const char* noun) {
 class Origins {
  public:
   explicit Origins(const fs::path& directory) {
-    trouble_in([&] { manifest_ = RunFiles(directory).manifest().value_or(Tree()); });
+    trouble_in([&] { manifest_ = read_manifest(directory).value_or(Tree()); });
   }
 
   /// The group of this kind ("scene") that the value at `path`, or the first below it, comes from; "" for none.

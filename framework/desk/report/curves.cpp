@@ -2,7 +2,6 @@
 #include "report/curves.hpp"
 
 #include "record/fields.hpp"
-#include "record/run_files.hpp"
 
 #include <fmt/format.h>
 
@@ -73,7 +72,7 @@ std::vector<Curve> times(const Recording& recording, const History& history) {
   std::vector<Curve> out;
   for (const char* phase : kPhaseNames)
     out.push_back({phase, std::vector<std::optional<double>>(history.moments.size())});
-  for (const TapTimes& tap : RunFiles(recording.directory).timings().taps) {
+  for (const TapTimes& tap : recording.timings) {
     const auto moment = static_cast<std::size_t>(tap.tap);
     if (moment >= history.moments.size()) continue;
     for (std::size_t i = 0; i < kPhases; ++i) out[i].values[moment] = 1e3 * tap.seconds[i];

@@ -42,8 +42,7 @@ struct Curves {
 };
 
 /// Errors, what is not known, shares, likelihoods, hyperparameters, what the footprint tells, times. What the run has
-/// not is left out, and so is every panel none of whose curves ever changes. Of a damaged timings.csv it takes the
-/// lines before the damage.
+/// not is left out, and so is every panel none of whose curves ever changes.
 Curves curves_of(const Recording& recording, const History& history);
 
 }  // namespace palpate

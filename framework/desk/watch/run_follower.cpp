@@ -3,7 +3,6 @@
 
 #include "config/trouble.hpp"
 #include "record/run_directory.hpp"
-#include "record/run_files.hpp"
 #include "record/session.hpp"
 #include "record/tap_row.hpp"
 #include "report/page/page.hpp"
@@ -49,7 +48,7 @@ Position parse_position(const std::string& at) {
 }  // namespace
 
 RunFollower::RunFollower(const Workshop& workshop, fs::path directory)
-    : workshop_(workshop), directory_(std::move(directory)), log_(taps_file_to_come(directory_)) {}
+    : workshop_(workshop), directory_(std::move(directory)), log_(directory_ / kRecordFile) {}
 
 bool RunFollower::goes_on() const { return is_running(directory_); }
 
@@ -57,6 +56,8 @@ void RunFollower::begin_anew() {
   grower_.reset();
   recording_.reset();
   pending_.clear();
+  manifest_.reset();
+  timings_.clear();
   trouble_.clear();
   ++generation_;
 }
@@ -83,14 +84,18 @@ void RunFollower::read_record() {
   const std::optional<Row> summary = read_outcome(directory_);
   const std::string standing = (held ? "held " : "") + (summary ? to_json_text(*summary) : "");
   bool anew = false;
-  std::vector<Row> rows = log_.read(anew);
-  if (!rows.empty() && !trouble_.empty()) {  // what could not be lived through may be another record by now
+  std::vector<RecordLine> lines = log_.read(anew);
+  if (!lines.empty() && !trouble_.empty()) {  // what could not be lived through may be another record by now
     log_.forget();
-    rows = log_.read(anew);
+    lines = log_.read(anew);
     anew = true;
   }
   if (anew) begin_anew();
-  std::move(rows.begin(), rows.end(), std::back_inserter(pending_));
+  for (RecordLine& line : lines) {
+    if (line.kind == LineKind::tap) pending_.push_back(std::move(line.row));
+    if (line.kind == LineKind::timing) timings_.push_back(times_of(line.row));
+    if (line.kind == LineKind::manifest) manifest_ = std::move(line.tree);
+  }
   if (standing != standing_) {
     standing_ = standing;
     ++revision_;
@@ -100,8 +105,10 @@ void RunFollower::read_record() {
 
 void RunFollower::take_in() {
   if (!recording_) {
-    recording_ = std::make_unique<Recording>(Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}});
+    recording_ = std::make_unique<Recording>(
+        Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}, manifest_, {}});
   }
+  recording_->timings = timings_;
   recording_->taps.push_back(past_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));
   pending_.pop_front();

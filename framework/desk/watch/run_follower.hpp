@@ -39,6 +39,8 @@ class RunFollower final : public Watched {
   const Workshop& workshop_;
   std::filesystem::path directory_;
   GrowingLog log_;
+  std::optional<Tree> manifest_;
+  std::vector<TapTimes> timings_;
   std::deque<Row> pending_;                ///< recorded, and not yet in recording_
   std::unique_ptr<Recording> recording_;   ///< null before the first tap
   std::unique_ptr<HistoryGrower> grower_;  ///< of as many taps as recording_ has

@@ -38,6 +38,9 @@ Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, b
       if (!held) status = read_ending(directory);
       if (held) status.state = RunStatus::State::running;
     }
+    // Whoever takes it up finds it done, and makes the files that are missing.
+    if (!running && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
+      status.state = RunStatus::State::unfinished;
     ++out.counts[status.state];
     if (status.state == RunStatus::State::failed) {
       out.failures.push_back({job, attempts_of(directory), status.stop_reason});

@@ -2,10 +2,11 @@
 // One job of a sweep, run at most once to its end however many processes try. The guarantee is here and needs nobody's
 // good behaviour:
 //
-// 1. the lock of the job's directory is taken, or the job is busy;
-// 2. under it, the record says whether there is anything to do;
-// 3. the attempt is noted, then the run begins or goes on behind its last recorded tap;
-// 4. its result appears by rename. What dies before that leaves an unfinished run, to be carried on.
+// 1. the lock of the job's record is taken, or the job is busy;
+// 2. under it, the last line of the record says whether there is anything to do;
+// 3. the attempt is appended, then the run begins or goes on behind its last recorded tap;
+// 4. the line `end` is the result, and summary.json its copy. What dies before it leaves an unfinished run, to be
+//    carried on.
 #pragma once
 
 #include "record/session.hpp"
@@ -19,7 +20,7 @@ namespace palpate {
 /// How an attempt at a job ended, and the exit status of a process that made it.
 enum class JobEnd {
   done = 0,           ///< now or before
-  failed = 1,         ///< now or before; summary.json has the reason
+  failed = 1,         ///< now or before; the record has the reason
   unrecorded = 2,     ///< not even that could be recorded
   busy = 75,          ///< another process has it in hand; nothing was done
   interrupted = 130,  ///< by the user's wish; it can be carried on
@@ -34,7 +35,7 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
 /// Whether the job is done or has failed.
 bool has_ended(const std::filesystem::path& directory);
 
-/// How often the job has been begun, as its record says.
+/// How often the job has been begun since it last failed, as its record says.
 int attempts_of(const std::filesystem::path& directory);
 
 /// Ends the job as failed, unless it has ended or somebody has it in hand: for processes that died over it.

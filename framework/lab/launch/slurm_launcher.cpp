@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/slurm_launcher.hpp"
 
+#include "launch/job.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>
@@ -193,7 +194,7 @@ Launcher::State SlurmLauncher::poll(double seconds) {
       // A failed job that is tried again has its old result until it begins: only the queue tells.
       const bool by_queue = task.waiting || options_.resume.retry_failed;
       const auto still = std::stable_partition(task.jobs.begin(), task.jobs.end(), [&](std::size_t job) {
-        return !gone && (by_queue || !is_there(job_directory(sweep_, sweep_.jobs[job]) / "summary.json"));
+        return !gone && (by_queue || !has_ended(job_directory(sweep_, sweep_.jobs[job])));
       });
       state.returned.insert(state.returned.end(), still, task.jobs.end());
       task.jobs.erase(still, task.jobs.end());

@@ -48,14 +48,6 @@ def _overrides(overrides, settings):
     return [*overrides, *(f"{key}={_program.value_text(value)}" for key, value in settings.items())]
 
 
-def _json_file(path):
-    try:
-        with open(path, encoding="utf-8") as file:
-            return _json.load(file)
-    except FileNotFoundError:
-        return None
-
-
 def _table(columns):
     """A structured array of columns: (name, array or list)."""
     columns = [(name, _np.asarray(values, dtype=object) if isinstance(values, list) else values)
@@ -139,8 +131,8 @@ class Run:
 
     @property
     def summary(self) -> dict | None:
-        """summary.json, nested by its dots; None of a run that has not ended."""
-        return _json_file(_os.path.join(self.directory, "summary.json"))
+        """What summary.json has, nested by its dots; None of a run that has not ended."""
+        return self._record.summary()
 
     @property
     def manifest(self) -> dict | None:

@@ -57,7 +57,11 @@ Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_byt
 
 }  // namespace
 
-Reading read_bounded(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
+namespace {
+
+/// Opens a regular file and hands `use` its descriptor and its size.
+template <class Use>
+Reading with_file(const fs::path& file, Origin origin, const Use& use) {
   const bool inner = origin == Origin::record;
   struct stat seen {};
   // Looked at before it is opened: to open a device may already do something.
@@ -68,11 +72,26 @@ Reading read_bounded(const fs::path& file, std::uintmax_t most_bytes, Origin ori
   if (number < 0) return failed(errno);
   struct stat opened {};
   Reading out = ::fstat(number, &opened) != 0 ? failed(errno)
-                : !S_ISREG(opened.st_mode)
-                    ? Reading{Reading::Kind::not_regular, {}}
-                    : read_descriptor(number, static_cast<std::uintmax_t>(opened.st_size), most_bytes);
+                : !S_ISREG(opened.st_mode)    ? Reading{Reading::Kind::not_regular, {}}
+                                              : use(number, static_cast<std::uintmax_t>(opened.st_size));
   ::close(number);
   return out;
+}
+
+}  // namespace
+
+Reading read_bounded(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
+  return with_file(file, origin,
+                   [&](int number, std::uintmax_t size) { return read_descriptor(number, size, most_bytes); });
+}
+
+Reading read_end_bounded(const fs::path& file, std::uintmax_t bytes, Origin origin) {
+  return with_file(file, origin, [&](int number, std::uintmax_t size) {
+    if (size > kMostLogBytes) return Reading{Reading::Kind::too_large, {}};
+    const std::uintmax_t begin = size - std::min(size, bytes);
+    if (::lseek(number, static_cast<off_t>(begin), SEEK_SET) < 0) return failed(errno);
+    return read_descriptor(number, size - begin, kMostLogBytes);
+  });
 }
 
 ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes) {

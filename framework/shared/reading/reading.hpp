@@ -18,8 +18,7 @@ namespace palpate {
 
 /// Limits in bytes: for each kind of content a multiple of the largest that palpate writes or documents.
 constexpr std::uintmax_t kMostConfigBytes = std::uintmax_t{1} << 20;     ///< of a config or a file of a group
-constexpr std::uintmax_t kMostSummaryBytes = std::uintmax_t{1} << 20;    ///< of one row; it has about 2 kB
-constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;  ///< of a run
+constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{64} << 20;  ///< of a line of a record that holds lists
 constexpr std::uintmax_t kMostLogBytes = std::uintmax_t{512} << 20;      ///< of all lines of a record or of a sweep
 constexpr std::uintmax_t kMostLineBytes = std::uintmax_t{1} << 20;       ///< of one of them; it has about 2 kB
 constexpr std::uintmax_t kMostViewBytes = std::uintmax_t{64} << 20;
@@ -54,6 +53,9 @@ struct Reading {
 /// Reads a file of at most `most_bytes`. It returns at once whatever is in the place of the file: no pipe is waited
 /// for and no device is opened. Throws nothing but std::bad_alloc.
 Reading read_bounded(const std::filesystem::path& file, std::uintmax_t most_bytes, Origin origin);
+
+/// Reads the last `bytes` of a file of at most kMostLogBytes, all of a shorter one; else as read_bounded().
+Reading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 
 /// Returns what an Error says of a reading that is not whole: its reason and its remedy. `most_bytes` is the limit that
 /// was given.

@@ -2,7 +2,6 @@
 #include "analysis/gnuplot.hpp"
 #include "analysis/readable.hpp"
 #include "record/fields.hpp"
-#include "record/run_files.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figures.hpp"
 #include "report/figures/sheet.hpp"
@@ -133,12 +132,11 @@ void draw_curves(Sheet& sheet, const Box& box, double top, const CurvePanel& pan
   sheet.plot(box, settings, clauses);
 }
 
-/// Curves over the taps. What the run has not is left out. Throws Error for a damaged timings.csv.
+/// Curves over the taps. What the run has not is left out.
 Figure curves_figure(const Recording& recording, const History& history) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
   constexpr double kHeight = 200;
-  if (const std::optional<Error> trouble = RunFiles(recording.directory).timings().trouble) throw Error(*trouble);
   const RunResult& last = history.moments.back().result;
   const auto [panels, constants] = curves_of(recording, history);
   const int count = static_cast<int>(panels.size());

@@ -7,7 +7,6 @@
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
-#include "record/run_files.hpp"
 #include "record/tap_row.hpp"
 #include "report/curves.hpp"
 #include "report/page/json.hpp"
@@ -222,8 +221,7 @@ static Json json_of_standing(const Recording& recording, const History& history)
 
 /// All that a page has of a run, but for its maps.
 static Json json_of_page(const Recording& recording, const History& history) {
-  const fs::path& directory = recording.directory;
-  const Tree manifest = RunFiles(directory).manifest().value_or(Tree::map());
+  const Tree manifest = recording.manifest.value_or(Tree::map());
   Json data = json_of_run(recording);
   data.update(json_of_standing(recording, history));
   data.update({{"version", kVersion},

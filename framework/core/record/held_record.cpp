@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "record/held_record.hpp"
+
+#include "record/json.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace palpate {
+
+namespace fs = std::filesystem;
+
+std::string now_text() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now())); }
+
+HeldRecord::HeldRecord(const fs::path& directory)
+    : directory_(directory), lock_(make_folder(directory) / kRecordFile) {}
+
+const RunRecord& HeldRecord::before() {
+  if (!before_) {
+    before_ = read_run_record(directory_);
+    begun_ = before_->manifest.has_value();
+    ended_ = before_->end.has_value();
+    attempts_ = static_cast<std::int64_t>(before_->attempts.size());
+  }
+  return *before_;
+}
+
+AppendFile& HeldRecord::log() {
+  if (log_) return *log_;
+  const fs::path file = directory_ / kRecordFile;
+  if (const std::optional<LastLine> last = last_line_if_there(file); last && last->whole < last->bytes) {
+    cut_ = last->bytes - last->whole;
+    cut_file(file, last->whole);
+  }
+  return log_.emplace(file);
+}
+
+void HeldRecord::append(const std::string& lines, bool sync) {
+  check_held();
+  log().append(lines, sync);
+}
+
+void HeldRecord::check_in_place() const {
+  if (log_ && log_->is_in_place()) return check_held();
+  throw Error(directory_.string(), "was moved or removed while a run was writing there",
+              "where it was moved to, 'palpate resume' carries on", Error::Kind::run);
+}
+
+void HeldRecord::add_manifest(const Tree& manifest, bool sync) {
+  append(to_json_line(manifest) + "\n", sync);
+  begun_ = true;
+}
+
+void HeldRecord::add_attempt(const Row& attempt) {
+  const auto taps = static_cast<std::int64_t>(before().taps.size());
+  check_held();
+  log();  // cuts
+  Row row;
+  row.add("attempt", attempts_ + 1);
+  row.add("at", now_text());
+  row.add("after_tap", taps);
+  row.fields.insert(row.fields.end(), attempt.fields.begin(), attempt.fields.end());
+  if (cut_ > 0) row.add("cut", static_cast<std::int64_t>(cut_));
+  append(to_json_line(row) + "\n", false);
+  ++attempts_;
+  ended_ = false;
+}
+
+void HeldRecord::add_setup(bool announces, const Tree& models, bool sync) {
+  Tree line = Tree::map({{"setup", Tree::scalar(std::to_string(attempts_))},
+                         {"announces", Tree::scalar(announces ? "true" : "false")},
+                         {"models", models}});
+  append(to_json_line(line) + "\n", sync);
+}
+
+void HeldRecord::add_tap(const Row& tap, const TapTimes* times, bool sync) {
+  std::string lines = to_json_line(tap) + "\n";
+  if (times != nullptr) {
+    lines += fmt::format("{{\"timing\": {}", times->tap);
+    for (std::size_t i = 0; i < kPhases; ++i)
+      lines += fmt::format(", \"{}\": {:.9f}", kPhaseNames[i], times->seconds[i]);
+    lines += "}\n";
+  }
+  append(lines, sync);
+}
+
+void HeldRecord::add_objects(const std::vector<Row>& objects, bool sync) {
+  if (objects.empty()) return;
+  std::string line = "{\"objects\": [";
+  for (std::size_t i = 0; i < objects.size(); ++i) line += (i == 0 ? "" : ", ") + to_json_line(objects[i]);
+  append(line + "]}\n", sync);
+}
+
+void HeldRecord::add_note(const std::string& kind, const Row& note, bool sync) {
+  Row row;
+  row.add("note", kind);
+  row.fields.insert(row.fields.end(), note.fields.begin(), note.fields.end());
+  append(to_json_line(row) + "\n", sync);
+}
+
+void HeldRecord::add_end(const Ending& ending, bool sync) {
+  Row row;
+  row.add("end", std::string(ending_name(ending.how)));
+  row.add("attempt", attempts_);
+  row.add("at", now_text());
+  row.add("reason", ending.reason);
+  std::string line = to_json_line(row);
+  line.pop_back();
+  if (!ending.summary.fields.empty()) line += ", \"summary\": " + to_json_line(ending.summary);
+  std::string files;
+  for (const Ending::File& one : ending.files) {
+    files += fmt::format("{}{}: {{\"bytes\": {}, \"hash\": {}}}", files.empty() ? "" : ", ", json_quoted(one.name),
+                         one.bytes, json_quoted(one.hash));
+  }
+  check_held();
+  log().flush();
+  append(line + ", \"files\": {" + files + "}}\n", sync);
+  ended_ = true;
+  log().flush();
+}
+
+void HeldRecord::sync_name() const { sync_names(directory_); }
+
+}  // namespace palpate
