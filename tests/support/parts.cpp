@@ -44,10 +44,12 @@ std::vector<Row> rows_of(const fs::path& run, const std::string& kind) {
 
 std::string lasting_part_of(const fs::path& run) {
   std::string out;
+  std::string objects;  // the last ones hold
   for_lines(record_of(run), [&](const std::string& one, const std::string& line) {
-    if (one == "intent" || one == "tap" || one == "objects") out += line;
+    if (one == "intent" || one == "tap") out += line;
+    if (one == "objects") objects = line;
   });
-  return out;
+  return out + objects;
 }
 
 std::string record_until(const std::string& record, int taps) {
