@@ -11,6 +11,7 @@
 #include "config/trouble.hpp"
 #include "launch/children.hpp"
 #include "launch/job.hpp"
+#include "launch/mounts.hpp"
 #include "launch/slurm_launcher.hpp"
 #include "record/files.hpp"
 #include "report/words/words.hpp"
@@ -189,6 +190,7 @@ void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
 int run_campaign(const Campaign& campaign, Standing begun) {
   const Sweep& sweep = campaign.sweep;
   check_locks(sweep.directory);
+  if (is_on_cluster(campaign)) check_shared_locks(sweep.directory);
   listen_for_interrupts();
   outlive_reader();
   name_record("carry on: palpate resume " + sweep.directory.string());
