@@ -6,7 +6,7 @@ import json
 import os
 import shutil
 
-CLOCKS = {"wall_seconds", "compute_seconds", "compute", "peak_rss_bytes", "at", "command_line", "origins", "of_summary",
+CLOCKS = {"wall_seconds", "compute_seconds", "compute", "peak_rss_bytes", "at", "command_line", "of_summary",
           "attempt", "robot", "fit", "infer", "acquire", "log"}
 # Of a record that was broken off and carried on there may be more, or fewer, of these.
 ATTEMPTS = {"attempt", "setup", "timing", "note"}

@@ -36,7 +36,7 @@ class Draft : public testing::Test {
                       {"seed=range(0,3)", "kernel=rbf,matern52"}, runs_,
                       [&](const Job& job, const ResolvedConfig& config) {
                         draft.add(job, config);
-                        texts_.push_back(to_yaml(config.tree));
+                        texts_.push_back(to_yaml_with_places(config.tree));
                       });
   }
 
@@ -63,9 +63,10 @@ TEST_F(Draft, AppearsUnderItsNameAtOnceAndWhole) {
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(sweep.jobs[i].id, planned.sweep.jobs[i].id);
     EXPECT_EQ(sweep.jobs[i].values, planned.sweep.jobs[i].values);
-    // Written key by key, it is what the config would be written as in one piece.
+    // With the origin of each value, before any of them has run.
     EXPECT_EQ(text_of(job_directory(sweep, sweep.jobs[i]) / "config.yaml"), texts_[i]);
-    EXPECT_EQ(to_yaml(planned_config(planned, test::shared_host(), i).tree), texts_[i]);
+    EXPECT_THAT(texts_[i], testing::HasSubstr("configs/scene/object_i.yaml:"));
+    EXPECT_EQ(to_yaml_with_places(planned_config(planned, test::shared_host(), i).tree), texts_[i]);
   }
 }
 

@@ -81,15 +81,12 @@ TEST_F(RunsTable, IsThisLetterByLetter) {
 
 TEST_F(RunsTable, CallsStrategyAndSceneAsTheGroupsAreThatTheConfigNamed) {
   const fs::path one = done("first", 1, "0.01");
-  const std::string summary = R"({"status": "done", "taps": 30})";
-  folder_.write(
-      "first/record.jsonl",
-      ended(summary, R"({"manifest": 1, "origins": {"acquisition.type": "configs/acquisition/fill.yaml:3:9", )"
-                     R"("scene.area.width": "default", "scene.desk": "a b/scene/ring.yaml:1:1"}})"));
+  const std::string scene = "scene:\n  objects:\n    - type: wave  # default\n  desk: 0 m  # a b/scene/ring.yaml:1:1\n";
+  folder_.write("first/config.yaml", "acquisition:\n  type: mixture  # configs/acquisition/fill.yaml:3:9\n" + scene);
   EXPECT_EQ(list_record(one).row.text("strategy"), "fill");
   EXPECT_EQ(list_record(one).row.text("scene"), "ring");
-  folder_.write("first/record.jsonl", ended(summary, "{"));
-  EXPECT_EQ(list_record(one).row.text("strategy"), "mixture") << "a damaged manifest costs no more than these names";
+  folder_.write("first/config.yaml", "acquisition:\n  type: mixture\n");
+  EXPECT_EQ(list_record(one).row.text("strategy"), "mixture") << "without comments no more than these names is lost";
 }
 
 TEST_F(RunsTable, ConditionsNameColumnsFieldsOfTheSummaryAndKeysOfTheConfigWithTheirUnits) {

@@ -3,6 +3,8 @@
 
 #include "support/testing.hpp"
 
+#include <gmock/gmock.h>
+
 namespace palpate::test {
 namespace {
 
@@ -238,6 +240,21 @@ TEST(Yaml, ReadsBackWhatItWrites) {
 TEST(Yaml, WritesBlocksForMapsAndOneLineForPlainLists) {
   EXPECT_EQ(to_yaml(parse_yaml("{a: {b: 1}, c: [1 cm, 2 cm], d: {}}", "c.yaml")),
             "a:\n  b: 1\nc: [1 cm, 2 cm]\nd: {}\n");
+}
+
+TEST(YamlWriter, EndsEachLineInThePlaceOfItsValueWhichReadersOfTheConfigPassOver) {
+  Tree tree =
+      parse_yaml("{a: {b: '1  # x', c: 2}, d: [1 cm, 2 cm], e: [[1, 2], [3, 4]], f: {}, g: [{h: 1}]}", "c.yaml");
+  tree.find("a")->find("c")->place = {};
+  tree.find("a")->find("b")->place.file = std::make_shared<const std::string>("odd\n\x1b name.yaml");
+  tree.find("g")->items.front().find("h")->place = {};
+  const std::string text = to_yaml_with_places(tree);
+  EXPECT_EQ(text,
+            "a:\n  b: \"1  # x\"  # odd \\x1b name.yaml:1:9\n  c: 2  # default\nd: [1 cm, 2 cm]  # c.yaml:1:29\n"
+            "e:\n  - [1, 2]  # c.yaml:1:47\n  - [3, 4]  # c.yaml:1:55\nf: {}\ng:\n  - h: 1  # default\n");
+  EXPECT_EQ(parse_yaml(text, "d.yaml").canonical(), tree.canonical());
+  EXPECT_THAT(places_of_lines(text), testing::ElementsAre("", "", "odd \\x1b name.yaml:1:9", "default", "c.yaml:1:29",
+                                                          "", "c.yaml:1:47", "c.yaml:1:55", "", "", "default"));
 }
 
 TEST(YamlWriter, TellsWhatItsReaderWouldRefuse) {

@@ -155,6 +155,7 @@ class Resolver final : public Fields {
     Tree list = Tree::list();
     if (const Tree* tree = claim(field)) {
       check_list(*tree, field, "write [{...}, {...}]");
+      list.place = tree->place;
       access.resize(tree->items.size());
       for (std::size_t i = 0; i < tree->items.size(); ++i)
         list.items.push_back(read_group(access.item(i), &tree->items[i], fmt::format("{}.{}", name(field), i)));
@@ -188,6 +189,7 @@ class Resolver final : public Fields {
       choices.assign(tree->items.size(), PluginChoice{kind, {}, nullptr});
     }
     Tree list = Tree::list();
+    if (tree != nullptr) list.place = tree->place;
     for (std::size_t i = 0; i < choices.size(); ++i) {
       const Tree* item = tree != nullptr ? &tree->items[i] : nullptr;
       list.items.push_back(read_plugin(choices[i], item, fmt::format("{}.{}", name(field), i)));
@@ -373,6 +375,7 @@ class Resolver final : public Fields {
     choice.options = std::make_shared<const Tree>(std::move(options));
     Tree written = Tree::map();
     written.at("type") = Tree::scalar(choice.type);
+    if (type != nullptr) written.at("type").place = type->place;
     for (const Tree::Entry& entry : choice.options->entries) written.entries.push_back(entry);
     return written;
   }

@@ -241,16 +241,35 @@ void append_in_line(std::string& out, const Tree& tree, bool in_brackets = false
   }
 }
 
-/// A tree whose first line begins in that column, where `out` ends.
-void append_block(std::string& out, const Tree& tree, std::size_t column) {
-  if (is_in_line(tree)) return append_in_line(out, tree);
+constexpr std::string_view kComment = "  # ";
+
+const Place kNowhere;
+
+/// Behind a value: where it is from, which is where the list around it is from if it does not know. A group without
+/// options is no value.
+void append_place(std::string& out, const Tree& value, const Place& around) {
+  if (value.is_map()) return;
+  const Place& known = value.place.file ? value.place : around;
+  std::string text = known.file ? printable(known.text()) : "default";
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  out.append(kComment) += text;
+}
+
+/// A tree whose first line begins in that column, where `out` ends; with places if `around` is not null.
+void append_block(std::string& out, const Tree& tree, std::size_t column, const Place* around) {
+  if (is_in_line(tree)) {
+    append_in_line(out, tree);
+    if (around != nullptr) append_place(out, tree, *around);
+    return;
+  }
+  if (around != nullptr && tree.kind == Tree::Kind::list && tree.place.file) around = &tree.place;
   bool first = true;
   const auto begin_line = [&] {
     if (!std::exchange(first, false)) out.append("\n").append(column, ' ');
   };
   const auto append_below = [&](const Tree& value) {
     out.append("\n").append(column + 2, ' ');
-    append_block(out, value, column + 2);
+    append_block(out, value, column + 2, around);
   };
   for (const Tree& item : tree.items) {
     begin_line();
@@ -259,16 +278,17 @@ void append_block(std::string& out, const Tree& tree, std::size_t column) {
       append_below(item);
     } else {
       out += ' ';
-      append_block(out, item, column + 2);
+      append_block(out, item, column + 2, around);
     }
   }
+  if (around != nullptr && tree.is_map()) around = &kNowhere;
   for (const Tree::Entry& entry : tree.entries) {
     begin_line();
     append_scalar(out, Tree::scalar(entry.key), false);
     out += ':';
     if (is_in_line(entry.value)) {
       out += ' ';
-      append_in_line(out, entry.value);
+      append_block(out, entry.value, column, around);
     } else {
       append_below(entry.value);
     }
@@ -362,8 +382,25 @@ Tree parse_value(const std::string& text, const std::string& file) {
 
 std::string to_yaml(const Tree& tree) {
   std::string out;
-  append_block(out, tree, 0);
+  append_block(out, tree, 0, nullptr);
   return out + "\n";
+}
+
+std::string to_yaml_with_places(const Tree& tree) {
+  std::string out;
+  append_block(out, tree, 0, &kNowhere);
+  return out.size() < kMostConfigBytes ? out + "\n" : to_yaml(tree);
+}
+
+std::vector<std::string> places_of_lines(std::string_view text) {
+  std::vector<std::string> out(1);
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    const std::size_t comment = line.rfind(kComment);
+    out.emplace_back(comment == std::string_view::npos ? "" : line.substr(comment + kComment.size()));
+  }
+  return out;
 }
 
 }  // namespace palpate

@@ -8,6 +8,8 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpate {
 
@@ -26,5 +28,11 @@ Tree parse_value(const std::string& text, const std::string& file);
 
 /// Block-style YAML that reads back as the same tree.
 std::string to_yaml(const Tree& tree);
+/// The same, with the place of each value, or `default` where it has none, as a comment at the end of its line:
+/// `length_scale: 0.017 m  # configs/kernel/rbf.yaml:3:17`. Without places where it would be too large for a config.
+std::string to_yaml_with_places(const Tree& tree);
+
+/// Returns these comments of a text by their lines, from 1, with "" at 0 and where there is none.
+std::vector<std::string> places_of_lines(std::string_view text);
 
 }  // namespace palpate

@@ -30,7 +30,6 @@ Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config) {
   };
   Tree& line = out.at("command_line") = Tree::list();
   for (const std::string& word : workshop.command_line) line.items.push_back(Tree::quote(word));
-  out.at("origins") = places(config.notes.origins);
   out.at("dropped") = places(config.notes.dropped);
   return out;
 }
@@ -197,7 +196,7 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
   }
   sync_if_asked(config, *experiment, *held);
   // The config first: a record without one cannot be carried on.
-  held->write("config.yaml", to_yaml(config.tree));
+  held->write("config.yaml", to_yaml_with_places(config.tree));
   held->begin(manifest_of(workshop, config));
   held->begin_attempt(build_hash(workshop.host, config.notes.plugins), force);
   set_up(*experiment, *held);

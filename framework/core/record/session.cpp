@@ -2,7 +2,9 @@
 #include "record/session.hpp"
 
 #include "config/hash.hpp"
+#include "config/trouble.hpp"
 #include "config/yaml.hpp"
+#include "reading/reading.hpp"
 #include "record/course.hpp"
 #include "record/recording.hpp"
 #include "record/summary.hpp"
@@ -61,6 +63,26 @@ Tree read_run_config(const fs::path& directory) {
   Tree config = read_yaml(file, Origin::record);
   check_format(config);
   return config;
+}
+
+/// Adds the origins of what stands at `path` and below.
+static void add_origins(const Tree& tree, const std::string& path, const std::vector<std::string>& lines,
+                        std::map<std::string, std::string>& out) {
+  const auto line = static_cast<std::size_t>(tree.place.line);
+  if (!tree.is_map() && line < lines.size() && !lines[line].empty()) out.emplace(path, lines[line]);
+  const std::string below = path.empty() ? path : path + ".";
+  for (const Tree::Entry& entry : tree.entries) add_origins(entry.value, below + entry.key, lines, out);
+  for (std::size_t i = 0; i < tree.items.size(); ++i) add_origins(tree.items[i], below + std::to_string(i), lines, out);
+}
+
+std::map<std::string, std::string> recorded_origins(const fs::path& directory) {
+  std::map<std::string, std::string> out;
+  const fs::path file = directory / "config.yaml";
+  const Reading reading = read_bounded(file, kMostConfigBytes, Origin::record);
+  if (!reading) return out;
+  const std::vector<std::string> lines = places_of_lines(reading.text);
+  trouble_in([&] { add_origins(parse_yaml(reading.text, file.string()), "", lines, out); });  // then nothing is known
+  return out;
 }
 
 ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {

@@ -13,6 +13,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -89,6 +90,10 @@ std::vector<std::string> restore_files(const Workshop& workshop, const ResolvedC
 
 /// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
 Tree read_run_config(const std::filesystem::path& directory);
+
+/// Where the values of a run's config were written when it began: the comments of its config.yaml, by the paths of the
+/// values. Empty where there is none that can be read.
+std::map<std::string, std::string> recorded_origins(const std::filesystem::path& directory);
 
 /// The config of a run directory, as resolved then. Throws Error if it does not resolve to the id that it had.
 ResolvedConfig load_run(const PluginHost& host, const std::filesystem::path& directory);

@@ -2,18 +2,19 @@
 #include "analysis/runs_table.hpp"
 
 #include "analysis/readable.hpp"
-#include "config/trouble.hpp"
 #include "launch/conduct.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/record_reader.hpp"
 #include "record/run_directory.hpp"
+#include "record/session.hpp"
 #include "sweep/sweep.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <unordered_set>
 
 namespace palpate {
@@ -34,27 +35,23 @@ std::string in_short(const std::vector<std::string>& names, const char* noun) {
   return out.size() <= kShown ? fmt::format("{}", fmt::join(out, ", ")) : fmt::format("{} {}", out.size(), noun);
 }
 
-/// Where the values of a run's config were written, as its manifest tells: by that alone groups are known by name.
+/// Where the values of a run's config were written: by that alone groups are known by name.
 class Origins {
  public:
-  explicit Origins(const fs::path& directory) {
-    trouble_in([&] { manifest_ = read_manifest(directory).value_or(Tree()); });
-  }
+  explicit Origins(const fs::path& directory) : origins_(recorded_origins(directory)) {}
 
   /// The group of this kind ("scene") that the value at `path`, or the first below it, comes from; "" for none.
   std::string group(const std::string& path, const char* kind) const {
-    const Tree* const origins = manifest_.find("origins");
-    if (origins == nullptr) return {};
-    for (const Tree::Entry& one : origins->entries) {
-      if (one.key.compare(0, path.size(), path) != 0) continue;
-      const fs::path file = one.value.text.substr(0, one.value.text.find(".yaml:"));
+    for (const auto& [key, place] : origins_) {
+      if (key.compare(0, path.size(), path) != 0) continue;
+      const fs::path file = place.substr(0, place.find(".yaml:"));
       if (file.parent_path().filename() == kind) return file.filename().string();
     }
     return {};
   }
 
  private:
-  Tree manifest_;
+  std::map<std::string, std::string> origins_;
 };
 
 std::string first_of(const std::vector<std::string>& names) {

@@ -61,20 +61,9 @@ SweepDraft::~SweepDraft() {
 void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
   const fs::path directory = folder_ / "jobs" / job.id;
   make_folder(directory);
-  std::string text;
-  for (const Tree::Entry& entry : config.tree.entries) {
-    Written& known = written_[entry.key];
-    std::string value = entry.value.canonical();
-    if (known.yaml.empty() || known.value != value) {
-      Tree alone = Tree::map();
-      alone.entries.push_back(entry);
-      known = {std::move(value), to_yaml(alone)};
-    }
-    text += known.yaml;
-  }
   // In its place at once: nobody looks here before the whole folder gets its name.
   AppendFile file(directory / "config.yaml");
-  file.append(text, false);
+  file.append(to_yaml_with_places(config.tree), false);
   file.flush();
 }
 

@@ -8,7 +8,6 @@
 #include "sweep/plan.hpp"
 
 #include <filesystem>
-#include <map>
 #include <string>
 
 namespace palpate {
@@ -34,17 +33,10 @@ class SweepDraft {
   /// A job without its config would run, but could be neither carried on nor replayed.
   void replace_lost(const Sweep& sweep) const;
 
-  /// A top-level key as it was last written, because the jobs of a sweep differ in few.
-  struct Written {
-    std::string value;  ///< canonical
-    std::string yaml;
-  };
-
   std::filesystem::path runs_;
   bool made_runs_;  ///< the folder of the runs was not there before
   std::filesystem::path folder_;
   FileLock lock_;
-  std::map<std::string, Written> written_;
 };
 
 }  // namespace palpate

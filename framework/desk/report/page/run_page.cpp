@@ -7,6 +7,7 @@
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
+#include "record/session.hpp"
 #include "record/tap_row.hpp"
 #include "report/curves.hpp"
 #include "report/page/json.hpp"
@@ -23,7 +24,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <unordered_map>
+#include <map>
 
 namespace palpate {
 namespace {
@@ -45,12 +46,9 @@ Json json_of_run(const Recording& recording) {
           {"any_side", options.scene.touch == SceneOptions::Touch::any}};
 }
 
-/// The config as lines of path, value and origin: that of the manifest, which knows the files behind config.yaml.
-Json json_of_config(const Recording& recording, const Tree& manifest) {
-  std::unordered_map<std::string, std::string> known;
-  if (const Tree* origins = manifest.find("origins")) {
-    for (const Tree::Entry& entry : origins->entries) known.emplace(entry.key, entry.value.text);
-  }
+/// The config as lines of path, value and origin, which is the file behind config.yaml.
+Json json_of_config(const Recording& recording) {
+  const std::map<std::string, std::string> known = recorded_origins(recording.directory);
   Json lines;
   for (const ResolveNotes::Origin& one : recording.config.notes.origins) {
     const std::string text = to_yaml(*recording.config.tree.find_path(one.path));
@@ -232,7 +230,7 @@ static Json json_of_page(const Recording& recording, const History& history) {
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
                {"true_contours", true_contours_of(history)},
-               {"config", json_of_config(recording, manifest)},
+               {"config", json_of_config(recording)},
                {"build", json_of_build(manifest)}});
   return data;
 }
