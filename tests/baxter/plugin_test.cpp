@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
 // The plugin in a process of its own, as the program has it: loaded, made, destroyed, made again.
+#include "children/arm_lock.hpp"
 #include "elsewhere.hpp"
 #include "record/tap_row.hpp"
 #include "robot_lab.hpp"
 #include "robot_words.hpp"
 #include "support/plugins.hpp"
+#include "support/testing.hpp"
 
 #include <palpate/backend.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <optional>
+
+#include <unistd.h>
 
 namespace palpate::test {
 namespace {
@@ -50,6 +56,29 @@ TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
   EXPECT_EQ(process.printed,
             "contact on the net 1, gone with it 1\ncontact on the net 1, gone with it 1\n" + roscpp_alone.printed);
   EXPECT_THAT(lab.nodes(), ::testing::ElementsAre("/end_effector_publisher", "/realtime_loop"));
+}
+
+TEST(RobotPlugin, DoesNotConnectToAnArmThatAnotherProcessHasInHand) {
+  RobotLab lab(robot_words());
+  const std::string master = lab.environment().front();  // ROS_MASTER_URI=http://...
+  const std::string uri = master.substr(master.find('=') + 1);
+  const auto attempt = [&](const std::string& more) {
+    return elsewhere(lab.environment(),
+                     [&] {
+                       const PluginHost host({plugin_folder()});
+                       return error_of([&] { make<Backend>(host, "baxter", std::string(kOptions).insert(1, more)); });
+                     })
+        .printed;
+  };
+  ::setenv("XDG_RUNTIME_DIR", lab.folder().c_str(), 1);
+  std::optional<ArmLock> other;
+  other.emplace("backend", "left of " + uri, "runs/other");
+  ::unsetenv("XDG_RUNTIME_DIR");
+  EXPECT_EQ(attempt(""), master + ": the arm left of " + uri + " is in the hands of process " +
+                             std::to_string(::getpid()) + ", runs/other, wait until that has ended, or end it");
+  EXPECT_EQ(attempt("dry_run: true, "), "accepted") << "that moves nothing";
+  other.reset();
+  EXPECT_EQ(attempt(""), "accepted");
 }
 
 }  // namespace

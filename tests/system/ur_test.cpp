@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Whole runs on plugins/backends/process/ur.py over a stand-in for ur_rtde (tests/ur_rtde), whose arm moves over a dome
 // of 6 cm in the middle of the area.
+#include "children/arm_lock.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 
@@ -10,6 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <optional>
+
+#include <unistd.h>
 
 namespace palpate {
 namespace {
@@ -27,7 +32,7 @@ class UrArm : public Shell {
   }
   void fault(const std::string& what) {
     environment_ = {"PYTHONPATH=" + (test::source_folder() / "tests/ur_rtde").string(), "PYTHONDONTWRITEBYTECODE=1",
-                    "UR_LOG=" + log_file().string(), "UR_FAULT=" + what};
+                    "XDG_RUNTIME_DIR=" + here().string(), "UR_LOG=" + log_file().string(), "UR_FAULT=" + what};
   }
   Ended run_with(const std::string& what) {
     fault(what);
@@ -68,6 +73,20 @@ TEST_F(UrArm, TapsTheDomeAndLeavesTheRobotInOrder) {
   EXPECT_EQ(text_of(directory() / "process.stderr.txt"),
             "as ur_rtde does, this prints on stdout\n"
             "the TCP is at 0.0, 0.0, 150.0 mm from the flange; the speed slider stands at 100 %\n");
+}
+
+TEST_F(UrArm, ThatAnotherProcessHasInHandIsNotMoved) {
+  ::setenv("XDG_RUNTIME_DIR", here().c_str(), 1);
+  std::optional<ArmLock> other;
+  other.emplace("backend", "UR stub", "runs/other");
+  ::unsetenv("XDG_RUNTIME_DIR");
+  const Ended ended = run_with("");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, StartsWith("backend/process: the arm UR stub is in the hands of process " +
+                                    std::to_string(::getpid()) + ", runs/other; wait until that has ended, then"));
+  EXPECT_EQ(log(), "") << "nobody has even connected";
+  other.reset();
+  EXPECT_EQ(palpate({"resume", directory().string(), "--retry-failed", "--quiet"}).status, 0);
 }
 
 TEST_F(UrArm, NoisySamplesOfItsSpeedDoNotKeepItFromComingToRest) {

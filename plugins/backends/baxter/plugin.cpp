@@ -4,11 +4,13 @@
 #include "baxter/real_time.hpp"
 #include "baxter/ros/connect.hpp"
 #include "baxter/tapper.hpp"
+#include "children/arm_lock.hpp"
 
 #include <palpate/belief.hpp>
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -51,6 +53,15 @@ class Diary {
   std::string waiting_;
 };
 
+/// Of the left arm of the robot whose master this process will ask; `owner` is the folder of the record. A master that
+/// is not named is no arm: connecting says so.
+ArmLock lock_of_arm(const std::string& owner) {
+  const char* master = std::getenv("ROS_MASTER_URI");
+  if (master == nullptr || *master == '\0') return {};
+  const std::string uri = master;
+  return {"ROS_MASTER_URI=" + uri, "left of " + uri, owner};
+}
+
 }  // namespace
 
 class Baxter final : public Backend {
@@ -64,6 +75,7 @@ class Baxter final : public Backend {
       : options_(options),
         scene_(context.scene),
         diary_(context.directory),
+        arm_(options.dry_run ? ArmLock() : lock_of_arm(context.directory)),
         robot_(connect({!options.dry_run, options.inverse_kinematics == Options::InverseKinematics::robot})),
         tapper_(options, context.scene, *robot_, context.interrupted,
                 [this](const std::string& line) { diary_.note(line); }) {
@@ -108,6 +120,7 @@ class Baxter final : public Backend {
   Options options_;
   const Scene& scene_;
   Diary diary_;
+  ArmLock arm_;  ///< while it is connected
   std::unique_ptr<Robot> robot_;
   Tapper tapper_;
   std::unique_ptr<View> view_;  ///< before the robot goes, this goes

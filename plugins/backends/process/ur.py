@@ -11,6 +11,7 @@ import math
 import os
 import sys
 
+from arm_lock import Held, hold_arm
 from ur_moves import ARRIVED, RETRY, Arm, Asks, Failed, Fault, Over, check, distance, length
 
 MARGIN = 0.02  # m around the area in which the tip may stand when a tap begins
@@ -143,7 +144,12 @@ def tool_axis(pose):
 
 
 def connect(host, asks, force_limit):
-    """Joins the robot, but moves nothing and uploads nothing before its state is known to be good."""
+    """Joins the robot, but moves nothing and uploads nothing before its state is known to be good, nor while another
+    process has the arm."""
+    try:
+        lock = hold_arm(f"UR {host}")
+    except (Held, OSError) as error:
+        raise Fault(f"{error}; wait until that has ended, {RETRY}") from None
     try:
         import rtde_control
         import rtde_receive
@@ -156,7 +162,9 @@ def connect(host, asks, force_limit):
                     f"(UR.md, step 1), {RETRY}") from None
     except RuntimeError as error:  # what ur_rtde makes of all that goes wrong on its side
         raise Fault(f"no connection to {host}: {error}; {RETRY}") from None
-    return Arm(control, receive, asks, force_limit)
+    arm = Arm(control, receive, asks, force_limit)
+    arm.lock = lock  # for as long as there is this object
+    return arm
 
 
 def serve(arguments, asks, answers):
