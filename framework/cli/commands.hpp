@@ -37,6 +37,7 @@ struct RunArguments {
   bool step = false;
   bool print_config = false;
   bool origins = false;
+  bool identity = false;
   bool watch = false;
   std::string junit;
 };

@@ -132,7 +132,11 @@ void add_run(CommandLine& line) {
   sub->add_flag("--step", line.run.step, kStepHelp)->excludes(quiet);
   sub->add_flag("--watch", line.run.watch, kWatchHelp);
   CLI::Option* print = sub->add_flag("--print-config", line.run.print_config, "print the resolved config and stop");
-  sub->add_flag("--origins", line.run.origins, "with it, where each value came from")->needs(print);
+  CLI::Option* origins =
+      sub->add_flag("--origins", line.run.origins, "with it, where each value came from")->needs(print);
+  sub->add_flag("--identity", line.run.identity, "with it, the text whose hash the id of the run begins")
+      ->needs(print)
+      ->excludes(origins);
   sub->add_option("--junit", line.run.junit, kJunitHelp)->type_name("FILE");
   show(sub, {"palpate run configs/paper/object_i.yaml",
              "palpate run configs/default.yaml scene=ring kernel.length_scale=3cm seed=7"});
@@ -205,7 +209,7 @@ void add_resume(CommandLine& line) {
       ->type_name("NUMBERS");
   add_launch(sub, line.resume.launch);
   sub->add_flag("--step", line.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
-  show(sub, {"palpate resume runs/object_i/174c331b0e7d", "palpate resume runs/many/5b0c4e1d77aa --retry-failed -j 2"});
+  show(sub, {"palpate resume runs/object_i/422cd70eb5f7", "palpate resume runs/many/5b0c4e1d77aa --retry-failed -j 2"});
 }
 
 void add_list(CommandLine& line) {
@@ -230,13 +234,13 @@ void add_rest(CommandLine& line) {
       },
       status, line.directory);
   line.add_record(sub, "DIR", line.directory, Wanted::any, "the run or the sweep");
-  show(sub, {"palpate status runs/object_i/174c331b0e7d", "palpate status runs/first/*"});
+  show(sub, {"palpate status runs/object_i/422cd70eb5f7", "palpate status runs/first/*"});
 
   sub = line.add(
       "replay", "Send recorded taps through the same models and compare every number",
       [&line](Needs& needs) { needs.record(line.directory); }, replay, line.directory);
   line.add_record(sub, "DIR", line.directory, Wanted::run, "the run");
-  show(sub, {"palpate replay runs/object_i/174c331b0e7d", "palpate replay runs/first/*"});
+  show(sub, {"palpate replay runs/object_i/422cd70eb5f7", "palpate replay runs/first/*"});
 
   sub = line.add(
       "validate", "Check configs, run nothing",
@@ -333,7 +337,7 @@ void add_watch(CommandLine& line) {
       ->capture_default_str();
   sub->add_flag("--until-left", line.watch.until_left,
                 "end two minutes after the run has ended and the last page was closed, not by Ctrl-C alone");
-  show(sub, {"palpate watch runs/object_i/174c331b0e7d", "palpate watch many@latest --port 8000"});
+  show(sub, {"palpate watch runs/object_i/422cd70eb5f7", "palpate watch many@latest --port 8000"});
 }
 
 void add_about_one(CommandLine& line) {
@@ -350,13 +354,13 @@ void add_about_one(CommandLine& line) {
                   "write into this folder; if not given, into the record, and what is of several runs into the folder "
                   "that has them all")
       ->type_name("FOLDER");
-  show(sub, {"palpate report runs/object_i/174c331b0e7d --figures", "palpate report runs/first/* runs/second/*"});
+  show(sub, {"palpate report runs/object_i/422cd70eb5f7 --figures", "palpate report runs/first/* runs/second/*"});
 
   sub = line.add("explain", "Why a run made a tap where it made it, in words", all_about(line.directory), explain,
                  line.directory, line.tap);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
   sub->add_option("TAP", line.tap, "the number of the tap, from 1")->type_name("N")->required();
-  show(sub, {"palpate explain runs/object_i/174c331b0e7d 9", "palpate explain runs/first/* 9"});
+  show(sub, {"palpate explain runs/object_i/422cd70eb5f7 9", "palpate explain runs/first/* 9"});
 
   sub = line.add("calibrate", "Effects with which the simulator errs as the arm of recorded taps, as a file",
                  &Needs::everything, calibrate, line.runs);

@@ -99,7 +99,9 @@ int run(Program& program, const RunArguments& arguments) {
                         sweep->place.text()));
   }
   if (arguments.print_config) {
-    if (arguments.origins) {
+    if (arguments.identity) {
+      print_data(identity_text(config.notes));
+    } else if (arguments.origins) {
       print_origins(program.composer.groups(), config);
     } else {
       print_data(to_yaml(config.tree));

@@ -71,10 +71,11 @@ std::vector<Case> cases() {
       line("TypoInAKey", "sed: 1", "10:1: unknown option 'sed', did you mean 'seed'?"),
       line("TypoInANestedKey", "initial: {desing: grid}", "10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
-           "10:1: unknown option 'colour', known: name, seed, taps, initial, candidates, kernel, height, weight, "
+           "10:1: unknown option 'colour', known: complete, name, seed, taps, initial, candidates, kernel, height, "
+           "weight, "
            "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
            "tie_tolerance, "
-           "accuracy, threads, instruction_set, stop, scene, backend, log, format, defaults, strategy, sweep, expect"),
+           "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
       line("DottedKeyInAFile", "weight.clip: yes", "10:1: unknown option 'weight.clip', write weight: {clip: yes}"),
       line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",
            "10:1: unknown option 'height.kernel.length_scale', write height: {kernel: {length_scale: 2 cm}}"),

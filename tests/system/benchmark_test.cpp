@@ -47,7 +47,7 @@ TEST_F(Benchmark, TapsWithEachAcquisitionForEachBeliefFromTheSameFirstTaps) {
   for (int job = 0; job < 3 * 5; ++job) {
     const std::string resolved = text_of(job_of(directory, job) / "config.yaml");
     const bool whole = job >= 10;
-    EXPECT_THAT(resolved, HasSubstr("initial:\n  design: search\n"));
+    EXPECT_THAT(resolved, HasSubstr("initial:\n  design: search  # "));
     EXPECT_THAT(resolved, HasSubstr(std::string("footprint:\n  type: ") + (whole ? "shape" : "regression")));
     EXPECT_THAT(resolved, HasSubstr(std::string("surface: ") + (job >= 5 ? "two_part" : "single")));
     const char* const types[] = {"random", "grid", "uncertainty", "weighted", "mixture"};

@@ -74,7 +74,7 @@ TEST_F(Pareto, TheCheapestSettingWithinIsAConfigThatRunsAsTheSameJob) {
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, StartsWith("# acquisition="));
   EXPECT_THAT(ended.out, HasSubstr("whose upper 95 % bound of rmse_m is at most 200 mm:\n# rmse_m "));
-  EXPECT_THAT(ended.out, HasSubstr("; 4 seeds, of which this is the first.\nname: "));
+  EXPECT_THAT(ended.out, HasSubstr("; 4 seeds, of which this is the first.\ncomplete: 1\nname: "));
   EXPECT_THAT(ended.out, Not(HasSubstr("expect"))) << "what the sweep expected of all its runs";
   EXPECT_THAT(ended.err, HasSubstr("front  setting"));
 

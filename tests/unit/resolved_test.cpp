@@ -7,6 +7,7 @@
 #include "support/testing.hpp"
 
 #include <gmock/gmock.h>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <set>
 
@@ -33,7 +34,7 @@ TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
 }
 
 TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
-  EXPECT_EQ(id_of({"name=other", "log.maps=true", "log.sync=none", "log.surface=false"}), id_of());
+  EXPECT_EQ(id_of({"name=other", "log.maps=true", "log.sync=none", "log.surface=false", "threads=2"}), id_of());
 }
 
 TEST(ResolvedConfig, PutsAllElseIntoTheId) {
@@ -77,14 +78,48 @@ TEST(ResolvedConfig, RefusesATypoBesideAGroupChosenAtTheSameTime) {
   EXPECT_EQ(refused_config({"backend=paper", "backend.motion.speed=3cm/s"}), "accepted");
 }
 
-TEST(ResolvedConfig, SaysItsFormatAndRefusesALaterOne) {
+TEST(ResolvedConfig, IsCompleteAndOneOfALaterVersionIsRefused) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml");
-  EXPECT_EQ(config.tree.find("format")->text, "1");
-  EXPECT_EQ(shipped_config("paper/object_i.yaml", {"format=1"}).id, config.id);
-  EXPECT_EQ(
-      refused_config({"format=2", "a_key_of_format_2=3"}),
-      "command line: format: 2 is newer than 1, the latest known here, take a palpate as new as the one that wrote it");
-  EXPECT_EQ(refused_config({"format=0"}).substr(0, 22), "command line: format: ");
+  EXPECT_EQ(to_yaml(config.tree).substr(0, 12), "complete: 1\n");
+  const auto trouble_with = [](const std::string& text) {
+    return error_of([&] {
+      Tree tree = parse_yaml(text, "config.yaml");
+      mark_complete(tree);
+      resolve_experiment(tree, shared_host());
+    });
+  };
+  EXPECT_EQ(trouble_with("complete: 2\na_key_of_version_2: 3"),
+            "config.yaml:1:11: complete: 2 is newer than 1, the latest known here, take a palpate as new as the one "
+            "that wrote it");
+  EXPECT_EQ(trouble_with("complete: 0").substr(0, 28), "config.yaml:1:11: complete: ");
+}
+
+TEST(ResolvedConfig, ThatIsCompleteTakesNeutralValuesForWhatItLacksAndIsRefusedWithoutOne) {
+  const ResolvedConfig config = shipped_config("paper/object_i.yaml");
+  const auto read_without = [&](const char* group, const char* key) {
+    Tree tree = parse_yaml(to_yaml(config.tree), "config.yaml");
+    mark_complete(tree);
+    tree.find(group)->erase(key);
+    return resolve_experiment(tree, shared_host());
+  };
+  EXPECT_EQ(read_without("scene", "touch").identity, config.identity);
+  EXPECT_THAT(error_of([&] { read_without("weight", "clip"); }),
+              testing::HasSubstr("'weight.clip' is missing, what is complete gives every option"));
+}
+
+TEST(ResolvedConfig, FollowsTheContentOfMeshesViewsAndProgramsAndNotTheirPaths) {
+  const TemporaryFolder folder;
+  for (const char* words :
+       {"scene.objects=[{type: mesh, file: FILE, unit: 1 mm}]", "prior={depth: FILE}",
+        "backend={type: process, command: python3 FILE --fast}", "backend={type: process, command: FILE --fast}"}) {
+    const auto id_with = [&](const std::string& name, const std::string& content) {
+      const std::string file = folder.write(name, content).string();
+      return id_of({boost::replace_all_copy(std::string(words), "FILE", file)});
+    };
+    const std::string id = id_with("one/a", "content");
+    EXPECT_EQ(id_with("other/b", "content"), id) << words;
+    EXPECT_NE(id_with("one/a", "other content"), id) << words;
+  }
 }
 
 TEST(ResolvedConfig, RefusesAGridThatIsTooFineForAnyComputer) {

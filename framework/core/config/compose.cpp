@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "config/compose.hpp"
 
+#include "config/quantity.hpp"
+#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "reading/reading.hpp"
 
@@ -114,6 +116,19 @@ void inherit_shared(Tree& tree, const ConfigKeys& keys) {
 
 }  // namespace
 
+void mark_complete(Tree& config) {
+  const Tree* complete = config.find("complete");
+  if (complete == nullptr) return;
+  std::int64_t number = 0;
+  trouble_in([&] { number = read_integer(*complete, "complete"); });  // resolving says what else is wrong
+  if (number > kRecordVersion) {
+    throw Error(complete->place.text(),
+                fmt::format("complete: {} is newer than {}, the latest known here", number, kRecordVersion),
+                "take a palpate as new as the one that wrote it");
+  }
+  for_all(config, [](Tree& one) { one.complete = one.is_map(); });
+}
+
 void check_path(const std::string& path, const std::string& place) {
   const bool has_gap =
       path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos;
@@ -150,6 +165,7 @@ const Tree& Composer::load(const fs::path& file) {
   if (found != files_.end()) return found->second;
   Tree tree = read_yaml(file);
   if (!tree.is_map()) throw Error(tree.place.text(), "a config is a map", "write key: value");
+  mark_complete(tree);
   return files_.emplace(key, std::move(tree)).first->second;
 }
 
@@ -400,6 +416,7 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   }
   lay_groups(tree, choices, beside, layer);
   tree.merge(own);
+  tree.complete = own.complete;
   for (const auto& [path, part] : brought_) {
     if (tree.find_path(path) == nullptr) tree.at_path(path, part.place) = part;
   }

@@ -9,12 +9,21 @@
 #include <palpate/error.hpp>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace palpate {
+
+/// The version of records: `complete` of their config.yaml. What only adds keys, fields or files leaves it as it is;
+/// whatever gives another meaning to what was there raises it. All versions from 1 on are read, later ones refused.
+inline constexpr std::int64_t kRecordVersion = 1;
+
+/// Takes note of `complete` in a config that was read: what it lacks is then not at its default (Tree::complete).
+/// Throws Error for one of a later version than kRecordVersion.
+void mark_complete(Tree& config);
 
 /// One `KEY=VALUE`: a dotted path and a value.
 struct Override {

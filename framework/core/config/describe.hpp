@@ -32,9 +32,10 @@ struct FieldDescription {
   std::string heir_of;    ///< see Field::inherits(); "" for none
   Owner owner = Owner::unsaid;
   std::string strategy_part;
-  std::size_t count = 0;                 ///< of `reals`, and of a row of `table`
-  std::string kind;                      ///< of `plugin`
-  std::vector<CaseDescription> cases;    ///< of `choice`
+  std::string neutral;                 ///< see Field::neutral(): as in a config, "none" where it is absent; "" for none
+  std::size_t count = 0;               ///< of `reals`, and of a row of `table`
+  std::string kind;                    ///< of `plugin`
+  std::vector<CaseDescription> cases;  ///< of `choice`
   std::vector<FieldDescription> fields;  ///< of `section` and `sections`
 
   /// "length", "whole number", "one of a, b", ...

@@ -224,6 +224,24 @@ std::string write_quantity(double value, Unit unit) {
   return symbol.empty() ? number : number + " " + symbol;
 }
 
+std::string constant_text(const FixedValue& constant, Unit unit) {
+  switch (constant.kind) {
+    case FixedValue::Kind::none:
+      return "";
+    case FixedValue::Kind::absent:
+      return "none";
+    case FixedValue::Kind::real:
+      return write_quantity(constant.real, unit);
+    case FixedValue::Kind::integer:
+      return std::to_string(constant.integer);
+    case FixedValue::Kind::flag:
+      return constant.flag ? "true" : "false";
+    case FixedValue::Kind::text:
+      return constant.text;
+  }
+  return "";
+}
+
 Tree write_quantities(const double* values, std::size_t count, Unit unit) {
   Tree list = Tree::list();
   for (std::size_t i = 0; i < count; ++i) list.items.push_back(Tree::scalar(write_quantity(values[i], unit)));

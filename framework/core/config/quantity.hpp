@@ -37,6 +37,9 @@ std::int64_t read_integer(const Tree& tree, const std::string& name);
 /// `0.017 m`, the shortest text that reads back as the same bits.
 std::string write_quantity(double value, Unit unit);
 
+/// A constant as a config has it: "none" for what is absent, "" for none.
+std::string constant_text(const FixedValue& constant, Unit unit);
+
 /// Several of them: a list.
 Tree write_quantities(const double* values, std::size_t count, Unit unit);
 /// Row after row of `columns`: a list of lists.

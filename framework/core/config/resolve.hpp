@@ -36,11 +36,14 @@ struct ResolveNotes {
   std::vector<Origin> origins;  ///< of every value, in the order of the resolved config
   std::vector<Origin> dropped;  ///< options left behind by a type that was chosen after them
   PluginNames plugins;          ///< every plugin that the config names
+  /// Lines `path=value` of all that decides what a run computes, in the order of the fields: see identity_of().
+  std::vector<std::string> identity;
 };
 
 /// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first
 /// unknown key, wrong type, missing unit or value out of range. `elsewhere` are keys beside those of `options` that
-/// others read: the hint of an unknown one names them.
+/// others read: the hint of an unknown one names them. In a map that is Tree::complete an option that is missing has
+/// its neutral value (Field::neutral). Without one it is an error, unless the option enters no id.
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
              const std::vector<std::string>& elsewhere = {});
 

@@ -45,6 +45,7 @@ struct Tree {
   std::vector<Entry> entries;  ///< of a map, in the order written, keys unique
   Place place;
   Layer layer = kFileLayer;
+  bool complete = false;  ///< a map of a record, which has every option that the palpate knew that wrote it
 
   Tree() = default;
   explicit Tree(Kind of) : kind(of) {}
@@ -80,7 +81,7 @@ struct Tree {
   /// Lays `upper` over this tree: maps are merged key by key, all else is replaced where upper's layer is not lower.
   void merge(const Tree& upper);
 
-  /// One line that is equal for equal values, whatever their places: input of the hash that names a run.
+  /// One line that is equal for equal values, whatever their places.
   std::string canonical() const;
   /// The same, behind what `out` holds already.
   void append_canonical(std::string& out) const;

@@ -250,9 +250,20 @@ const Place kNowhere;
 void append_place(std::string& out, const Tree& value, const Place& around) {
   if (value.is_map()) return;
   const Place& known = value.place.file ? value.place : around;
-  std::string text = known.file ? printable(known.text()) : "default";
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  out.append(kComment) += text;
+  out += kComment;
+  if (!known.file) {
+    out += "default";
+    return;
+  }
+  const auto is_plain = [](char c) { return c >= ' ' && c <= '~'; };
+  if (std::all_of(known.file->begin(), known.file->end(), is_plain)) {
+    out += *known.file;
+  } else {
+    std::string text = printable(*known.file);
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    out += text;
+  }
+  if (known.line > 0) out.append(":").append(std::to_string(known.line)).append(":") += std::to_string(known.column);
 }
 
 /// A tree whose first line begins in that column, where `out` ends; with places if `around` is not null.

@@ -213,7 +213,15 @@ void LogOptions::list(Fields& fields) {
 }
 
 void ExperimentOptions::list(Fields& fields) {
-  fields.text(name, Field("name", "of the experiment; the folder of its runs is a slug of it").of_run());
+  fields.integer(complete, Field("complete",
+                                 "version of a record whose config.yaml has every option; one that it lacks is not at "
+                                 "its default but at what it was before there was such an option")
+                               .of_run()
+                               .at_least(1)
+                               .at_most(kRecordVersion)
+                               .not_identifying());
+  fields.text(name,
+              Field("name", "of the experiment; the folder of its runs is a slug of it").of_run().not_identifying());
   fields.integer(seed, seed_field());
   fields.integer(taps, Field("taps", "budget of taps, the initial ones included").of_run().at_least(1).at_most(100000));
   fields.section(initial,
@@ -263,9 +271,11 @@ void ExperimentOptions::list(Fields& fields) {
                   .of_strategy()
                   .at_least(0)
                   .at_most(1));
-  fields.integer(
-      threads,
-      Field("threads", "that update the maps together; the results are the same").of_run().at_least(1).at_most(64));
+  fields.integer(threads, Field("threads", "that update the maps together; the results are the same")
+                              .of_run()
+                              .at_least(1)
+                              .at_most(64)
+                              .not_identifying());
   fields.choice(instruction_set, Field("instruction_set", "of the loops that update the maps").of_run(),
                 {{"auto", "the fastest that this processor has", {}},
                  {"baseline", "what every x86-64 has, for runs that are compared between machines", {}}});
@@ -273,9 +283,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(scene,
                  Field("scene", "what the world holds; a robot backend reads only area and desk").of_run().group());
   fields.plugin(backend, Field("backend", "what is tapped").of_run().but_of_strategy("motion").group());
-  fields.section(log, Field("log", "what is written").of_run());
-  fields.integer(format,
-                 Field("format", "of this file and of the record beside it: see runs/README.md").of_run().at_least(1));
+  fields.section(log, Field("log", "what is written").of_run().not_identifying());
   fields.require(
       initial.searches() || initial.count <= taps, "taps",
       fmt::format("the budget is smaller than the {} initial taps, raise it or lower initial.count", initial.count));
@@ -327,10 +335,6 @@ const ConfigKeys& config_keys() {
     for (const Field& field : keys_beside_options()) fields.text(no_option, field);
   });
   return keys;
-}
-
-bool enters_id(const std::string& key) {
-  return key != "name" && key != "log" && key != "threads" && key != "expect" && key != "format";
 }
 
 }  // namespace palpate

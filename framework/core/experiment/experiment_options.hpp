@@ -2,6 +2,7 @@
 // Every top-level key of a config, with its default and its meaning.
 #pragma once
 
+#include "config/compose.hpp"
 #include "scene/scene_options.hpp"
 #include "view/view.hpp"
 
@@ -103,10 +104,6 @@ struct LogOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// The version of configs and of the records beside them. What only adds keys, fields or files leaves it as it is;
-/// whatever gives another meaning to what was there raises it. All versions from 1 on are read, later ones refused.
-inline constexpr std::int64_t kFormat = 1;
-
 struct ExperimentOptions : Options {
   enum class Surface { single, two_part, implicit };
   enum class Posterior { automatic, dense, grid, lowrank };
@@ -114,6 +111,7 @@ struct ExperimentOptions : Options {
   enum class Repeat { forbid, allow };
   enum class InstructionSet { automatic, baseline };
 
+  std::int64_t complete = kRecordVersion;
   std::string name = "experiment";
   std::int64_t seed = 1;
   std::int64_t taps = 17;
@@ -140,7 +138,6 @@ struct ExperimentOptions : Options {
   SceneOptions scene;
   PluginChoice backend{"backend", {}, nullptr};
   LogOptions log;
-  std::int64_t format = kFormat;
 
   void list(Fields& fields) override;
 };
@@ -154,8 +151,5 @@ std::vector<Field> keys_beside_options();
 /// What the lists of all these say to those who compose configs.
 class ConfigKeys;
 const ConfigKeys& config_keys();
-
-/// Top-level keys that do not change what a run computes: they stay out of its id.
-bool enters_id(const std::string& key);
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/course.hpp"
 
+#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "record/callers_run.hpp"
 #include "record/fields.hpp"
@@ -28,6 +29,7 @@ Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config) {
     for (const ResolveNotes::Origin& one : of) all.entries.push_back({one.path, {}, Tree::quote(one.place)});
     return all;
   };
+  out.at("identity") = Tree::quote(config.identity);
   Tree& line = out.at("command_line") = Tree::list();
   for (const std::string& word : workshop.command_line) line.items.push_back(Tree::quote(word));
   out.at("dropped") = places(config.notes.dropped);
@@ -84,6 +86,17 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
 }
 
 }  // namespace
+
+std::string recorded_identity(const fs::path& directory) {
+  std::string out;
+  // A damaged one is told of by who needs it.
+  trouble_in([&] {
+    const std::optional<Tree> manifest = read_manifest(directory);
+    const Tree* value = manifest ? manifest->find("identity") : nullptr;
+    if (value != nullptr) out = value->text;
+  });
+  return out;
+}
 
 bool Relay::permits(const TapRecord& tap) {
   return company_.supervisor == nullptr || company_.supervisor->permits(tap, experiment_.preview(tap));
@@ -171,6 +184,10 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
   if (status.state == RunStatus::State::running) FileLock{directory / kRecordFile};  // throws: busy
   if (status.state != RunStatus::State::absent && !force) {
     const std::string where = directory.string();
+    if (const std::string other = recorded_identity(directory); !other.empty() && other != config.identity) {
+      throw Error(where, fmt::format("the run there is another one with the id {}", config.id),
+                  "give this one another name");
+    }
     switch (status.state) {
       case RunStatus::State::done:
         if (read_run_record(directory).build() == build_hash(workshop.host, config.notes.plugins)) return {};

@@ -79,6 +79,9 @@ class Course {
   Relay relay_;
 };
 
+/// ResolvedConfig::identity of the config of the run in `directory` when it began, "" if that is not known.
+std::string recorded_identity(const std::filesystem::path& directory);
+
 enum class Taps { by_backend, by_caller };
 
 /// An experiment, and the directory for its record; neither where the directory has the finished run already.

@@ -3,29 +3,22 @@
 
 #include "config/hash.hpp"
 #include "config/quantity.hpp"
-#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "scene/draw.hpp"
 
-#include <fmt/format.h>
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 namespace palpate {
 namespace {
 
-/// A hash of all in a resolved tree that decides what a run computes.
-std::string id_of(const Tree& resolved) {
-  std::string identity = "{";
-  for (const Tree::Entry& entry : resolved.entries) {
-    if (!enters_id(entry.key)) continue;
-    identity += entry.key + "=";
-    entry.value.append_canonical(identity);
-    identity += ',';
-  }
-  return hash_of(identity + "}").substr(0, kIdLength);
+void identify(ResolvedConfig& config) {
+  config.identity = hash_of(identity_text(config.notes));
+  config.id = config.identity.substr(0, kIdLength);
 }
 
 struct SeedOptions : Options {
@@ -35,18 +28,15 @@ struct SeedOptions : Options {
 
 }  // namespace
 
-void check_format(const Tree& config) {
-  const Tree* format = config.find("format");
-  if (format == nullptr) return;
-  std::int64_t number = 0;
-  trouble_in([&] { number = read_integer(*format, "format"); });  // resolving says what else is wrong
-  if (number <= kFormat) return;
-  throw Error(format->place.text(), fmt::format("format: {} is newer than {}, the latest known here", number, kFormat),
-              "take a palpate as new as the one that wrote it");
+std::string identity_text(const ResolveNotes& notes) {
+  std::vector<std::string_view> lines(notes.identity.begin(), notes.identity.end());
+  std::sort(lines.begin(), lines.end());
+  std::string out = "palpate-id 1\n";
+  for (const std::string_view line : lines) out.append(line) += '\n';
+  return out;
 }
 
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins) {
-  check_format(composed);
   Tree input = composed;
   input.erase("sweep");
   input.erase("expect");
@@ -63,7 +53,7 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   out.expectations = read_expectations(expect);
   if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
   check_readable(out.tree, composed.place.text());
-  out.id = id_of(out.tree);
+  identify(out);
   return out;
 }
 
@@ -84,7 +74,10 @@ void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plug
   for (ResolveNotes::Origin& origin : config.notes.origins) {
     if (origin.path == "seed") origin = notes.origins.front();
   }
-  config.id = id_of(config.tree);
+  for (std::string& line : config.notes.identity) {
+    if (line.rfind("seed=", 0) == 0) line = notes.identity.front();
+  }
+  identify(config);
 }
 
 bool begins_with_id(const std::string& folder) {

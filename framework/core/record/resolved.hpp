@@ -17,12 +17,14 @@ struct ResolvedConfig {
   Tree tree;                              ///< every field with its final value; reads back as the same config
   ResolveNotes notes;                     ///< where the values came from
   std::vector<Expectation> expectations;  ///< of `expect:`
-  std::string id;                         ///< 12 hex digits: a hash of all that decides what a run computes
+  std::string identity;                   ///< 32 hex digits: a hash of all that decides what a run computes
+  std::string id;                         ///< the first 12 of them
   std::shared_ptr<const Tree> composed;   ///< where the seed draws objects: what was resolved, for another seed
 };
 
-/// Throws Error for a config of a later format than this program's (kFormat).
-void check_format(const Tree& config);
+/// Returns the text of which `identity` is the hash: a line `palpate-id 1`, then a line `path=value` for all that
+/// decides what a run computes, sorted by bytes.
+std::string identity_text(const ResolveNotes& notes);
 
 /// Checks a composed tree (a `sweep:` in it is left aside) and opens the plugins that it names. Throws Error.
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);

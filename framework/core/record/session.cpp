@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/session.hpp"
 
+#include "config/compose.hpp"
 #include "config/hash.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
@@ -61,7 +62,7 @@ Tree read_run_config(const fs::path& directory) {
   const fs::path file = directory / "config.yaml";
   if (!is_there(file)) throw Error(directory.string(), "is not a run directory", "it has no config.yaml");
   Tree config = read_yaml(file, Origin::record);
-  check_format(config);
+  mark_complete(config);
   return config;
 }
 
@@ -88,9 +89,12 @@ std::map<std::string, std::string> recorded_origins(const fs::path& directory) {
 ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   ResolvedConfig config = resolve_experiment(read_run_config(directory), host);
   const std::string name = fs::absolute(directory).lexically_normal().filename().string();
-  if (begins_with_id(name) && name.substr(0, kIdLength) != config.id) {
+  const std::string recorded = recorded_identity(directory);
+  const bool is_moved = begins_with_id(name) && name.substr(0, kIdLength) != config.id;
+  if (is_moved || (!recorded.empty() && recorded != config.identity)) {
     throw Error((directory / "config.yaml").string(),
-                fmt::format("the config now has the id {}, its directory is {}", config.id, name),
+                fmt::format("the config now has the id {}, the run has {}", config.id,
+                            recorded.empty() ? name : recorded.substr(0, kIdLength)),
                 "config.yaml was changed; run it with 'palpate run' instead");
   }
   return config;

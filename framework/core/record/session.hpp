@@ -95,7 +95,7 @@ Tree read_run_config(const std::filesystem::path& directory);
 /// values. Empty where there is none that can be read.
 std::map<std::string, std::string> recorded_origins(const std::filesystem::path& directory);
 
-/// The config of a run directory, as resolved then. Throws Error if it does not resolve to the id that it had.
+/// The config of a run directory, as resolved then. Throws Error if it does not resolve to the identity that it had.
 ResolvedConfig load_run(const PluginHost& host, const std::filesystem::path& directory);
 
 }  // namespace palpate

@@ -39,7 +39,7 @@ void SceneOptions::list(Fields& fields) {
   fields.real(
       on_surface_above,
       Field("on_surface_above", "a contact higher than the desk plus this is on an object").in(Unit::metre).above(0));
-  fields.choice(touch, Field("touch", "from where the tool comes").left_out(),
+  fields.choice(touch, Field("touch", "from where the tool comes").neutral("top"),
                 {{"top", "from above, straight down", {}}, {"any", "from any side, along lines of any direction", {}}});
   fields.choice(placement, Field("placement", "where the objects stand"),
                 {{"fixed", "at `at`, turned by `rotation`", {}},

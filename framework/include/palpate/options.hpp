@@ -55,6 +55,27 @@ struct PluginChoice {
   std::shared_ptr<const Tree> options;  ///< its options, checked and complete
 };
 
+/// Stands for a value that is not there: for none of what may be absent, for no item of a list.
+struct NoValue {};
+
+/// A value written down in code: of a real number in SI, of a choice its name.
+struct FixedValue {
+  enum class Kind { none, absent, real, integer, flag, text };
+  FixedValue() = default;
+  FixedValue(NoValue) : kind(Kind::absent) {}
+  FixedValue(double value) : kind(Kind::real), real(value) {}
+  FixedValue(std::int64_t value) : kind(Kind::integer), real(static_cast<double>(value)), integer(value) {}
+  FixedValue(int value) : FixedValue(std::int64_t{value}) {}
+  FixedValue(bool value) : kind(Kind::flag), flag(value) {}
+  FixedValue(const char* value) : kind(Kind::text), text(value) {}
+
+  Kind kind = Kind::none;
+  double real = 0.0;
+  std::int64_t integer = 0;
+  bool flag = false;
+  const char* text = "";
+};
+
 /// Who sets a key of a config: a strategy, which decides where to tap and what is believed, or the run alone: the
 /// world, how it is divided, the budget, and what is kept.
 enum class Owner { unsaid, strategy, run };
@@ -86,9 +107,14 @@ class Field {
   /// Of what is the run's own, an option that a strategy may bring along for runs that do not say it.
   Field& but_of_strategy(const char* option) { return strategy_part = option, *this; }
 
-  /// A choice that a resolved config has only where it is not the first case: those before it was there stay as they
-  /// are.
-  Field& left_out() { return is_left_out = true, *this; }
+  /// The value with which a run is the same as before the option existed. An option that has it does not enter the id,
+  /// and a record that lacks the option is read with it. Every option that was added after version 0.1.0 declares one,
+  /// and it never changes. Plugins that were added are optional: they are neutral where they are absent.
+  Field& neutral(const FixedValue& value) { return neutral_value = value, *this; }
+  /// Changes no result of a run, and enters no id; nor does anything below it.
+  Field& not_identifying() { return enters_id = false, *this; }
+  /// The name that the option had up to some version after 0.1.0. It enters ids by that name, and records may have it.
+  Field& was(const char* key) { return former_name = key, *this; }
 
   /// A list, in whose place `{draw: {least, most, of}}` may stand: items that are drawn from the seed.
   Field& drawable() { return is_drawable = true, *this; }
@@ -103,7 +129,9 @@ class Field {
   bool required = false;
   bool is_group = false;
   bool is_drawable = false;
-  bool is_left_out = false;
+  FixedValue neutral_value;
+  bool enters_id = true;
+  const char* former_name = "";
   const char* heir_of = "";
   Owner owner = Owner::unsaid;
   const char* strategy_part = "";
@@ -162,6 +190,9 @@ class Fields {
   virtual void adopt(PluginChoice& choice, const Field& field) = 0;
   /// A key that earlier versions had: it is refused, and `instead` says what to write now.
   virtual void gone(const char* /*key*/, const char* /*instead*/) {}
+  /// An option that versions from 0.1.0 on had, whose default was `last`: that enters the id as if it were there, and a
+  /// record may have this value. All else is refused, and `field.meaning` says what to write now.
+  virtual void retired(const Field& /*field*/, const FixedValue& /*last*/) {}
   /// A law between fields: when `holds` is false, reading fails with `reason` at the place of `field`, which may be a
   /// dotted path to a field of a nested group.
   virtual void require(bool holds, const char* field, const std::string& reason) = 0;

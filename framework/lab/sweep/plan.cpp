@@ -71,11 +71,18 @@ class Planner {
     job.id = resolved.config->id;
     const auto [twin, is_new] = seen_.emplace(job.id, jobs_.size());
     if (!is_new) {
+      if (identities_[twin->second] != resolved.config->identity) {
+        throw Error(
+            file_.string(),
+            fmt::format("jobs {} and {} of the sweep have the same id {} by chance", twin->second, job.index, job.id),
+            "sweep another seed");
+      }
       if (differs_by_what_is_left_out(twin->second, job, combination)) return;
       throw same_run(jobs_[twin->second], job);
     }
     sink(job, *resolved.config);
     jobs_.push_back(std::move(job));
+    identities_.push_back(resolved.config->identity);
     combinations_.push_back(&combination);
     configs_.push_back({many_ ? nullptr : resolved.config});
     if (seed == nullptr) return;
@@ -192,6 +199,7 @@ class Planner {
   const std::vector<Override>& shared_;
   const std::vector<std::string>& keys_;
   std::vector<Job> jobs_;
+  std::vector<std::string> identities_;           ///< of each job
   std::vector<const Combination*> combinations_;  ///< of each job
   std::unordered_map<std::string, std::size_t> key_numbers_;
   std::unordered_map<std::string, std::size_t> seen_;  ///< the job of each id

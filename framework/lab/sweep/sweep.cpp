@@ -50,6 +50,11 @@ std::vector<std::string> texts_at(const Row& row, const std::string& name) {
   return out;
 }
 
+/// Whether a top-level key is one of those whose values decide what the jobs compute.
+bool decides_jobs(const std::string& key) {
+  return key != "name" && key != "log" && key != "threads" && key != "expect" && key != "complete";
+}
+
 bool is_id(const std::string& text) { return text.size() == kIdLength && begins_with_id(text); }
 
 }  // namespace
@@ -69,7 +74,7 @@ std::string sweep_id(const Tree& config, const Sweep& sweep) {
   Tree identity = Tree::map();
   // As it reads back: what is compared later is the file.
   for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
-    if (enters_id(entry.key)) identity.entries.push_back(std::move(entry));
+    if (decides_jobs(entry.key)) identity.entries.push_back(std::move(entry));
   }
   return hash_of(identity.canonical() + manifest_text(sweep, "")).substr(0, kIdLength);
 }

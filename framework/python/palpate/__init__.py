@@ -3,7 +3,7 @@
 
     import palpate
 
-    run = palpate.load("runs/default/07bf62eed612")     # or run = palpate.run("configs/default.yaml", "taps=20")
+    run = palpate.load("runs/default/b1c26ab1ef4f")     # or run = palpate.run("configs/default.yaml", "taps=20")
     run.taps["height"], run.surface, run.after(5).probability
 
     with palpate.Experiment("configs/default.yaml", "taps=40", seed=3) as experiment:

@@ -141,7 +141,8 @@ struct BaxterOptions : Options {
                   {{"own", "this program", {}}, {"robot", "the robot's IKService, whose answers are checked", {}}});
     fields.flag(dry_run, Field("dry_run", "connect, check and compute every pose of the whole area, but move nothing"));
     fields.flag(view, Field("view", "publish the surface, its standard deviation and the taps, to be seen in RViz"));
-    fields.flag(bag, Field("bag", "record what the robot says and is told in a rosbag in the run's folder"));
+    fields.flag(
+        bag, Field("bag", "record what the robot says and is told in a rosbag in the run's folder").not_identifying());
   }
 
  private:

@@ -9,11 +9,13 @@
 // in the record.
 #include "process/child.hpp"
 #include "process/protocol.hpp"
+#include "reading/reading.hpp"
 #include "tapping/motion.hpp"
 
 #include <palpate/error.hpp>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -23,6 +25,9 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 namespace palpate::backends {
 
@@ -76,10 +81,28 @@ std::string find_program(const std::string& program) {
               "a name is looked for in PATH, a path from the folder in which palpate runs");
 }
 
+/// Returns a hash of the command in which words that name files, but for a program from PATH, stand for their content:
+/// so that the id of a run follows what the program does, not where it lies.
+std::string checksum_of(const std::vector<std::string>& words) {
+  std::uintmax_t left = 64 << 20;  // bytes of files; what goes beyond is a word
+  std::string all;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool from_path = i == 0 && words[i].find('/') == std::string::npos;
+    Reading reading;
+    if (!from_path) reading = read_bounded(words[i], left, Origin::user);
+    const std::string& text = reading ? reading.text : words[i];
+    if (reading) left -= text.size();
+    all += fmt::format("{} {}:", reading ? "file" : "word", text.size()) + text;
+  }
+  const XXH128_hash_t hash = XXH3_128bits(all.data(), all.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
 }  // namespace
 
 struct ProcessOptions : Options {
   std::string command;
+  std::string checksum;
   double deadline = 90.0;
   double start = 30.0;
   bool repeatable = false;
@@ -91,8 +114,14 @@ struct ProcessOptions : Options {
     fields.text(command, Field("command",
                                "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
                                "blanks together, nothing else is interpreted, no shell")
-                             .needed());
-    fields.require(split_command(command).has_value(), "command", "names no program, or a quote is left open");
+                             .needed()
+                             .not_identifying());
+    const auto words = split_command(command);
+    fields.require(words.has_value(), "command", "names no program, or a quote is left open");
+    if (words && checksum.empty()) checksum = checksum_of(*words);
+    fields.text(checksum, Field("checksum",
+                                "of the command, with the content of files in place of their names; if absent, that of "
+                                "the files as they are"));
     fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
                               .in(Unit::second)
                               .above(0)
@@ -120,12 +149,17 @@ class Process final : public Backend {
  public:
   using Options = ProcessOptions;
 
-  /// Throws Error when there is no such program.
+  /// Throws Error when there is no such program, or it is another one than the checksum says.
   Process(const Options& options, const Context& context)
       : options_(options),
         context_(context),
         words_(split_command(options.command).value()),
-        file_(find_program(words_.front())) {}
+        file_(find_program(words_.front())) {
+    const std::string found = checksum_of(words_);
+    if (options.checksum == found) return;
+    throw Error("checksum", "is not that of the command and its files, which have " + found,
+                "put the program back that the run began with, or begin another run");
+  }
 
   Contact tap(const TapRequest& request) override {
     const auto begin = Clock::now();

@@ -16,9 +16,9 @@ struct SimulatorOptions : Options {
   double pace = 0.0;
   void list(Fields& fields) override {
     fields.section(motion, Field("motion", "the tapping motion"));
-    fields.real(
-        pace,
-        Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can").at_least(0));
+    fields.real(pace, Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can")
+                          .at_least(0)
+                          .not_identifying());
   }
 };
 

@@ -58,7 +58,8 @@ std::string read_file(const std::string& file) {
 }
 
 void MeshOptions::list(Fields& fields) {
-  fields.text(file, Field("file", "STL, OBJ or PLY; a relative path starts in the current folder").needed());
+  fields.text(
+      file, Field("file", "STL, OBJ or PLY; a relative path starts in the current folder").needed().not_identifying());
   fields.real(unit,
               Field("unit", "length of one unit of the file, for example 1 mm").in(Unit::metre).above(0).needed());
   fields.choice(up, Field("up", "axis of the file that points up; the length lies along its x"),

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "config/map_reader.hpp"
+
+#include "config/quantity.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <boost/algorithm/string/replace.hpp>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+/// Whether a key is a dotted path, as the command line takes them, that begins with a known option.
+bool is_below_one_of(const std::string& key, const std::vector<std::string>& known) {
+  const auto dot = key.find('.');
+  return dot != std::string::npos && std::find(known.begin(), known.end(), key.substr(0, dot)) != known.end();
+}
+
+/// What a dotted key stands for, as a file has it: `weight: {clip: yes}`.
+std::string nested(const Tree::Entry& entry) {
+  const auto groups = std::count(entry.key.begin(), entry.key.end(), '.');
+  constexpr std::size_t kShort = 40;
+  const std::string& text = entry.value.text;
+  const bool short_value = entry.value.is_scalar() && text.size() < kShort && text.find('\n') == std::string::npos;
+  return boost::replace_all_copy(entry.key, ".", ": {") + ": " + (short_value ? text : "...") +
+         std::string(static_cast<std::size_t>(groups), '}');
+}
+
+bool is_value(const FixedValue& constant) {
+  return constant.kind != FixedValue::Kind::none && constant.kind != FixedValue::Kind::absent;
+}
+
+}  // namespace
+
+MapReader::MapReader(const Tree& input, std::string path, ResolveNotes& notes, Around around)
+    : input_(input),
+      path_(std::move(path)),
+      notes_(notes),
+      output_(Tree::map()),
+      id_path_(std::move(around.id_path)),
+      enters_id_(around.enters_id),
+      complete_(input.kind == Tree::Kind::null ? around.complete : input.complete) {
+  output_.place = input.place.file ? input.place : around.place;
+  if (!input.is_map() && input.kind != Tree::Kind::null) {
+    throw Error(input.place.text(), fmt::format("{} is not a group of options", owner()),
+                fmt::format("write {{key: value, ...}}{}", path_.empty() ? "" : " or " + path_ + "KEY=VALUE"));
+  }
+}
+
+Tree MapReader::finish(const std::vector<std::string>& elsewhere) {
+  for (const Tree::Entry& entry : input_.entries) {
+    if (silent_ || is_known(entry.key)) continue;
+    Layer highest = entry.value.layer;  // of the last who had a say in it
+    for_all(entry.value, [&](const Tree& one) { highest = std::max(highest, one.layer); });
+    if (highest < type_layer_) {
+      notes_.dropped.push_back({path_ + entry.key, entry.value.place.text()});
+      continue;
+    }
+    known_.insert(known_.end(), elsewhere.begin(), elsewhere.end());
+    refuse_unknown(entry, known_);
+  }
+  return std::move(output_);
+}
+
+void MapReader::gone(const char* key, const char* instead) {
+  if (silent_) return;
+  for (const Tree::Entry& entry : input_.entries) {
+    if (entry.key == key && entry.value.layer >= type_layer_)
+      throw Error(entry.place.text(), fmt::format("option '{}' is no more", key), instead);
+  }
+}
+
+void MapReader::retired(const Field& field, const FixedValue& last) {
+  if (silent_) return;
+  const std::string text = constant_text(last, field.unit);
+  if (enters(field)) identify(id_name(field), last.kind == FixedValue::Kind::text ? sized(text) : text);
+  const Tree* tree = input_.find(field.name);
+  if (tree == nullptr) return;
+  known_.emplace_back(field.name);
+  if (tree->layer < type_layer_) return;
+  const bool is_last = complete_ && tree->is_scalar() &&
+                       (last.kind == FixedValue::Kind::real ? quantity(*tree, field) == last.real : tree->text == text);
+  if (is_last) return;
+  throw Error(tree->place.text(), fmt::format("option '{}' is no more", field.name),
+              complete_ ? fmt::format("only records that have {} can be read", text) : field.meaning);
+}
+
+void MapReader::require(bool holds, const char* field, const std::string& reason) {
+  if (holds) return;
+  const Place place = input_.place_of(field);
+  throw Error(place.file ? place.text() : where(), fmt::format("{}{}: {}", path_, field, reason));
+}
+
+std::string MapReader::shown(const Tree& tree) {
+  constexpr std::array kKinds{"nothing", "a value", "a list", "a map"};
+  return tree.is_scalar() ? "'" + tree.text + "'" : kKinds[static_cast<std::size_t>(tree.kind)];
+}
+
+void MapReader::refuse(const Tree& at, const Field& field, const std::string& reason, const std::string& hint) const {
+  throw Error(at.place.text(), fmt::format("{}: {}", name(field), reason), hint);
+}
+
+void MapReader::check_list(const Tree& tree, const Field& field, const char* hint) const {
+  if (tree.kind != Tree::Kind::list) refuse(tree, field, "expects a list", hint);
+}
+
+const Tree* MapReader::find(const Field& field) {
+  const Tree* tree = input_.find(field.name);
+  if (tree != nullptr || !complete_ || *field.former_name == '\0') return tree;
+  known_.emplace_back(field.former_name);
+  return input_.find(field.former_name);
+}
+
+const Tree* MapReader::claim(const Field& field, Missing missing) {
+  if (!adopted_.empty() && is_known(field.name)) {
+    throw Error(where(), fmt::format("{} has an option '{}', and so has {}", adopted_, field.name, owner()),
+                "the plugin needs another name for it");
+  }
+  known_.emplace_back(field.name);
+  claimed_ = find(field);
+  if (claimed_ == nullptr && field.required) {
+    refuse_misspelt(field.name);
+    throw Error(where(), fmt::format("'{}' is missing", name(field)), field.meaning);
+  }
+  if (claimed_ == nullptr && complete_ && missing != Missing::of_its_parts)
+    claimed_ = neutral(field, missing == Missing::absent);
+  return claimed_;
+}
+
+const Tree* MapReader::claim_list(const Field& field) {
+  if (claim(field) == &neutral_) neutral_.kind = Tree::Kind::list;
+  return claimed_;
+}
+
+const Tree* MapReader::neutral(const Field& field, bool may_be_absent) {
+  const FixedValue& value = field.neutral_value;
+  const bool is_absent = value.kind == FixedValue::Kind::none;
+  if (is_absent && !may_be_absent && !enters(field)) return nullptr;  // any value will do
+  if (is_absent && !may_be_absent) {
+    refuse_misspelt(field.name);
+    throw Error(where(), fmt::format("'{}' is missing", name(field)),
+                "what is complete gives every option: put it back, or take 'complete' away");
+  }
+  neutral_ = Tree::scalar(is_absent ? "none" : constant_text(value, field.unit), value.kind == FixedValue::Kind::text);
+  neutral_.place.file = std::make_shared<const std::string>("neutral value");
+  return &neutral_;
+}
+
+void MapReader::note_type(const Tree& type) {
+  type_layer_ = std::max(type_layer_, type.layer);
+  complete_ = complete_ && type.layer <= kFileLayer;
+}
+
+double MapReader::quantity(const Tree& tree, const Field& field) const {
+  return checked(read_quantity(tree, name(field), field.unit), tree, field);
+}
+
+double MapReader::checked(double value, const Tree& tree, const Field& field) const {
+  const bool low = field.open_below ? !(value > field.least) : value < field.least;
+  if (!low && !(value > field.most)) return value;
+  const char* const bound = !low ? "at most" : field.open_below ? "above" : "at least";
+  refuse(tree, field, tree.text + " is out of range",
+         fmt::format("it must be {} {}", bound, write_quantity(low ? field.least : field.most, field.unit)));
+}
+
+std::int64_t MapReader::whole(const Tree& tree, const Field& field) const {
+  const std::int64_t value = read_integer(tree, name(field));
+  checked(static_cast<double>(value), tree, field);
+  return value;
+}
+
+std::string MapReader::id_name(const Field& field) const {
+  return id_path_ + (*field.former_name != '\0' ? field.former_name : field.name);
+}
+
+std::string MapReader::id_text(const double* values, std::size_t count, Unit unit) {
+  std::string out;
+  for (std::size_t i = 0; i < count; ++i)
+    out.append(i == 0 ? "" : ", ") += write_quantity(values[i] == 0.0 ? 0.0 : values[i], unit);
+  return out;
+}
+
+void MapReader::note_absent(const Field& field) {
+  if (enters(field) && is_value(field.neutral_value)) identify(id_name(field), "none");
+}
+
+bool MapReader::note_count(const Field& field, std::size_t count) {
+  const bool is_neutral = count == 0 && field.neutral_value.kind == FixedValue::Kind::absent;
+  if (!enters(field) || is_neutral) return false;
+  identify(id_name(field) + ".#", std::to_string(count));
+  return true;
+}
+
+void MapReader::write(const Field& field, std::string text) {
+  const bool is_negative_zero =
+      text.size() > 1 && text[0] == '-' && text[1] == '0' && (text.size() == 2 || text[2] == ' ');
+  const std::string id_text = is_negative_zero ? text.substr(1) : text;
+  write(field, Tree::scalar(std::move(text)), id_text);
+}
+
+void MapReader::write(const Field& field, Tree value, std::string_view id_text) {
+  notes_.origins.push_back({path_ + field.name, claimed_ != nullptr ? claimed_->place.text() : "default"});
+  if (claimed_ != nullptr) value.place = claimed_->place;
+  const auto is_neutral = [&] {
+    if (!is_value(field.neutral_value)) return false;
+    const std::string text = constant_text(field.neutral_value, field.unit);
+    return id_text == text || (value.is_scalar() && value.text == text);
+  };
+  if (!id_text.empty() && enters(field) && !is_neutral()) identify(id_name(field), id_text);
+  output_.at(field.name) = std::move(value);
+}
+
+Around MapReader::around(const Field& field, const std::string& name) const {
+  const std::string item = name.substr(std::string_view(field.name).size());
+  return {output_.place, id_name(field) + item + ".", enters(field), complete_};
+}
+
+bool MapReader::is_known(const std::string& key) const {
+  return std::find(known_.begin(), known_.end(), key) != known_.end();
+}
+
+void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const {
+  const std::string reason = fmt::format("unknown option '{}'", entry.key);
+  if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));
+  const std::string hint = suggestion(entry.key, known);
+  // A list of all that is known says little without the name of what knows it.
+  const bool listed = hint.rfind("known: ", 0) == 0;
+  const std::string of = !plugin_.empty() ? plugin_ : owner();
+  throw Error(entry.place.text(), reason + (listed && !(path_.empty() && plugin_.empty()) ? " of " + of : ""), hint);
+}
+
+void MapReader::refuse_misspelt(const std::string& missing) const {
+  for (const Tree::Entry& entry : input_.entries) {
+    if (is_known(entry.key) || (nearest(entry.key, {missing}).empty() && !is_below_one_of(entry.key, {missing})))
+      continue;
+    refuse_unknown(entry, {missing});
+  }
+}
+
+}  // namespace palpate
