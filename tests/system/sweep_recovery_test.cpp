@@ -183,6 +183,10 @@ TEST_F(Recovery, AChangedConfigOfAJobFailsThatJobAndOneOfTheSweepRefusesItAll) {
   EXPECT_EQ(attempts(0), 2) << "the other has run";
   EXPECT_EQ(attempts(1), 0);
   replace(job(1) / "config.yaml", "taps: 18", "taps: 17");
+  EXPECT_EQ(resume("--retry-failed").status, 1) << "its arm falls off";
+  EXPECT_EQ(attempts(1), 1);
+  EXPECT_EQ(lines(part_of(job(1), "manifest")), 1);
+  EXPECT_THAT(part_of(job(1), "manifest"), HasSubstr("\"build\": ")) << "it begins anew";
 
   replace(directory() / "config.yaml", "taps: 17", "taps: 18");
   EXPECT_THAT(refused({"resume", directory(), "--quiet"}), HasSubstr("was changed since this sweep began"));

@@ -201,6 +201,7 @@ TEST_F(RunFolder, CanBeEndedAsFailedAtAnyTime) {
       run.fail("the first time");
     }
     EXPECT_EQ(read_run_record(directory).end->reason, "the first time") << steps;
+    EXPECT_EQ(read_run_record(directory).is_failure_alone(), steps < 2);
     RunDirectory(directory).fail("the second time");
     const RunRecord record = read_run_record(directory);
     EXPECT_EQ(record.end->how, Ending::How::failed) << steps;

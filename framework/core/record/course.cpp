@@ -235,6 +235,7 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
   // What it says does not hold any more, or is of a record that was cut.
   std::error_code none;
   fs::remove(directory / kSummaryFile, none);
+  if (before.is_failure_alone()) held.clear();
   if (!before.manifest) held.begin(manifest_of(workshop, config));
   held.begin_attempt(build_hash(workshop.host, config.notes.plugins), options.force);
   std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);

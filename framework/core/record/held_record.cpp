@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 namespace palpate {
 
@@ -48,6 +49,16 @@ void HeldRecord::check_in_place() const {
   if (log_ && log_->is_in_place()) return check_held();
   throw Error(directory_.string(), "was moved or removed while a run was writing there",
               "where it was moved to, 'palpate resume' carries on", Error::Kind::run);
+}
+
+void HeldRecord::clear() {
+  check_held();
+  RunRecord nothing;
+  nothing.file = directory_ / kRecordFile;
+  cut_file(nothing.file, 0);
+  before_ = std::move(nothing);
+  begun_ = ended_ = false;
+  attempts_ = 0;
 }
 
 void HeldRecord::add_manifest(const Tree& manifest, bool sync) {

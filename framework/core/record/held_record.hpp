@@ -34,6 +34,8 @@ class HeldRecord {
   void check_in_place() const;
   void check_held() const { lock_.check(); }
 
+  /// Takes everything out, for a run that failed before it could begin: it begins anew.
+  void clear();
   /// Its first entry is `manifest`.
   void add_manifest(const Tree& manifest, bool sync);
   /// An attempt of this process, noted before anything else it does. `attempt` has what there is to know beside number,

@@ -124,6 +124,8 @@ struct RunRecord {
 
   /// The build that began it, "" if that is not known.
   std::string build() const;
+  /// Whether it tells alone that the run failed before it could begin.
+  bool is_failure_alone() const { return manifest && manifest->find("build") == nullptr && attempts.empty(); }
 };
 
 /// Reads the record in a directory; an empty one where there is none. Throws Error as RecordReader does.

@@ -77,6 +77,9 @@ class RunDirectory final : public Journal {
   /// From here on all that is written is forced to disk. Throws Error.
   void sync();
 
+  /// Takes everything out of the record of a run that failed before it could begin.
+  void clear() { record_.clear(); }
+
   /// The beginning of a record. `manifest` holds what there is to know beside its version.
   void begin(const Tree& manifest);
 

@@ -81,10 +81,10 @@ bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::
     if (gone) continue;
     for (const std::size_t job : state.returned) {
       const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
-      const RunStatus::State now = read_ending(directory).state;
-      const bool done = now == RunStatus::State::done;
+      const RunStatus now = read_ending(directory);
+      const bool done = now.state == RunStatus::State::done && !lacks_files(directory, *now.end);
       // Where not even a failure could be recorded, as on a full disk, there is none to be read.
-      const bool failed = now == RunStatus::State::failed;
+      const bool failed = now.state == RunStatus::State::failed;
       const bool lost = !done && !failed && !cancelled && !is_running(directory);
       all_recorded = all_recorded && !lost;
       counts.done += done ? 1 : 0;

@@ -40,6 +40,8 @@ JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig(
   });
   if (trouble) {  // ends the job alone, not the sweep
     if (!is_there(directory / "config.yaml")) throw *trouble;
+    // Of a run that is done only the files that are made from its record may be missing: no reason of a failure.
+    if (read_ending(directory).state == RunStatus::State::done) throw *trouble;
     // What failed before the run could begin has left no end.
     write_failure(held, trouble->what());
   }
@@ -61,8 +63,11 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
   const RunStatus now = read_ending(directory);
   const bool failed = now.state == RunStatus::State::failed;
   if (now.state == RunStatus::State::done || (failed && !options.retry_failed)) {
-    // A damaged record ends the job as failed without having any.
-    if (lacks_files(directory, *now.end)) trouble_in([&] { restore_files(workshop, config_of(), *held); });
+    const auto trouble = lacks_files(directory, *now.end)
+                             ? trouble_in([&] { restore_files(workshop, config_of(), *held); })
+                             : std::nullopt;
+    // A damaged record ends the job as failed, and nothing can be made from it.
+    if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;
   }
   return attempt_job(workshop, config_of, *held, options);

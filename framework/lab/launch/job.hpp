@@ -28,7 +28,8 @@ enum class JobEnd {
 
 /// Runs the job in `directory`, whose name is its id, unless it is done, or has failed and is not to be tried again.
 /// `config_of` reads its config. What goes wrong becomes the reason of its failure; but a config that was deleted is
-/// none, as `palpate sweep` puts it back. Throws Error only where nothing is recorded.
+/// none, as `palpate sweep` puts it back. Throws Error where nothing is recorded, and where a file of a job that is done
+/// cannot be written.
 JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of,
                const std::filesystem::path& directory, const ResumeOptions& options);
 
