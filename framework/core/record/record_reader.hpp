@@ -28,6 +28,7 @@
 // Lines of other kinds and fields of other names are passed over. runs/README.md has the fields.
 #pragma once
 
+#include "config/compose.hpp"
 #include "config/tree.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
@@ -45,9 +46,6 @@ namespace palpate {
 inline constexpr const char* kRecordFile = "record.jsonl";
 inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kTapsTable = "taps.csv";
-
-/// The number behind `manifest`: what gives another meaning to anything in a record raises it.
-inline constexpr int kRecordVersion = 1;
 
 enum class LineKind { manifest, attempt, setup, intent, tap, timing, objects, note, end, other };
 
