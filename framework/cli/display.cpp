@@ -96,7 +96,9 @@ void print_summary(const RunReport& report) {
   if (report.already_done) {
     text += fmt::format("already done, nothing was repeated: {}\n", report.directory.string());
   }
-  for (const std::string& name : report.restored) text += fmt::format("made again from the record: {}\n", name);
+  for (const std::string& name : report.restored.made) text += fmt::format("made again from the record: {}\n", name);
+  for (const std::string& name : report.restored.lost)
+    text += fmt::format("{} is gone, and this build makes another one from the same taps\n", name);
   text += fmt::format("{}: {} after {} taps and {} s of robot time\n",
                       report.interrupted ? "interrupted" : row.cell("status"), row.cell("stop_reason"),
                       row.cell("taps"), scaled(row.number("robot_seconds"), 1, "{:.1f}"));

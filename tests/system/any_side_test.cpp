@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <assimp/Importer.hpp>
 
-#include <sstream>
+#include <map>
 
 #include <cmath>
 #include <string>
@@ -252,11 +252,11 @@ TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedR
 
 TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes) {
   if (test::kSanitized) GTEST_SKIP() << "a program in Python over the one that is tested elsewhere";
-  const fs::path mesh = test::source_folder() / "configs/scene/solids/mug.stl";
+  const fs::path solids = test::source_folder() / "configs/scene/solids";
   const fs::path folder = here() / "downloaded/asus_scanner_models";
-  for (const char* name : {"jug", "mugD"}) {
+  for (const auto& [name, mesh] : std::map<std::string, std::string>{{"jug", "mug.stl"}, {"mugD", "jug.stl"}}) {
     fs::create_directories(folder / name);
-    fs::copy_file(mesh, folder / name / (std::string(name) + ".stl"));
+    fs::copy_file(solids / mesh, folder / name / (name + ".stl"));
   }
   const auto published = [&](const std::string& objects) {
     return test::run_program(
@@ -282,8 +282,7 @@ TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes)
         "z\nend_header\n0 0 0\n");
   EXPECT_THAT(refusal("pot"), testing::HasSubstr("pot_cloud.ply is a cloud of points, and a scene needs a mesh"));
   EXPECT_THAT(refusal("spoon"), testing::HasSubstr("spoon is none of"));
-  fs::copy_file(test::source_folder() / "configs/scene/solids/jug.stl", folder / "jug/jug.stl",
-                fs::copy_options::overwrite_existing);
+  fs::copy_file(solids / "jug.stl", folder / "jug/jug.stl", fs::copy_options::overwrite_existing);
   EXPECT_THAT(refusal("jug"), testing::HasSubstr("at first use it was"));
 }
 

@@ -255,6 +255,16 @@ TEST_F(BadPlugin, ThrowingWhenToldOfATapLosesNoTap) {
   EXPECT_EQ(ended.err, "footprint/throws_when_told: no touch today\n");
   const std::string taps = part_of(directory("runs"), "tap");
   EXPECT_EQ(std::count(taps.begin(), taps.end(), '\n'), 3);
+  // Carried on, it fails as it takes the last tap in again, which is no reason to be anything but failed.
+  const Ended retried = palpate({"resume", directory("runs"), "--retry-failed"});
+  EXPECT_EQ(retried.status, 1);
+  EXPECT_EQ(retried.err, ended.err);
+  EXPECT_EQ(part_of(directory("runs"), "tap"), taps);
+  // Nor is a build that cannot make the run.
+  environment_.clear();
+  EXPECT_NE(palpate({"resume", directory("runs"), "--retry-failed", "--force"}).status, 0);
+  environment_ = {test::with_plugin("throws_when_told")};
+  EXPECT_THAT(status_of(directory("runs")).out, HasSubstr("failed after 3 of 30 taps: footprint/throws_when_told: no touch today"));
 }
 
 }  // namespace

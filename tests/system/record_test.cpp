@@ -96,6 +96,36 @@ TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
     EXPECT_EQ(text_of(directory / "record.jsonl"), record) << "nothing is added";
   }
   EXPECT_THAT(palpate({"run", paper()}).out, Not(HasSubstr("made again")));
+  // Of another build: what this one makes of the taps is not what was there.
+  const std::size_t hash = record.find("\"hash\": \"", record.find("\"taps.csv\"")) + 9;
+  write(directory / "record.jsonl", record.substr(0, hash) + std::string(4, 'x') + record.substr(hash + 4));
+  fs::remove(directory / "taps.csv");
+  EXPECT_THAT(palpate({"run", paper()}).out,
+              HasSubstr("taps.csv is gone, and this build makes another one from the same taps\n"));
+  EXPECT_FALSE(fs::exists(directory / "taps.csv"));
+}
+
+TEST_F(Record, ThatIsDamagedIsMovedAsideAsItsErrorSays) {
+  const fs::path directory = ran();
+  std::string record = text_of(directory / "record.jsonl");
+  const std::size_t line = record.find("{\"tap\": 5,");
+  record.erase(line, record.find('\n', line) + 1 - line);
+  write(directory / "record.jsonl", record);
+  const Ended refused = palpate({"run", paper()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("or begin anew with 'palpate run --force'"));
+  const Ended anew = palpate({"run", paper(), "--force"});
+  EXPECT_EQ(anew.status, 0) << anew.err;
+  EXPECT_THAT(status_of(directory).out, HasSubstr("done after 17 of 17 taps"));
+  EXPECT_EQ(text_of(directory.string() + ".old-1/record.jsonl"), record);
+}
+
+TEST_F(Record, InAFolderWithTheIdOfAnotherSaysThatAndNotThatItWasChanged) {
+  const fs::path directory = ran();
+  const fs::path other = directory.parent_path() / "000000000000";
+  fs::copy(directory, other, fs::copy_options::recursive);
+  EXPECT_EQ(palpate({"replay", other}).err, other.string() + ": holds the run " + directory.filename().string() +
+                                                ", and has the name of another, give the folder another name\n");
 }
 
 class KilledBeforeItsSummary : public Shell, public testing::WithParamInterface<std::pair<std::string, Words>> {};

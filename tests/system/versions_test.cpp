@@ -77,14 +77,18 @@ TEST_F(Versions, AConfigThatWasEditedIsFoundWhateverItsFolderIsCalled) {
                     HasSubstr(", the run has " + run.filename().string() + ", config.yaml was changed")));
   // Of two configs whose ids are equal by chance all digits are not.
   write("mine/config.yaml", text);
-  const std::string manifest = text_of(here() / "mine" / "manifest.json");
-  const std::size_t last = manifest.find("\"identity\": \"") + 13 + 31;
-  write("mine/manifest.json",
-        manifest.substr(0, last) + (manifest[last] == '0' ? '1' : '0') + manifest.substr(last + 1));
+  std::string record = text_of(here() / "mine" / "record.jsonl");
+  char& last = record.at(record.find("\"identity\": \"") + 13 + 31);
+  last = last == '0' ? '1' : '0';
+  write("mine/record.jsonl", record);
   EXPECT_THAT(palpate("replay mine").err, HasSubstr("config.yaml was changed"));
   fs::rename(here() / "mine", run);
   EXPECT_THAT(palpate(words).err,
               HasSubstr("the run there is another one with the id " + run.filename().string() + ", give this one"));
+  // On a disk that tells no capital letters two names are one folder.
+  boost::replace_first(record, "\"name\": \"object", "\"name\": \"Object");
+  write(run / "record.jsonl", record);
+  EXPECT_THAT(palpate(words).err, HasSubstr(": the run there has the name 'Object"));
 }
 
 }  // namespace

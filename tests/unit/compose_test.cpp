@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "unit/compose_fixture.hpp"
 
+#include <fmt/format.h>
+
 #include <unistd.h>
 
 namespace palpate::test {
@@ -152,6 +154,22 @@ TEST_F(Compose, BuildsAGroupOnAnotherOfItsKindTwiceToo) {
   folder_.write("kernel/wide.yaml", "defaults:\n  - kernel: rough\nkernel:\n  length_scale: 5 cm\n");
   EXPECT_EQ(value("kernel: wide\n", "kernel.length_scale"), "5 cm");
   EXPECT_EQ(value("kernel: wide\n", "kernel.nu"), "1.5");
+}
+
+TEST_F(Compose, CountsHowDeepAGroupIsThoughPartsOfItWereReadBefore) {
+  const int deepest = 20;
+  for (int i = 1; i < deepest; ++i)
+    folder_.write(fmt::format("kernel/k{}.yaml", i), fmt::format("defaults:\n  - kernel: k{}\n", i + 1));
+  folder_.write(fmt::format("kernel/k{}.yaml", deepest), "kernel: {type: rbf}\n");
+  const auto deep = [&](Composer& composer, int from) {
+    const fs::path file = folder_.write(fmt::format("c{}.yaml", from), fmt::format("kernel: k{}\n", from));
+    return error_of([&] { composer.compose(file, {}); });
+  };
+  Composer composer(folder_.path(), config_keys());
+  EXPECT_EQ(deep(composer, 10), "accepted");
+  EXPECT_THAT(deep(composer, 1), testing::HasSubstr("groups build on each other more than 16 deep"));
+  Composer another(folder_.path(), config_keys());
+  EXPECT_THAT(deep(another, 1), testing::HasSubstr("groups build on each other more than 16 deep"));
 }
 
 TEST_F(Compose, FallsBackToTheShippedGroups) {

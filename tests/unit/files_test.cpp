@@ -2,11 +2,10 @@
 #include "record/files.hpp"
 
 #include "children/child_process.hpp"
+#include "support/shortage.hpp"
 #include "support/testing.hpp"
 
-#include <csignal>
-
-#include <sys/resource.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,20 +33,6 @@ ino_t inode(const fs::path& file) {
   struct stat status {};
   EXPECT_EQ(::stat(file.c_str(), &status), 0) << file;
   return status.st_ino;
-}
-
-/// What error_of() returns where no file may be longer than `bytes`: a limit of this process acts as a full disk does.
-template <class Call>
-std::string with_little_room(rlim_t bytes, const Call& call) {
-  rlimit before{};
-  EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto heard = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit little{bytes, before.rlim_max};
-  EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &little), 0);
-  std::string out = error_of(call);
-  ::setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, heard);
-  return out;
 }
 
 std::ptrdiff_t entries(const fs::path& folder) {
@@ -206,6 +191,22 @@ TEST_F(ReadFile, RefusesWhatIsMissingOrNoFile) {
             folder_.path().string() + ": is not a regular file, put a file in its place, or remove it");
 }
 
+TEST_F(ReadFile, TakesNoShortageOfDescriptorsForADamagedFile) {
+  const fs::path file = folder_.write("x", "text");
+  EXPECT_EQ(without_descriptors([&] { read_if_there(file); }), file.string() + ": cannot be read: Too many open files");
+  EXPECT_EQ(without_descriptors([&] { FileLock::is_held(file); }),
+            file.string() + ": cannot be looked at: Too many open files");
+}
+
+TEST_F(ReadFile, FindsTheFirstLineHoweverLongItIs) {
+  for (const std::size_t length : {0U, 5U, 16383U, 16384U, 300'000U}) {
+    const std::string line(length, 'x');
+    EXPECT_EQ(first_line_if_there(folder_.write("x", line + "\nsecond\n")), line);
+    EXPECT_EQ(first_line_if_there(folder_.write("x", line)), std::nullopt) << "no whole line";
+  }
+  EXPECT_EQ(first_line_if_there(folder_.path() / "missing"), std::nullopt);
+}
+
 using Appending = InFolder;
 
 TEST_F(Appending, AddsToWhatIsThere) {
@@ -234,17 +235,32 @@ TEST_F(Appending, AndLockAndCutFollowNoLink) {
       link.string() + ": is a link, and nothing in a record is read or written through one, remove it";
   EXPECT_EQ(error_of([&] { AppendFile(link).append("x", false); }), words);
   EXPECT_EQ(error_of([&] { FileLock{link}; }), words);
-  EXPECT_EQ(error_of([&] { cut_file(link, 0); }), words);
+  EXPECT_FALSE(FileLock::is_held(link)) << "nor is it opened";
   EXPECT_EQ(text_of(victim), "mine");
 }
 
-TEST_F(Appending, KnowsWhetherItIsStillWhereItWasOpened) {
-  AppendFile log(folder_.path() / "log");
-  EXPECT_TRUE(log.is_in_place());
-  fs::rename(folder_.path() / "log", folder_.path() / "elsewhere");
-  EXPECT_FALSE(log.is_in_place());
-  folder_.write("log", "");
-  EXPECT_FALSE(log.is_in_place()) << "another file of that name";
+TEST_F(Appending, KeepsOthersOutWhereItIsDoneThroughALock) {
+  const fs::path file = folder_.write("log", "one\n");
+  const FileLock lock(file);
+  AppendFile log = lock.append_file();
+  log.append("two\n", true);
+  EXPECT_EQ(text_of(file), "one\ntwo\n");
+  log.cut(4);
+  EXPECT_EQ(text_of(file), "one\n");
+  log = AppendFile();
+  EXPECT_THAT(refused_lock(file, Error::Kind::busy), testing::HasSubstr("another process holds this run"));
+}
+
+TEST_F(Appending, RefusesAfterAFailedSyncForTheSameReason) {
+  // A pipe takes what is written and cannot be synced.
+  const fs::path pipe = folder_.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const Descriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  AppendFile log(pipe);
+  const std::string words = error_of([&] { log.append("x", true); }, Error::Kind::run);
+  EXPECT_EQ(words,
+            pipe.string() + ": its last line may not be on the disk, because it cannot be synced: Invalid argument");
+  EXPECT_EQ(error_of([&] { log.append("y", false); }, Error::Kind::run), words);
 }
 
 TEST_F(Appending, CutsOffALineThatItCouldNotWriteWhole) {

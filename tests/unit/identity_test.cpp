@@ -123,6 +123,40 @@ TEST(Identity, MovesWithADefaultAndStaysForWhoeverWritesTheOldOne) {
             read<First>("{deviation: 2, reach: 3 cm}").id_text);
 }
 
+/// An option as one version has it, and the same as a later one has retired it.
+template <class Value>
+void expect_retiring_moves_no_id(Value value, const Field& field, const FixedValue& last) {
+  struct Before : Options {
+    Value value;
+    Field field;
+    Before(Value had, const Field& of) : value(had), field(of) {}
+    void list(Fields& fields) override { fields.real(value, field); }
+  };
+  struct After : Options {
+    Field field;
+    FixedValue last;
+    After(const Field& of, const FixedValue& had) : field(of), last(had) {}
+    void list(Fields& fields) override { fields.retired(field, last); }
+  };
+  const auto id_of = [](Options& options) {
+    ResolveNotes notes;
+    resolve(options, Tree::map(), TwoPlugins(), notes);
+    return identity_text(notes);
+  };
+  Before before(value, field);
+  After after(field, last);
+  EXPECT_EQ(id_of(after), id_of(before));
+}
+
+TEST(Identity, StaysWhereAnOptionIsRetiredWhateverItsDefaultWas) {
+  expect_retiring_moves_no_id(2.0, Field("a", "").in(Unit::metre), 2.0);
+  expect_retiring_moves_no_id(0.0, Field("a", "").neutral(0.0), 0.0);
+  expect_retiring_moves_no_id(1.0, Field("a", "").neutral(0.0), 1.0);
+  expect_retiring_moves_no_id(1.0, Field("a", "").not_identifying(), 1.0);
+  expect_retiring_moves_no_id(std::optional<double>(), Field("a", ""), NoValue());
+  expect_retiring_moves_no_id(std::optional<double>(), Field("a", "").neutral(1.0), NoValue());
+}
+
 TEST(Identity, OfARecordIsTheSameInLaterVersionsAndNewOptionsAreNeutralThere) {
   const Read record = read<First>("{reach: 2 cm, deviation: 3}");
   const Read second = read<Second>(record.yaml, true);

@@ -98,6 +98,19 @@ TEST_F(JsonLinesFile, RefusesALineThatIsTooLongTooDeepOrHoldsTooMuch) {
             ":2: is too long: a line has at most 1 MiB, the file is damaged");
 }
 
+TEST(JsonRows, OfOneFileHoldNoMoreNamesThanFitIntoMemory) {
+  std::string line = "{\"" + std::string(1000, 'n') + "\":{\"\":1";
+  for (int i = 1; i < 4000; ++i) line += ",\"\":1";
+  RowLines lines("record.jsonl");
+  std::size_t bytes = 0;
+  const std::string words = error_of([&] {
+    for (;;)
+      for (const auto& field : lines.read(line + "}}").fields) bytes += field.first.size();
+  });
+  EXPECT_THAT(words, testing::HasSubstr("the file holds too much"));
+  EXPECT_LT(bytes, std::size_t{3} << 29);
+}
+
 TEST(JsonTree, KeepsPlainScalarsAndQuotesTheOthers) {
   const Tree tree = parse_yaml("a: 1\nb: '1'\nc: [true, 'x y']\nd: {}\ne: []\nf:\n", "c.yaml");
   EXPECT_EQ(to_json(tree),

@@ -101,6 +101,11 @@ struct Sound {
     out.insert(out.begin() + static_cast<std::ptrdiff_t>(line), text);
     return joined(out);
   }
+  std::string instead(std::size_t line, const std::string& text) const {
+    Lines out = lines;
+    out[line] = text;
+    return joined(out);
+  }
   std::string first(std::size_t count) const {
     return joined({lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(count)});
   }
@@ -195,9 +200,8 @@ TEST_F(Record, Law5HasTheTimesOfATapBehindIt) {
   EXPECT_EQ(refusal(sound.without(Sound::kTiming)), "") << "a kill may lose them";
   EXPECT_EQ(refusal(sound.with(Sound::kAttempt, sound.lines[Sound::kTiming])),
             ":7: has the times of tap 1, and does not follow it" + kPutBack);
-  EXPECT_EQ(refusal(sound.first(Sound::kTiming) + R"({"timing": 1, "robot": 1})"
-                                                  "\n"),
-            ":6: has no number 'fit'" + kPutBack);
+  EXPECT_EQ(refusal(sound.instead(Sound::kTiming, R"({"timing": 1, "robot": "long"})")),
+            ":6: has no number 'robot'" + kPutBack);
 }
 
 TEST_F(Record, Law6HasNothingBehindAnEndThatIsDone) {
@@ -261,6 +265,35 @@ TEST_F(Record, OfALaterPalpateKeepsWhatThisOneDoesNotKnow) {
   for (std::size_t i = 1; i < sound.lines.size(); ++i)
     EXPECT_EQ(refusal(sound.with(i, R"({"weather": ["rain", {"mm": 3}], "tap": 7})")), "") << i;
   EXPECT_EQ(refusal(sound.with(2, R"({"weather": [)")), ":3: is not a JSON object, the file is damaged");
+  // Another phase of a tap, and none of an earlier palpate.
+  EXPECT_EQ(refusal(sound.instead(Sound::kTiming, R"({"timing": 1, "robot": 0.5, "ponder": 0.1})")), "");
+}
+
+TEST_F(Record, BehindAnEndHoldsAnAttemptAndNothingElse) {
+  const Sound sound;
+  for (const char* end : {"failed", "interrupted"}) {
+    const std::string ended = sound.first(3) + "{\"end\": \"" + end + "\"}\n";
+    EXPECT_EQ(refusal(ended), "");
+    EXPECT_EQ(refusal(ended + "{\"x\": 1}\n"), ":5: stands behind the end of an attempt, and begins none" + kPutBack);
+  }
+}
+
+TEST_F(Record, WhoseVersionIsNoNumberIsNotTakenForALaterOne) {
+  const Sound sound;
+  EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": "x"})")), ":1: has no version 'manifest'" + kPutBack);
+  EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": 0})")), ":1: has no version 'manifest'" + kPutBack);
+  EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": 2})")),
+            ":1: is of a later version than this palpate reads, take a palpate as new as the one that wrote it");
+}
+
+TEST_F(Record, NamesNoFileOutsideItsFolder) {
+  const Sound sound;
+  for (const char* name : {"../x", "/etc/passwd", "..", ".", "", "maps/x"}) {
+    const std::string end =
+        fmt::format(R"({{"end": "failed", "files": {{"{}": {{"bytes": 1, "hash": "0"}}}}}})", name) + "\n";
+    EXPECT_THAT(refusal(sound.first(3) + end), HasSubstr(", or a file that is not beside it" + kPutBack)) << name;
+    EXPECT_THAT(error_of([&] { read_record_end(run()); }), HasSubstr(", or a file that is not beside it" + kPutBack));
+  }
 }
 
 TEST_F(Record, TellsHowItEndedByItsLastLineHoweverLong) {
@@ -282,7 +315,7 @@ TEST_F(Record, TellsHowItEndedByItsLastLineHoweverLong) {
   EXPECT_FALSE(read_record_end(run()).begun);
 }
 
-TEST_F(Record, CountsAttemptsSinceTheLastThatFailed) {
+TEST_F(Record, CountsAttemptsSinceTheLastThatEnded) {
   const auto attempts = [&](const char* text) {
     folder_.write("run/record.jsonl", text);
     return attempts_in_row(run());
@@ -293,7 +326,7 @@ TEST_F(Record, CountsAttemptsSinceTheLastThatFailed) {
   EXPECT_EQ(attempts((attempt + attempt + attempt).c_str()), 3);
   EXPECT_EQ(attempts((attempt + attempt + failed).c_str()), 2) << "the last ones";
   EXPECT_EQ(attempts((attempt + attempt + failed + attempt).c_str()), 1) << "tried again";
-  EXPECT_EQ(attempts((attempt + "{\"end\": \"interrupted\"}\n" + attempt).c_str()), 2);
+  EXPECT_EQ(attempts((attempt + "{\"end\": \"interrupted\"}\n" + attempt).c_str()), 1) << "that was no kill";
 }
 
 TEST_F(Record, ThatIsCutAnywhereIsReadAndCarriedOnToTheSameTaps) {

@@ -5,6 +5,7 @@
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
 #include "support/parts.hpp"
+#include "support/shortage.hpp"
 #include "support/testing.hpp"
 
 #include <fstream>
@@ -122,6 +123,40 @@ TEST_F(RunFolder, TakesTheResultOfATapWhereverItsFolderWasMovedMeanwhile) {
   EXPECT_EQ(read_run_record(folder_.path() / "moved").taps.size(), 1U);
   EXPECT_THAT(error_of([&] { run.announce(tap(2, 0.09)); }, Error::Kind::run),
               testing::HasSubstr("was moved or removed while a run was writing there"));
+  // Files are written by their path, which may be another run's by now.
+  fs::create_directory(folder_.path() / "run");
+  EXPECT_THAT(error_of([&] { run.write("maps.csv", std::string("x")); }, Error::Kind::run),
+              testing::HasSubstr("was moved or removed while a run was writing there"));
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "run"));
+}
+
+TEST_F(RunFolder, KeepsATapForWhoseTimesTheDiskHasNoRoom) {
+  const fs::path directory = folder_.path() / "run";
+  write_three(directory, true);
+  const fs::path file = directory / kRecordFile;
+  const std::uintmax_t before = fs::file_size(file);
+  RunDirectory run(directory);
+  set_up(run, true);
+  ASSERT_EQ(run.recover().size(), 3U);
+  run.announce(tap(4, 0.09));
+  const std::uintmax_t announced = fs::file_size(file);
+  const std::uintmax_t line = to_json_line(tap_row(tap(4, 0.09))).size() + 1;
+  EXPECT_THAT(with_little_room(announced + line + 10, [&] { run.record(tap(4, 0.09), kSeconds); }),
+              testing::HasSubstr("cannot be written: File too large"));
+  EXPECT_GT(announced, before);
+  EXPECT_EQ(run.rows().size(), 4U);
+  const RunRecord record = read_run_record(directory);
+  EXPECT_EQ(record.taps.size(), 4U);
+  EXPECT_EQ(record.timings.size(), 3U);
+  EXPECT_FALSE(record.intent);
+}
+
+TEST_F(RunFolder, RemovesNothingThroughALinkInThePlaceOfItsMaps) {
+  const fs::path victim = folder_.write("elsewhere/x.0123456789abcdef.tmp", "mine");
+  fs::create_directory(folder_.path() / "run");
+  fs::create_directory_symlink(victim.parent_path(), folder_.path() / "run" / "maps");
+  const RunDirectory run(folder_.path() / "run");
+  EXPECT_TRUE(fs::exists(victim));
 }
 
 TEST_F(RunFolder, IsWrittenToByNoForkedChildAndFreeAgainThoughThatLives) {
@@ -184,6 +219,9 @@ TEST_F(RunFolder, TellsItsStateFromItsRecordAlone) {
     run.end(Ending::How::done, "tap budget", summary);
   }
   EXPECT_EQ(read_status(directory).state, RunStatus::State::done);
+  EXPECT_FALSE(lacks_files(directory, *read_ending(directory).end));
+  folder_.write("run/summary.json", "");
+  EXPECT_TRUE(lacks_files(directory, *read_ending(directory).end)) << "a power cut leaves empty files";
   fs::remove(directory / "summary.json");
   EXPECT_EQ(read_status(directory).state, RunStatus::State::done) << "that is a copy";
   EXPECT_TRUE(lacks_files(directory, *read_ending(directory).end));

@@ -59,15 +59,26 @@ constexpr Layer kLayersOfGroup = 16;
 
 /// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
 /// name, and for a file that is being read already.
+[[noreturn]] void refuse_depth(const Place& place) {
+  throw Error(place.text(), fmt::format("groups build on each other more than {} deep", kLayersOfGroup),
+              "put what they hold into fewer files");
+}
+
 void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
   if (!is_name(name)) throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group), kNameHint);
   const std::string link = group + "/" + name;
   const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
   chain.push_back(link);
   if (cyclic) throw Error(place.text(), "defaults form a cycle", fmt::format("{}", fmt::join(chain, " -> ")));
-  if (chain.size() <= static_cast<std::size_t>(kLayersOfGroup)) return;
-  throw Error(place.text(), fmt::format("groups build on each other more than {} deep", kLayersOfGroup),
-              "put what they hold into fewer files");
+  if (chain.size() > static_cast<std::size_t>(kLayersOfGroup)) refuse_depth(place);
+}
+
+/// Throws Error where a group lies on more layers than there are between two groups: what it builds on may have been
+/// read before, in a shorter chain.
+void check_layers(const Tree& content, const Place& place) {
+  Layer lowest = 0;
+  for_all(content, [&](const Tree& one) { lowest = std::min(lowest, one.layer); });
+  if (lowest <= -kLayersOfGroup) refuse_depth(place);
 }
 
 template <class Container, class Holds>
@@ -234,6 +245,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
     content.place = place;
     content.at("type") = Tree::scalar(name);
     content.at("type").place = place;
+    chain.pop_back();
     return content;
   }
   Tree own = load(file);
@@ -262,6 +274,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
     }
     content.merge(entry.value);
   }
+  check_layers(content, place);
   chain.pop_back();
   return content;
 }

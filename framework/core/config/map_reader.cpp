@@ -79,7 +79,12 @@ void MapReader::gone(const char* key, const char* instead) {
 void MapReader::retired(const Field& field, const FixedValue& last) {
   if (silent_) return;
   const std::string text = constant_text(last, field.unit);
-  if (enters(field)) identify(id_name(field), last.kind == FixedValue::Kind::text ? sized(text) : text);
+  const bool is_neutral = is_value(field.neutral_value) && constant_text(field.neutral_value, field.unit) == text;
+  if (last.kind == FixedValue::Kind::absent) {
+    note_absent(field);
+  } else if (enters(field) && !is_neutral) {
+    identify(id_name(field), last.kind == FixedValue::Kind::text ? sized(text) : text);
+  }
   const Tree* tree = input_.find(field.name);
   if (tree == nullptr) return;
   known_.emplace_back(field.name);

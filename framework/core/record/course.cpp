@@ -87,13 +87,13 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
 
 }  // namespace
 
-std::string recorded_identity(const fs::path& directory) {
-  std::string out;
+RecordedRun recorded_run(const fs::path& directory) {
+  RecordedRun out;
   // A damaged one is told of by who needs it.
   trouble_in([&] {
     const std::optional<Tree> manifest = read_manifest(directory);
-    const Tree* value = manifest ? manifest->find("identity") : nullptr;
-    if (value != nullptr) out = value->text;
+    if (const Tree* name = manifest ? manifest->find("name") : nullptr) out.name = name->text;
+    if (const Tree* identity = manifest ? manifest->find("identity") : nullptr) out.identity = identity->text;
   });
   return out;
 }
@@ -180,12 +180,21 @@ RunReport Course::finish(std::string failure) {
 
 Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs::path& directory, bool force,
                 bool supervised) {
-  const RunStatus status = read_status(directory);
-  if (status.state == RunStatus::State::running) FileLock{directory / kRecordFile};  // throws: busy
+  if (is_running(directory)) FileLock{directory / kRecordFile};  // throws: busy
+  RunStatus status;
+  if (const auto trouble = trouble_in([&] { status = read_record(directory); })) {
+    // What cannot be read can be moved aside.
+    if (!force || trouble->kind() != Error::Kind::usage) throw Error(*trouble);
+    status.state = RunStatus::State::unfinished;
+  }
   if (status.state != RunStatus::State::absent && !force) {
     const std::string where = directory.string();
-    if (const std::string other = recorded_identity(directory); !other.empty() && other != config.identity) {
-      throw Error(where, fmt::format("the run there is another one with the id {}", config.id),
+    const RecordedRun other = recorded_run(directory);
+    const bool has_name = other.name.empty() || other.name == config.options.name;
+    if (!has_name || (!other.identity.empty() && other.identity != config.identity)) {
+      throw Error(where,
+                  has_name ? fmt::format("the run there is another one with the id {}", config.id)
+                           : fmt::format("the run there has the name '{}'", other.name),
                   "give this one another name");
     }
     switch (status.state) {
@@ -204,7 +213,10 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
   // Built before the directory is touched: what only building finds out leaves no trace.
   std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
   if (supervised) check_worth_asking(config, *experiment);
-  if (status.state != RunStatus::State::absent) move_away(directory);
+  if (status.state != RunStatus::State::absent) {
+    const FileLock old(directory / kRecordFile);  // somebody may have taken it up meanwhile
+    move_away(directory);
+  }
   auto held = std::make_unique<RunDirectory>(directory);
   // Another process may have run it, whole or in part, while this one was still building.
   if (read_record(directory).state != RunStatus::State::absent) {
@@ -238,11 +250,22 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
   if (before.is_failure_alone()) held.clear();
   if (!before.manifest) held.begin(manifest_of(workshop, config));
   held.begin_attempt(build_hash(workshop.host, config.notes.plugins), options.force);
-  std::unique_ptr<Experiment> experiment = build_experiment(workshop, config, directory);
-  if (supervised) check_worth_asking(config, *experiment);
+  std::unique_ptr<Experiment> experiment;
+  try {
+    experiment = build_experiment(workshop, config, directory);
+    if (supervised) check_worth_asking(config, *experiment);
+  } catch (...) {
+    // Nothing was done: a run that had failed has failed for the same reason.
+    if (before.end && before.end->how == Ending::How::failed)
+      held.end(Ending::How::failed, before.end->reason, before.end->summary);
+    throw;
+  }
   sync_if_asked(config, *experiment, held);
   set_up(*experiment, held);
-  experiment->resume(held.recover());
+  const std::vector<PastTap> past = held.recover();
+  // A model may fail at a tap that it was the last to take in.
+  if (const std::string failure = Course::failure_in([&] { experiment->resume(past); }); !failure.empty())
+    Course(config, held, *experiment, {}, Stopwatch()).finish(failure);
   return experiment;
 }
 

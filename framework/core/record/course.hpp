@@ -79,8 +79,12 @@ class Course {
   Relay relay_;
 };
 
-/// ResolvedConfig::identity of the config of the run in `directory` when it began, "" if that is not known.
-std::string recorded_identity(const std::filesystem::path& directory);
+/// What a run was when it began, as its manifest says; "" where that is not known.
+struct RecordedRun {
+  std::string name;
+  std::string identity;  ///< ResolvedConfig::identity
+};
+RecordedRun recorded_run(const std::filesystem::path& directory);
 
 enum class Taps { by_backend, by_caller };
 

@@ -23,9 +23,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(const fs::path& file, const char* action) {
-  throw Error(file.string(), std::string(action) + ": " + std::strerror(errno), {}, Error::Kind::run);
+Error failed(const fs::path& file, const char* action) {
+  return Error(file.string(), std::string(action) + ": " + std::strerror(errno), {}, Error::Kind::run);
 }
+
+[[noreturn]] void fail(const fs::path& file, const char* action) { throw failed(file, action); }
 
 /// Opens above the standard files, which a process may have been started without.
 Descriptor open_file(const fs::path& file, int flags) {
@@ -45,7 +47,7 @@ Descriptor open_to_write(const fs::path& file, int flags) {
 /// asked after without taking it.
 const struct flock kWholeFile { F_WRLCK, SEEK_SET, 0, 0, 0 };
 
-Descriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT); }
+Descriptor open_lock(const fs::path& file) { return open_to_write(file, O_RDWR | O_CREAT | O_APPEND); }
 
 /// Closes a second descriptor of the same open file: Linux hands all that was written to the file system at each close,
 /// and the first descriptor keeps its lock.
@@ -66,6 +68,7 @@ fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.
 
 constexpr std::string_view kTemporary = ".tmp";
 constexpr std::size_t kDigits = 16;
+constexpr int kTrials = 100;  ///< of random names; a second one is needed as good as never
 
 bool is_temporary(const std::string& name) {
   const std::size_t end = name.size() - std::min(name.size(), kTemporary.size());
@@ -93,7 +96,7 @@ bool shows_nothing(int reason) {
 
 TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
   remove_temporaries_once(folder_of(file));
-  for (;;) {
+  for (int trial = 0; trial < kTrials; ++trial) {
     std::uint64_t unforeseen = 0;
     if (::getrandom(&unforeseen, sizeof unforeseen, 0) != sizeof unforeseen) fail(file, "no random name for it");
     const fs::path path = file.string() + fmt::format(".{:016x}{}", unforeseen, kTemporary);
@@ -104,9 +107,12 @@ TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
     // Whoever removes temporary files may have come between. A file system without locks has nobody who removes them.
     const bool taken = ::fcntl(descriptor_.number(), F_OFD_SETLK, &kWholeFile) != 0 && errno == EAGAIN;
     struct stat what {};
-    if (!taken && ::fstat(descriptor_.number(), &what) == 0 && what.st_nlink > 0) return;
+    if (!taken && ::fstat(descriptor_.number(), &what) != 0) fail(file, "cannot be made");
+    if (!taken && what.st_nlink > 0) return;
     ::unlink(path.c_str());
   }
+  throw Error(file.string(), "no temporary file beside it stays there", "put --runs on another file system",
+              Error::Kind::run);
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -159,11 +165,6 @@ void sync_names(const fs::path& folder) {
   for (fs::path at = fs::absolute(folder); at != at.root_path(); at = at.parent_path()) sync_folder(at);
 }
 
-void cut_file(const fs::path& file, std::uintmax_t bytes) {
-  const Descriptor out = open_to_write(file, O_WRONLY);
-  if (::ftruncate(out.number(), static_cast<off_t>(bytes)) != 0) fail(file, "cannot be cut");
-}
-
 bool is_there(const fs::path& path) { return size_if_there(path.c_str()).has_value(); }
 
 std::optional<std::uintmax_t> size_if_there(const char* path) {
@@ -204,9 +205,9 @@ std::optional<std::string> text_in(Reading reading, const fs::path& file, std::u
   if (reading) return std::move(reading.text);
   const int reason = reading.reason.value();
   if (reading.kind == Reading::Kind::absent && reason == ENOENT) return std::nullopt;
-  const bool fails = reason == EIO || reason == ESTALE || reason == ENOLCK;
+  // Too few descriptors or too little memory tell nothing of the file, either.
+  const bool fails = reason != 0 && !shows_nothing(reason);
   if (reason != 0 && !fails && !is_there(file)) return std::nullopt;
-  if (reading.kind == Reading::Kind::failed && !fails) throw Error(file.string(), "cannot be read");
   const auto [words, remedy] = words_of(reading, most_bytes);
   throw Error(file.string(), words, remedy, fails ? Error::Kind::run : Error::Kind::usage);
 }
@@ -215,6 +216,17 @@ std::optional<std::string> text_in(Reading reading, const fs::path& file, std::u
 
 std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
   return text_in(read_bounded(file, most_bytes, origin), file, most_bytes);
+}
+
+std::optional<std::string> first_line_if_there(const fs::path& file) {
+  // Holds the manifest of nearly every record.
+  for (std::uintmax_t bytes = 16384;; bytes *= 16) {
+    auto begin = text_in(read_begin_bounded(file, bytes, Origin::record), file, kMostLogBytes);
+    if (!begin) return std::nullopt;
+    const std::size_t end = begin->find('\n');
+    if (end != std::string::npos) return begin->erase(end), begin;
+    if (begin->size() < bytes) return std::nullopt;
+  }
 }
 
 std::optional<LastLine> last_line_if_there(const fs::path& file) {
@@ -237,39 +249,31 @@ std::optional<LastLine> last_line_if_there(const fs::path& file) {
   }
 }
 
-AppendFile::AppendFile(const fs::path& file)
-    : file_(file), descriptor_(open_to_write(file, O_WRONLY | O_CREAT | O_APPEND)) {
-  struct stat open {};
-  if (::fstat(descriptor_.number(), &open) != 0) fail(file, "cannot be opened");
-  device_ = open.st_dev;
-  inode_ = open.st_ino;
-}
+AppendFile::AppendFile(const fs::path& file) : AppendFile(file, open_to_write(file, O_WRONLY | O_CREAT | O_APPEND)) {}
+
+AppendFile::AppendFile(fs::path file, Descriptor descriptor)
+    : file_(std::move(file)), descriptor_(std::move(descriptor)) {}
 
 void AppendFile::append(const std::string& text, bool sync) {
-  if (failed_) {
-    throw Error(file_.string(), "is not written to any more, because that failed before", "'palpate resume' goes on",
-                Error::Kind::run);
-  }
+  if (failure_) throw Error(*failure_);
   struct stat before {};
   if (::fstat(descriptor_.number(), &before) != 0) fail(file_, "cannot be written");
   if (!write_all(descriptor_, text)) {
-    const int reason = errno;
-    failed_ = ::ftruncate(descriptor_.number(), before.st_size) != 0;
-    errno = reason;
-    fail(file_, "cannot be written");
+    const Error trouble = failed(file_, "cannot be written");
+    if (::ftruncate(descriptor_.number(), before.st_size) != 0) failure_ = trouble;
+    throw Error(trouble);
   }
   if (!sync || ::fdatasync(descriptor_.number()) == 0) return;
-  failed_ = true;
-  fail(file_, "its last line may not be on the disk, because it cannot be synced");
+  failure_ = failed(file_, "its last line may not be on the disk, because it cannot be synced");
+  throw Error(*failure_);
+}
+
+void AppendFile::cut(std::uintmax_t bytes) const {
+  if (::ftruncate(descriptor_.number(), static_cast<off_t>(bytes)) != 0) fail(file_, "cannot be cut");
 }
 
 void AppendFile::flush() const {
   if (!flush_file(descriptor_)) fail(file_, "cannot be written");
-}
-
-bool AppendFile::is_in_place() const {
-  struct stat named {};
-  return ::stat(file_.c_str(), &named) == 0 && named.st_dev == device_ && named.st_ino == inode_;
 }
 
 FileLock::FileLock(const fs::path& file, int command)
@@ -315,15 +319,40 @@ void FileLock::check() const {
   const int there = ::fstatat(folder_.number(), file_.filename().c_str(), &named, AT_SYMLINK_NOFOLLOW);
   if (there == 0 && held.st_dev == named.st_dev && held.st_ino == named.st_ino) return;
   if (there != 0 && errno != ENOENT) fail(file_, "cannot be looked at");
-  throw Error(file_.string(), "was removed while a run was writing beside it: another process may go on with that run",
-              "see that none does; 'palpate resume' carries on", Error::Kind::run);
+  throw Error(file_.string(), "was moved or removed while a run was writing to it: another process may begin that run",
+              "put it back, then 'palpate resume' carries on", Error::Kind::run);
+}
+
+void FileLock::check_in_place() const {
+  check();
+  struct stat held {
+  }, named{};
+  if (::fstat(descriptor_.number(), &held) == 0 && ::stat(file_.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+      held.st_ino == named.st_ino)
+    return;
+  throw Error(folder_of(file_).string(), "was moved or removed while a run was writing there",
+              "where it was moved to, 'palpate resume' carries on", Error::Kind::run);
+}
+
+AppendFile FileLock::append_file() const {
+  Descriptor copy(::fcntl(descriptor_.number(), F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+  if (!copy) fail(file_, "cannot be opened");
+  return {file_, std::move(copy)};
 }
 
 bool FileLock::is_held(const fs::path& file) {
-  const Descriptor in = open_file(file, O_RDONLY);
-  if (!in && errno == EIO) fail(file, "cannot be looked at");
+  // Nobody locks what is no file, and to open a device may already do something.
+  struct stat what {};
+  if (::lstat(file.c_str(), &what) != 0 && !shows_nothing(errno)) fail(file, "cannot be looked at");
+  if (!S_ISREG(what.st_mode)) return false;
+  const Descriptor in = open_file(file, O_RDONLY | O_NOFOLLOW);
+  if (!in && shows_nothing(errno)) return false;
   struct flock other = kWholeFile;
-  return in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0 && other.l_type != F_UNLCK;
+  if (in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0) return other.l_type != F_UNLCK;
+  // On a file system without locks nobody holds one.
+  const bool keeps_none = in && (errno == ENOLCK || errno == ENOSYS || errno == EINVAL || errno == EOPNOTSUPP);
+  if (!keeps_none) fail(file, "cannot be looked at");
+  return false;
 }
 
 void check_locks(const fs::path& folder) {

@@ -7,6 +7,8 @@
 #include "children/child_process.hpp"
 #include "reading/reading.hpp"
 
+#include <palpate/error.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -53,9 +55,6 @@ void remove_temporaries(const std::filesystem::path& folder);
 /// Puts the names in `folder` on the disk, and the names of the folders on the way to it. Throws Error.
 void sync_names(const std::filesystem::path& folder);
 
-/// Keeps the first `bytes` of a file. Throws Error.
-void cut_file(const std::filesystem::path& file, std::uintmax_t bytes);
-
 /// Whether there is something of that name. What this user may not look at is not there. Throws Error where the file
 /// system fails.
 bool is_there(const std::filesystem::path& path);
@@ -79,6 +78,10 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t most_byt
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
                                          Origin origin = Origin::record);
 
+/// Reads the first line of a part of a record that grows by lines, without its line end and without what is behind it;
+/// none where there is no file or no whole line. Throws Error as read_if_there().
+std::optional<std::string> first_line_if_there(const std::filesystem::path& file);
+
 /// The last whole line of a part of a record that grows by lines.
 struct LastLine {
   std::uintmax_t bytes = 0;  ///< of the file
@@ -97,26 +100,28 @@ class AppendFile {
   explicit AppendFile(const std::filesystem::path& file);
 
   /// Appends in one system call; with `sync` it is on the disk when it returns. Throws Error: what was not written
-  /// whole is cut off again. Where that fails, and after a sync that failed, nothing more is appended: the kernel has
-  /// dropped the data, and a second sync would report success.
+  /// whole is cut off again. Where that fails, and after a sync that failed, each further call throws the same Error:
+  /// the kernel has dropped the data, and a second sync would report success.
   void append(const std::string& text, bool sync);
+
+  /// Keeps the first `bytes`. Throws Error.
+  void cut(std::uintmax_t bytes) const;
 
   /// Has the file system take all that was appended, as closing does: NFS reports a full quota only then. Throws Error.
   void flush() const;
 
-  /// Whether the name that it was opened by still leads to it.
-  bool is_in_place() const;
-
  private:
+  friend class FileLock;
+  AppendFile(std::filesystem::path file, Descriptor descriptor);
+
   std::filesystem::path file_;
   Descriptor descriptor_;
-  bool failed_ = false;
-  std::uint64_t device_ = 0;  ///< with the next, which file it is
-  std::uint64_t inode_ = 0;
+  std::optional<Error> failure_;  ///< after which nothing is appended
 };
 
-/// A lock of the kernel on a file: it ends when the process does, however it ends, and children do not inherit it. It
-/// holds between machines where their file system keeps locks (NFS does, Lustre when it is mounted with `flock`).
+/// A lock of the kernel on a file: it ends with the process, however that ends, and with the children that were forked
+/// from it meanwhile; programs that they start do not inherit it. It holds between machines where their file system
+/// keeps locks (NFS does, Lustre when it is mounted with `flock`).
 class FileLock {
  public:
   FileLock() = default;
@@ -130,6 +135,13 @@ class FileLock {
   /// Throws Error where another process may hold the lock by now: in a forked child, and where the name in the folder,
   /// wherever that was moved, does not lead to the locked file any more.
   void check() const;
+
+  /// The same, and where the path by which it was locked does not lead there: what is written by path would lie
+  /// elsewhere.
+  void check_in_place() const;
+
+  /// The locked file, to append to: an open file of its own would not be kept from another's by the lock.
+  AppendFile append_file() const;
 
   /// Makes `file` if need be and waits until it can be locked. Throws Error.
   static FileLock wait_for(const std::filesystem::path& file);

@@ -32,12 +32,13 @@ const RunRecord& HeldRecord::before() {
 
 AppendFile& HeldRecord::log() {
   if (log_) return *log_;
-  const fs::path file = directory_ / kRecordFile;
-  if (const std::optional<LastLine> last = last_line_if_there(file); last && last->whole < last->bytes) {
+  const std::optional<LastLine> last = last_line_if_there(directory_ / kRecordFile);
+  log_ = lock_.append_file();
+  if (last && last->whole < last->bytes) {
     cut_ = last->bytes - last->whole;
-    cut_file(file, last->whole);
+    log_->cut(last->whole);
   }
-  return log_.emplace(file);
+  return *log_;
 }
 
 void HeldRecord::append(const std::string& lines, bool sync) {
@@ -45,17 +46,11 @@ void HeldRecord::append(const std::string& lines, bool sync) {
   log().append(lines, sync);
 }
 
-void HeldRecord::check_in_place() const {
-  if (log_ && log_->is_in_place()) return check_held();
-  throw Error(directory_.string(), "was moved or removed while a run was writing there",
-              "where it was moved to, 'palpate resume' carries on", Error::Kind::run);
-}
-
 void HeldRecord::clear() {
   check_held();
+  log().cut(0);
   RunRecord nothing;
   nothing.file = directory_ / kRecordFile;
-  cut_file(nothing.file, 0);
   before_ = std::move(nothing);
   begun_ = ended_ = false;
   attempts_ = 0;
@@ -88,15 +83,12 @@ void HeldRecord::add_setup(bool announces, const Tree& models, bool sync) {
   append(to_json_line(line) + "\n", sync);
 }
 
-void HeldRecord::add_tap(const Row& tap, const TapTimes* times, bool sync) {
-  std::string lines = to_json_line(tap) + "\n";
-  if (times != nullptr) {
-    lines += fmt::format("{{\"timing\": {}", times->tap);
-    for (std::size_t i = 0; i < kPhases; ++i)
-      lines += fmt::format(", \"{}\": {:.9f}", kPhaseNames[i], times->seconds[i]);
-    lines += "}\n";
-  }
-  append(lines, sync);
+void HeldRecord::add_tap(const Row& tap, bool sync) { append(to_json_line(tap) + "\n", sync); }
+
+void HeldRecord::add_timing(const TapTimes& times) {
+  std::string line = fmt::format("{{\"timing\": {}", times.tap);
+  for (std::size_t i = 0; i < kPhases; ++i) line += fmt::format(", \"{}\": {:.9f}", kPhaseNames[i], times.seconds[i]);
+  append(line + "}\n", false);
 }
 
 void HeldRecord::add_objects(const std::vector<Row>& objects, bool sync) {

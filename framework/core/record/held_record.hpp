@@ -17,7 +17,7 @@ namespace palpate {
 
 /// Lines are written whole, each with one call, and none is ever changed. Every method that writes throws Error where
 /// another process may be writing there, as FileLock::check() says, and where writing fails; then the record is as it
-/// was.
+/// was, unless only the sync failed.
 class HeldRecord {
  public:
   /// Makes the directory if need be and locks its record. Throws Error of kind `busy` if another process holds it.
@@ -31,7 +31,7 @@ class HeldRecord {
   bool ended() const { return ended_; }
 
   /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
-  void check_in_place() const;
+  void check_in_place() const { lock_.check_in_place(); }
   void check_held() const { lock_.check(); }
 
   /// Takes everything out, for a run that failed before it could begin: it begins anew.
@@ -43,8 +43,10 @@ class HeldRecord {
   void add_attempt(const Row& attempt);
   /// The same attempt, once the experiment is built. `models`: who reads which.
   void add_setup(bool announces, const Tree& models, bool sync);
-  /// A tap with its times, which may be unknown; or one that is announced. With `sync` it is on the disk on return.
-  void add_tap(const Row& tap, const TapTimes* times, bool sync);
+  /// A tap, or one that is announced. With `sync` it is on the disk on return.
+  void add_tap(const Row& tap, bool sync);
+  /// Its times, behind it. A call of its own: a disk that has room for the tap alone keeps that.
+  void add_timing(const TapTimes& times);
   void add_objects(const std::vector<Row>& objects, bool sync);
   /// One line each; `kind` is the value of `note`.
   void add_note(const std::string& kind, const Row& note, bool sync);

@@ -23,6 +23,7 @@ constexpr std::size_t kMostRowValues = 4096;
 constexpr std::size_t kMostNameBytes = 1024;  ///< of a name in a row, which repeats those of all that is around it
 constexpr std::size_t kMostLines = 1'100'000;
 constexpr std::size_t kMostLineValues = 20'000'000;  ///< of all lines of a file
+constexpr std::size_t kNameOfOneValue = 64;          ///< bytes; a value with a longer name counts more than once
 
 constexpr const char* kNoObject = "is not a JSON object";
 constexpr const char* kTooDeep = "is nested too deeply: at most 100 levels";
@@ -188,7 +189,8 @@ Row RowLines::read(const std::string& line) {
   std::optional<Row> row;
   if (line.size() <= kMostLineBytes) row = parse_json_row(line, &reason);
   if (!row) throw Error(place(), reason, kDamaged);
-  values_ += row->fields.size();
+  // Names that repeat all that is around them would fill the memory where there are many.
+  for (const auto& field : row->fields) values_ += 1 + field.first.size() / kNameOfOneValue;
   if (number_ > kMostLines || values_ > kMostLineValues)
     throw Error(place(), "the file holds too much: at most 1.1 million lines and 20 million values", kDamaged);
   return std::move(*row);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <utility>
 
 namespace palpate {
@@ -24,6 +25,7 @@ constexpr std::array<std::string_view, 9> kKinds{"manifest", "attempt", "setup",
 /// By Ending::How.
 constexpr std::array<const char*, 3> kHows{"done", "failed", "interrupted"};
 
+constexpr const char* kNoEnding = "has no 'end' that is done, failed or interrupted, or a file that is not beside it";
 constexpr const char* kPutBack = "put the file back as it was, or begin anew with 'palpate run --force'";
 
 bool holds_lists(LineKind kind) {
@@ -42,13 +44,20 @@ std::optional<Ending::How> how_of(const Row& end) {
   return static_cast<Ending::How>(found - kHows.begin());
 }
 
-/// `how_of(line)` is known.
-Ending ending_of(Row line) {
+/// Of a file beside the record: what a stranger writes there leads nowhere else.
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
+}
+
+/// None where the line does not say how, or names a file elsewhere.
+std::optional<Ending> ending_of(Row line) {
   constexpr std::string_view kSummary = "summary.";
   constexpr std::string_view kFiles = "files.";
   constexpr std::string_view kBytes = ".bytes";
+  const std::optional<Ending::How> how = how_of(line);
+  if (!how) return std::nullopt;
   Ending out;
-  out.how = how_of(line).value();
+  out.how = *how;
   out.reason = line.text("reason");
   for (auto& [name, value] : line.fields) {
     if (name.compare(0, kSummary.size(), kSummary) == 0) {
@@ -56,6 +65,7 @@ Ending ending_of(Row line) {
     } else if (name.compare(0, kFiles.size(), kFiles) == 0) {
       const std::size_t dot = name.rfind('.');
       const std::string file = name.substr(kFiles.size(), dot - std::min(dot, kFiles.size()));
+      if (!is_plain_name(file)) return std::nullopt;
       if (name.compare(dot, kBytes.size(), kBytes) == 0) out.files.push_back({file, 0, {}});
       if (out.files.empty() || out.files.back().name != file) continue;
       if (const auto* bytes = std::get_if<std::int64_t>(&value))
@@ -103,9 +113,10 @@ LineKind kind_of_line(std::string_view line) {
 void RecordReader::refuse(const std::string& reason) const { throw Error(lines_.place(), reason, kPutBack); }
 
 RecordLine RecordReader::read(std::string_view line) {
-  RecordLine out{kind_of_line(line), {}, {}};
+  RecordLine out{kind_of_line(line), {}, {}, {}};
   if (!holds_lists(out.kind)) {
     out.row = lines_.read(std::string(line));
+    if (out.kind == LineKind::end) out.end = ending_of(out.row);
   } else {
     lines_.skip();
     if (line.size() > kMostManifestBytes) refuse("is too long: a line has at most 64 MiB");
@@ -122,17 +133,15 @@ RecordLine RecordReader::read(std::string_view line) {
 
 void RecordReader::check(const RecordLine& line) {
   if (end_ == Ending::How::done) refuse("stands behind the end of a run that is done");
-  if (line.kind == LineKind::other && begun_) return;
   if (!begun_ && line.kind != LineKind::manifest) refuse("is not the manifest, with which a record begins");
   if (begun_ && line.kind == LineKind::manifest) refuse("is a second manifest");
   if (end_ && line.kind != LineKind::attempt) refuse("stands behind the end of an attempt, and begins none");
+  if (line.kind == LineKind::other) return;
   end_.reset();
   switch (line.kind) {
     case LineKind::manifest:
       begun_ = true;
-      if (line.tree.find("manifest")->text != std::to_string(kRecordVersion))
-        throw Error(lines_.place(), "is of a later version than this palpate reads",
-                    "take a palpate as new as the one that wrote it");
+      check_version(line.tree);
       break;
     case LineKind::attempt:
       check_attempt(line.row);
@@ -148,7 +157,7 @@ void RecordReader::check(const RecordLine& line) {
       check_timing(line.row);
       break;
     case LineKind::end:
-      check_end(line.row);
+      check_end(line);
       break;
     case LineKind::objects:
       if (line.tree.find("objects")->kind != Tree::Kind::list) refuse("has no list 'objects'");
@@ -158,6 +167,16 @@ void RecordReader::check(const RecordLine& line) {
       break;
   }
   last_ = line.kind;
+}
+
+void RecordReader::check_version(const Tree& manifest) const {
+  const std::string& text = manifest.find("manifest")->text;
+  int version = 0;
+  const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), version);
+  if (wrong != std::errc() || end != text.data() + text.size() || version < 1) refuse("has no version 'manifest'");
+  if (version <= kRecordVersion) return;
+  throw Error(lines_.place(), "is of a later version than this palpate reads",
+              "take a palpate as new as the one that wrote it");
 }
 
 void RecordReader::check_attempt(const Row& row) {
@@ -203,15 +222,15 @@ void RecordReader::check_timing(const Row& row) const {
   if (last_ != LineKind::tap || count_in(row, "timing") != taps_)
     refuse(fmt::format("has the times of tap {}, and does not follow it", row.cell("timing")));
   for (const char* phase : kPhaseNames)
-    if (!row.number(phase)) refuse(fmt::format("has no number '{}'", phase));
+    if (row.find(phase) != nullptr && !row.number(phase)) refuse(fmt::format("has no number '{}'", phase));
 }
 
-void RecordReader::check_end(const Row& row) {
-  end_ = how_of(row);
-  if (!end_) refuse("has no 'end' that is done, failed or interrupted");
-  if (end_ != Ending::How::done || row.number("summary.taps") == static_cast<double>(taps_)) return;
-  refuse(
-      fmt::format("ends a run of {} taps, and {} stand before it: a line is missing", row.cell("summary.taps"), taps_));
+void RecordReader::check_end(const RecordLine& line) {
+  if (!line.end) refuse(kNoEnding);
+  end_ = line.end->how;
+  if (end_ != Ending::How::done || line.row.number("summary.taps") == static_cast<double>(taps_)) return;
+  refuse(fmt::format("ends a run of {} taps, and {} stand before it: a line is missing", line.row.cell("summary.taps"),
+                     taps_));
 }
 
 std::string RunRecord::build() const {
@@ -226,7 +245,7 @@ RunRecord read_run_record(const fs::path& directory) {
   RecordReader reader(out.file);
   for_lines(read_if_there(out.file).value_or(""), [&](std::string_view text) {
     RecordLine line = reader.read(text);
-    if (line.kind != LineKind::other) out.end.reset();
+    out.end.reset();
     switch (line.kind) {
       case LineKind::manifest:
         out.manifest = std::move(line.tree);
@@ -255,7 +274,7 @@ RunRecord read_run_record(const fs::path& directory) {
         break;
       case LineKind::end:
         if (!out.attempts.empty()) out.attempts.back().add("end", line.row.text("end"));
-        out.end = ending_of(std::move(line.row));
+        out.end = std::move(line.end);
         break;
       case LineKind::other:
         break;
@@ -266,10 +285,9 @@ RunRecord read_run_record(const fs::path& directory) {
 
 std::optional<Tree> read_manifest(const fs::path& directory) {
   const fs::path file = directory / kRecordFile;
-  const std::string text = read_if_there(file).value_or("");
-  const std::size_t end = text.find('\n');
-  if (end == std::string::npos) return std::nullopt;
-  return RecordReader(file).read(std::string_view(text).substr(0, end)).tree;
+  const std::optional<std::string> first = first_line_if_there(file);
+  if (!first) return std::nullopt;
+  return RecordReader(file).read(*first).tree;
 }
 
 RecordEnd read_record_end(const fs::path& directory) {
@@ -280,11 +298,10 @@ RecordEnd read_record_end(const fs::path& directory) {
   std::string reason = "is too long: a line has at most 1 MiB";
   std::optional<Row> row;
   if (last->text.size() <= kMostLineBytes) row = parse_json_row(last->text, &reason);
-  if (!row || !how_of(*row)) {
-    throw Error(file.string(), "its last line " + (row ? "has no 'end' that is done, failed or interrupted" : reason),
-                kPutBack);
-  }
-  return {true, ending_of(std::move(*row))};
+  if (row) reason = kNoEnding;
+  std::optional<Ending> end = row ? ending_of(std::move(*row)) : std::nullopt;
+  if (!end) throw Error(file.string(), "its last line " + reason, kPutBack);
+  return {true, std::move(end)};
 }
 
 int attempts_in_row(const fs::path& directory) {
@@ -293,13 +310,11 @@ int attempts_in_row(const fs::path& directory) {
   const auto trouble = trouble_in([&] { text = read_if_there(directory / kRecordFile).value_or(""); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   int out = 0;
-  bool failed = false;
+  bool ended = false;
   for_lines(text, [&](std::string_view line) {
     const LineKind kind = kind_of_line(line);
-    if (kind == LineKind::attempt) out = std::exchange(failed, false) ? 1 : out + 1;
-    if (kind != LineKind::end) return;
-    const std::optional<Row> row = parse_json_row(std::string(line));
-    failed = row && how_of(*row) == Ending::How::failed;
+    if (kind == LineKind::attempt) out = std::exchange(ended, false) ? 1 : out + 1;
+    if (kind == LineKind::end) ended = true;
   });
   return out;
 }

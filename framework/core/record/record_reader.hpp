@@ -52,20 +52,11 @@ enum class LineKind { manifest, attempt, setup, intent, tap, timing, objects, no
 /// Returns what a line is by its first key alone.
 LineKind kind_of_line(std::string_view line);
 
-struct RecordLine {
-  LineKind kind = LineKind::other;
-  Row row;    ///< of attempt, intent, tap, timing, note and end
-  Tree tree;  ///< of the others, which hold lists
-};
-
-/// The times in a line `timing`.
-TapTimes times_of(const Row& timing);
-
 /// How a run ended, or an attempt at it.
 struct Ending {
   enum class How { done, failed, interrupted };
   struct File {
-    std::string name;
+    std::string name;  ///< without a folder
     std::uintmax_t bytes = 0;
     std::string hash;
   };
@@ -76,6 +67,16 @@ struct Ending {
   std::vector<File> files;  ///< beside the record, which were made from it
 };
 const char* ending_name(Ending::How how);
+
+struct RecordLine {
+  LineKind kind = LineKind::other;
+  Row row;                    ///< of attempt, intent, tap, timing, note and end
+  Tree tree;                  ///< of the others, which hold lists
+  std::optional<Ending> end;  ///< of end, too
+};
+
+/// The times in a line `timing`.
+TapTimes times_of(const Row& timing);
 
 /// Reads the lines of a record one by one, in their order.
 class RecordReader {
@@ -91,11 +92,12 @@ class RecordReader {
  private:
   [[noreturn]] void refuse(const std::string& reason) const;
   void check(const RecordLine& line);
+  void check_version(const Tree& manifest) const;
   void check_attempt(const Row& row);
   void check_setup(const Tree& line);
   void check_tap(const Row& row, bool announces);
   void check_timing(const Row& row) const;
-  void check_end(const Row& row);
+  void check_end(const RecordLine& line);
 
   RowLines lines_;
   bool begun_ = false;  ///< the manifest was read
@@ -141,8 +143,8 @@ struct RecordEnd {
 /// Throws Error for a damaged line.
 RecordEnd read_record_end(const std::filesystem::path& directory);
 
-/// How many attempts were made since one failed, the last ones; a damaged line counts, too. Throws Error where the file
-/// system fails.
+/// How many attempts were made since one came to an end, the last ones; a damaged line counts, too. Throws Error where
+/// the file system fails.
 int attempts_in_row(const std::filesystem::path& directory);
 
 /// The times of the taps as a table.

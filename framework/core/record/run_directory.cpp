@@ -72,7 +72,7 @@ RunStatus read_ending(const fs::path& directory) {
 }
 
 bool lacks_files(const fs::path& directory, const Ending& end) {
-  if (!is_there(directory / kSummaryFile)) return true;
+  if (size_if_there((directory / kSummaryFile).c_str()) != to_json_text(end.summary).size()) return true;
   return std::any_of(end.files.begin(), end.files.end(), [&](const Ending::File& one) {
     return size_if_there((directory / one.name).c_str()) != one.bytes;
   });
@@ -98,7 +98,7 @@ RunStatus read_status(const fs::path& directory) {
 
 RunDirectory::RunDirectory(const fs::path& directory) : path_(directory), record_(path_) {
   remove_temporaries(path_);
-  remove_temporaries(path_ / "maps");
+  if (const fs::path maps = path_ / "maps"; !fs::is_symlink(maps)) remove_temporaries(maps);
 }
 
 void RunDirectory::sync() { sync_ = true; }
@@ -133,20 +133,20 @@ std::vector<PastTap> RunDirectory::recover() {
   }
   if (before.intent) rows_.push_back(unknown_result_of(*before.intent));
   std::vector<PastTap> out = past_taps(rows_, before.file);
-  if (before.intent) record_.add_tap(rows_.back(), nullptr, true);
+  if (before.intent) record_.add_tap(rows_.back(), true);
   return out;
 }
 
 void RunDirectory::announce(const TapRecord& tap) {
   check_in_place();
-  if (announce_) record_.add_tap(intent_row(tap), nullptr, sync_);
+  if (announce_) record_.add_tap(intent_row(tap), sync_);
 }
 
 void RunDirectory::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
   Row row = tap_row(tap);
-  const TapTimes times{tap.number, seconds};
-  record_.add_tap(row, &times, sync_);
+  record_.add_tap(row, sync_);
   rows_.push_back(std::move(row));
+  record_.add_timing({tap.number, seconds});
   for (std::size_t i = 0; i < kPhases; ++i) total_[i] += seconds[i];
 }
 

@@ -111,7 +111,7 @@ class RunDirectory final : public Journal {
 
   template <class T>  // a text, or a Text
   void write(const std::string& name, const T& text) const {
-    record_.check_held();
+    record_.check_in_place();
     write_file(path_ / name, text, sync_);
   }
   /// A file that is made from the record: end() notes how many bytes it has and their hash.

@@ -28,8 +28,8 @@ RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Exper
   return course.finish(Course::failure_in([&] { experiment.run(course.journal()); }));
 }
 
-RunReport report_done(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held) {
-  return {held.path(), true, false, held.before().end->summary, restore_files(workshop, config, held)};
+RunReport report_done(const Workshop& workshop, RunDirectory& held) {
+  return {held.path(), true, false, held.before().end->summary, restore_files(workshop, held)};
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
     const RunStatus status = read_ending(directory);
     if (!lacks_files(directory, status.end.value())) return {directory, true, false, status.end->summary};
     RunDirectory held(directory);
-    return report_done(workshop, config, held);
+    return report_done(workshop, held);
   }
   return carry_out(config, *run.directory, *run.experiment, {observer, supervisor}, watch);
 }
@@ -89,15 +89,17 @@ std::map<std::string, std::string> recorded_origins(const fs::path& directory) {
 ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   ResolvedConfig config = resolve_experiment(read_run_config(directory), host);
   const std::string name = fs::absolute(directory).lexically_normal().filename().string();
-  const std::string recorded = recorded_identity(directory);
-  const bool is_moved = begins_with_id(name) && name.substr(0, kIdLength) != config.id;
-  if (is_moved || (!recorded.empty() && recorded != config.identity)) {
+  const std::string recorded = recorded_run(directory).identity;
+  const bool other_folder = begins_with_id(name) && name.substr(0, kIdLength) != config.id;
+  if (recorded.empty() ? other_folder : recorded != config.identity) {
     throw Error((directory / "config.yaml").string(),
                 fmt::format("the config now has the id {}, the run has {}", config.id,
-                            recorded.empty() ? name : recorded.substr(0, kIdLength)),
+                            (recorded.empty() ? name : recorded).substr(0, kIdLength)),
                 "config.yaml was changed; run it with 'palpate run' instead");
   }
-  return config;
+  if (!other_folder) return config;
+  throw Error(directory.string(), fmt::format("holds the run {}, and has the name of another", config.id),
+              "give the folder another name");
 }
 
 std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
@@ -109,19 +111,20 @@ std::optional<Error> objection_to_build(const Workshop& workshop, const Resolved
                "--force carries on all the same, and the record will say so");
 }
 
-std::vector<std::string> restore_files(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held) {
+Restored restore_files(const Workshop& workshop, RunDirectory& held) {
   const fs::path& directory = held.path();
   const RunRecord& record = held.before();
-  std::vector<std::string> out;
-  const auto restore = [&](const std::string& name, const std::string& text) {
-    held.write(name, text);
-    out.push_back(name);
+  Restored out;
+  const auto restore = [&](const Ending::File& one, const std::string& text) {
+    const bool same = text.size() == one.bytes && hash_of(text) == one.hash;
+    if (same) held.write(one.name, text);
+    (same ? out.made : out.lost).push_back(one.name);
   };
   for (const Ending::File& one : record.end->files) {
     const std::optional<std::string> now = read_if_there(directory / one.name);
     if (now && now->size() == one.bytes && hash_of(*now) == one.hash) continue;
     if (one.name == kTapsTable) {
-      restore(one.name, to_csv(record.taps));
+      restore(one, to_csv(record.taps));
       continue;
     }
     const Recording recording = read_recording(workshop, directory);
@@ -129,11 +132,14 @@ std::vector<std::string> restore_files(const Workshop& workshop, const ResolvedC
     playback.advance_to(static_cast<int>(recording.taps.size()));
     playback.experiment().result();  // reads what the run read at its end
     const auto [name, text] = surface_file(playback.experiment());
-    if (name == one.name && config.options.log.surface) restore(name, whole_of(text));
+    restore(one, name == one.name ? whole_of(text) : "");
   }
   // Last, as a run does.
   const std::string summary = to_json_text(record.end->summary);
-  if (read_if_there(directory / kSummaryFile) != summary) restore(kSummaryFile, summary);
+  if (read_if_there(directory / kSummaryFile) != summary) {
+    held.write(kSummaryFile, summary);
+    out.made.emplace_back(kSummaryFile);
+  }
   return out;
 }
 
@@ -150,7 +156,7 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   const Stopwatch watch;
   const std::unique_ptr<Experiment> experiment =
       go_on(workshop, config, held, options, Taps::by_backend, supervisor != nullptr);
-  if (!experiment) return report_done(workshop, config, held);
+  if (!experiment) return report_done(workshop, held);
   return carry_out(config, held, *experiment, {observer, supervisor}, watch);
 }
 

@@ -31,13 +31,19 @@ struct Workshop {
   const std::atomic<bool>* interrupted;  ///< set by the user's wish to stop; may be null
 };
 
+/// Names of files that an ended run had lost.
+struct Restored {
+  std::vector<std::string> made;  ///< again, byte for byte
+  std::vector<std::string> lost;  ///< left out: this build makes others from the same taps
+};
+
 /// How a run ended.
 struct RunReport {
   std::filesystem::path directory;
-  bool already_done = false;            ///< nothing was run: the directory held the finished run
-  bool interrupted = false;             ///< it can be resumed; there is no summary
-  Row summary;                          ///< the fields of summary.json
-  std::vector<std::string> restored{};  ///< files of a finished run that were gone or cut, and are made again
+  bool already_done = false;  ///< nothing was run: the directory held the finished run
+  bool interrupted = false;   ///< it can be resumed; there is no summary
+  Row summary;                ///< the fields of summary.json
+  Restored restored{};        ///< of a finished run
 };
 
 /// Somebody who is asked before every tap of a backend that moves what only a person can put right.
@@ -84,9 +90,9 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
 std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
                                         const RunRecord& record);
 
-/// Makes those files again that an ended run in a directory that this process holds has lost, and returns their names:
-/// a kill came between its last line and summary.json, or a power cut took what was never synced. Throws Error.
-std::vector<std::string> restore_files(const Workshop& workshop, const ResolvedConfig& config, RunDirectory& held);
+/// Makes those files again that an ended run in a directory that this process holds has lost: a kill came between its
+/// last line and summary.json, or a power cut took what was never synced. Throws Error.
+Restored restore_files(const Workshop& workshop, RunDirectory& held);
 
 /// The config.yaml of a run directory as it stands. Throws Error if there is none, or one of a later format.
 Tree read_run_config(const std::filesystem::path& directory);

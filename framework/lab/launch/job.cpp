@@ -63,9 +63,8 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
   const RunStatus now = read_ending(directory);
   const bool failed = now.state == RunStatus::State::failed;
   if (now.state == RunStatus::State::done || (failed && !options.retry_failed)) {
-    const auto trouble = lacks_files(directory, *now.end)
-                             ? trouble_in([&] { restore_files(workshop, config_of(), *held); })
-                             : std::nullopt;
+    const auto trouble =
+        lacks_files(directory, *now.end) ? trouble_in([&] { restore_files(workshop, *held); }) : std::nullopt;
     // A damaged record ends the job as failed, and nothing can be made from it.
     if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;

@@ -38,19 +38,19 @@ bool job_is_linked(const fs::path& file) {
   return jobs.filename() == "jobs" && (is_link(job) || is_link(jobs));
 }
 
-/// Reads up to `most_bytes`; the size is a hint: files grow, and those of /proc have none.
-Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes) {
+/// Reads up to `most_bytes`, or no more than `size`; else the size is a hint: files grow, and those of /proc have none.
+Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes, bool no_more = false) {
   Reading out{Reading::Kind::whole, {}};
   if (size > most_bytes) return {Reading::Kind::too_large, {}};
   std::string& text = out.text;
-  text.resize(size + 1);  // one byte more than a file has shows its end
+  text.resize(size + (no_more ? 0 : 1));  // one byte more than a file has shows its end
   for (std::size_t read = 0;;) {
     const ssize_t more = ::read(number, text.data() + read, text.size() - read);
     if (more < 0 && errno == EINTR) continue;
     if (more < 0) return failed(errno);
     read += static_cast<std::size_t>(more);
     if (read > most_bytes) return {Reading::Kind::too_large, {}};
-    if (more == 0) return text.resize(read), out;
+    if (more == 0 || (no_more && read == size)) return text.resize(read), out;
     if (read == text.size()) text.resize(2 * text.size() + 4096);
   }
 }
@@ -83,6 +83,13 @@ Reading with_file(const fs::path& file, Origin origin, const Use& use) {
 Reading read_bounded(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
   return with_file(file, origin,
                    [&](int number, std::uintmax_t size) { return read_descriptor(number, size, most_bytes); });
+}
+
+Reading read_begin_bounded(const fs::path& file, std::uintmax_t bytes, Origin origin) {
+  return with_file(file, origin, [&](int number, std::uintmax_t size) {
+    if (size > kMostLogBytes) return Reading{Reading::Kind::too_large, {}};
+    return read_descriptor(number, std::min(size, bytes), kMostLogBytes, true);
+  });
 }
 
 Reading read_end_bounded(const fs::path& file, std::uintmax_t bytes, Origin origin) {

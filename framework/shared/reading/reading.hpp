@@ -54,7 +54,9 @@ struct Reading {
 /// for and no device is opened. Throws nothing but std::bad_alloc.
 Reading read_bounded(const std::filesystem::path& file, std::uintmax_t most_bytes, Origin origin);
 
-/// Reads the last `bytes` of a file of at most kMostLogBytes, all of a shorter one; else as read_bounded().
+/// Reads the first, or the last, `bytes` of a file of at most kMostLogBytes, all of a shorter one; else as
+/// read_bounded().
+Reading read_begin_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 Reading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 
 /// Returns what an Error says of a reading that is not whole: its reason and its remedy. `most_bytes` is the limit that
