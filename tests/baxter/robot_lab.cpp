@@ -76,7 +76,6 @@ bool RobotLab::start_master() {
 std::vector<std::string> RobotLab::environment() const {
   return {"ROS_MASTER_URI=http://127.0.0.1:" + std::to_string(port_),
           "ROS_IP=127.0.0.1",
-          "XDG_RUNTIME_DIR=" + folder().string(),
           "ROS_HOME=" + (folder() / "ros").string(),
           "ROS_LOG_DIR=" + (folder() / "ros" / "log").string(),
           "ROS_HOSTNAME",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "children/arm_lock.hpp"
 
+#include "support/programs.hpp"
 #include "support/support.hpp"
 #include "support/testing.hpp"
 
@@ -9,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -20,55 +22,80 @@ namespace palpate::test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
-namespace fs = std::filesystem;
+/// An arm of this process alone: locks hold for the whole machine.
+std::string arm(const std::string& name) { return name + " of " + std::to_string(::getpid()); }
 
-class ArmLocks : public ::testing::Test {
- protected:
-  ArmLocks() { ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1); }
-  ~ArmLocks() override { ::unsetenv("XDG_RUNTIME_DIR"); }
-
-  static std::string trouble_with(const std::string& arm) {
-    return error_of([&] { ArmLock("backend", arm, "runs/second"); });
-  }
-
-  TemporaryFolder folder_;
-};
-
-TEST_F(ArmLocks, HoldOneArmForOneObjectAndSayWhoHasIt) {
-  std::optional<ArmLock> first;
-  first.emplace("backend", "left of http://robot:11311", "runs/first/0123456789ab");
-  EXPECT_EQ(trouble_with("left of http://robot:11311"),
-            "backend: the arm left of http://robot:11311 is in the hands of process " + std::to_string(::getpid()) +
-                ", runs/first/0123456789ab, wait until that has ended, or end it");
-  EXPECT_EQ(trouble_with("right of http://robot:11311"), "accepted") << "another arm";
-  first.reset();
-  EXPECT_EQ(trouble_with("left of http://robot:11311"), "accepted");
+std::string trouble_with(const std::string& name) {
+  return error_of([&] { ArmLock("backend", name); });
 }
 
-TEST_F(ArmLocks, EndWithTheirProcess) {
+/// What a forked child that tries to lock the arm ends with: 0 if it may.
+int status_of_child(const std::string& name, uid_t user) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(::setuid(user) == 0 && trouble_with(name) == "accepted" ? 0 : 1);
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(ArmLocks, HoldOneArmForOneObjectAndSayWhoHasIt) {
+  const std::string left = arm("left");
+  std::optional<ArmLock> first;
+  first.emplace("backend", left);
+  EXPECT_EQ(trouble_with(left), "backend: the arm " + left + " is in the hands of process " +
+                                    std::to_string(::getpid()) + ", wait until that has ended, or end it");
+  EXPECT_EQ(trouble_with(arm("right")), "accepted") << "another arm";
+  first.reset();
+  EXPECT_EQ(trouble_with(left), "accepted");
+}
+
+TEST(ArmLocks, EndWithTheirProcess) {
+  const std::string name = arm("arm");
   const pid_t child = ::fork();
   if (child == 0) {
-    const ArmLock held("backend", "arm", "");
+    const ArmLock held("backend", name);
     ::_exit(0);  // as after kill -9: nothing is cleaned up
   }
   ::waitpid(child, nullptr, 0);
-  EXPECT_EQ(trouble_with("arm"), "accepted");
+  EXPECT_EQ(trouble_with(name), "accepted");
 }
 
-TEST_F(ArmLocks, LieInAFolderOfTheUserAlone) {
-  const ArmLock held("backend", "../arm", "");
-  const fs::path own = folder_.path() / "palpate";
-  EXPECT_EQ(fs::status(own).permissions(), fs::perms::owner_all);
-  EXPECT_TRUE(fs::exists(own / "..%2Farm.lock"));
-  fs::permissions(own, fs::perms::all);
-  EXPECT_THAT(trouble_with("arm"), StartsWith(own.string() + ": is not a folder of this user alone, remove it"));
-  fs::remove_all(own);
-  fs::create_directory_symlink(folder_.path(), own);
-  EXPECT_THAT(trouble_with("arm"), HasSubstr("is not a folder of this user alone")) << "a link";
-  ::unsetenv("XDG_RUNTIME_DIR");
-  EXPECT_EQ(arm_lock_folder(), fs::temp_directory_path() / ("palpate-" + std::to_string(::geteuid())));
+TEST(ArmLocks, HoldInEveryEnvironmentAndWhateverFoldersAreRemoved) {
+  const std::string name = arm("arm");
+  TemporaryFolder session;
+  ::setenv("XDG_RUNTIME_DIR", session.path().c_str(), 1);
+  const ArmLock held("backend", name);
+  std::filesystem::remove_all(session.path());  // as at the end of a user's last session
+  std::filesystem::create_directory(session.path());
+  EXPECT_THAT(trouble_with(name), HasSubstr("in the hands of"));
+  ::unsetenv("XDG_RUNTIME_DIR");  // as under cron
+  EXPECT_THAT(trouble_with(name), HasSubstr("in the hands of"));
+}
+
+TEST(ArmLocks, HoldForOtherUsersToo) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root becomes another user";
+  const std::string name = arm("arm");
+  constexpr uid_t kNobody = 65534;
+  EXPECT_EQ(status_of_child(name, kNobody), 0);
+  const ArmLock held("backend", name);
+  EXPECT_NE(status_of_child(name, kNobody), 0);
+}
+
+TEST(ArmLocks, AreNotHeldByForkedChildren) {
+  const std::string name = arm("arm");
+  std::optional<ArmLock> held;
+  held.emplace("backend", name);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::pause();
+    ::_exit(0);
+  }
+  EXPECT_THAT(trouble_with(name), HasSubstr("process " + std::to_string(::getpid())));
+  held.reset();
+  EXPECT_TRUE(eventually([&] { return trouble_with(name) == "accepted"; })) << "while a copy of the holder runs";
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
 }
 
 }  // namespace

@@ -3,86 +3,98 @@
 
 #include <palpate/error.hpp>
 
-#include <array>
-#include <cctype>
+#include <algorithm>
 #include <cerrno>
-#include <cstdio>
-#include <cstdlib>
+#include <cstddef>
 #include <cstring>
+#include <mutex>
+#include <set>
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
+#include <pthread.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 namespace palpate {
-
-namespace fs = std::filesystem;
-
 namespace {
 
-[[noreturn]] void fail(const fs::path& what, const std::string& why, const std::string& remedy) {
-  throw Error(what.string(), why, remedy, Error::Kind::run);
+/// The sockets of this process that hold arms. A child that is forked from it would hold them, too, as long as it runs:
+/// in the child their numbers stand for the null device.
+struct Held {
+  std::mutex guard;
+  std::set<int> numbers;
+};
+
+Held& held() {
+  static Held* const all = [] {
+    ::pthread_atfork([] { held().guard.lock(); }, [] { held().guard.unlock(); },
+                     [] {
+                       const Descriptor none(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+                       for (const int number : held().numbers) {
+                         if (none) ::dup3(none.number(), number, O_CLOEXEC);
+                       }
+                       held().guard.unlock();
+                     });
+    return new Held;  // for as long as there are processes to fork
+  }();
+  return *all;
 }
 
-std::string file_name(const std::string& arm) {
-  constexpr std::size_t kLongest = 240;  // of 255; longer names are cut, and then two arms may wait for each other
-  std::string out;
-  for (const char c : arm) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80 && (std::isalnum(byte) != 0 || std::strchr("._-", c) != nullptr)) {
-      out += c;
-    } else {
-      std::array<char, 4> code{};
-      std::snprintf(code.data(), code.size(), "%%%02X", byte);
-      out += code.data();
-    }
-  }
-  return out.substr(0, kLongest) + ".lock";
+struct Name {
+  sockaddr_un address{};
+  socklen_t bytes = 0;
+};
+
+Name name_of(const std::string& arm) {
+  const std::string text = "palpate arm " + arm;
+  Name out;
+  out.address.sun_family = AF_UNIX;
+  const std::size_t length = std::min(text.size(), sizeof out.address.sun_path - 1);
+  std::memcpy(out.address.sun_path + 1, text.data(), length);  // the zero before it makes the name abstract
+  out.bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+  return out;
 }
 
-/// Makes the folder if need be. A stranger who may write there, or whose link it is, could have the lock removed.
-void make_own(const fs::path& folder) {
-  struct stat there {};
-  if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
-    fail(folder, std::string("cannot be made: ") + std::strerror(errno), "locks of arms lie there");
-  if (::lstat(folder.c_str(), &there) != 0) fail(folder, std::strerror(errno), "locks of arms lie there");
-  if (S_ISDIR(there.st_mode) && there.st_uid == ::geteuid() && (there.st_mode & 077) == 0) return;
-  fail(folder, "is not a folder of this user alone", "remove it, or set its mode to 0700: locks of arms lie there");
-}
+const sockaddr* generic(const Name& name) { return reinterpret_cast<const sockaddr*>(&name.address); }
 
-std::string holder_of(const Descriptor& file) {
-  std::array<char, 4096> text{};
-  const ssize_t got = ::pread(file.number(), text.data(), text.size(), 0);
-  std::string out(text.data(), static_cast<std::size_t>(got > 0 ? got : 0));
-  return out.substr(0, out.find('\n'));
+Descriptor make_socket() { return above_standard(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)); }
+
+/// The process that holds the name, in words.
+std::string holder_of(const Name& name) {
+  const Descriptor caller = make_socket();
+  ucred who{};
+  socklen_t size = sizeof who;
+  const bool known = caller && ::connect(caller.number(), generic(name), name.bytes) == 0 &&
+                     ::getsockopt(caller.number(), SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 && who.pid > 0;
+  return known ? "process " + std::to_string(who.pid) : "another process";
 }
 
 }  // namespace
 
-fs::path arm_lock_folder() {
-  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  if (runtime != nullptr && *runtime == '/') return fs::path(runtime) / "palpate";
-  return fs::temp_directory_path() / ("palpate-" + std::to_string(::geteuid()));
+ArmLock::ArmLock(const std::string& where, const std::string& arm) {
+  const Name name = name_of(arm);
+  const std::lock_guard<std::mutex> no_fork_between(held().guard);
+  Descriptor socket = make_socket();
+  // Nobody is ever accepted; who calls learns whom.
+  if (socket && ::bind(socket.number(), generic(name), name.bytes) == 0 && ::listen(socket.number(), SOMAXCONN) == 0) {
+    held().numbers.insert(socket.number());
+    socket_ = std::move(socket);
+    return;
+  }
+  if (errno != EADDRINUSE) {
+    throw Error(where, "the arm " + arm + " cannot be locked: " + std::strerror(errno),
+                "let palpate make unix sockets (unix(7))", Error::Kind::run);
+  }
+  throw Error(where, "the arm " + arm + " is in the hands of " + holder_of(name),
+              "wait until that has ended, or end it", Error::Kind::busy);
 }
 
-ArmLock::ArmLock(const std::string& where, const std::string& arm, const std::string& owner) {
-  const fs::path folder = arm_lock_folder();
-  make_own(folder);
-  const fs::path path = folder / file_name(arm);
-  Descriptor file = above_standard(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
-  if (!file) fail(path, std::string("cannot be opened: ") + std::strerror(errno), "the lock of an arm is there");
-  while (::flock(file.number(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EINTR) continue;
-    if (errno != EWOULDBLOCK) fail(path, std::string("cannot be locked: ") + std::strerror(errno), "");
-    const std::string holder = holder_of(file);
-    throw Error(where, "the arm " + arm + " is in the hands of " + (holder.empty() ? "another process" : holder),
-                "wait until that has ended, or end it", Error::Kind::busy);
-  }
-  const std::string note = "process " + std::to_string(::getpid()) + (owner.empty() ? "" : ", " + owner) + '\n';
-  // One that cannot be written costs others a number, no more.
-  if (::ftruncate(file.number(), 0) == 0) write_all(file, note);
-  file_ = std::move(file);
+ArmLock::~ArmLock() {
+  if (!socket_) return;
+  const std::lock_guard<std::mutex> no_fork_between(held().guard);
+  held().numbers.erase(socket_.number());
+  socket_.close();
 }
 
 }  // namespace palpate

@@ -5,29 +5,28 @@
 
 #include "children/child_process.hpp"
 
-#include <filesystem>
 #include <string>
 
 namespace palpate {
 
-/// The folder of this user's locks of arms: `palpate` in XDG_RUNTIME_DIR where that is an absolute path, else
-/// `palpate-UID` in the system's folder for temporary files.
-std::filesystem::path arm_lock_folder();
-
-/// Holds the lock of an arm while it lives, and no longer than its process does. Users have locks of their own, and so
-/// have machines: two users, or two machines, are not kept from one arm.
+/// Holds the lock of an arm while it lives. The kernel keeps the lock as the name of a socket ("abstract", unix(7)). It
+/// depends on no environment, folder or user, nobody can remove it, and it ends with the process, however that ends.
+/// Children that the process forks do not hold it. Not excluded are processes of other machines, and of containers with
+/// a network of their own.
 class ArmLock {
  public:
   /// Holds nothing.
   ArmLock() = default;
-  /// Locks `arm`, which names one arm of one robot; `owner`, the folder of a record, is what others are told who want
-  /// it. The file in arm_lock_folder() is named like the arm, with each byte but letters, digits, '.', '_' and '-' as
-  /// %XX. Throws Error: of kind `busy`, with `where` and the process that holds it, where another has it; of kind `run`
-  /// where folder or file cannot be made, or others may write there.
-  ArmLock(const std::string& where, const std::string& arm, const std::string& owner);
+  /// Locks `arm`, which names one arm of one robot. Only the first 95 bytes count, so that two arms with longer names
+  /// may wait for each other. Throws Error: of kind `busy`, with `where` and the process that holds the lock, where
+  /// another one does; of kind `run` where the system makes no such socket.
+  ArmLock(const std::string& where, const std::string& arm);
+  ArmLock(ArmLock&&) = default;
+  ArmLock& operator=(ArmLock&&) = default;
+  ~ArmLock();
 
  private:
-  Descriptor file_;
+  Descriptor socket_;
 };
 
 }  // namespace palpate

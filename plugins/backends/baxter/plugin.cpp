@@ -53,13 +53,13 @@ class Diary {
   std::string waiting_;
 };
 
-/// Of the left arm of the robot whose master this process will ask; `owner` is the folder of the record. A master that
-/// is not named is no arm: connecting says so.
-ArmLock lock_of_arm(const std::string& owner) {
+/// Of the left arm of the robot whose master this process will ask. A master that is not named is no arm: connecting
+/// says so.
+ArmLock lock_of_arm() {
   const char* master = std::getenv("ROS_MASTER_URI");
   if (master == nullptr || *master == '\0') return {};
   const std::string uri = master;
-  return {"ROS_MASTER_URI=" + uri, "left of " + uri, owner};
+  return {"ROS_MASTER_URI=" + uri, "left of " + uri};
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ class Baxter final : public Backend {
       : options_(options),
         scene_(context.scene),
         diary_(context.directory),
-        arm_(options.dry_run ? ArmLock() : lock_of_arm(context.directory)),
+        arm_(options.dry_run ? ArmLock() : lock_of_arm()),
         robot_(connect({!options.dry_run, options.inverse_kinematics == Options::InverseKinematics::robot})),
         tapper_(options, context.scene, *robot_, context.interrupted,
                 [this](const std::string& line) { diary_.note(line); }) {

@@ -1,41 +1,42 @@
 # SPDX-License-Identifier: MIT
 """A lock for each arm, for programs of the backend `process`: the lock of a record keeps two processes from one run, but
 not two runs from one arm. It is that of palpate's own backends (framework/shared/children/arm_lock.hpp)."""
-import fcntl
+import errno
 import os
-import stat
-import tempfile
-import urllib.parse
+import socket
+import struct
 
 
 class Held(Exception):
     """Another process has the arm; the text says which."""
 
 
-def hold_arm(arm, owner=""):
-    """Locks `arm`, a name such as "UR 192.168.56.101", and returns a file: the lock is held until that is closed or the
-    process has ended. `owner` is what others are told who want the arm. Raises Held, and OSError where no lock can be
-    made."""
-    runtime = os.environ.get("XDG_RUNTIME_DIR", "")
-    own = os.path.join(tempfile.gettempdir(), f"palpate-{os.geteuid()}")
-    folder = os.path.join(runtime, "palpate") if runtime.startswith("/") else own
+def hold_arm(arm):
+    """Locks `arm`, a name such as "UR 192.168.56.101" of which 95 bytes count, and returns an object: the lock is held
+    until that is closed or the process has ended. Forked children do not hold it. Raises Held, and OSError where the
+    system makes no unix socket. Not excluded are processes of other machines, and of containers with a network of their
+    own."""
+    name = (b"\0palpate arm " + arm.encode())[:108]
+    lock = socket.socket(socket.AF_UNIX)
     try:
-        os.mkdir(folder, 0o700)
-    except FileExistsError:
-        pass
-    there = os.lstat(folder)
-    if not stat.S_ISDIR(there.st_mode) or there.st_uid != os.geteuid() or there.st_mode & 0o077:
-        raise OSError(f"{folder} is not a folder of this user alone: remove it, or set its mode to 0700")
-    name = urllib.parse.quote(arm, safe="").replace("~", "%7E")[:240] + ".lock"
-    number = os.open(os.path.join(folder, name), os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
-    file = os.fdopen(number, "r+")
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        holder = file.readline(4096).strip() or "another process"
-        file.close()
-        raise Held(f"the arm {arm} is in the hands of {holder}") from None
-    file.truncate(0)
-    file.write(f"process {os.getpid()}{', ' if owner else ''}{owner}\n")
-    file.flush()
-    return file
+        lock.bind(name)
+        lock.listen(socket.SOMAXCONN)
+    except OSError as error:
+        lock.close()
+        if error.errno != errno.EADDRINUSE:
+            raise
+        raise Held(f"the arm {arm} is in the hands of {holder_of(name)}") from None
+    os.register_at_fork(after_in_child=lock.close)
+    return lock
+
+
+def holder_of(name):
+    """The process that holds the name, in words."""
+    with socket.socket(socket.AF_UNIX) as caller:
+        caller.setblocking(False)
+        try:
+            caller.connect(name)
+            pid = struct.unpack("3i", caller.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))[0]
+        except OSError:
+            pid = 0
+    return f"process {pid}" if pid else "another process"

@@ -148,8 +148,10 @@ def connect(host, asks, force_limit):
     process has the arm."""
     try:
         lock = hold_arm(f"UR {host}")
-    except (Held, OSError) as error:
-        raise Fault(f"{error}; wait until that has ended, {RETRY}") from None
+    except Held as held:
+        raise Fault(f"{held}; wait until that has ended, or end it, {RETRY}") from None
+    except OSError as error:
+        raise Fault(f"the arm UR {host} cannot be locked: {error}; let Python make unix sockets, {RETRY}") from None
     try:
         import rtde_control
         import rtde_receive
