@@ -69,7 +69,7 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
   return config;
 }
 
-int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted) {
+int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted, bool all_recorded) {
   const Sweep& sweep = campaign.sweep;
   std::vector<Row> results = write_results(sweep);
   // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and the first of their
@@ -96,7 +96,7 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
   if (!end.failures.empty()) print_out("try them again: palpate resume --retry-failed {}\n", directory);
-  const bool open = interrupted || !end.open.empty();
+  const bool open = interrupted || !end.open.empty() || !all_recorded;
   if (!open) name_record("record: " + directory);
   print_out("{} {}\n", open ? "carry on: palpate resume" : "record:", directory);
   if (interrupted) return kInterrupted;
@@ -107,7 +107,7 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
   const bool is_judged = !config->expectations.empty() || !campaign.launch.junit.empty();
   const bool all_hold = !is_judged || conclude(config->expectations, outcomes_of(sweep),
                                                {config->options.name, campaign.launch.junit, true});
-  return sweep_status(config->expectations, all_hold, !end.failures.empty() || !end.open.empty());
+  return open ? kFailed : sweep_status(config->expectations, all_hold, !end.failures.empty());
 }
 
 bool is_on_cluster(const Campaign& campaign) { return campaign.launch.launcher != kLocal; }
@@ -203,10 +203,11 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
   const Launched launched = launch_open(campaign, begun);
   if (launched == Launched::submitted) return kDone;
-  const Standing end = standing_of(sweep, jobs);
+  const Standing end = standing_of(sweep, jobs, is_on_cluster(campaign) ? Also::nothing : Also::missing_files);
   const bool interrupted = campaign.program.interrupted->load();
-  if (whole) return conclude_whole(campaign, end, interrupted);
-  return conclude_part(sweep, end, interrupted, launched == Launched::ended);
+  const bool all_recorded = launched == Launched::ended;
+  if (whole) return conclude_whole(campaign, end, interrupted, all_recorded);
+  return conclude_part(sweep, end, interrupted, all_recorded);
 }
 
 /// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.
@@ -294,7 +295,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
 /// From the jobs' directories alone: whoever runs them, a scheduler or a process that has died, is not asked.
 int status_of_sweep(Program&, const std::string& directory) {
   const Sweep sweep = read_sweep(directory);
-  Standing now = standing_of(sweep, all_jobs(sweep), true);
+  Standing now = standing_of(sweep, all_jobs(sweep), Also::running);
   print_out("{} jobs", sweep.jobs.size());
   for (const auto state : {RunStatus::State::done, RunStatus::State::running, RunStatus::State::failed,
                            RunStatus::State::unfinished, RunStatus::State::absent}) {

@@ -160,6 +160,17 @@ TEST_F(Expect, CountsRunsThatFailAgainstASweep) {
             "(job 2: the run failed)\n");
 }
 
+TEST_F(Expect, ASweepWithAnOpenJobFailsThoughFailedRunsAreExpected) {
+  gate("expect:\n  failed_runs: <= 1\n", "sweep: {grid: {seed: [0, 1]}}\n");
+  ASSERT_EQ(sweep("--quiet", "gate.yaml").status, 0);
+  const fs::path table = fs::directory_iterator(directory() / "jobs")->path() / "taps.csv";
+  fs::remove(table);
+  fs::create_directory(table);  // where it cannot be written again
+  const Ended ended = resume(directory());
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume "));
+}
+
 using JUnit = Expect;
 
 TEST_F(JUnit, IsWrittenWithoutExpectations) {

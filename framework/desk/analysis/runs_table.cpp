@@ -107,7 +107,7 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
   row.add("strategy", text_or_null(first_of({swept_at(sweep, "strategy"), swept_at(sweep, "acquisition"),
                                              config.text("acquisition.type")})));
   row.add("scene", text_or_null(first_of({swept_at(sweep, "scene"), shapes_in(config)})));
-  Standing now = standing_of(sweep, all_jobs(sweep), true);
+  Standing now = standing_of(sweep, all_jobs(sweep), Also::running);
   row.add("jobs", static_cast<int>(sweep.jobs.size()));
   for (const State state : {State::done, State::failed, State::running})
     row.add(fmt::format("jobs_{}", state_name(state)), now.counts[state]);

@@ -27,19 +27,19 @@ std::vector<std::size_t> all_jobs(const Sweep& sweep) {
   return jobs;
 }
 
-Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool running) {
+Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, Also also) {
   Standing out;
   for (const std::size_t job : jobs) {
     const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
     RunStatus status = read_ending(directory);
-    if (running && status.state != RunStatus::State::done) {
+    if (also == Also::running && status.state != RunStatus::State::done) {
       const bool held = is_running(directory);
       // Who ended between the two questions has written meanwhile what the first one missed.
       if (!held) status = read_ending(directory);
       if (held) status.state = RunStatus::State::running;
     }
     // Whoever takes it up finds it done, and makes the files that are missing.
-    if (!running && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
+    if (also == Also::missing_files && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
       status.state = RunStatus::State::unfinished;
     ++out.counts[status.state];
     if (status.state == RunStatus::State::failed) {
@@ -78,11 +78,13 @@ bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::
     state = launcher.poll(kPollSeconds);
     counts.running = state.running;
     counts.last = state.empty_handed();
+    all_recorded = all_recorded && state.all_recorded;
     if (gone) continue;
     for (const std::size_t job : state.returned) {
       const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
+      // The record alone tells. Files come after its end, and NFS may hide them for a minute from this node.
       const RunStatus now = read_ending(directory);
-      const bool done = now.state == RunStatus::State::done && !lacks_files(directory, *now.end);
+      const bool done = now.state == RunStatus::State::done;
       // Where not even a failure could be recorded, as on a full disk, there is none to be read.
       const bool failed = now.state == RunStatus::State::failed;
       const bool lost = !done && !failed && !cancelled && !is_running(directory);

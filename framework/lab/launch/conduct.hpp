@@ -40,15 +40,21 @@ struct Standing {
 /// All of a sweep, as indices into Sweep::jobs.
 std::vector<std::size_t> all_jobs(const Sweep& sweep);
 
-/// Looks through `jobs`. Who has them in hand is asked only for `running` ones to be told from others.
-Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, bool running = false);
+/// What is asked of jobs beside their records: nothing; whether one that is done lacks files, as after a power cut, and
+/// so is open; whether a process has an unfinished one in hand.
+enum class Also { nothing, missing_files, running };
+
+/// Looks through `jobs`. Only where this node ran the jobs itself, or before any runs, `missing_files` has an answer:
+/// NFS may hide files of other nodes for a minute.
+Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, Also also = Also::missing_files);
 
 /// Makes the failed jobs open again, however often they were begun.
 void try_again(Standing& standing);
 
 /// Has `launcher` run what is open, where jobs stand as in `begun`, and waits until it has none in its hands, or until
 /// `interrupted`, when it cancels them. `progress` is called when something changed and at least every half second.
-/// Returns whether each job that ended has a record of its end: on a full disk not even a failure may get one. Throws
+/// Returns whether each job that ended has a record of its end, and its files where this machine ran it: on a full disk
+/// not even a failure may get one. Throws
 /// Error where the sweep's directory is moved or removed meanwhile, when it has cancelled them.
 bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress);

@@ -39,6 +39,8 @@ JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig(
     end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
   });
   if (trouble) {  // ends the job alone, not the sweep
+    // Another process has the arm: no failure of this job, which stays open.
+    if (trouble->kind() == Error::Kind::busy) throw *trouble;
     if (!is_there(directory / "config.yaml")) throw *trouble;
     // Of a run that is done only the files that are made from its record may be missing: no reason of a failure.
     if (read_ending(directory).state == RunStatus::State::done) throw *trouble;

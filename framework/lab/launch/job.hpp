@@ -22,14 +22,15 @@ enum class JobEnd {
   done = 0,           ///< now or before
   failed = 1,         ///< now or before; the record has the reason
   unrecorded = 2,     ///< not even that could be recorded
+  blocked = 3,        ///< another process has its arm in hand; the job stays open
   busy = 75,          ///< another process has it in hand; nothing was done
   interrupted = 130,  ///< by the user's wish; it can be carried on
 };
 
 /// Runs the job in `directory`, whose name is its id, unless it is done, or has failed and is not to be tried again.
 /// `config_of` reads its config. What goes wrong becomes the reason of its failure; but a config that was deleted is
-/// none, as `palpate sweep` puts it back. Throws Error where nothing is recorded, and where a file of a job that is done
-/// cannot be written.
+/// none, as `palpate sweep` puts it back. Throws Error where nothing is recorded, and where a file of a job that is
+/// done cannot be written; of kind `busy` where another process has the arm in hand that the job would move.
 JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of,
                const std::filesystem::path& directory, const ResumeOptions& options);
 

@@ -2,6 +2,7 @@
 #include "launch/local_launcher.hpp"
 
 #include "experiment/room.hpp"
+#include "reading/reading.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>
@@ -85,17 +86,20 @@ bool LocalLauncher::start(std::size_t job) {
 }
 
 JobEnd LocalLauncher::run(std::size_t job) const {
+  JobEnd end = JobEnd::unrecorded;
   try {
     return run_job(
         order_.workshop, [&] { return order_.config_of(job); }, directory_of(job), order_.options.resume);
   } catch (const std::exception& trouble) {  // which nobody but the terminal can be told of
+    const auto* const error = dynamic_cast<const Error*>(&trouble);
+    if (error != nullptr && error->kind() == Error::Kind::busy) end = JobEnd::blocked;
     // Who conducts the sweep says once that all of it is gone. fmt::print would throw where a terminal was closed.
     std::error_code unknown;
     if (std::filesystem::exists(order_.sweep.directory, unknown) || unknown) {
-      std::fputs(fmt::format("job {}: {}\n", job, trouble.what()).c_str(), stderr);
+      std::fputs(fmt::format("job {}: {}\n", job, printable(trouble.what())).c_str(), stderr);
     }
   }
-  return JobEnd::unrecorded;
+  return end;
 }
 
 Launcher::State LocalLauncher::poll(double seconds) {
@@ -130,6 +134,12 @@ void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
     later_.push_back(job);
     return;
   }
+  if (end == JobEnd::blocked) {  // and the next job would be, too
+    waiting_.clear();
+    later_.clear();
+    return;
+  }
+  state.all_recorded = state.all_recorded && end != JobEnd::unrecorded;
   const bool ended = end == JobEnd::done || end == JobEnd::failed;
   const bool known = ended || end == JobEnd::unrecorded || end == JobEnd::busy || end == JobEnd::interrupted;
   // A plugin that calls exit(), with 0 or 1, too, leaves no result behind.
