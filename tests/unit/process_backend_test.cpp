@@ -273,6 +273,29 @@ done
   for (int number = 1; number <= 3; ++number) expect_contact(tap(*backend, number));
 }
 
+TEST_F(ProcessBackend, IsTheSameWhileItsProgramIsWhateverItsOtherFilesHold) {
+  const auto checksum = [](const std::string& command) {
+    return choose(shared_host(), "backend", "process", "{command: " + yaml_quoted(command) + "}")
+        .options->find("checksum")
+        ->text;
+  };
+  const std::string arguments = " --log '" + (folder_.path() / "arm.log").string() + "'";
+  const std::string file = folder_.write("arm.py", "first").string();
+  const auto is_seen = [&](const std::string& command, bool program) {
+    folder_.write("arm.py", "first");
+    std::filesystem::remove(folder_.path() / "arm.log");
+    const std::string before = checksum(command + arguments);
+    folder_.write("arm.log", "tap 1");
+    EXPECT_EQ(checksum(command + arguments), before) << command;
+    folder_.write("arm.py", "second");
+    EXPECT_EQ(checksum(command + arguments) != before, program) << command;
+  };
+  is_seen("python3 -S '" + file + "'", true);
+  is_seen("/usr/bin/python3 '" + file + "'", true);
+  is_seen("'" + file + "'", true);
+  is_seen("python3 -m arm", false);
+}
+
 TEST_F(ProcessBackend, WhatItWritesToStderrIsKeptOverRestartsAndFillsNeitherMemoryNorDisk) {
   const auto backend = open("sys.stderr.write('x' * 999999 + '\\n')\nfor ask in asks():\n    contact(ask)\n    break");
   EXPECT_FALSE(fs::exists(folder_.path() / "record" / "process.stderr.txt")) << "nothing starts before the first tap";

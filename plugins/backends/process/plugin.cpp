@@ -81,17 +81,22 @@ std::string find_program(const std::string& program) {
               "a name is looked for in PATH, a path from the folder in which palpate runs");
 }
 
-/// Returns a hash of the command in which words that name files, but for a program from PATH, stand for their content:
-/// so that the id of a run follows what the program does, not where it lies.
+/// Returns a hash of the command in which the content of the program stands for its name, so that the id of a run
+/// follows what the program does, not where it lies. The program is the first word that names a file, but for an
+/// interpreter: a name from PATH, or a path to a Python. Behind -m and -c no file is the program. Other words are no
+/// content: a program may write the files that they name.
 std::string checksum_of(const std::vector<std::string>& words) {
-  std::uintmax_t left = 64 << 20;  // bytes of files; what goes beyond is a word
+  constexpr std::uintmax_t kMostBytes = 64 << 20;  // what is longer is a word
+  bool found = false;
   std::string all;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool from_path = i == 0 && words[i].find('/') == std::string::npos;
+  for (const std::string& word : words) {
+    const bool first = &word == &words.front();
+    const bool interpreter = first && (word.find('/') == std::string::npos ||
+                                       std::filesystem::path(word).filename().string().rfind("python", 0) == 0);
     Reading reading;
-    if (!from_path) reading = read_bounded(words[i], left, Origin::user);
-    const std::string& text = reading ? reading.text : words[i];
-    if (reading) left -= text.size();
+    if (!found && !interpreter) reading = read_bounded(word, kMostBytes, Origin::user);
+    found = found || reading || word == "-m" || word == "-c";
+    const std::string& text = reading ? reading.text : word;
     all += fmt::format("{} {}:", reading ? "file" : "word", text.size()) + text;
   }
   const XXH128_hash_t hash = XXH3_128bits(all.data(), all.size());
@@ -120,8 +125,9 @@ struct ProcessOptions : Options {
     fields.require(words.has_value(), "command", "names no program, or a quote is left open");
     if (words && checksum.empty()) checksum = checksum_of(*words);
     fields.text(checksum, Field("checksum",
-                                "of the command, with the content of files in place of their names; if absent, that of "
-                                "the files as they are"));
+                                "of the command, with the content of the program in place of its name: of the first "
+                                "word that names a file, but for an interpreter; if absent, that of the program as it "
+                                "is"));
     fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
                               .in(Unit::second)
                               .above(0)
@@ -157,7 +163,7 @@ class Process final : public Backend {
         file_(find_program(words_.front())) {
     const std::string found = checksum_of(words_);
     if (options.checksum == found) return;
-    throw Error("checksum", "is not that of the command and its files, which have " + found,
+    throw Error("checksum", "is not that of the command and its program, which have " + found,
                 "put the program back that the run began with, or begin another run");
   }
 
