@@ -15,18 +15,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// That more taps may follow is no mistake, but whoever reads the files should know.
-void mention_state(const fs::path& directory) {
+/// Says of a run that is not done that the files hold only its first `taps`: more may follow.
+void mention_state(const fs::path& directory, std::size_t taps) {
   const RunStatus status = read_status(directory);
   if (status.state == RunStatus::State::done) return;
   std::string how = "is unfinished";
   if (status.state == RunStatus::State::running) how = "is under way";
   if (status.state == RunStatus::State::failed) how = "failed: " + status.stop_reason;
-  mention(fmt::format("this run {}; what is written is what its first {} taps tell\n", how, status.taps));
+  mention(fmt::format("this run {}; what is written is what its first {} taps tell\n", how, taps));
 }
 
+/// Makes the folder to write into. Throws Error where it is that of the record, which has files of these names.
 fs::path folder_for(const fs::path& directory, const std::string& to) {
-  return to.empty() ? make_inner_folder(directory / "export") : make_folder(to);
+  if (to.empty()) return make_inner_folder(directory / "export");
+  fs::path folder = make_folder(to);
+  if (fs::equivalent(folder, directory))
+    throw Error(folder.string(), "is the folder of the record, where nothing is written over", "choose another folder");
+  return folder;
 }
 
 void write_into(const fs::path& folder, const char* name, const std::string& text) {
@@ -37,9 +42,10 @@ void write_into(const fs::path& folder, const char* name, const std::string& tex
 /// The parts of a record, a table each: needs no plugin, and no tap.
 int export_tables(const fs::path& directory, const std::string& to) {
   const RunRecord record = read_run_record(directory);
-  if (!record.manifest) throw Error(directory.string(), "holds no record", {}, Error::Kind::run);
+  if (!record.manifest)
+    throw Error(directory.string(), "holds no record", "begin the run first, or name another", Error::Kind::run);
   const fs::path folder = folder_for(directory, to);
-  mention_state(directory);
+  mention_state(directory, record.taps.size());
   write_into(folder, kTapsTable, to_csv(record.taps));
   write_into(folder, "timings.csv", to_csv(timing_rows(record.timings)));
   write_into(folder, "objects.csv", to_csv(record.objects));
@@ -60,11 +66,7 @@ int export_run(Program& program, const std::string& directory, const std::string
   const std::string surface =
       any_side != nullptr ? surface_ply(*any_side, run) : surface_ply(reconstruct(playback.from_above()), run);
   const fs::path folder = folder_for(recording.directory, to);
-  if (any_side != nullptr && fs::equivalent(folder, recording.directory)) {
-    throw Error(folder.string(), "has the surface.ply of the record, which nothing is written over",
-                "choose another folder");
-  }
-  mention_state(recording.directory);
+  mention_state(recording.directory, recording.taps.size());
   write_into(folder, "surface.ply", surface);
   write_into(folder, "taps.ply", taps_ply(recording, playback.experiment().counts(), run));
   return kDone;

@@ -196,9 +196,11 @@ TEST_F(Export, WritesOverItsOwnFilesAndOverNoRecord) {
   const std::string first = text_of(directory / "export" / "taps.ply");
   ASSERT_EQ(exported(directory).status, 0);
   EXPECT_TRUE(text_of(directory / "export" / "taps.ply") == first);
-  const std::string record = text_of(directory / "surface.csv");
-  EXPECT_EQ(exported(directory, {"--to", directory}).status, 0);
-  EXPECT_TRUE(text_of(directory / "surface.csv") == record);
+  for (const char* format : {"csv", "ply"}) {
+    const Ended ended = exported(directory, {"--to", directory, "--format", format});
+    EXPECT_EQ(ended.status, 2) << format;
+    EXPECT_THAT(ended.err, HasSubstr("is the folder of the record, where nothing is written over, choose another"));
+  }
   EXPECT_EQ(palpate({"replay", directory}).status, 0);
   EXPECT_THAT(status_of(directory).out, HasSubstr("done after 17 of 17 taps"));
 }
