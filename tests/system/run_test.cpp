@@ -110,6 +110,13 @@ TEST_F(ARun, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
             "\"fallback uncertainty, from its first use on\"], \"weight process\": [\"acquisition weighted\"]}}\n");
 }
 
+TEST_F(ARun, PrintingAConfigConnectsToNothing) {
+  const fs::path built = here() / "built";
+  environment_ = {test::with_plugin("connects"), "PALPATE_BUILT=" + built.string()};
+  EXPECT_EQ(run("backend.type=connects --print-config").status, 0);
+  EXPECT_FALSE(fs::exists(built));
+}
+
 TEST_F(ARun, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
   const Ended ended =
       run("acquisition=grid acquisition.type=random taps=9 --print-config --origins", config("paper/comparison.yaml"));

@@ -54,8 +54,8 @@ class Supervisor {
   virtual bool permits(const TapRecord& tap, const Preview& preview) = 0;
 };
 
-/// Who reads which model of this config. To a robot nobody connects for this: what it would read is left out. Throws
-/// Error for what only building finds out.
+/// Who reads which model of this config. Of backends only the simulator is built for this, as others may connect to
+/// something: what they would read is left out. Throws Error for what only building finds out.
 std::vector<ModelReader> readers_of(const Workshop& workshop, const ResolvedConfig& config);
 
 /// <runs>/<slug>/<id>.
