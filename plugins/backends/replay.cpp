@@ -98,10 +98,11 @@ class Table {
     if (cell.empty()) return absent;
     const char* const end = cell.data() + cell.size();
     double value = 0.0;
-    const char* const begin = std::find_if(cell.data(), end, [](char c) { return c != ' '; });
+    const char* begin = std::find_if(cell.data(), end, [](char c) { return c == '\0' || !std::strchr(" \t\r\n", c); });
+    if (end - begin > 1 && begin[0] == '+' && begin[1] != '-') ++begin;  // from_chars() takes no plus
     const auto read = std::from_chars(begin, end, value);  // with a point, whatever the locale of the caller
     if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
-      throw Error(where(), column + ": '" + cell + "' is not a number");
+      throw Error(where(), column + ": '" + cell + "' is not a number", "write it without a unit, such as 0.012");
     return value;
   }
 

@@ -123,6 +123,12 @@ TEST_F(ReplayBackend, ColumnsMayComeInAnyOrderWithOthersAndQuotedCommas) {
   EXPECT_EQ(tap(*backend, 1, 0.1, 0.2).seconds, 0.0);
 }
 
+TEST_F(ReplayBackend, NumbersMayHaveASignAndBlanksBeforeThem) {
+  const Contact contact = tap(*open("x,y,outcome,height\n +0.1,\t0.2,contact,\t+1.2e-2\n"), 1, 0.1, 0.2);
+  EXPECT_EQ(contact.outcome, Outcome::contact);
+  EXPECT_EQ(contact.height, 0.012);
+}
+
 TEST_F(ReplayBackend, IsRepeatableAndSaysWhatItIsTold) {
   EXPECT_TRUE(open(kRecord)->repeatable());
   EXPECT_FALSE(open(kRecord)->scene_is_truth());
@@ -134,7 +140,9 @@ TEST_F(ReplayBackend, WhatATableLacksOrCannotMeanIsNamedWithItsLine) {
   const std::pair<std::string, const char*> cases[] = {
       {"x,y,outcome\n0.1,0.1,contact\n", "scan.csv: has no column 'height'"},
       {"x,y,outcome,height,x\n1,1,contact,1,1\n", "scan.csv: has two columns 'x', take one away, or name it otherwise"},
-      {head + "0.1,0.1,contact,0.1\n0.1,4cm,contact,0.1\n", "scan.csv:3: y: '4cm' is not a number"},
+      {head + "0.1,0.1,contact,0.1\n0.1,4cm,contact,0.1\n",
+       "scan.csv:3: y: '4cm' is not a number, write it without a unit, such as"},
+      {head + "0.1,0.1,contact,+-0.1\n", "scan.csv:2: height: '+-0.1' is not a number"},
       {head + "0.1,0.1,contact,nan\n", "scan.csv:2: height: 'nan' is not a number"},
       {head + "0.1,0.1,contact,\n", "scan.csv:2: lacks x, y or height"},
       {head + "0.1,0.1,hit,0.1\n", "scan.csv:2: unknown outcome 'hit'"},
