@@ -190,11 +190,12 @@ void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
 int run_campaign(const Campaign& campaign, Standing begun) {
   const Sweep& sweep = campaign.sweep;
   check_locks(sweep.directory);
-  if (is_on_cluster(campaign)) check_shared_locks(sweep.directory);
+  const bool whole = campaign.only.empty();
+  // A node that runs a part of the jobs may have mounted the folder otherwise than the one that submitted them.
+  if (is_on_cluster(campaign) || !whole) check_shared_locks(sweep.directory);
   listen_for_interrupts();
   outlive_reader();
   name_record("carry on: palpate resume " + sweep.directory.string());
-  const bool whole = campaign.only.empty();
   const std::vector<std::size_t> jobs = undone(begun);
   if (campaign.options.retry_failed) try_again(begun);
   if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {

@@ -12,7 +12,8 @@ namespace palpate {
 /// run one job. `mountinfo` is the text of /proc/self/mountinfo (proc_pid_mountinfo(5)).
 void check_shared_locks(const std::filesystem::path& folder, std::string_view mountinfo);
 
-/// The same with the mounts of this process; `folder` exists.
+/// The same with the mounts of this process; `folder` exists. Checks nothing where /proc/self/mountinfo cannot be read,
+/// or is longer than kMostSystemBytes.
 void check_shared_locks(const std::filesystem::path& folder);
 
 }  // namespace palpate
