@@ -150,7 +150,8 @@ std::string record_at(const fs::path& folder, Records asked) {
   bool ended = false;
   if (is_sweep(folder.string())) return asked == Records::runs ? "" : "a sweep";
   if (asked == Records::sweeps || !fs::exists(folder / "config.yaml", none)) return "";
-  return trouble_in([&] { ended = read_ending(folder).end.has_value(); }), ended ? "a run, ended" : "a run, not ended";
+  trouble_in([&] { ended = read_ending(folder).end.has_value(); });  // of one that cannot be read no end is known
+  return ended ? "a run, ended" : "a run, not ended";
 }
 
 /// Runs and sweeps below runs/, where they are made; where none is meant, folder by folder.

@@ -2,12 +2,11 @@
 // A library for LD_PRELOAD that counts the calls of the C library on files below one folder, over all processes of a
 // command, and makes the n-th go wrong. crash.py is its user. Environment:
 //
-//   PALPATE_FAULT_BELOW  folder, absolute and without links: other files are left alone, plugins and libraries above
-//   all PALPATE_FAULT_STATE  file of 64 bytes or more with the counter, zeros at the start, outside of that folder. A
-//   line per
-//                        call is appended to STATE.trace; with `power`, files that lose their name keep one in
-//                        STATE.old/
-//   PALPATE_FAULT        MODE N: what happens at call N (from 1; 0: never)
+// - PALPATE_FAULT_BELOW: a folder, absolute and without links. Other files are left alone, and so are plugins and
+//   libraries.
+// - PALPATE_FAULT_STATE: a file of 64 bytes or more, outside of that folder, with the counter, zeros at the start. For
+//   each call, a line is appended to STATE.trace. With `power`, files that lose their name keep one in STATE.old/.
+// - PALPATE_FAULT: MODE N, what happens at call N (from 1; 0: never).
 //
 // | mode | at call N |
 // |---|---|

@@ -108,7 +108,8 @@ void RunFollower::take_in() {
     recording_ = std::make_unique<Recording>(
         Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}, manifest_, {}});
   }
-  recording_->timings = timings_;
+  const auto known = static_cast<std::ptrdiff_t>(recording_->timings.size());
+  recording_->timings.insert(recording_->timings.end(), timings_.begin() + known, timings_.end());
   recording_->taps.push_back(past_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));
   pending_.pop_front();
