@@ -24,7 +24,7 @@ namespace {
 using ::testing::HasSubstr;
 
 /// An arm of this process alone: locks hold for the whole machine.
-std::string arm(const std::string& name) { return name + " of " + std::to_string(::getpid()); }
+std::string arm(const std::string& name) { return "of " + std::to_string(::getpid()) + ", " + name; }
 
 std::string trouble_with(const std::string& name) {
   return error_of([&] { ArmLock("backend", name); });
@@ -96,6 +96,36 @@ TEST(ArmLocks, AreNotHeldByForkedChildren) {
   EXPECT_TRUE(eventually([&] { return trouble_with(name) == "accepted"; })) << "while a copy of the holder runs";
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
+}
+
+TEST(ArmLocks, OfProgramsInPythonAreTheSame) {
+  const std::string name = arm("arm with a long name " + std::string(100, 'x'));
+  const auto hold = [&] {
+    const Ended ended = run_program({"python3", "-SBc", R"(
+import os, signal, sys
+sys.path[0] = sys.argv[1]
+from arm_lock import Held, hold_arm
+try:
+    lock = hold_arm(sys.argv[2])
+except Held as held:
+    sys.exit(str(held))
+ready, say = os.pipe()
+child = os.fork()
+if not child:
+    os.write(say, b'.')
+    signal.pause()
+os.read(ready, 1)
+lock.close()
+hold_arm(sys.argv[2])  # which the child does not hold
+os.kill(child, signal.SIGKILL)
+)",
+                                     (source_folder() / "plugins/backends/process").string(), name},
+                                    std::filesystem::temp_directory_path());
+    return ended.err;
+  };
+  EXPECT_EQ(hold(), "");
+  const ArmLock held("backend", name);
+  EXPECT_EQ(hold(), "the arm " + name + " is in the hands of process " + std::to_string(::getpid()) + "\n");
 }
 
 }  // namespace
