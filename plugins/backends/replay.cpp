@@ -65,10 +65,10 @@ std::string unguarded(const std::string& cell) {
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file) {
-    Reading reading = read_bounded(file, kMostLogBytes, Origin::user);
+    const Reading reading = read_bounded(file, kMostLogBytes, Origin::user);
     const char* const hint = "backend.record names a run directory or a CSV file";
     if (!reading) throw Error(file, words_of(reading, kMostLogBytes).reason, hint);
-    in_.str(std::move(reading.text));
+    in_.str(reading.text);
     if (!read_row()) throw Error(file, "cannot be read", hint);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (!columns_.emplace(cells_[i], i).second)
