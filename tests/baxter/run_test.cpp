@@ -309,6 +309,12 @@ TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
   const Ended second = lab.palpate(run_words(2, {"seed=2"}));
   EXPECT_EQ(second.status, 75);
   EXPECT_THAT(second.err, StartsWith(lab.environment().front() + ": the arm left of http://"));
+  const Ended sweep = lab.palpate({"sweep", object_i(), "backend=fake_baxter", "taps=2", "initial.count=2", "seed=3,4",
+                                   "--quiet", "--runs", "swept"});
+  EXPECT_EQ(sweep.status, 1);
+  EXPECT_THAT(sweep.err, StartsWith("job 0: " + lab.environment().front() + ": the arm left of http://"));
+  EXPECT_THAT(sweep.out, HasSubstr("carry on: palpate resume "));
+  EXPECT_THAT(sweep.out, Not(HasSubstr("--retry-failed"))) << "no job has failed";
   // Another machine has locks of its own, and so has another name of the robot.
   std::string master = lab.environment().front();
   master.replace(master.find("127.0.0.1"), 9, "localhost");
