@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A backend that would connect to something whenever it is built: it then adds a line to the file that PALPATE_BUILT
-// names. It comes from any side but from where x is large, and what it taps is said to be the scene.
+// names, and waits for that of PALPATE_AWAITED to be there. It comes from any side but from where x is large, and what
+// it taps is said to be the scene.
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 namespace broken {
 
@@ -14,6 +17,8 @@ class Backend final : public palpate::Backend {
   using Options = palpate::NoOptions;
   Backend(const Options&, const palpate::Context&) {
     if (const char* const file = std::getenv("PALPATE_BUILT")) std::ofstream(file, std::ios::app) << "built\n";
+    const char* const awaited = std::getenv("PALPATE_AWAITED");
+    while (awaited != nullptr && !std::ifstream(awaited)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
   palpate::Contact tap(const palpate::TapRequest& request) override {

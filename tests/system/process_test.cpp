@@ -134,22 +134,6 @@ for ask in asks():
   EXPECT_NE(said.find("begin ", 1), std::string::npos) << "appended to";
 }
 
-TEST_F(ProcessRun, ThatAnotherTakesUpWhileItsProgramStartsIsNotMovedAside) {
-  // Holds each record that is there when it starts, as a process does that carries that run on.
-  const Words words = process({command(R"(
-import fcntl, glob
-held = [open(name, "r+") for name in glob.glob("runs/*/*/record.jsonl")]
-for file in held: fcntl.lockf(file, fcntl.LOCK_EX)
-for ask in asks(): contact(ask)
-)"),
-                               "taps=3"});
-  ASSERT_EQ(palpate(words).status, 0);
-  const Ended forced = palpate(words + "--force");
-  EXPECT_EQ(forced.status, 75);
-  EXPECT_THAT(forced.err, HasSubstr("another process holds this run"));
-  EXPECT_TRUE(fs::exists(directory() / "record.jsonl"));
-}
-
 TEST_F(ProcessRun, InterruptedWhileItWaitsTheRunEndsAtOnceAndLeavesNoProgram) {
   const std::string program = command(
       "print(os.getpid(), file=sys.stderr, flush=True)\n"

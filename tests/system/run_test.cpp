@@ -117,6 +117,23 @@ TEST_F(ARun, PrintingAConfigConnectsToNothing) {
   EXPECT_FALSE(fs::exists(built));
 }
 
+TEST_F(ARun, ThatAnotherProcessTakesUpWhileItsBackendConnectsIsNotMovedAside) {
+  const std::string built = (here() / "built").string();
+  const std::string awaited = (here() / "awaited").string();
+  environment_ = {test::with_plugin("connects")};
+  const Words words = Words{"run", paper()} + "backend.type=connects taps=3 --quiet";
+  ASSERT_EQ(palpate(words).status, 0);
+  environment_ = {test::with_plugin("connects"), "PALPATE_BUILT=" + built, "PALPATE_AWAITED=" + awaited};
+  const auto forced = begin(words + "--force");
+  ASSERT_TRUE(test::eventually([&] { return fs::exists(built); }));
+  const FileLock lock(directory() / "record.jsonl");
+  write("awaited", "");
+  const Ended ended = forced->wait();
+  EXPECT_EQ(ended.status, 75);
+  EXPECT_THAT(ended.err, HasSubstr("another process holds this run"));
+  EXPECT_TRUE(fs::exists(directory() / "record.jsonl"));
+}
+
 TEST_F(ARun, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
   const Ended ended =
       run("acquisition=grid acquisition.type=random taps=9 --print-config --origins", config("paper/comparison.yaml"));
