@@ -81,7 +81,7 @@ class RowReader final : public nlohmann::json_sax<Json> {
   std::vector<std::string> prefixes_;  ///< of the names in the open objects: "a." in {"a": {...
 };
 
-constexpr const char* kPutBack = "the file is damaged: put it back as it was, or remove it";
+constexpr const char* kDamagedFile = "the file is damaged: put it back as it was, or remove it";
 
 /// Builds a tree from the same events. Throws Error for what is JSON, and yet not read. Scalars that are no strings are
 /// kept as they are written.
@@ -120,7 +120,7 @@ class TreeReader final : public nlohmann::json_sax<Json> {
     return inner.is_map() ? inner.entries.back().value : inner.items.emplace_back();
   }
   Tree& put(Tree value) {
-    const auto refuse = [&](const char* reason) { throw Error(file_.string(), reason, kPutBack); };
+    const auto refuse = [&](const char* reason) { throw Error(file_.string(), reason, kDamagedFile); };
     if (open_.empty() && !value.is_map()) refuse(kNoObject);
     if (open_.size() > kMostLevels) refuse(kTooDeep);
     if (++values_ > kMostValues) refuse("holds too many values");
@@ -215,7 +215,7 @@ Tree parse_json(const std::string& text, std::size_t begin, std::size_t end, con
   TreeReader reader(file);
   if (Json::sax_parse(text.data() + begin, text.data() + end, &reader)) return std::move(reader.tree);
   throw Error(place_in(file.string(), text, begin + std::max<std::size_t>(reader.bytes, 1) - 1), "is not valid JSON",
-              kPutBack);
+              kDamagedFile);
 }
 
 std::string to_json(const Tree& tree) {
