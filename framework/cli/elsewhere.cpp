@@ -2,6 +2,7 @@
 // The commands that take more than core. `palpate` has them in name: it becomes the program that has them all, with the
 // same words. That way the first run waits for neither sweeps nor pages to be compiled.
 #include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
 
 #include <palpate/error.hpp>
 
@@ -21,6 +22,7 @@ namespace {
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   const std::string whole = program.installation.whole.string();
+  keep_parent();
   ::execv(whole.c_str(), pointers.data());
   const std::string reason = errno == ENOENT ? "is not built" : std::strerror(errno);
   throw Error(whole, "has this command, and " + reason,

@@ -42,6 +42,10 @@ void follow_parent() {
   if (parent != std::to_string(::getppid())) std::_Exit(128 + SIGTERM);  // it has ended meanwhile
 }
 
+void keep_parent() {
+  if (followed) ::setenv("PALPATE_PARENT", std::to_string(::getppid()).c_str(), 1);
+}
+
 bool is_followed() { return followed; }
 
 }  // namespace palpate::cli

@@ -17,6 +17,8 @@ void listen_for_interrupts();
 /// Ends the program, as SIGTERM does, when the process that began it ends, if that asks for it by PALPATE_PARENT, its
 /// process id. So the sweep of a Python that is killed does not go on. Call it first, from the only thread.
 void follow_parent();
+/// Asks the same of the program that this process is about to become.
+void keep_parent();
 
 /// Whether such a process reads how far a sweep has come, as people do on a terminal.
 bool is_followed();

@@ -543,6 +543,7 @@ int exit_status(Error::Kind kind) {
 int main(int argc, char** argv) {
   palpate::cli::occupy_standard_files();
   palpate::cli::follow_parent();
+  std::signal(SIGPIPE, SIG_DFL);  // a Python that becomes this program ignores it, and so would this
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may grow no more is an error of the write, as a full disk is
   int status = palpate::cli::kFailed;
   try {
