@@ -9,6 +9,7 @@
 #include "record/tap_row.hpp"
 #include "records.hpp"
 #include "shop.hpp"
+#include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 #include "threads.hpp"
 #include "values.hpp"
@@ -42,7 +43,7 @@ class Listener final : public Journal {
     if (PyErr_CheckSignals() != 0) return stop(py::error_already_set());
     if (progress_.is_none()) return;
     try {
-      progress_(tap.number);
+      Calls::all().call_back(progress_, tap.number);
     } catch (const py::error_already_set& trouble) {
       stop(trouble);
     }
@@ -74,13 +75,17 @@ std::string run(const std::string& config, const std::vector<std::string>& overr
   return report.directory.string();
 }
 
-/// Where a sweep would be, and of how many jobs: every one of them composed and checked.
-std::pair<std::string, std::size_t> plan(const std::string& config, const std::vector<std::string>& words,
-                                         const std::string& runs) {
+/// Makes the directory of a sweep, with every job of it composed and checked, unless it is there. Returns where it is.
+std::string begin_sweep(const std::string& config, const std::vector<std::string>& words, const std::string& runs) {
   const Unlocked others_go_on;
   Composer fresh = composer();
-  const SweepPlan plan = plan_sweep(fresh, home().host, config, words, runs);
-  return {plan.sweep.directory.string(), plan.sweep.jobs.size()};
+  SweepDraft draft(runs);
+  const SweepPlan plan = plan_sweep(fresh, home().host, config, words, runs, [&](const Job& job, const auto& resolved) {
+    draft.add(job, resolved);
+    if (job.index % 64 == 0) check_signals();
+  });
+  draft.publish(plan);
+  return plan.sweep.directory.string();
 }
 
 std::string found(const std::string& words, bool sweep, const std::string& runs) {
@@ -193,7 +198,7 @@ PYBIND11_MODULE(_palpate, module) {
       .def("height_mean", map(&TapBelief::height_mean, Quantity::height))
       .def("height_variance", map(&TapBelief::height_variance, Quantity::height));
   module.def("run", &run);
-  module.def("plan", &plan);
+  module.def("begin_sweep", &begin_sweep);
   module.def("found", &found);
   module.def("tap_fields", &tap_fields);
   module.def("end_calls", [] { Calls::all().end(); });

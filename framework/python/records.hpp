@@ -70,9 +70,13 @@ class Record {
     if (taps < 0 || taps > size())
       throw Error("after", "there are " + std::to_string(size()) + " taps, not " + std::to_string(taps), "take fewer");
     const Turn turn(owned_, "run");
-    if (playback_ && playback_->taps() > taps) playback_.reset();
-    playback().advance_to(taps);
-    return maps_of(playback().from_above());
+    // Whatever throws may have taken in taps that it does not count: such models are let go of.
+    std::unique_ptr<Playback> models = std::move(playback_);
+    if (!models || models->taps() > taps) models = std::make_unique<Playback>(shop_.workshop, recording_);
+    models->advance_to(taps);
+    NamedMaps maps = maps_of(models->from_above());
+    playback_ = std::move(models);
+    return maps;
   }
 
   /// The heights of the scene that was tapped; none where another world was.

@@ -8,10 +8,13 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <pthread.h>
 #include <unistd.h>
@@ -31,13 +34,30 @@ class Calls {
   bool ended() const { return ending_ && std::this_thread::get_id() != last_; }
 
   /// For the end of the interpreter, from the thread that ends it, with Python's lock. Returns when no call of another
-  /// thread is at work any more; those threads, and all that call later, then wait for the end of the process.
+  /// thread is at work any more; those threads, and all that call later, then wait for the end of the process. Throws
+  /// what a signal raises, as Ctrl-C does: then the process ends without the calls that still work.
   void end() {
     last_ = std::this_thread::get_id();
     ending_ = true;
-    PyThreadState* const state = PyEval_SaveThread();
-    while (inside_ > depth_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    PyEval_RestoreThread(state);
+    while (inside_ > depth_) {
+      PyThreadState* const state = PyEval_SaveThread();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      PyEval_RestoreThread(state);
+      if (PyErr_CheckSignals() == 0) continue;
+      // They may not outlive what the process destroys at its end.
+      ::on_exit([](int status, void*) { static_cast<void>(std::fflush(nullptr)), ::_exit(status); }, nullptr);
+      throw pybind11::error_already_set();
+    }
+  }
+
+  /// Calls `function(number)` of Python from within a call, with Python's lock. Throws what it raises. The end of the
+  /// interpreter does not wait for it: then this thread never returns from here.
+  void call_back(const pybind11::object& function, int number) {
+    Away away;
+    PyObject* const result = PyObject_CallFunction(function.ptr(), "i", number);
+    away.is_back = true;
+    if (result == nullptr) throw pybind11::error_already_set();
+    Py_DECREF(result);
   }
 
  private:
@@ -59,6 +79,23 @@ class Calls {
     inside_ -= depth_;
     for (;;) ::pause();
   }
+
+  /// A thread that is called back: at work it does not count. Has Python's lock where it begins and ends.
+  struct Away {
+    Away() : depth(std::exchange(depth_, 0)) { all().inside_ -= depth; }
+    ~Away() {
+      // Unless it is back, Python is unwinding the stack: see Calls.
+      if (is_back && all().ended()) PyEval_SaveThread();
+      if (!is_back || all().ended()) all().wait_for_end();
+      depth_ = depth;
+      all().inside_ += depth;
+    }
+    Away(const Away&) = delete;
+    Away& operator=(const Away&) = delete;
+
+    int depth;
+    bool is_back = false;
+  };
 
   static inline thread_local int depth_ = 0;  ///< calls of this thread: one that is called back may call again
   std::atomic<int> inside_{0};
@@ -85,6 +122,13 @@ class Unlocked {
  private:
   PyThreadState* state_;
 };
+
+/// For a long call without Python's lock: throws what a signal raises, as Ctrl-C does, and once the interpreter ends.
+inline void check_signals() {
+  if (Calls::all().ended()) throw Error("palpate", "the interpreter ends", {}, Error::Kind::run);
+  const pybind11::gil_scoped_acquire held;
+  if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+}
 
 /// An object that one thread at a time works with, in the process that made it.
 class Owned {

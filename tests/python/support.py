@@ -5,6 +5,7 @@ import csv
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -44,6 +45,10 @@ class InFolder(unittest.TestCase):
         experiment = palpate.Experiment(config, *overrides, runs=self.folder, **settings)
         self.addCleanup(experiment.close)
         return experiment
+
+    def ended(self, script, *words, seconds=100, **variables):
+        return subprocess.run([sys.executable, "-c", script, *map(str, words)], capture_output=True, text=True,
+                              timeout=seconds, env={**os.environ, **variables})
 
     def refuses(self, place, reason, remedy, action):
         with self.assertRaises(palpate.Error) as caught:

@@ -4,6 +4,7 @@
 import base64
 import html.parser
 import os
+import pathlib
 import struct
 import unittest
 import unittest.mock
@@ -68,12 +69,26 @@ class Notebook(InFolder):
             self.assertIn(cell, page.cells)
         self.assertEqual(pixels(page.pictures[0]).shape[:2], run.surface.shape)
 
-    def test_a_run_from_any_side_shows_its_summary_alone(self):
+    def test_what_is_damaged_is_shown_in_the_place_of_the_map(self):
+        done = palpate.sweep(DEFAULT, taps=2, seed=[1, 2], runs=self.folder)
+        run = done[0]
+        record = pathlib.Path(run.directory) / "record.jsonl"
+        for shown, part in ((done, "tap"), (run, "end")):
+            text = record.read_text(encoding="utf-8")
+            record.write_text(text.replace(f'{{"{part}": ', f'{{"{part}": broken '), encoding="utf-8")
+            page = Page(shown._repr_html_())
+            self.assertIn(shown.directory, " ".join(page.cells))
+            self.assertIn("record.jsonl", page.cells[-2], "the place")
+            self.assertEqual(page.pictures, [])
+
+    def test_a_run_from_any_side_shows_its_summary_and_why_there_is_no_map(self):
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(CONFIGS.parent)  # where its meshes lie
         run = palpate.run("configs/any_side.yaml", "taps=3", "scene=any_bowl", runs=self.folder)
         page = Page(run._repr_html_())
         self.assertIn("done", page.cells)
+        self.assertIn(run.directory, page.cells[-2])
+        self.assertIn("any side", page.cells[-1])
         self.assertEqual(page.pictures, [])
 
     def test_an_experiment_shows_what_it_believes_and_once_closed_where_it_lies(self):

@@ -305,66 +305,6 @@ class Module(InFolder):
         self.assertLess(len(palpate.load(directory)), 12)
         self.assertIn("done: tap budget after 12 taps", program("resume", directory))
 
-    def test_a_sweep_from_python_leaves_the_table_that_the_program_leaves(self):
-        heard = []
-        by_python = palpate.sweep(DEFAULT, "taps=4,6", seed=range(3), runs=self.folder / "a",
-                                  progress=lambda done, jobs: heard.append((done, jobs)))
-        program("sweep", DEFAULT, "taps=4,6", "seed=0,1,2", "--quiet", "--runs", self.folder / "b")
-        other = next((self.folder / "b").glob("*/*"))
-        self.assertEqual(pathlib.Path(by_python.directory).name, other.name)
-        rows, expected = (cells(folder / "results.csv") for folder in (pathlib.Path(by_python.directory), other))
-        self.assertEqual(len(rows), 6)
-        self.assertEqual([row["rmse_m"] for row in rows], [row["rmse_m"] for row in expected])
-        self.assertEqual(heard, sorted(set(heard)))
-        self.assertEqual(heard[-1], (6, 6))
-        table = by_python.table
-        self.assertEqual(list(table["rmse_m"]), [float(row["rmse_m"]) for row in expected])
-        self.assertEqual(list(zip(table["taps"], table["seed"])), [(taps, seed) for taps in (4, 6) for seed in range(3)])
-        self.assertEqual([len(run) for run in by_python], [4, 4, 4, 6, 6, 6])
-        self.assertEqual(by_python[-1].id, table["id"][5])
-        self.assertIn("sweep", by_python[0].manifest["command_line"])
-        with self.assertRaises(IndexError):
-            by_python[6]
-
-    def test_a_sweep_is_a_table_of_pandas_in_one_call(self):
-        try:
-            import pandas
-        except ImportError:
-            self.skipTest("needs python3-pandas")
-        done = palpate.sweep(DEFAULT, taps=3, seed=[0, 1], kernel=["rbf", "matern52"], runs=self.folder)
-        table = pandas.DataFrame(done.table)
-        self.assertEqual(table.groupby("kernel")["rmse_m"].count().to_dict(), {"rbf": 2, "matern52": 2})
-        self.assertEqual(table["seed"].dtype.kind, "i")
-
-    def test_jobs_that_have_not_ended_are_in_the_table_without_numbers_and_carried_on(self):
-        def interrupt(done, jobs):
-            if done >= 1:
-                os.kill(os.getpid(), signal.SIGINT)
-        sweep = lambda progress: palpate.sweep(  # noqa: E731
-            DEFAULT, taps=60, seed=range(4), workers=1, runs=self.folder, progress=progress)
-        with self.assertRaises(KeyboardInterrupt):
-            sweep(interrupt)
-        half = palpate.load_sweep("default", runs=self.folder)
-        open_jobs = half.table["status"] != "done"
-        self.assertGreaterEqual(sum(open_jobs), 1)
-        self.assertTrue(np.isnan(half.table["rmse_m"][open_jobs]).all())
-        self.assertEqual(len(list(half)), 4 - sum(open_jobs))
-        whole = sweep(None)
-        self.assertEqual(whole.directory, half.directory)
-        self.assertEqual(list(whole.table["status"]), ["done"] * 4)
-
-    def test_what_a_progress_of_the_caller_throws_ends_a_sweep_and_is_thrown(self):
-        def fail(done, jobs):
-            raise RuntimeError("enough")
-        with self.assertRaisesRegex(RuntimeError, "enough"):
-            palpate.sweep(DEFAULT, taps=40, seed=range(3), workers=1, runs=self.folder, progress=fail)
-        self.assertLess(sum(palpate.load_sweep("default@latest", runs=self.folder).table["status"] == "done"), 3)
-
-    def test_what_is_wrong_with_a_sweep_is_said_with_place_reason_and_remedy(self):
-        self.refuses("command line", "lacks its ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
-        self.refuses("sweep", "workers", "at least 1", lambda: palpate.sweep(DEFAULT, seed=[1, 2], workers=0))
-        self.refuses("nothing", "has that name", "palpate list", lambda: palpate.load_sweep("nothing", self.folder))
-
     def test_a_run_is_loaded_by_its_name_and_of_several_the_latest(self):
         first = palpate.run(DEFAULT, "taps=3", seed=1, name="mine", runs=self.folder)
         self.assertEqual(palpate.load("mine", runs=self.folder).id, first.id)

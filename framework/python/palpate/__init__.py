@@ -108,13 +108,14 @@ class Run:
         return f"<palpate.Run {self.directory}: {len(self)} taps>"
 
     def _repr_html_(self):
-        end = self.summary or {"status": "unfinished"}
         shown = ("status", "stop_reason", "rmse_m", "rmse_on_surface_m", "footprint_iou", "robot_seconds")
-        rows = [("run", self.directory), ("taps", len(self))] + [(name, end[name]) for name in shown if name in end]
+        rows = [("run", self.directory), ("taps", len(self))]
         try:
+            end = self.summary or {"status": "unfinished"}
+            rows += [(name, end[name]) for name in shown if name in end]
             return _show.table(rows) + _show.image(self.surface, "surface")
-        except Error:  # a run from any side has no maps
-            return _show.table(rows)
+        except Error as trouble:  # a run from any side has no maps; a damaged one may have nothing
+            return _show.table([*rows, (trouble.place, trouble.reason)])
 
     def plot(self):
         """A figure of matplotlib: the surface with its taps, its standard deviation and, where the truth is known, its
@@ -191,18 +192,19 @@ class Sweep:
         return f"<palpate.Sweep {self.directory}: {len(self)} jobs>"
 
     def _repr_html_(self):
-        jobs = self.table
-        names = ["job", *self.keys, *(name for name in ("status", "taps", "rmse_m", "footprint_iou")
-                                      if name in jobs.dtype.names and name not in self.keys)]
-        ended = [int(job) for job in jobs["job"][jobs["status"] == "done"]]
-        text = f"{len(ended)} of {len(jobs)} jobs done in {self.directory}"
-        out = _show.table([(text,)]) + _show.table(jobs[names][:20].tolist(), names)
-        if len(jobs) > 20:
-            out += _show.table([(f"and {len(jobs) - 20} more",)])
+        out = ""
         try:
+            jobs = self.table
+            names = ["job", *self.keys, *(name for name in ("status", "taps", "rmse_m", "footprint_iou")
+                                          if name in jobs.dtype.names and name not in self.keys)]
+            ended = [int(job) for job in jobs["job"][jobs["status"] == "done"]]
+            out = _show.table([(f"{len(ended)} of {len(jobs)} jobs done in {self.directory}",)])
+            out += _show.table(jobs[names][:20].tolist(), names)
+            if len(jobs) > 20:
+                out += _show.table([(f"and {len(jobs) - 20} more",)])
             return out + (_show.image(self[ended[0]].surface, f"surface of job {ended[0]}") if ended else "")
-        except Error:  # a run from any side has no maps
-            return out
+        except Error as trouble:  # runs from any side have no maps
+            return out + _show.table([(trouble.place, trouble.reason)])
 
     def plot(self, metric="rmse_m"):
         """A figure of matplotlib: a field of the table, of each finished job, in a column per setting (all keys that differ
@@ -271,14 +273,16 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     workers = workers if workers is None else _operator.index(workers)
     if workers is not None and workers < 1:
         raise _error("sweep", f"workers is {workers}", "give at least 1")
-    directory, _ = _palpate.plan(_os.fspath(config), words, _os.fspath(runs))
-    command = [_palpate.program, "sweep", _os.fspath(config), *words, "--runs", _os.fspath(runs)]
+    directory = _palpate.begin_sweep(_os.fspath(config), words, _os.fspath(runs))
+    command = [_palpate.program, "resume", directory]
     if workers is not None:
         command += ["-j", str(workers)]
     status, said = _program.conduct(command, progress)
-    if status not in (0, 1):  # 1: jobs failed, or what the config expects does not hold
-        raise _error(directory, f"the sweep ended with status {status}: {said}", "see what it says", Error)
-    return Sweep(directory)
+    made = Sweep(directory)
+    # 1: jobs failed, what the config expects does not hold, or the sweep itself did.
+    if status not in (0, 1) or status == 1 and None in made.table["status"].tolist():
+        raise _error(directory, f"the sweep ended with status {status}: {said}", "the same call carries it on", Error)
+    return made
 
 
 class Belief:

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""Sweeps from Python, which the program runs."""
+
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import time
+import unittest
+import unittest.mock
+
+import numpy as np
+import palpate
+
+from support import BUILD, DEFAULT, InFolder, cells, program
+
+
+class Sweeps(InFolder):
+    def test_a_sweep_from_python_leaves_the_table_that_the_program_leaves(self):
+        heard = []
+        by_python = palpate.sweep(DEFAULT, "taps=4,6", seed=range(3), runs=self.folder / "a",
+                                  progress=lambda done, jobs: heard.append((done, jobs)))
+        program("sweep", DEFAULT, "taps=4,6", "seed=0,1,2", "--quiet", "--runs", self.folder / "b")
+        other = next((self.folder / "b").glob("*/*"))
+        self.assertEqual(pathlib.Path(by_python.directory).name, other.name)
+        rows, expected = (cells(folder / "results.csv") for folder in (pathlib.Path(by_python.directory), other))
+        self.assertEqual(len(rows), 6)
+        self.assertEqual([row["rmse_m"] for row in rows], [row["rmse_m"] for row in expected])
+        self.assertEqual(heard, sorted(set(heard)))
+        self.assertEqual(heard[-1], (6, 6))
+        table = by_python.table
+        self.assertEqual(list(table["rmse_m"]), [float(row["rmse_m"]) for row in expected])
+        self.assertEqual(list(zip(table["taps"], table["seed"])), [(taps, seed) for taps in (4, 6) for seed in range(3)])
+        self.assertEqual([len(run) for run in by_python], [4, 4, 4, 6, 6, 6])
+        self.assertEqual(by_python[-1].id, table["id"][5])
+        self.assertIn("resume", by_python[0].manifest["command_line"])
+        with self.assertRaises(IndexError):
+            by_python[6]
+
+    def test_a_sweep_is_a_table_of_pandas_in_one_call(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("needs python3-pandas")
+        done = palpate.sweep(DEFAULT, taps=3, seed=[0, 1], kernel=["rbf", "matern52"], runs=self.folder)
+        table = pandas.DataFrame(done.table)
+        self.assertEqual(table.groupby("kernel")["rmse_m"].count().to_dict(), {"rbf": 2, "matern52": 2})
+        self.assertEqual(table["seed"].dtype.kind, "i")
+
+    def test_jobs_that_have_not_ended_are_in_the_table_without_numbers_and_carried_on(self):
+        def interrupt(done, jobs):
+            if done >= 1:
+                os.kill(os.getpid(), signal.SIGINT)
+        sweep = lambda progress: palpate.sweep(  # noqa: E731
+            DEFAULT, taps=60, seed=range(4), workers=1, runs=self.folder, progress=progress)
+        with self.assertRaises(KeyboardInterrupt):
+            sweep(interrupt)
+        half = palpate.load_sweep("default", runs=self.folder)
+        open_jobs = half.table["status"] != "done"
+        self.assertGreaterEqual(sum(open_jobs), 1)
+        self.assertTrue(np.isnan(half.table["rmse_m"][open_jobs]).all())
+        self.assertEqual(len(list(half)), 4 - sum(open_jobs))
+        whole = sweep(None)
+        self.assertEqual(whole.directory, half.directory)
+        self.assertEqual(list(whole.table["status"]), ["done"] * 4)
+
+    def test_what_a_progress_of_the_caller_throws_ends_a_sweep_and_is_thrown(self):
+        def fail(done, jobs):
+            raise RuntimeError("enough")
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            palpate.sweep(DEFAULT, taps=40, seed=range(3), workers=1, runs=self.folder, progress=fail)
+        self.assertLess(sum(palpate.load_sweep("default@latest", runs=self.folder).table["status"] == "done"), 3)
+
+    def test_what_is_wrong_with_a_sweep_is_said_with_place_reason_and_remedy(self):
+        self.refuses("command line", "lacks its ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
+        self.refuses("sweep", "workers", "at least 1", lambda: palpate.sweep(DEFAULT, seed=[1, 2], workers=0))
+        self.refuses("nothing", "has that name", "palpate list", lambda: palpate.load_sweep("nothing", self.folder))
+
+    def test_a_text_with_commas_is_one_value_of_a_sweep(self):
+        done = palpate.sweep(DEFAULT, taps=2, name="cup, left: blue", seed=[1, 2], runs=self.folder)
+        self.assertEqual([run.config["name"] for run in done], ["cup, left: blue"] * 2)
+        self.assertEqual(palpate.sweep(DEFAULT, taps=2, seed="range(4,6)", runs=self.folder).table["seed"].tolist(), [4, 5])
+        self.assertEqual(palpate.run(DEFAULT, "taps=2", name="a, b", runs=self.folder).config["name"], "a, b")
+
+    def test_a_range_of_very_many_values_is_refused_before_they_are_made(self):
+        self.refuses("command line", "has more than a million values", "wider step",
+                     lambda: palpate.sweep(DEFAULT, taps=2, seed=range(10**9), runs=self.folder))
+
+    def test_a_sweep_takes_more_values_than_a_command_line(self):
+        done = palpate.sweep(DEFAULT, "sweep.where=seed < 1002", taps=2, seed=range(1000, 31000), runs=self.folder)
+        self.assertEqual(done.table["seed"].tolist(), [1000, 1001])
+
+    def test_a_sweep_whose_jobs_have_not_ended_is_an_error_with_the_reason(self):
+        limited = self.folder / "limited"
+        limited.write_text(f'#!/bin/sh\nulimit -f 0\nexec {BUILD}/palpate "$@"\n', encoding="utf-8")
+        limited.chmod(0o755)
+        with unittest.mock.patch.object(palpate._palpate, "program", str(limited)):
+            self.refuses("/default/", "ended with status 1: ", "the same call carries it on",
+                         lambda: palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder))
+        self.assertEqual(list(palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder).table["status"]), ["done"] * 2)
+
+    def test_progress_of_a_sweep_is_heard_as_jobs_end(self):
+        heard = []
+        palpate.sweep(DEFAULT, taps=6, seed=range(30), workers=1, runs=self.folder, progress=lambda *now: heard.append(now))
+        self.assertEqual(heard[-1], (30, 30))
+        self.assertGreater(len([done for done, _ in heard if done % 3]), 0, "more than a line per tenth")
+
+    def test_a_sweep_needs_no_terminal_and_no_low_file_numbers(self):
+        script = ("import os, pty, resource, sys, palpate\n"
+                  "def none(*_): raise OSError('out of pty devices')\n"
+                  "os.openpty = pty.openpty = none\n"
+                  "resource.setrlimit(resource.RLIMIT_NOFILE, (1500, 1500))\n"
+                  "keep = [open(os.devnull) for _ in range(1100)]\n"
+                  "heard = []\n"
+                  "palpate.sweep(sys.argv[1], taps=2, seed=range(3), runs=sys.argv[2], progress=lambda *n: heard.append(n))\n"
+                  "print(heard[-1])\n")
+        if resource.getrlimit(resource.RLIMIT_NOFILE)[1] < 1500:
+            self.skipTest("needs 1500 open files")
+        done = self.ended(script, DEFAULT, self.folder)
+        self.assertEqual((done.stdout, done.stderr), ("(3, 3)\n", ""))
+
+    def test_a_sweep_ends_with_an_interpreter_that_is_killed(self):
+        script = ("import sys, palpate\n"
+                  "palpate.sweep(sys.argv[1], taps=200, seed=range(100), workers=1, runs=sys.argv[2],\n"
+                  "              progress=lambda *n: print('on', flush=True))\n")
+        killed = subprocess.Popen([sys.executable, "-c", script, DEFAULT, self.folder], stdout=subprocess.PIPE)
+        killed.stdout.readline()
+        killed.kill()
+        killed.communicate()
+        sweep = palpate.load_sweep("default", runs=self.folder)
+        until = time.monotonic() + 60.0  # the tap under way is made
+        while self.at_work() and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertEqual(self.at_work(), [])
+        self.assertLess(sum(sweep.table["status"] == "done"), 100)
+
+    def at_work(self):
+        """Command lines of processes that are about this test's folder."""
+        out = []
+        for process in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                words = process.read_bytes()
+            except OSError:
+                continue
+            if str(self.folder).encode() in words and b"resume" in words.split(b"\0"):
+                out.append(words)
+        return out
+
+
+if __name__ == "__main__":
+    unittest.main()
