@@ -175,7 +175,7 @@ class Shared(InFolder):
         self.assertEqual(in_threads(8, work), [["done"] * 3, 3] * 4)
 
     def test_eight_threads_over_a_run_an_experiment_and_a_sweep_get_answers_or_errors(self):
-        """PALPATE_SECONDS=60 goes on for a minute, as under sanitizers; else each thread does a few things."""
+        """PALPATE_SECONDS=60 goes on for a minute, as under sanitizers (CONTRIBUTING.md); else each does a few things."""
         seconds = float(os.environ.get("PALPATE_SECONDS", "0"))
         until = time.monotonic() + seconds
         sweep = palpate.sweep(DEFAULT, taps=4, seed=range(2), runs=self.folder)
@@ -273,11 +273,11 @@ class Shared(InFolder):
                                    stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
         self.assertEqual(process.stdout.readline(), "ends\n")
-        for _ in range(100):
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT)
-                time.sleep(0.1)
-        self.assertEqual(process.poll(), 0)
+        until = time.monotonic() + 20.0
+        while process.poll() is None and time.monotonic() < until:
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.1)
+        self.assertIn(process.poll(), (0, -signal.SIGINT), "a second one may come when Python no longer takes it")
         self.assertIn("KeyboardInterrupt", process.communicate()[1])
 
     def test_models_that_failed_at_a_tap_are_made_again_for_an_earlier_one(self):

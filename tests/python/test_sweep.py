@@ -93,11 +93,11 @@ class Sweeps(InFolder):
         self.assertEqual(done.table["seed"].tolist(), [1000, 1001])
 
     def test_a_sweep_whose_jobs_have_not_ended_is_an_error_with_the_reason(self):
-        limited = self.folder / "limited"
-        limited.write_text(f'#!/bin/sh\nulimit -f 0\nexec {BUILD}/palpate "$@"\n', encoding="utf-8")
-        limited.chmod(0o755)
-        with unittest.mock.patch.object(palpate._palpate, "program", str(limited)):
-            self.refuses("/default/", "ended with status 1: ", "the same call carries it on",
+        failing = self.folder / "failing"
+        failing.write_text("#!/bin/sh\necho 'job 0: no process can be made' >&2\nexit 1\n", encoding="utf-8")
+        failing.chmod(0o755)
+        with unittest.mock.patch.object(palpate._palpate, "program", str(failing)):
+            self.refuses("/default/", "ended with status 1: job 0: no process can be made", "the same call carries it on",
                          lambda: palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder))
         self.assertEqual(list(palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder).table["status"]), ["done"] * 2)
 

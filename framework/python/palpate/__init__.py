@@ -267,7 +267,7 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     `settings` are axes of keys that are Python names: a list is swept, another value is set. The jobs run in the program,
     `workers` at a time (else as many as there are cores), and not in this process. A sweep that exists is carried on.
     `progress(done, jobs)` is called as jobs end. Ctrl-C ends it after the taps under way; the same call carries it on.
-    Failed jobs are in the table. Raises Error.
+    Failed jobs are in the table. Raises Error, also where jobs have not ended.
     """
     words = [*axes, *(f"{key}={_program.values_text(value)}" for key, value in settings.items())]
     workers = workers if workers is None else _operator.index(workers)
