@@ -252,7 +252,7 @@ class Shared(InFolder):
         script = ("import sys, threading, time, palpate\n"
                   "class Late:\n"
                   "    def __del__(self, sleep=time.sleep): sleep(0.5)  # when no other thread may have Python's lock again\n"
-                  "late, called = Late(), threading.Event()\n"
+                  "sys.late, called = Late(), threading.Event()\n"
                   "def progress(n):\n"
                   "    called.set()\n"
                   "    threading.Event().wait(eval(sys.argv[3]))\n"

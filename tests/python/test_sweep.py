@@ -92,6 +92,15 @@ class Sweeps(InFolder):
         done = palpate.sweep(DEFAULT, "sweep.where=seed < 1002", taps=2, seed=range(1000, 31000), runs=self.folder)
         self.assertEqual(done.table["seed"].tolist(), [1000, 1001])
 
+    def test_a_signal_ends_a_sweep_while_its_jobs_are_checked_and_leaves_nothing(self):
+        def interrupt(*_):
+            raise InterruptedError("enough")
+        self.addCleanup(signal.signal, signal.SIGALRM, signal.signal(signal.SIGALRM, interrupt))
+        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        with self.assertRaisesRegex(InterruptedError, "enough"):
+            palpate.sweep(DEFAULT, "seed=range(0,50000)", taps=2, runs=self.folder / "runs")
+        self.assertFalse((self.folder / "runs").exists())
+
     def test_a_sweep_whose_jobs_have_not_ended_is_an_error_with_the_reason(self):
         failing = self.folder / "failing"
         failing.write_text("#!/bin/sh\necho 'job 0: no process can be made' >&2\nexit 1\n", encoding="utf-8")
