@@ -158,6 +158,21 @@ class Shared(InFolder):
         self.assertEqual(in_threads(4, work), [12, None, None, None])
         self.assertIn("all equal", program("replay", experiment.directory))
 
+    def test_an_experiment_resumed_after_every_tap_goes_on_as_the_unbroken_one(self):
+        def taps(seed, name, resumes):
+            experiment, out = self.begun("taps=14", name=name), []
+            heights = np.random.default_rng(seed).uniform(0.0, 0.1, 14)  # many contradict each other
+            while tap := experiment.ask():
+                out.append(tap.candidate)
+                experiment.tell(heights[tap.number - 1])
+                if resumes:
+                    experiment.close()
+                    experiment = palpate.Experiment.resume(experiment.directory)
+            experiment.close()
+            return out
+        for seed in (31, 43):
+            self.assertEqual(taps(seed, f"resumed_{seed}", True), taps(seed, f"unbroken_{seed}", False), seed)
+
     def test_several_threads_compose_configs_run_and_sweep_at_once(self):
         configs = [DEFAULT, CONFIGS / "paper" / "object_i.yaml"]
 

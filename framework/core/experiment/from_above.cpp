@@ -75,11 +75,11 @@ std::optional<std::string> FromAbove::stop_rule(Source source) {
 void FromAbove::resume(const std::vector<PastTap>& past) {
   Quantities read;
   for (const PastTap& tap : past) {
-    observe(tap);
     read = read | reads_for(tap.of_caller() ? Source::caller : tap.source);
     if (tap.source == Source::fallback) read = read | Chooser::kFallbackReads;
     // Who is doubted depends on who was, once there are many; a fit on what was taken off the heights at its tap.
     if (options_.height.lies || options_.height.systematic) belief_.ask(read);
+    observe(tap);
   }
   belief_.ask(read);
 }
