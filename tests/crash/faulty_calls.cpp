@@ -275,9 +275,10 @@ ssize_t written(int number, std::size_t size, const Act& act) {
   return call.done(out, look(number).st_size);
 }
 
-/// A close or a sync, which may be the one that tells of a loss.
+/// A close or a sync, which may be the one that tells of a loss: of a file that is open to be written.
 bool tells_loss(int number) {
   if (fault.lost < 0 || !is_same(fault.lost_file, look(number))) return false;
+  if ((::syscall(SYS_fcntl, number, F_GETFL) & O_ACCMODE) == O_RDONLY) return false;
   lose();
   return true;
 }

@@ -272,8 +272,11 @@ void AppendFile::cut(std::uintmax_t bytes) const {
   if (::ftruncate(descriptor_.number(), static_cast<off_t>(bytes)) != 0) fail(file_, "cannot be cut");
 }
 
-void AppendFile::flush() const {
-  if (!flush_file(descriptor_)) fail(file_, "cannot be written");
+void AppendFile::flush() {
+  if (failure_) throw Error(*failure_);
+  if (flush_file(descriptor_)) return;
+  failure_ = failed(file_, "its last lines may not be in the file, because it cannot be closed");
+  throw Error(*failure_);
 }
 
 FileLock::FileLock(const fs::path& file, int command)

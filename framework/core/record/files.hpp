@@ -100,15 +100,15 @@ class AppendFile {
   explicit AppendFile(const std::filesystem::path& file);
 
   /// Appends in one system call; with `sync` it is on the disk when it returns. Throws Error: what was not written
-  /// whole is cut off again. Where that fails, and after a sync that failed, each further call throws the same Error:
-  /// the kernel has dropped the data, and a second sync would report success.
+  /// whole is cut off again. Where that fails, and after a sync or a flush that failed, each further call throws the
+  /// same Error: the kernel has dropped the data, and a second sync would report success.
   void append(const std::string& text, bool sync);
 
   /// Keeps the first `bytes`. Throws Error.
   void cut(std::uintmax_t bytes) const;
 
   /// Has the file system take all that was appended, as closing does: NFS reports a full quota only then. Throws Error.
-  void flush() const;
+  void flush();
 
  private:
   friend class FileLock;
