@@ -224,8 +224,7 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
                 Error::Kind::busy);
   }
   sync_if_asked(config, *experiment, *held);
-  // The config first: a record without one cannot be carried on.
-  held->write("config.yaml", to_yaml_with_places(config.tree));
+  held->write_config(to_yaml_with_places(config.tree));
   held->begin(manifest_of(workshop, config));
   held->begin_attempt(build_hash(workshop.host, config.notes.plugins), force);
   set_up(*experiment, *held);

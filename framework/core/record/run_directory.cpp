@@ -103,6 +103,11 @@ RunDirectory::RunDirectory(const fs::path& directory) : path_(directory), record
 
 void RunDirectory::sync() { sync_ = true; }
 
+void RunDirectory::write_config(const std::string& text) const {
+  record_.check_in_place();
+  write_file(path_ / "config.yaml", text, true);
+}
+
 void RunDirectory::begin(const Tree& manifest) {
   Tree line = Tree::map({{"manifest", Tree::scalar(std::to_string(kRecordVersion))}});
   line.entries.insert(line.entries.end(), manifest.entries.begin(), manifest.entries.end());

@@ -80,6 +80,9 @@ class RunDirectory final : public Journal {
   /// Takes everything out of the record of a run that failed before it could begin.
   void clear() { record_.clear(); }
 
+  /// The config, before the record begins: on the disk on return, since a record without one cannot be carried on.
+  void write_config(const std::string& text) const;
+
   /// The beginning of a record. `manifest` holds what there is to know beside its version.
   void begin(const Tree& manifest);
 
