@@ -98,7 +98,7 @@ void print_summary(const RunReport& report) {
   }
   for (const std::string& name : report.restored.made) text += fmt::format("made again from the record: {}\n", name);
   for (const std::string& name : report.restored.lost)
-    text += fmt::format("{} is gone, and this build makes another one from the same taps\n", name);
+    text += fmt::format("{} is gone or damaged, and this build makes another one from the same taps\n", name);
   text += fmt::format("{}: {} after {} taps and {} s of robot time\n",
                       report.interrupted ? "interrupted" : row.cell("status"), row.cell("stop_reason"),
                       row.cell("taps"), scaled(row.number("robot_seconds"), 1, "{:.1f}"));

@@ -204,7 +204,8 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
   const Launched launched = launch_open(campaign, begun);
   if (launched == Launched::submitted) return kDone;
-  const Standing end = standing_of(sweep, jobs, is_on_cluster(campaign) ? Also::nothing : Also::missing_files);
+  // A job whose files could not be written was not recorded whole; one of another build may never have them again.
+  const Standing end = standing_of(sweep, jobs, Also::nothing);
   const bool interrupted = campaign.program.interrupted->load();
   const bool all_recorded = launched == Launched::ended;
   if (whole) return conclude_whole(campaign, end, interrupted, all_recorded);

@@ -304,7 +304,7 @@ TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
 
 TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
   RobotLab lab(robot_words());
-  const std::unique_ptr<Child> first = lab.start_palpate(run_words(3));
+  const std::unique_ptr<Child> first = lab.start_palpate(run_words(40));  // ended once the others were refused
   ASSERT_TRUE(logged(lab, 1));
   const Ended second = lab.palpate(run_words(2, {"seed=2"}));
   EXPECT_EQ(second.status, 75);
@@ -324,8 +324,9 @@ TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
   EXPECT_EQ(third.status, 1);
   EXPECT_THAT(third.err, HasSubstr("joint_command: another palpate moves this arm, the node /palpate_"));
   palpate_does(lab, run_words(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"}));  // which moves nothing
+  first->signal(SIGINT);
   const Ended ended = first->wait();
-  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.status, 130) << ended.err;
 }
 
 TEST(RobotSweep, TapsOneJobAfterTheOtherHoweverManyMayRunAtATime) {

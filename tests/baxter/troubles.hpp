@@ -38,7 +38,7 @@ inline constexpr Trouble kTroubles[] = {
     {"ForceIsZero", "zero_wrench", "a force of exactly zero"},
     {"BiasUp", "bias=8", "its zero moved during the tap", true, false},
     {"BiasFarUp", "bias=20", "more than force_stop allows", true},
-    {"BiasDown", "bias=-12", "the force fell by more than the threshold", true},
+    {"BiasDown", "bias=-9", "the force fell by more than the threshold", true},
     {"DroppedCommands", "drop_commands=5", "the arm does not follow"},
     {"JumpOfTheJoints", "jump_joints=0.3", "/robot/joint_states jumped by"},
     {"FrozenClock", "freeze_clock", "the clock of the robot's network stands still"},

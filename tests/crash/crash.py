@@ -173,6 +173,18 @@ class Job(Sweep):
     again = words
 
 
+class Half(Job):
+    """The same of a record in which a kill left half a line."""
+    name = "half"
+
+    def prepare(self, bench):
+        super().prepare(bench)
+        with open(os.path.join(bench.directory(), "manifest.jsonl")) as lines:
+            job = next(row["id"] for row in map(json.loads, lines) if row.get("job") == 0)
+        with open(os.path.join(bench.directory(), "jobs", job, "record.jsonl"), "w") as record:
+            record.write('{"manifest": 1, "na')
+
+
 class Report(Run):
     name = "report"
 
@@ -198,7 +210,7 @@ class Compare(Sweep):
     again = words
 
 
-COMMANDS = [Run(), Robot(), Job(), Sweep(), Report(), Compare()]
+COMMANDS = [Run(), Robot(), Job(), Half(), Sweep(), Report(), Compare()]
 
 
 # ---- points ----

@@ -111,7 +111,7 @@ class Shared(InFolder):
         record.unlink()
         record.write_bytes(text)  # as a copy is brought back
         with palpate.Experiment.resume(experiment.directory) as other:
-            self.refuses(experiment.directory, "was moved or removed while a run was writing there", "palpate resume",
+            self.refuses(experiment.directory, "was moved or removed while a run was writing to it", "palpate resume",
                          experiment.ask)
             while other.ask():
                 other.tell(0.0)

@@ -103,7 +103,8 @@ class Sweeps(InFolder):
 
     def test_a_sweep_whose_jobs_have_not_ended_is_an_error_with_the_reason(self):
         failing = self.folder / "failing"
-        failing.write_text("#!/bin/sh\necho 'job 0: no process can be made' >&2\nexit 1\n", encoding="utf-8")
+        failing.write_text("#!/bin/sh\necho 'job 0: no process can be made' >&2\n"
+                           "echo '0 of 2 jobs done, 0 running, 0 failed' >&2\nexit 1\n", encoding="utf-8")
         failing.chmod(0o755)
         with unittest.mock.patch.object(palpate._palpate, "program", str(failing)):
             self.refuses("/default/", "ended with status 1: job 0: no process can be made", "the same call carries it on",
@@ -112,7 +113,7 @@ class Sweeps(InFolder):
 
     def test_progress_of_a_sweep_is_heard_as_jobs_end(self):
         heard = []
-        palpate.sweep(DEFAULT, taps=6, seed=range(30), workers=1, runs=self.folder, progress=lambda *now: heard.append(now))
+        palpate.sweep(DEFAULT, "backend.pace=0.005", taps=6, seed=range(30), workers=1, runs=self.folder, progress=lambda *now: heard.append(now))
         self.assertEqual(heard[-1], (30, 30))
         self.assertGreater(len([done for done, _ in heard if done % 3]), 0, "more than a line per tenth")
 

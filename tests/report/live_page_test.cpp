@@ -33,7 +33,7 @@ class LivePage : public test::Reports {
   /// The step that records taps from one number up to another.
   std::string grow(std::size_t first, std::size_t last) const {
     std::string patterns;
-    for (std::size_t tap = first; tap <= last; ++tap) patterns += fmt::format(" -e '\"t[a-z]*\": {},'", tap);
+    for (std::size_t tap = first; tap <= last; ++tap) patterns += fmt::format(" -e '^.\"t[a-z]*\": {},'", tap);
     return fmt::format("shell grep -h{} {} >> {}", patterns, (whole_ / "record.jsonl").string(),
                        (directory_ / "record.jsonl").string());
   }

@@ -101,7 +101,7 @@ TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
   write(directory / "record.jsonl", record.substr(0, hash) + std::string(4, 'x') + record.substr(hash + 4));
   fs::remove(directory / "taps.csv");
   EXPECT_THAT(palpate({"run", paper()}).out,
-              HasSubstr("taps.csv is gone, and this build makes another one from the same taps\n"));
+              HasSubstr("taps.csv is gone or damaged, and this build makes another one from the same taps\n"));
   EXPECT_FALSE(fs::exists(directory / "taps.csv"));
 }
 

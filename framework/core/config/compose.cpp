@@ -57,13 +57,13 @@ fs::path shown(const fs::path& path) {
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
 constexpr Layer kLayersOfGroup = 16;
 
-/// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
-/// name, and for a file that is being read already.
 [[noreturn]] void refuse_depth(const Place& place) {
   throw Error(place.text(), fmt::format("groups build on each other more than {} deep", kLayersOfGroup),
               "put what they hold into fewer files");
 }
 
+/// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
+/// name, and for a file that is being read already.
 void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
   if (!is_name(name)) throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group), kNameHint);
   const std::string link = group + "/" + name;

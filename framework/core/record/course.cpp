@@ -76,6 +76,16 @@ std::unique_ptr<Experiment> build_experiment(const Workshop& workshop, const Res
   }
 }
 
+/// Of a run that could not be carried on as far as it had come: one that had failed has failed for the same reason, and
+/// one whose arm another process moves was only tried.
+void take_back(RunDirectory& held, const std::optional<Ending>& before, const Error& trouble) {
+  if (before && before->how == Ending::How::failed) {
+    held.end(*before);
+  } else if (trouble.kind() == Error::Kind::busy) {
+    held.end({Ending::How::interrupted, trouble.what(), {}, {}});
+  }
+}
+
 /// Throws Error where a person would be asked of taps that put nothing at risk.
 void check_worth_asking(const ResolvedConfig& config, const Experiment& experiment) {
   if (!experiment.backend().repeatable()) return;
@@ -235,10 +245,11 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
                                   const ResumeOptions& options, Taps taps, bool supervised) {
   const fs::path& directory = held.path();
   const RunRecord& before = held.before();
-  if (before.end && before.end->how == Ending::How::done) return nullptr;
+  const std::optional<Ending> end = before.end;
+  if (end && end->how == Ending::How::done) return nullptr;
   check_who_taps(config, taps, "resume");
-  if (before.end && before.end->how == Ending::How::failed && !options.retry_failed) {
-    throw Error(directory.string(), fmt::format("this run failed: {}", before.end->reason),
+  if (end && end->how == Ending::How::failed && !options.retry_failed) {
+    throw Error(directory.string(), fmt::format("this run failed: {}", end->reason),
                 "--retry-failed carries on all the same", Error::Kind::run);
   }
   const auto objection = options.force ? std::nullopt : objection_to_build(workshop, config, before);
@@ -250,22 +261,16 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
   if (!before.manifest) held.begin(manifest_of(workshop, config));
   held.begin_attempt(build_hash(workshop.host, config.notes.plugins), options.force);
   std::unique_ptr<Experiment> experiment;
-  try {
+  const std::optional<Error> trouble = trouble_in([&] {
     experiment = build_experiment(workshop, config, directory);
     if (supervised) check_worth_asking(config, *experiment);
-  } catch (...) {
-    // Nothing was done: a run that had failed has failed for the same reason.
-    if (before.end && before.end->how == Ending::How::failed)
-      held.end(Ending::How::failed, before.end->reason, before.end->summary);
-    throw;
-  }
-  sync_if_asked(config, *experiment, held);
-  set_up(*experiment, held);
-  const std::vector<PastTap> past = held.recover();
-  // A model may fail at a tap that it was the last to take in.
-  if (const std::string failure = Course::failure_in([&] { experiment->resume(past); }); !failure.empty())
-    Course(config, held, *experiment, {}, Stopwatch()).finish(failure);
-  return experiment;
+    sync_if_asked(config, *experiment, held);
+    set_up(*experiment, held);
+    experiment->resume(held.recover());
+  });
+  if (!trouble) return experiment;
+  trouble_in([&] { take_back(held, end, *trouble); });  // the first one counts
+  throw Error(*trouble);
 }
 
 void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& command) {

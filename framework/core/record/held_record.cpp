@@ -33,12 +33,12 @@ const RunRecord& HeldRecord::before() {
 AppendFile& HeldRecord::log() {
   if (log_) return *log_;
   const std::optional<LastLine> last = last_line_if_there(directory_ / kRecordFile);
-  log_ = lock_.append_file();
+  AppendFile file = lock_.append_file();
   if (last && last->whole < last->bytes) {
+    file.cut(last->whole);
     cut_ = last->bytes - last->whole;
-    log_->cut(last->whole);
   }
-  return *log_;
+  return log_.emplace(std::move(file));
 }
 
 void HeldRecord::append(const std::string& lines, bool sync) {
@@ -57,6 +57,7 @@ void HeldRecord::clear() {
 }
 
 void HeldRecord::add_manifest(const Tree& manifest, bool sync) {
+  before();  // while there is nothing to read
   append(to_json_line(manifest) + "\n", sync);
   begun_ = true;
 }

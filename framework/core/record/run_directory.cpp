@@ -168,8 +168,12 @@ void RunDirectory::write_made(const std::string& name, const std::string& text) 
 }
 
 void RunDirectory::end(Ending::How how, const std::string& reason, const Row& summary) {
-  record_.add_end({how, reason, summary, std::exchange(made_, {})}, sync_);
-  if (!summary.fields.empty()) write(kSummaryFile, to_json_text(summary));
+  end({how, reason, summary, std::exchange(made_, {})});
+}
+
+void RunDirectory::end(const Ending& ending) {
+  record_.add_end(ending, sync_);
+  if (!ending.summary.fields.empty()) write(kSummaryFile, to_json_text(ending.summary));
 }
 
 void RunDirectory::fail(const std::string& reason) {

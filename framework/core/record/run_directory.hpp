@@ -123,6 +123,8 @@ class RunDirectory final : public Journal {
   /// Says how the run, or this attempt, ended, with its summary unless it was interrupted; then writes that into
   /// summary.json.
   void end(Ending::How how, const std::string& reason, const Row& summary);
+  /// The same, with the files that `ending` names.
+  void end(const Ending& ending);
 
   /// Ends a run that failed before it could begin, or whose process died, and whose record may be damaged.
   void fail(const std::string& reason);

@@ -100,7 +100,16 @@ void RunFollower::read_record() {
     standing_ = standing;
     ++revision_;
   }
+  if (recording_) take_times();
   if (recording_ && pending_.empty()) recording_->summary = summary;
+}
+
+/// The times of a tap are written after it.
+void RunFollower::take_times() {
+  std::vector<TapTimes>& known = recording_->timings;
+  if (known.size() == timings_.size()) return;
+  known.insert(known.end(), timings_.begin() + static_cast<std::ptrdiff_t>(known.size()), timings_.end());
+  ++revision_;
 }
 
 void RunFollower::take_in() {
@@ -108,8 +117,7 @@ void RunFollower::take_in() {
     recording_ = std::make_unique<Recording>(
         Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}, manifest_, {}});
   }
-  const auto known = static_cast<std::ptrdiff_t>(recording_->timings.size());
-  recording_->timings.insert(recording_->timings.end(), timings_.begin() + known, timings_.end());
+  take_times();
   recording_->taps.push_back(past_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));
   pending_.pop_front();

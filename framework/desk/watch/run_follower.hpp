@@ -32,6 +32,7 @@ class RunFollower final : public Watched {
  private:
   void read_record();
   void take_in();
+  void take_times();
   void begin_anew();
   std::string at() const;
   std::string why_waiting() const;

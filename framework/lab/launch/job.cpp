@@ -8,6 +8,9 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <optional>
 
 namespace palpate {
@@ -65,8 +68,16 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
   const RunStatus now = read_ending(directory);
   const bool failed = now.state == RunStatus::State::failed;
   if (now.state == RunStatus::State::done || (failed && !options.retry_failed)) {
-    const auto trouble =
-        lacks_files(directory, *now.end) ? trouble_in([&] { restore_files(workshop, *held); }) : std::nullopt;
+    Restored restored;
+    const auto trouble = lacks_files(directory, *now.end)
+                             ? trouble_in([&] { restored = restore_files(workshop, *held); })
+                             : std::nullopt;
+    for (const std::string& name : restored.lost) {
+      std::fputs(fmt::format("{}: {} is gone or damaged, and this build makes another one from the same taps\n",
+                             directory.string(), name)
+                     .c_str(),
+                 stderr);
+    }
     // A damaged record ends the job as failed, and nothing can be made from it.
     if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;

@@ -22,10 +22,13 @@ enum class JobEnd {
   done = 0,           ///< now or before
   failed = 1,         ///< now or before; the record has the reason
   unrecorded = 2,     ///< not even that could be recorded
-  blocked = 3,        ///< another process has its arm in hand; the job stays open
+  blocked = 3,        ///< another process has its arm in hand, and the child has said kBlocked; the job stays open
   busy = 75,          ///< another process has it in hand; nothing was done
   interrupted = 130,  ///< by the user's wish; it can be carried on
 };
+
+/// What a child says before it ends with `blocked`: a plugin may end it with any status.
+inline constexpr const char* kBlocked = "blocked";
 
 /// Runs the job in `directory`, whose name is its id, unless it is done, or has failed and is not to be tried again.
 /// `config_of` reads its config. What goes wrong becomes the reason of its failure; but a config that was deleted is
@@ -37,7 +40,7 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
 /// Whether the job is done or has failed.
 bool has_ended(const std::filesystem::path& directory);
 
-/// How often the job has been begun since it last failed, as its record says.
+/// How often the job has been begun since it last came to an end, as its record says.
 int attempts_of(const std::filesystem::path& directory);
 
 /// Ends the job as failed, unless it has ended or somebody has it in hand: for processes that died over it.

@@ -71,11 +71,12 @@ void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
 }
 
 bool LocalLauncher::start(std::size_t job) {
-  std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say&) -> int {
+  std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say& say) -> int {
     // What it may open is for its own files.
     for (const Running& other : running_) other.process->forget();
     JobEnd end = JobEnd::unrecorded;
     in_fresh_memory([&] { end = run(job); });
+    if (end == JobEnd::blocked) say(kBlocked);
     // Not as children end otherwise: plugins have things to take down, such as a robot's node.
     std::exit(static_cast<int>(end));
   });
@@ -118,14 +119,15 @@ Launcher::State LocalLauncher::poll(double seconds) {
   State state;
   const auto ended =
       std::stable_partition(running_.begin(), running_.end(), [](const Running& one) { return !one.process->ended(); });
-  for (auto one = ended; one != running_.end(); ++one) conclude(one->job, one->process->status(), state);
+  for (auto one = ended; one != running_.end(); ++one) conclude(one->job, *one->process, state);
   running_.erase(ended, running_.end());
   state.running = static_cast<int>(running_.size());
   state.waiting = static_cast<int>(waiting_.size() + later_.size());
   return state;
 }
 
-void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
+void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State& state) {
+  const int wait_status = process.status();
   if (wait_status < 0) throw Error("", "a job's process is lost", {}, Error::Kind::run);
   if (WIFSIGNALED(wait_status)) return was_killed(job, WTERMSIG(wait_status), state);
   const auto end = static_cast<JobEnd>(WEXITSTATUS(wait_status));
@@ -134,7 +136,7 @@ void LocalLauncher::conclude(std::size_t job, int wait_status, State& state) {
     later_.push_back(job);
     return;
   }
-  if (end == JobEnd::blocked) {  // and the next job would be, too
+  if (end == JobEnd::blocked && process.said() == kBlocked) {  // and the next job would be, too
     waiting_.clear();
     later_.clear();
     return;

@@ -38,7 +38,7 @@ class LocalLauncher final : public Launcher {
   bool start(std::size_t job);
   /// In the child.
   JobEnd run(std::size_t job) const;
-  void conclude(std::size_t job, int wait_status, State& state);
+  void conclude(std::size_t job, const ChildProcess& process, State& state);
   void was_killed(std::size_t job, int signal, State& state);
   std::filesystem::path directory_of(std::size_t job) const {
     return job_directory(order_.sweep, order_.sweep.jobs[job]);

@@ -73,7 +73,8 @@ def conduct(command, progress):
         child.wait()
     if interrupted is not None:
         raise interrupted
-    lines = said.decode(errors="replace").strip().splitlines()
+    lines = [line for line in said.decode(errors="replace").splitlines()
+             if line.strip() and not re.match(r"\s*\d+ of \d+ jobs done", line)]
     return child.returncode, lines[-1] if lines else ""
 
 

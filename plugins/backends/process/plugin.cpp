@@ -14,6 +14,8 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
@@ -81,21 +83,31 @@ std::string find_program(const std::string& program) {
               "a name is looked for in PATH, a path from the folder in which palpate runs");
 }
 
+/// Whether a program by that name, whatever its version, runs what another word names.
+bool is_interpreter(const std::string& program) {
+  std::string name = std::filesystem::path(program).filename().string();
+  name.erase(name.find_last_not_of("0123456789.") + 1);
+  constexpr std::array<const char*, 13> kNames{"python", "pypy", "env",  "sh",   "bash", "dash", "zsh",
+                                               "perl",   "ruby", "node", "java", "lua",  "julia"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
 /// Returns a hash of the command in which the content of the program stands for its name, so that the id of a run
-/// follows what the program does, not where it lies. The program is the first word that names a file, but for an
-/// interpreter: a name from PATH, or a path to a Python. Behind -m and -c no file is the program. Other words are no
-/// content: a program may write the files that they name.
+/// follows what the program does, not where it lies. The program is the first word, or, of an interpreter, the first
+/// one that is there; behind -m and -c none is. One that is found by PATH, and a folder, count by name. Other words are
+/// no content: a program may write the files that they name.
 std::string checksum_of(const std::vector<std::string>& words) {
   constexpr std::uintmax_t kMostBytes = 64 << 20;  // what is longer is a word
   bool found = false;
   std::string all;
   for (const std::string& word : words) {
     const bool first = &word == &words.front();
-    const bool interpreter = first && (word.find('/') == std::string::npos ||
-                                       std::filesystem::path(word).filename().string().rfind("python", 0) == 0);
+    const bool by_path = first && word.find('/') == std::string::npos;
+    const bool interprets = first && is_interpreter(word);
     Reading reading;
-    if (!found && !interpreter) reading = read_bounded(word, kMostBytes, Origin::user);
-    found = found || reading || word == "-m" || word == "-c";
+    if (!found && !interprets && !by_path) reading = read_bounded(word, kMostBytes, Origin::user);
+    const bool there = first ? !interprets : reading.kind != Reading::Kind::absent;
+    found = found || there || word == "-m" || word == "-c";
     const std::string& text = reading ? reading.text : word;
     all += fmt::format("{} {}:", reading ? "file" : "word", text.size()) + text;
   }
@@ -126,8 +138,7 @@ struct ProcessOptions : Options {
     if (words && checksum.empty()) checksum = checksum_of(*words);
     fields.text(checksum, Field("checksum",
                                 "of the command, with the content of the program in place of its name: of the first "
-                                "word that names a file, but for an interpreter; if absent, that of the program as it "
-                                "is"));
+                                "word, or of what an interpreter runs; if absent, that of the program as it is"));
     fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
                               .in(Unit::second)
                               .above(0)
