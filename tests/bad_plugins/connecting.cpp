@@ -18,6 +18,7 @@ class Backend final : public palpate::Backend {
   Backend(const Options&, const palpate::Context&) {
     if (const char* const file = std::getenv("PALPATE_BUILT")) std::ofstream(file, std::ios::app) << "built\n";
     const char* const awaited = std::getenv("PALPATE_AWAITED");
+    // Between two looks, not for an outcome: the test says when.
     while (awaited != nullptr && !std::ifstream(awaited)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 

@@ -264,7 +264,8 @@ TEST_F(BadPlugin, ThrowingWhenToldOfATapLosesNoTap) {
   environment_.clear();
   EXPECT_NE(palpate({"resume", directory("runs"), "--retry-failed", "--force"}).status, 0);
   environment_ = {test::with_plugin("throws_when_told")};
-  EXPECT_THAT(status_of(directory("runs")).out, HasSubstr("failed after 3 of 30 taps: footprint/throws_when_told: no touch today"));
+  EXPECT_THAT(status_of(directory("runs")).out,
+              HasSubstr("failed after 3 of 30 taps: footprint/throws_when_told: no touch today"));
 }
 
 }  // namespace
