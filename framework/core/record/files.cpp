@@ -229,17 +229,27 @@ std::optional<std::string> first_line_if_there(const fs::path& file) {
   }
 }
 
+namespace {
+
+/// Where the last line of `text` ends.
+std::size_t last_line_end(std::string_view text) {
+  const void* const found = ::memrchr(text.data(), '\n', text.size());
+  return found == nullptr ? std::string_view::npos : static_cast<const char*>(found) - text.data();
+}
+
+}  // namespace
+
 std::optional<LastLine> last_line_if_there(const fs::path& file) {
   // Holds the last line of nearly every record.
-  for (std::uintmax_t bytes = 8192;; bytes *= 16) {
-    const auto end = text_in(read_end_bounded(file, bytes, Origin::record), file, kMostLogBytes);
+  for (std::uintmax_t bytes = 4096;; bytes *= 16) {
+    Reading reading = read_end_bounded(file, bytes, Origin::record);
+    const std::uintmax_t skipped = reading.begin;
+    const auto end = text_in(std::move(reading), file, kMostLogBytes);
     if (!end) return std::nullopt;
-    const bool all = end->size() < bytes;
-    const std::size_t last = end->rfind('\n');
-    const std::size_t before = last == 0 || last == std::string::npos ? std::string::npos : end->rfind('\n', last - 1);
-    if (!all && before == std::string::npos) continue;
+    const std::size_t last = last_line_end(*end);
+    const std::size_t before = last == std::string::npos ? last : last_line_end(std::string_view(*end).substr(0, last));
+    if (skipped > 0 && before == std::string::npos) continue;
     LastLine out;
-    const std::uintmax_t skipped = all ? 0 : size_if_there(file.c_str()).value_or(end->size()) - end->size();
     out.bytes = skipped + end->size();
     if (last == std::string::npos) return out;
     out.whole = skipped + last + 1;

@@ -59,6 +59,7 @@ std::optional<Ending> ending_of(Row line) {
   Ending out;
   out.how = *how;
   out.reason = line.text("reason");
+  out.summary.fields.reserve(line.fields.size());
   for (auto& [name, value] : line.fields) {
     if (name.compare(0, kSummary.size(), kSummary) == 0) {
       out.summary.fields.emplace_back(name.substr(kSummary.size()), std::move(value));

@@ -71,6 +71,14 @@ RunStatus read_ending(const fs::path& directory) {
   return status_of(std::move(record.end), record.begun);
 }
 
+RunStatus read_standing(const fs::path& directory) {
+  RunStatus now = read_ending(directory);
+  if (now.state == RunStatus::State::done) return now;
+  if (is_running(directory)) return {RunStatus::State::running, 0, ""};
+  // Who ended between the two questions has written meanwhile what the first one missed.
+  return read_ending(directory);
+}
+
 bool lacks_files(const fs::path& directory, const Ending& end) {
   // A power cut leaves it empty: what it must hold would have to be written to be compared.
   if (size_if_there((directory / kSummaryFile).c_str()).value_or(0) == 0) return true;

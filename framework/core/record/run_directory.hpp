@@ -47,6 +47,9 @@ std::optional<Row> read_outcome(const std::filesystem::path& directory);
 /// not asked who holds it. Of a damaged line, as read_outcome().
 RunStatus read_ending(const std::filesystem::path& directory);
 
+/// The same, and of one that is not done whether a living process holds it.
+RunStatus read_standing(const std::filesystem::path& directory);
+
 /// Whether a file that was made from the record of an ended run is gone, or has not as many bytes as it had: a kill or
 /// a power cut came between.
 bool lacks_files(const std::filesystem::path& directory, const Ending& end);

@@ -2,11 +2,12 @@
 #include "launch/conduct.hpp"
 
 #include "launch/job.hpp"
+#include "sweep/read_jobs.hpp"
 
 #include <palpate/error.hpp>
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -19,35 +20,35 @@ bool is_gone(const Sweep& sweep) {
   return !std::filesystem::exists(sweep.directory / "manifest.jsonl", trouble) && !trouble;
 }
 
-}  // namespace
+/// Where a job stands.
+struct JobStanding {
+  RunStatus::State state = RunStatus::State::absent;
+  int attempts = 0;  ///< of one that failed
+  std::string reason;
+};
 
-std::vector<std::size_t> all_jobs(const Sweep& sweep) {
-  std::vector<std::size_t> jobs(sweep.jobs.size());
-  std::iota(jobs.begin(), jobs.end(), std::size_t{0});
-  return jobs;
+JobStanding look_at(const std::filesystem::path& directory, Also also) {
+  RunStatus status = also == Also::running ? read_standing(directory) : read_ending(directory);
+  // Whoever takes it up finds it done, and makes the files that are missing.
+  if (also == Also::missing_files && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
+    status.state = RunStatus::State::unfinished;
+  if (status.state != RunStatus::State::failed) return {status.state, 0, ""};
+  return {status.state, attempts_of(directory), std::move(status.stop_reason)};
 }
+
+}  // namespace
 
 Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, Also also) {
   Standing out;
-  for (const std::size_t job : jobs) {
-    const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
-    RunStatus status = read_ending(directory);
-    if (also == Also::running && status.state != RunStatus::State::done) {
-      const bool held = is_running(directory);
-      // Who ended between the two questions has written meanwhile what the first one missed.
-      if (!held) status = read_ending(directory);
-      if (held) status.state = RunStatus::State::running;
-    }
-    // Whoever takes it up finds it done, and makes the files that are missing.
-    if (also == Also::missing_files && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
-      status.state = RunStatus::State::unfinished;
-    ++out.counts[status.state];
-    if (status.state == RunStatus::State::failed) {
-      out.failures.push_back({job, attempts_of(directory), status.stop_reason});
-    } else if (status.state != RunStatus::State::done && status.state != RunStatus::State::running) {
+  const auto look = [also](const std::filesystem::path& directory) { return look_at(directory, also); };
+  read_jobs(sweep, jobs, look, [&](std::size_t job, JobStanding one) {
+    ++out.counts[one.state];
+    if (one.state == RunStatus::State::failed) {
+      out.failures.push_back({job, one.attempts, std::move(one.reason)});
+    } else if (one.state != RunStatus::State::done && one.state != RunStatus::State::running) {
       out.open.push_back(job);
     }
-  }
+  });
   return out;
 }
 

@@ -37,9 +37,6 @@ struct Standing {
   std::vector<SweepFailure> failures;  ///< both in the order of the jobs
 };
 
-/// All of a sweep, as indices into Sweep::jobs.
-std::vector<std::size_t> all_jobs(const Sweep& sweep);
-
 /// What is asked of jobs beside their records: nothing; whether one that is done lacks files, as after a power cut, and
 /// so is open; whether a process has an unfinished one in hand.
 enum class Also { nothing, missing_files, running };

@@ -7,12 +7,14 @@
 #include "record/json.hpp"
 #include "record/resolved.hpp"
 #include "record/session.hpp"
+#include "sweep/read_jobs.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace palpate {
@@ -79,6 +81,12 @@ std::string sweep_id(const Tree& config, const Sweep& sweep) {
   return hash_of(identity.canonical() + manifest_text(sweep, "")).substr(0, kIdLength);
 }
 
+std::vector<std::size_t> all_jobs(const Sweep& sweep) {
+  std::vector<std::size_t> jobs(sweep.jobs.size());
+  std::iota(jobs.begin(), jobs.end(), std::size_t{0});
+  return jobs;
+}
+
 fs::path job_directory(const Sweep& sweep, const Job& job) { return sweep.directory / "jobs" / job.id; }
 
 std::string sweep_name(const Sweep& sweep) {
@@ -136,9 +144,9 @@ std::vector<Row> write_results(const Sweep& sweep) {
 
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep) {
   std::vector<std::optional<Row>> summaries;
-  for (const Job& job : sweep.jobs) {
-    summaries.push_back(read_outcome(job_directory(sweep, job)));
-  }
+  summaries.reserve(sweep.jobs.size());
+  read_jobs(sweep, all_jobs(sweep), read_outcome,
+            [&](std::size_t, std::optional<Row> one) { summaries.push_back(std::move(one)); });
   return summaries;
 }
 
@@ -160,10 +168,9 @@ Row result_row(const Sweep& sweep, const Job& job, Row summary) {
 std::vector<Row> sweep_results(const Sweep& sweep) {
   std::vector<Row> rows;
   rows.reserve(sweep.jobs.size());
-  for (const Job& job : sweep.jobs) {
-    std::optional<Row> summary = read_outcome(job_directory(sweep, job));
-    if (summary) rows.push_back(result_row(sweep, job, std::move(*summary)));
-  }
+  read_jobs(sweep, all_jobs(sweep), read_outcome, [&](std::size_t job, std::optional<Row> summary) {
+    if (summary) rows.push_back(result_row(sweep, sweep.jobs[job], std::move(*summary)));
+  });
   return rows;
 }
 
@@ -180,6 +187,7 @@ std::vector<Row> sweep_results(const Sweep& sweep, std::vector<std::optional<Row
 std::vector<RunOutcome> outcomes_of(const Sweep& sweep) {
   std::vector<RunOutcome> runs;
   const auto seed = std::find(sweep.keys.begin(), sweep.keys.end(), "seed") - sweep.keys.begin();
+  std::vector<std::optional<Row>> summaries = sweep_summaries(sweep);
   for (const Job& job : sweep.jobs) {
     RunOutcome run;
     if (seed < static_cast<std::ptrdiff_t>(sweep.keys.size())) run.seed = job.values[static_cast<std::size_t>(seed)];
@@ -187,7 +195,7 @@ std::vector<RunOutcome> outcomes_of(const Sweep& sweep) {
     run.name = run.label;
     for (std::size_t i = 0; i < sweep.keys.size(); ++i)
       run.name += fmt::format("{}{}={}", i == 0 ? ": " : ", ", sweep.keys[i], job.values[i]);
-    run.summary = read_outcome(job_directory(sweep, job));
+    run.summary = std::move(summaries[static_cast<std::size_t>(job.index)]);
     if (!run.summary) {
       run.failure = "has not run to its end";
     } else if (run.summary->text("status") != "done") {

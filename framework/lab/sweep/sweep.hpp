@@ -50,6 +50,9 @@ Sweep read_sweep(const std::filesystem::path& directory);
 /// What it is called: as all its jobs are if that was said on the command line, else as its config says.
 std::string sweep_name(const Sweep& sweep);
 
+/// All of a sweep, as indices into Sweep::jobs.
+std::vector<std::size_t> all_jobs(const Sweep& sweep);
+
 /// jobs/<id>
 std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
 

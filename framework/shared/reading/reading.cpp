@@ -97,7 +97,9 @@ Reading read_end_bounded(const fs::path& file, std::uintmax_t bytes, Origin orig
     if (size > kMostLogBytes) return Reading{Reading::Kind::too_large, {}};
     const std::uintmax_t begin = size - std::min(size, bytes);
     if (::lseek(number, static_cast<off_t>(begin), SEEK_SET) < 0) return failed(errno);
-    return read_descriptor(number, size - begin, kMostLogBytes);
+    Reading out = read_descriptor(number, size - begin, kMostLogBytes);
+    out.begin = begin;
+    return out;
   });
 }
 

@@ -46,6 +46,7 @@ struct Reading {
   Kind kind = Kind::absent;
   std::string text;          ///< the content of a whole one
   std::error_code reason{};  ///< of one that is absent or failed
+  std::uintmax_t begin = 0;  ///< where in the file the text begins
 
   explicit operator bool() const { return kind == Kind::whole; }
 };

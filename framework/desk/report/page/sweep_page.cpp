@@ -9,6 +9,7 @@
 #include "record/build_info.hpp"
 #include "record/run_directory.hpp"
 #include "report/page/page.hpp"
+#include "sweep/read_jobs.hpp"
 
 #include <algorithm>
 #include <map>
@@ -79,17 +80,6 @@ Json json_of_units(const Sweep& sweep, const std::vector<Row>& results, const st
   std::vector<std::size_t> of_job;
   for (const JobResult& one : jobs) of_job.push_back(numbers.emplace(units.of(one), numbers.size()).first->second);
   return of_job;
-}
-
-/// What became of a job: from its row, or, without one, from its directory as it is now.
-RunStatus standing_of(const Row* row, const fs::path& directory) {
-  if (row != nullptr)
-    return {is_done(*row) ? RunStatus::State::done : RunStatus::State::failed, 0, row->text("stop_reason")};
-  RunStatus out = read_ending(directory);
-  // Who ended since the rows were read was running then.
-  const bool ended = out.state == RunStatus::State::done || out.state == RunStatus::State::failed;
-  if (ended || is_running(directory)) return {RunStatus::State::running, 0, ""};
-  return out;
 }
 
 /// Which jobs are on the page: every one of so many, along the settings one after the other, so that each has its share
@@ -186,18 +176,16 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
   Json jobs;
   Tally tally;
   int looked_at = 0;
-  for (const Job& job : sweep.jobs) {
-    const fs::path directory = job_directory(sweep, job);
-    std::optional<Row> summary = read_outcome(directory);
-    const RunStatus standing = standing_of(summary ? &*summary : nullptr, directory);
-    tally.add(job, standing);
-    if (drawn[static_cast<std::size_t>(job.index)]) {
-      jobs.push_back(json_of_job(job, standing, directory));
-      if (summary) results.push_back(result_row(sweep, job, std::move(*summary)));
-      shown.push_back({&job, summary ? &results.back() : nullptr});
+  read_jobs(sweep, all_jobs(sweep), read_standing, [&](std::size_t index, RunStatus now) {
+    const Job& job = sweep.jobs[index];
+    tally.add(job, now);
+    if (drawn[index]) {
+      jobs.push_back(json_of_job(job, now, job_directory(sweep, job)));
+      if (now.end) results.push_back(result_row(sweep, job, std::move(now.end->summary)));
+      shown.push_back({&job, now.end ? &results.back() : nullptr});
     }
     progress(++looked_at, static_cast<int>(sweep.jobs.size()));
-  }
+  });
   const fs::path directory = fs::absolute(sweep.directory / "").lexically_normal().parent_path();
   Json keys = Json::array();
   for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, shown, key));
