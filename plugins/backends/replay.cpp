@@ -65,9 +65,11 @@ std::string unguarded(const std::string& cell) {
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file) {
-    const Reading reading = read_bounded(file, kMostLogBytes, Origin::user);
+    Reading reading = read_bounded(file, kMostLogBytes, Origin::user);
     const char* const hint = "backend.record names a run directory or a CSV file";
     if (!reading) throw Error(file, words_of(reading, kMostLogBytes).reason, hint);
+    drop_byte_order_mark(reading.text);
+    reading.text.erase(reading.text.find_last_not_of(" \t\r\n") + 1);  // blank lines at the end
     in_.str(reading.text);
     if (!read_row()) throw Error(file, "cannot be read", hint);
     for (std::size_t i = 0; i < cells_.size(); ++i) {

@@ -55,6 +55,30 @@ TEST_F(MeshFile, IsAcceptedWithFacesOfManyCorners) {
             "accepted");
 }
 
+TEST_F(MeshFile, IsReadAsOtherProgramsWriteItToo) {
+  const std::string mark = "\xef\xbb\xbf";
+  std::string capitals = stl_text(block());
+  std::transform(capitals.begin(), capitals.end(), capitals.begin(), [](unsigned char c) { return std::toupper(c); });
+  EXPECT_EQ(refusal("a.stl", capitals), "accepted");
+  EXPECT_EQ(refusal("b.stl", mark + stl_text(block())), "accepted");
+  EXPECT_EQ(refusal("c.stl", stl_binary(block()) + std::string("made by x\0", 10)), "accepted");
+  EXPECT_EQ(refusal("d.obj", mark + obj(block())), "accepted");
+  const std::string whole = ply(block());
+  EXPECT_EQ(refusal("e.ply", mark + whole), "accepted");
+  std::string blanks = whole;
+  const std::size_t body = whole.find("end_header");
+  for (std::size_t at = body + 10; at != std::string::npos;
+       at = at == 0 ? std::string::npos : blanks.rfind('\n', at - 1))
+    blanks.insert(at, " \t");
+  EXPECT_EQ(refusal("f.ply", blanks), "accepted");
+  std::string first = whole;
+  const std::size_t vertices = first.find("element vertex");
+  const std::size_t header = first.find("end_header\n") + 11;
+  first.insert(header, "0.5 3 1 2 3\n0.25 0\n");
+  first.insert(vertices, "element camera 2\nproperty float focus\nproperty list uchar int lens\n");
+  EXPECT_EQ(refusal("g.ply", first), "accepted");
+}
+
 TEST_F(MeshFile, ThatIsMissingSaysWhereRelativePathsStart) {
   EXPECT_THAT(refusal_of("not_there.stl"),
               AllOf(HasSubstr("no such file, a relative path starts in the current folder, "),

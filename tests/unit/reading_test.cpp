@@ -27,6 +27,21 @@ TEST_F(AReading, HasEveryByteOfAFileUpToItsLimitAndNothingOfALargerOne) {
   EXPECT_EQ(read_bounded(folder_.write("empty", ""), 0, Origin::record).kind, Kind::whole);
 }
 
+TEST_F(AReading, OfOneEndOfAFileHasItsBytesAndTellsWhereTheyBegin) {
+  const std::string text = "0123456789";
+  const fs::path file = folder_.write("x", text);
+  for (const std::size_t bytes : {0U, 1U, 9U, 10U, 11U, 100000U}) {
+    const std::size_t there = std::min<std::size_t>(bytes, text.size());
+    const Reading first = read_begin_bounded(file, bytes, Origin::record);
+    const Reading last = read_end_bounded(file, bytes, Origin::record);
+    EXPECT_EQ(first.text, text.substr(0, there)) << bytes;
+    EXPECT_EQ(first.begin, 0U);
+    EXPECT_EQ(last.text, text.substr(text.size() - there)) << bytes;
+    EXPECT_EQ(last.begin, text.size() - there);
+  }
+  EXPECT_EQ(read_end_bounded(folder_.write("empty", ""), 5, Origin::record).text, "");
+}
+
 TEST_F(AReading, CountsTheBytesOfAFileThatSaysThatItHasNone) {
   EXPECT_GT(read_bounded("/proc/self/status", 100'000, Origin::user).text.size(), 100U);
   EXPECT_EQ(kind("/proc/self/status", Origin::user, 100), Kind::too_large);

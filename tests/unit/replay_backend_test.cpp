@@ -39,6 +39,12 @@ TEST_F(ReplayBackend, AnswersByPlaceWithAllThatWasRecorded) {
   EXPECT_EQ(contact.reason, "");
 }
 
+TEST_F(ReplayBackend, ReadsATableWithAByteOrderMarkAndBlankLinesAtItsEnd) {
+  for (const char* end : {"", "\n", "\n\n", "\r\n\r\n", "\n  \n"})
+    EXPECT_EQ(refusal("\xef\xbb\xbfx,y,outcome,height\n0.1,0.1,contact,0.05" + std::string(end)), "accepted");
+  EXPECT_THAT(refusal("x,y,outcome,height\n\n0.1,0.1,contact,0.05\n"), HasSubstr("scan.csv:2: has another number of"));
+}
+
 TEST_F(ReplayBackend, TapsOfOnePlaceAreToldApartByTheirNumberWhateverCameBefore) {
   const auto backend = open(kRecord);
   EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height, 0.09);

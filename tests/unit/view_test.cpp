@@ -64,14 +64,34 @@ TEST(PointFile, LeavesOutWhatACameraDidNotSee) {
   }
 }
 
+TEST(PointFile, IsReadWhateverElementsStandBesideItsVertices) {
+  PointCloud points(3, 2);
+  points << 0.1, 0.4, 0.2, 0.5, 0.3, 0.6;
+  for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    std::string file = ply(points, format);
+    // Two rows: a short, and a list of 2 and of 0 bytes.
+    const std::string rows = format == "ascii"               ? "7 2 1 2\n8 0\n"
+                             : format == "binary_big_endian" ? std::string("\0\7\0\2\1\2\0\10\0\0", 10)
+                                                             : std::string("\7\0\2\0\1\2\10\0\0\0", 10);
+    file.insert(file.find("end_header\n") + 11, rows);
+    file.insert(file.find("element vertex"), "element camera 2\nproperty short a\nproperty list ushort uchar b\n");
+    const PointCloud read = read_points("\xef\xbb\xbf" + file, "view.ply");
+    ASSERT_EQ(read.cols(), 2) << format;
+    EXPECT_LT((read - points).norm(), 1e-6) << format;
+  }
+}
+
 TEST(PointFile, SaysWhatIsWrongWithIt) {
   const PointCloud one = PointCloud::Constant(3, 1, 0.5);
   const auto said = [](const std::string& bytes) { return error_of([&] { read_points(bytes, "view.ply"); }); };
   EXPECT_THAT(said(""), HasSubstr("view.ply: is no PLY or cut short"));
   EXPECT_THAT(said("solid\nend_header\n"), HasSubstr("does not begin with the line 'ply'"));
   EXPECT_THAT(said("ply\nformat ascii 1.0\nend_header\n"), HasSubstr("has no vertices"));
-  EXPECT_THAT(said("ply\nformat ascii 1.0\nelement face 2\nend_header\n"),
-              HasSubstr("does not begin with its vertices"));
+  EXPECT_THAT(said("ply\nformat ascii 1.0\nelement face 2\nproperty int a\nend_header\n1\n2\n"),
+              HasSubstr("has no vertices"));
+  EXPECT_THAT(said("ply\nformat ascii 1.0\nelement face 2\nproperty int a\nend_header\n1\n"),
+              HasSubstr("does not begin with its vertices"))
+      << "cut short";
   EXPECT_THAT(said("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n"),
               HasSubstr("without x, y and z"));
   EXPECT_THAT(said("ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n"),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "view/points.hpp"
 
+#include "reading/ply.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
@@ -200,6 +202,8 @@ class Reader {
 
 }  // namespace
 
-PointCloud read_points(const std::string& bytes, const std::string& file) { return Reader(bytes, file).points(); }
+PointCloud read_points(const std::string& bytes, const std::string& file) {
+  return Reader(plain_ply(bytes, {"vertex"}), file).points();
+}
 
 }  // namespace palpate

@@ -38,21 +38,38 @@ bool job_is_linked(const fs::path& file) {
   return jobs.filename() == "jobs" && (is_link(job) || is_link(jobs));
 }
 
-/// Reads up to `most_bytes`, or no more than `size`; else the size is a hint: files grow, and those of /proc have none.
-Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes, bool no_more = false) {
+/// Reads up to `most_bytes`. The size is a hint: files grow, and those of /proc have none.
+Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes) {
   Reading out{Reading::Kind::whole, {}};
   if (size > most_bytes) return {Reading::Kind::too_large, {}};
   std::string& text = out.text;
-  text.resize(size + (no_more ? 0 : 1));  // one byte more than a file has shows its end
+  text.resize(size + 1);  // one byte more than a file has shows its end
   for (std::size_t read = 0;;) {
     const ssize_t more = ::read(number, text.data() + read, text.size() - read);
     if (more < 0 && errno == EINTR) continue;
     if (more < 0) return failed(errno);
     read += static_cast<std::size_t>(more);
     if (read > most_bytes) return {Reading::Kind::too_large, {}};
-    if (more == 0 || (no_more && read == size)) return text.resize(read), out;
+    if (more == 0) return text.resize(read), out;
     if (read == text.size()) text.resize(2 * text.size() + 4096);
   }
+}
+
+/// Reads the bytes from `begin` to `end`, or as many of them as are there.
+Reading read_part(int number, std::uintmax_t begin, std::uintmax_t end) {
+  if (end > kMostLogBytes) return {Reading::Kind::too_large, {}};
+  Reading out{Reading::Kind::whole, {}};
+  out.begin = begin;
+  out.text.resize(end - begin);
+  for (std::size_t read = 0; read < out.text.size();) {
+    const ssize_t more =
+        ::pread(number, out.text.data() + read, out.text.size() - read, static_cast<off_t>(begin + read));
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0) return failed(errno);
+    if (more == 0) out.text.resize(read);
+    read += static_cast<std::size_t>(more);
+  }
+  return out;
 }
 
 }  // namespace
@@ -88,19 +105,19 @@ Reading read_bounded(const fs::path& file, std::uintmax_t most_bytes, Origin ori
 Reading read_begin_bounded(const fs::path& file, std::uintmax_t bytes, Origin origin) {
   return with_file(file, origin, [&](int number, std::uintmax_t size) {
     if (size > kMostLogBytes) return Reading{Reading::Kind::too_large, {}};
-    return read_descriptor(number, std::min(size, bytes), kMostLogBytes, true);
+    return read_part(number, 0, std::min(size, bytes));
   });
 }
 
 Reading read_end_bounded(const fs::path& file, std::uintmax_t bytes, Origin origin) {
   return with_file(file, origin, [&](int number, std::uintmax_t size) {
-    if (size > kMostLogBytes) return Reading{Reading::Kind::too_large, {}};
-    const std::uintmax_t begin = size - std::min(size, bytes);
-    if (::lseek(number, static_cast<off_t>(begin), SEEK_SET) < 0) return failed(errno);
-    Reading out = read_descriptor(number, size - begin, kMostLogBytes);
-    out.begin = begin;
-    return out;
+    return read_part(number, size - std::min(size, bytes), size);
   });
+}
+
+void drop_byte_order_mark(std::string& text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  if (text.compare(0, kMark.size(), kMark) == 0) text.erase(0, kMark.size());
 }
 
 ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes) {

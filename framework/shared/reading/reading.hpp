@@ -60,6 +60,9 @@ Reading read_bounded(const std::filesystem::path& file, std::uintmax_t most_byte
 Reading read_begin_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 Reading read_end_bounded(const std::filesystem::path& file, std::uintmax_t bytes, Origin origin);
 
+/// Takes the mark away with which some programs begin a text in UTF-8.
+void drop_byte_order_mark(std::string& text);
+
 /// Returns what an Error says of a reading that is not whole: its reason and its remedy. `most_bytes` is the limit that
 /// was given.
 struct ReadingWords {

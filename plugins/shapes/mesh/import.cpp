@@ -2,6 +2,7 @@
 #include "triangles.hpp"
 
 #include "children/child_process.hpp"
+#include "reading/ply.hpp"
 #include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
@@ -19,6 +20,7 @@
 #include <new>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -59,16 +61,19 @@ std::string format_of(const std::string& file) {
               "export it as .stl, .obj or .ply");
 }
 
-/// An STL tells by its length, or by its last word, whether it is complete; assimp reads what is there.
-void check_stl(const std::string& bytes, const std::string& file) {
+/// An STL tells by its length, or by its last word, whether it is complete; assimp reads what is there, and no more
+/// than that. In a binary one bytes may follow, and the words of a text may be in capitals.
+void make_stl_plain(std::string& bytes, const std::string& file) {
   constexpr std::size_t kHeader = 84;
   constexpr std::size_t kTriangle = 50;
   std::uint32_t count = 0;
   if (bytes.size() >= kHeader) std::memcpy(&count, bytes.data() + kHeader - sizeof count, sizeof count);
-  if (bytes.size() >= kHeader && bytes.size() == kHeader + kTriangle * count) {
+  if (bytes.size() >= kHeader && bytes.size() >= kHeader + kTriangle * count) {
     if (count > kMostTriangles) refuse_number(file, count);
-    return;
+    return bytes.resize(kHeader + kTriangle * count);
   }
+  drop_byte_order_mark(bytes);
+  std::transform(bytes.begin(), bytes.end(), bytes.begin(), [](unsigned char c) { return std::tolower(c); });
   const std::string_view text(bytes);
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos || text.substr(begin, 5) != "solid") {
@@ -200,10 +205,12 @@ int answer(const ChildProcess::Say& say, const std::string& bytes, const std::st
 
 }  // namespace
 
-Soup import_triangles(const std::string& bytes, const std::string& file) {
+Soup import_triangles(std::string bytes, const std::string& file) {
   const std::string format = format_of(file);
-  if (format == "stl") check_stl(bytes, file);
+  if (format == "stl") make_stl_plain(bytes, file);
+  if (format == "ply") bytes = plain_ply(std::move(bytes), {"vertex", "face", "tristrips"});
   if (format == "ply") check_ply(bytes, file);
+  if (format == "obj") drop_byte_order_mark(bytes);
   // On some broken files assimp 5.2 crashes, aborts or never ends, which must not befall the experiment.
   const std::unique_ptr<ChildProcess> reader =
       ChildProcess::fork([&](const ChildProcess::Say& say) { return answer(say, bytes, file, format); });

@@ -23,7 +23,7 @@ using Soup = std::vector<std::array<float, 3>>;
 /// more than three corners are divided. Reads no other file, such as the materials of an OBJ. Works in a process of its
 /// own, which a broken file may kill. Throws Error, its `where` the file: another format, cut short, not to be
 /// understood, no triangle, too many.
-Soup import_triangles(const std::string& bytes, const std::string& file);
+Soup import_triangles(std::string bytes, const std::string& file);
 
 /// In metres, in the frame of Shape: resting on the plane 0, the rectangle around the outline centred.
 struct Triangles {

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "reading/ply.hpp"
+
+#include "reading/reading.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+/// Bytes of a scalar in a binary file; 0 for an unknown name.
+std::size_t size_of(const std::string& type) {
+  constexpr std::array<std::pair<const char*, std::size_t>, 16> kSizes{{{"char", 1},
+                                                                        {"int8", 1},
+                                                                        {"uchar", 1},
+                                                                        {"uint8", 1},
+                                                                        {"short", 2},
+                                                                        {"int16", 2},
+                                                                        {"ushort", 2},
+                                                                        {"uint16", 2},
+                                                                        {"int", 4},
+                                                                        {"int32", 4},
+                                                                        {"uint", 4},
+                                                                        {"uint32", 4},
+                                                                        {"float", 4},
+                                                                        {"float32", 4},
+                                                                        {"double", 8},
+                                                                        {"float64", 8}}};
+  const auto found = std::find_if(kSizes.begin(), kSizes.end(), [&](const auto& one) { return type == one.first; });
+  return found == kSizes.end() ? 0 : found->second;
+}
+
+struct Property {
+  std::size_t count_size = 0;  ///< of a list, of the number that says how many follow; else 0
+  std::size_t size = 0;
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t rows = 0;
+  std::vector<Property> properties;
+  std::string header;     ///< its lines
+  std::string_view body;  ///< its rows
+};
+
+/// Splits a file; false where it is not sound.
+class Splitter {
+ public:
+  explicit Splitter(const std::string& bytes) : rest_(bytes) {}
+
+  bool split() {
+    return read_header() && std::all_of(elements.begin(), elements.end(), [&](Element& one) { return read_rows(one); });
+  }
+
+  std::string begin;  ///< of the header, before the first element
+  std::vector<Element> elements;
+
+ private:
+  /// The next line without its end; none where no end comes.
+  std::optional<std::string_view> line() {
+    const std::size_t end = rest_.find('\n');
+    if (end == std::string_view::npos) return std::nullopt;
+    std::string_view out = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    if (!out.empty() && out.back() == '\r') out.remove_suffix(1);
+    return out;
+  }
+
+  bool read_header() {
+    for (bool first = true;; first = false) {
+      const auto text = line();
+      if (!text) return false;
+      std::istringstream in{std::string(*text)};
+      std::vector<std::string> words;
+      for (std::string word; in >> word;) words.push_back(word);
+      if (words.empty() || (first && words != std::vector<std::string>{"ply"})) return false;
+      if (words.front() == "end_header") return words.size() == 1;
+      if (!read_line(words)) return false;
+      std::string& header = elements.empty() ? begin : elements.back().header;
+      if (words.front() == "comment" || words.front() == "obj_info") continue;
+      for (const std::string& word : words) header += (&word == &words.front() ? "" : " ") + word;
+      header += '\n';
+    }
+  }
+
+  bool read_line(const std::vector<std::string>& words) {
+    const std::string& first = words.front();
+    if (first == "format" && words.size() == 3) return format_ = words[1], true;
+    if (first == "element" && words.size() == 3) {
+      const bool is_count = words[2].size() <= 9 && words[2].find_first_not_of("0123456789") == std::string::npos;
+      if (is_count) elements.push_back({words[1], std::stoull(words[2]), {}, "", {}});
+      return is_count;
+    }
+    if (first != "property") return true;
+    if (elements.empty()) return false;
+    if (words.size() == 3) elements.back().properties.push_back({0, size_of(words[1])});
+    if (words.size() == 5 && words[1] == "list")
+      elements.back().properties.push_back({size_of(words[2]), size_of(words[3])});
+    return elements.back().properties.empty() ? false : elements.back().properties.back().size > 0;
+  }
+
+  bool read_rows(Element& element) {
+    const std::string_view all = rest_;
+    for (std::uint64_t row = 0; row < element.rows; ++row) {
+      if (!(format_ == "ascii" ? read_ascii_row() : read_binary_row(element))) return false;
+    }
+    element.body = all.substr(0, all.size() - rest_.size());
+    return true;
+  }
+
+  /// The last row may lack its end.
+  bool read_ascii_row() {
+    if (rest_.empty()) return false;
+    if (!line()) rest_ = {};
+    return true;
+  }
+
+  bool read_binary_row(const Element& element) {
+    for (const Property& one : element.properties) {
+      const std::uint64_t count = one.count_size == 0 ? 1 : count_in(one.count_size);
+      if (rest_.size() < one.count_size || (rest_.size() - one.count_size) / one.size < count) return false;
+      rest_.remove_prefix(one.count_size + count * one.size);
+    }
+    return true;
+  }
+
+  std::uint64_t count_in(std::size_t size) const {
+    std::uint64_t out = 0;
+    for (std::size_t i = 0; i < std::min(size, rest_.size()); ++i) {
+      const std::size_t at = format_ == "binary_big_endian" ? i : size - 1 - i;
+      if (at < rest_.size()) out = (out << 8) | static_cast<unsigned char>(rest_[at]);
+    }
+    return out;
+  }
+
+  std::string_view rest_;
+  std::string format_;
+};
+
+}  // namespace
+
+std::string plain_ply(std::string bytes, const std::vector<std::string>& elements) {
+  drop_byte_order_mark(bytes);
+  Splitter file(bytes);
+  if (!file.split()) return bytes;
+  std::string header = file.begin;
+  std::string body;
+  for (const std::string& name : elements) {
+    for (const Element& one : file.elements) {
+      if (one.name != name) continue;
+      header += one.header;
+      body += one.body;
+      if (!body.empty() && header.find("format ascii") != std::string::npos && body.back() != '\n') body += '\n';
+    }
+  }
+  return header + "end_header\n" + body;
+}
+
+}  // namespace palpate
