@@ -21,6 +21,8 @@ std::vector<PluginCase> plugin_cases() {
   std::vector<PluginCase> out{
       {"mesh", "mesh", "{" + cup + ", unit: 1 mm}"},
       {"mesh_on_its_side", "mesh", "{" + cup + ", unit: 0.4 mm, up: y}"},
+      {"height_map", "height_map",
+       "{file: '" + (source_folder() / "tests/data/heights/map.csv").string() + "', unit: 1 um, spacing: 1 cm}"},
       {"polygon", "polygon", "{outline: [[0 cm, 0 cm], [9 cm, 1 cm], [3 cm, 3 cm], [2 cm, 8 cm]]}"},
       {"compound", "compound",
        "{parts: [{type: dome, at: [3 cm, 1 cm]}, {type: ring, at: [-5 cm, 0 cm]}, {type: slope, rotation: 20 deg}]}"},

@@ -48,13 +48,24 @@ std::string read_file(const std::string& file) {
       hint = "a relative path starts in the current folder, " + fs::current_path().string();
     throw Error(file, "no such file", hint);
   }
-  if (reading.kind == Reading::Kind::not_regular)
-    throw Error(file, "not a regular file", "name a file in the format STL, OBJ or PLY");
-  if (reading.kind == Reading::Kind::too_large)
-    throw Error(file, "has more than 500 MB", "reduce the number of triangles");
+  if (reading.kind == Reading::Kind::not_regular) throw Error(file, "not a regular file", "name a file");
+  if (reading.kind == Reading::Kind::too_large) throw Error(file, "has more than 500 MB", "reduce what it holds");
   if (!reading) throw Error(file, words_of(reading, kMostMeshBytes).reason);
   if (reading.text.empty()) throw Error(file, "is empty", "export it again");
   return std::move(reading.text);
+}
+
+void list_checksum(const std::string& file, std::string& checksum, Fields& fields) {
+  // So that the id of a run follows the content of the file, and a run is not carried on with another.
+  std::string found;
+  try {
+    if (!file.empty()) found = checksum_of(read_file(file));
+  } catch (const Error& trouble) {  // which has the place of the file, but not of who names it
+    fields.require(false, "file", trouble.what());
+  }
+  checksum = found;
+  fields.text(checksum, Field("checksum", "of the file's content; if absent, that of the file as it is"));
+  fields.require(checksum == found, "checksum", "is not that of " + file + ", which has " + found);
 }
 
 void MeshOptions::list(Fields& fields) {
@@ -66,11 +77,7 @@ void MeshOptions::list(Fields& fields) {
                 {{"z", "as in most STL files", {}}, {"y", "as in most OBJ files", {}}});
   fields.choice(holes, Field("holes", "in the surface, edges of one triangle only"),
                 {{"refuse", "with their number and the first", {}}, {"allow", "lines pass through them", {}}});
-  // So that the id of a run follows the content of the file, and a run is not carried on with another.
-  const std::string found = file.empty() ? std::string() : checksum_of(read_file(file));
-  checksum = found;
-  fields.text(checksum, Field("checksum", "of the file's content; if absent, that of the file as it is"));
-  fields.require(checksum == found, "checksum", "is not that of " + file + ", which has " + found);
+  list_checksum(file, checksum, fields);
 }
 
 }  // namespace palpate::shapes

@@ -21,6 +21,10 @@ struct MeshOptions : Options {
   void list(Fields& fields) override;
 };
 
+/// Lists `checksum`, that of the content of `file`, which the field `file` named: so that the id of a run follows it. A
+/// file that cannot be read, or is another than a record says, is refused at its field.
+void list_checksum(const std::string& file, std::string& checksum, Fields& fields);
+
 /// The whole file. Throws Error, its `where` the file: missing, not readable, no regular file, empty, or larger than
 /// 500 MB.
 std::string read_file(const std::string& file);

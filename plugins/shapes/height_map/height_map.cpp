@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// An object as heights on a grid: what a depth camera, a profilometer or a terrain's table holds. Between the nodes it
+// is flat triangles, two a cell, so that where a line meets it is exact up to rounding.
+#include "grid.hpp"
+#include "shapes/mesh/options.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/plugin.hpp>
+#include <palpate/shape.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate::shapes {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+struct HeightMapOptions : Options {
+  std::string file;
+  double unit = 0.001;
+  double spacing = 0.001;
+  std::string checksum;
+
+  void list(Fields& fields) override {
+    fields.text(file, Field("file",
+                            "CSV, NPY or PNG (8 or 16 bits, grey); the first row is at the far side, as in an image; a "
+                            "relative path starts in the current folder")
+                          .needed()
+                          .not_identifying());
+    fields.real(unit, Field("unit", "height that a value of 1 in the file means").in(Unit::metre).above(0).needed());
+    fields.real(spacing,
+                Field("spacing", "from one value to the next, along and across").in(Unit::metre).above(0).needed());
+    list_checksum(file, checksum, fields);
+  }
+};
+
+class HeightMap final : public Shape {
+ public:
+  using Options = HeightMapOptions;
+  HeightMap(const Options& options, const Context&) : spacing_(options.spacing) {
+    const Grid all = read_grid(read_file(options.file), options.file);
+    // Rows and columns of zeros around the object are the desk's, but for the ones to which it slopes down.
+    const auto [first_row, rows] = range_of(all.rowwise().maxCoeff() > 0.0);
+    const auto [first_column, columns] = range_of((all.colwise().maxCoeff() > 0.0).transpose());
+    heights_ = options.unit * all.block(first_row, first_column, rows, columns).colwise().reverse();
+    highest_ = heights_.maxCoeff();
+    half_length_ = spacing_ * static_cast<double>(columns - 1) / 2;
+    half_width_ = spacing_ * static_cast<double>(rows - 1) / 2;
+    constexpr double kLargest = 2.0;
+    const double size = std::max({2 * half_length_, 2 * half_width_, highest_});
+    if (size > kLargest) {
+      throw Error(options.file, "is " + std::to_string(size) + " m large, at most 2 m are allowed",
+                  "are unit and spacing right?");
+    }
+  }
+
+  double first_hit(const Line& line) const override {
+    double out = kInfinity;
+    visit(line, [&](const Stretch& one) { return out = one.begin, false; });
+    return out;
+  }
+
+  std::vector<Stretch> stretches(const Line& line) const override {
+    std::vector<Stretch> out;
+    visit(line, [&](const Stretch& one) { return out.push_back(one), true; });
+    return out;
+  }
+
+  double support(const Vector3d& direction) const override {
+    double out = -kInfinity;
+    for (Index row = 0; row < heights_.rows(); ++row) {
+      for (Index column = 0; column < heights_.cols(); ++column) {
+        const double up = std::max(0.0, direction.z() * heights_(row, column));
+        out = std::max(out, direction.x() * x_of(column) + direction.y() * y_of(row) + up);
+      }
+    }
+    return out;
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  /// From one before the first that holds to one behind the last, as far as there are any: the first, and how many.
+  template <class Holds>
+  static std::pair<Index, Index> range_of(const Holds& holds) {
+    Index first = holds.size();
+    Index last = -1;
+    for (Index i = 0; i < holds.size(); ++i) {
+      if (!holds(i)) continue;
+      first = std::min(first, i);
+      last = i;
+    }
+    first = std::max<Index>(0, first - 1);
+    last = std::min<Index>(holds.size() - 1, last + 1);
+    return {first, last - first + 1};
+  }
+
+  double x_of(Index column) const { return spacing_ * static_cast<double>(column) - half_length_; }
+  double y_of(Index row) const { return spacing_ * static_cast<double>(row) - half_width_; }
+
+  /// The height over a place within the rectangle: linear in each of the two triangles of a cell, which the diagonal
+  /// from its upper left to its lower right divides.
+  double height(double x, double y) const {
+    const auto cell = [&](double place, Index count) {
+      return std::clamp<Index>(static_cast<Index>(std::floor(place)), 0, count - 2);
+    };
+    const double across = (x + half_length_) / spacing_;
+    const double along = (y + half_width_) / spacing_;
+    const Index column = cell(across, heights_.cols());
+    const Index row = cell(along, heights_.rows());
+    const double u = std::clamp(across - static_cast<double>(column), 0.0, 1.0);
+    const double v = std::clamp(along - static_cast<double>(row), 0.0, 1.0);
+    const double right = heights_(row, column + 1);
+    const double left = heights_(row + 1, column);
+    if (u + v <= 1.0) {
+      const double corner = heights_(row, column);
+      return corner + u * (right - corner) + v * (left - corner);
+    }
+    const double corner = heights_(row + 1, column + 1);
+    return corner + (1.0 - u) * (left - corner) + (1.0 - v) * (right - corner);
+  }
+
+  /// The part of the line over the rectangle and between the desk and the highest node; none where it misses that.
+  std::optional<Stretch> clipped(const Line& line) const {
+    Stretch out{-kInfinity, kInfinity};
+    const std::array<double, 3> low{-half_length_, -half_width_, 0.0};
+    const std::array<double, 3> high{half_length_, half_width_, highest_};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double at = line.origin(static_cast<Index>(i));
+      const double slope = line.direction(static_cast<Index>(i));
+      if (slope == 0.0) {
+        if (at < low[i] || at > high[i]) return std::nullopt;
+        continue;
+      }
+      const double one = (low[i] - at) / slope;
+      const double other = (high[i] - at) / slope;
+      out.begin = std::max(out.begin, std::min(one, other));
+      out.end = std::min(out.end, std::max(one, other));
+    }
+    return out.begin <= out.end ? std::optional(out) : std::nullopt;
+  }
+
+  /// The places within `part` at which the line passes from one triangle to the next, in their order, with both ends.
+  std::vector<double> crossings(const Line& line, const Stretch& part) const {
+    std::vector<double> out{part.begin, part.end};
+    const auto add = [&](double place, double slope) {
+      if (slope == 0.0) return;
+      const double from = place + slope * part.begin;
+      const double to = place + slope * part.end;
+      for (double node = std::ceil(std::min(from, to)); node <= std::max(from, to); ++node) {
+        const double at = (node - place) / slope;
+        if (at > part.begin && at < part.end) out.push_back(at);
+      }
+    };
+    const double x = (line.origin.x() + half_length_) / spacing_;
+    const double y = (line.origin.y() + half_width_) / spacing_;
+    const double along_x = line.direction.x() / spacing_;
+    const double along_y = line.direction.y() / spacing_;
+    add(x, along_x);
+    add(y, along_y);
+    add(x + y, along_x + along_y);  // the diagonals
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  /// Calls visit(stretch) for the parts of the line within the solid, in their order, as long as it returns true. How
+  /// far the line is below the surface is linear between two crossings.
+  template <class Visit>
+  void visit(const Line& line, const Visit& visit) const {
+    const std::optional<Stretch> part = clipped(line);
+    if (!part) return;
+    struct Place {
+      double at, depth;
+    };
+    const auto height_at = [&](double at) {
+      const Vector3d point = line.origin + at * line.direction;
+      return height(point.x(), point.y());
+    };
+    const auto look = [&](double at) { return Place{at, height_at(at) - (line.origin.z() + at * line.direction.z())}; };
+    std::optional<Stretch> open;
+    std::optional<Place> before;
+    for (const double at : crossings(line, *part)) {
+      const Place now = look(at);
+      if (before) {
+        // One triangle is between them, and where that lies on the desk there is no object, whatever rounding says.
+        const bool has_object = height_at((before->at + now.at) / 2) > 0.0;
+        const bool was_in = before->depth >= 0.0;
+        const bool is_in = now.depth >= 0.0;
+        const double share = was_in == is_in ? 0.0 : before->depth / (before->depth - now.depth);
+        const double meets = before->at + share * (now.at - before->at);
+        if (has_object && (was_in || is_in)) {
+          const double begin = was_in ? before->at : meets;
+          const double end = is_in ? now.at : meets;
+          if (!open) open = Stretch{begin, end};
+          open->end = end;
+        }
+        const bool goes_on = has_object && is_in;
+        if (open && !goes_on) {
+          if (!visit(*open)) return;
+          open.reset();
+        }
+      }
+      before = now;
+    }
+    if (open) visit(*open);
+  }
+
+  double spacing_;
+  Grid heights_;  ///< metres; a row from the near side to the far one, along x
+  double highest_ = 0.0, half_length_ = 0.0, half_width_ = 0.0;
+};
+
+PALPATE_PLUGIN(Shape, HeightMap, "height_map", "heights on a grid, from a table, an array of NumPy or an image")
+
+}  // namespace palpate::shapes
