@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // No arm: whoever runs the experiment makes the taps and tells what came of them, as Experiment of the Python module
-// does. Of the scene only the area and the desk count. CallersRun reads the options.
+// does. Of the scene only the area and the desk count, and the objects where they are said to be true. CallersRun reads
+// the options.
 #include <palpate/backend.hpp>
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
@@ -11,6 +12,7 @@ namespace palpate::backends {
 struct CallerOptions : Options {
   double hover = 0.135;
   double overrun = 0.03;
+  bool scene_is_truth = false;
 
   void list(Fields& fields) override {
     fields.real(hover,
@@ -25,21 +27,28 @@ struct CallerOptions : Options {
                     .in(Unit::metre)
                     .at_least(0)
                     .from("as motion.overrun of the other backends"));
+    fields.flag(scene_is_truth, Field("scene_is_truth",
+                                      "the caller taps the objects of `scene`, as in a simulation of his own: so the "
+                                      "errors of each tap are known")
+                                    .neutral(false));
   }
 };
 
 class Caller final : public Backend {
  public:
   using Options = CallerOptions;
-  Caller(const Options&, const Context&) {}
+  Caller(const Options& options, const Context&) : scene_is_truth_(options.scene_is_truth) {}
 
   /// Nobody asks: see CallersRun.
   Contact tap(const TapRequest&) override {
     throw Error("", "makes no taps: the caller does", "ask and tell from Python", Error::Kind::run);
   }
-  /// What is at the caller's end, nobody knows.
+  /// What is at the caller's end, only he knows.
   bool repeatable() const override { return false; }
-  bool scene_is_truth() const override { return false; }
+  bool scene_is_truth() const override { return scene_is_truth_; }
+
+ private:
+  bool scene_is_truth_;
 };
 
 PALPATE_PLUGIN(Backend, Caller, "caller",

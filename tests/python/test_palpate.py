@@ -100,6 +100,18 @@ class Module(InFolder):
         self.assertIsNone(told.truth, "nobody knows what a caller taps")
         self.assertIn("all equal", program("replay", experiment.directory))
 
+    def test_a_caller_who_taps_the_scene_has_the_errors_of_the_simulator(self):
+        felt = palpate.run(DEFAULT, "taps=14", "backend=gentle", seed=5, runs=self.folder)
+        with self.begun("taps=14", "backend.scene_is_truth=true", seed=5) as experiment:
+            for row in felt.taps:
+                experiment.ask()
+                experiment.tell(row["height"], row["force"], row["robot_seconds"])
+        told = palpate.load(experiment.directory)
+        for error in ("rmse_m", "rmse_on_surface_m", "footprint_iou", "coverage_95", "object_iou"):
+            self.assertIsNotNone(felt.summary[error], error)
+            self.assertEqual(told.summary[error], felt.summary[error], error)
+        np.testing.assert_array_equal(told.truth, felt.truth)
+
     def test_what_is_believed_is_read_only_and_to_look_leaves_the_record_as_it_is(self):
         for config in (DEFAULT, CONFIGS / "paper" / "object_i.yaml"):
             records = []

@@ -336,8 +336,9 @@ class Belief:
 class Experiment:
     """An experiment whose taps the caller makes: ask() says where, tell() takes what came of it.
 
-    The config's backend is replaced by `caller`; of its scene only area and desk count. The record is that of `palpate
-    run`, in `runs`: it can be replayed, reported, and carried on by Experiment.resume(). As a context manager it
+    The config's backend is replaced by `caller`; of its scene only area and desk count, unless
+    `backend.scene_is_truth=true` says that its objects are what is tapped: then errors are known. The record is that of
+    `palpate run`, in `runs`: it can be replayed, reported, and carried on by Experiment.resume(). As a context manager it
     is closed at the end, and finished before, unless by an exception or while a tap is still to be told (after `break`):
     then it can be carried on. Threads may share it: one call at a time is at work. The child of a fork may not use it.
     """
