@@ -50,6 +50,7 @@ int list_runs(Program&, const ListArguments& arguments) {
     // One that is damaged is no reason to be silent about the others.
     if (trouble) mention(fmt::format("{}\n", trouble->what()));
   }
+  tell_apart(records);
   std::vector<Row> rows;
   if (where) {
     rows = rows_where(records, *where);

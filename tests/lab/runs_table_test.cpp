@@ -2,8 +2,10 @@
 // What `palpate list` shows of a run: folders written by hand, of which every cell is known.
 #include "analysis/runs_table.hpp"
 
+#include "config/yaml.hpp"
 #include "support/parts.hpp"
 #include "support/testing.hpp"
+#include "sweep/sweep.hpp"
 
 #include <cstdlib>
 #include <ctime>
@@ -50,6 +52,12 @@ class RunsTable : public InFolder {
     return run(name, hours,
                R"({"status": "done", "taps": 30, "rmse_m": )" + rmse + R"(, "footprint_iou": 0.875, "found": true})");
   }
+  static std::vector<Row> rows_of(std::vector<ListedRecord> records) {
+    tell_apart(records);
+    std::vector<Row> out;
+    for (ListedRecord& one : records) out.push_back(std::move(one.row));
+    return out;
+  }
   static std::vector<std::string> names_where(const std::vector<ListedRecord>& records, const std::string& where) {
     std::vector<std::string> names;
     for (const Row& row : rows_where(records, Condition::of_command_line(where))) names.push_back(row.text("name"));
@@ -62,21 +70,62 @@ TEST_F(RunsTable, IsThisLetterByLetter) {
   folder_.write("killed/record.jsonl",
                 begun_record() + "{\"tap\": 1, \"outcome\": \"contact\"}\n{\"tap\": 2, \"outcome\": \"contact\"}\n{");
   folder_.write("failed/record.jsonl", ended(R"({"status": "failed", "taps": 3, "rmse_m": null})"));
-  const std::vector<Row> rows{list_record(done("first", 1, "0.0123")).row, list_record(killed).row,
-                              list_record(run("failed", 27)).row};
+  const std::vector<Row> rows =
+      rows_of({list_record(done("first", 1, "0.0123")), list_record(killed), list_record(run("failed", 27))});
   const std::string in = folder_.path().string() + "/";
   EXPECT_EQ(runs_table(rows),
-            "name    begun                strategy  scene      taps  rmse_m [mm]   IoU  state       "
+            "name    begun                strategy  scene      taps  rmse_m [mm]   IoU  state       set apart by  "
             "directory\n"
-            "first   2026-03-01T01:00:00  mixture   wave, box    30         12.3  0.88  done        " +
+            "first   2026-03-01T01:00:00  mixture   wave, box    30         12.3  0.88  done                      " +
                 in + "first\n" +
                 "killed  2026-03-02T02:00:00  mixture   wave, box     2                     "
-                "unfinished  " +
+                "unfinished                " +
                 in + "killed\n" +
                 "failed  2026-03-02T03:00:00  mixture   wave, box     3                     failed"
-                "      " +
+                "                    " +
                 in + "failed\n");
   EXPECT_EQ(runs_table({}), "");
+}
+
+TEST_F(RunsTable, SetsThoseOfANameApartByTheKeysInWhichTheyDiffer) {
+  const auto begun = [&](const std::string& id, const std::string& config) {
+    return list_record(folder_.write(id + "/config.yaml", "name: a\n" + config).parent_path());
+  };
+  const std::vector<Row> rows = rows_of({begun("1", "taps: 30\nkernel: {type: rbf, length_scale: 1 cm}\nseed: 1\n"),
+                                         begun("2", "taps: 30\nkernel: {type: rbf, length_scale: 2 cm}\nseed: 2\n"),
+                                         list_record(done("other", 1, "0.01"))});
+  EXPECT_EQ(rows.at(0).text("apart"), "seed 1, kernel.length_scale 1 cm");
+  EXPECT_EQ(rows.at(1).text("apart"), "seed 2, kernel.length_scale 2 cm");
+  EXPECT_EQ(rows.at(2).text("apart"), "") << "the only one of its name";
+}
+
+TEST_F(RunsTable, TellsOfASweepWhatItSweepsAndOfWhichStrategyAndSceneItsJobsAre) {
+  Sweep sweep{folder_.path() / "many", {"seed", "kernel.length_scale"}, {}};
+  for (int job = 0; job < 4; ++job)
+    sweep.jobs.push_back({job, fmt::format("{:012x}", job), {std::to_string(job), job < 2 ? "1 cm" : "2 cm"}});
+  const std::string config = "name: many\nacquisition: {type: mixture}\nscene: {objects: [{type: wave}]}\n";
+  folder_.write("many/config.yaml", config);
+  folder_.write("many/manifest.jsonl", manifest_text(sweep, sweep_id(parse_yaml(config, "config.yaml"), sweep)));
+  folder_.write("many/jobs/000000000000/config.yaml",
+                "acquisition:\n  type: mixture  # configs/acquisition/fill.yaml:3:9\n"
+                "scene:\n  desk: 0 m  # a b/scene/ring.yaml:1:1\n");
+  const Row row = rows_of({list_record(sweep.directory)}).at(0);
+  EXPECT_EQ(row.text("strategy"), "fill");
+  EXPECT_EQ(row.text("scene"), "ring");
+  EXPECT_EQ(row.text("apart"), "seed (4), kernel.length_scale (2)");
+}
+
+TEST_F(RunsTable, CallsItAStrategyOfTheCallerWhereHisScoresChoseTaps) {
+  const auto strategy = [&](const std::string& source) {
+    const fs::path config =
+        folder_.write("told/config.yaml", "name: told\nbackend: {type: caller}\nacquisition: {type: mixture}\n");
+    folder_.write(
+        "told/record.jsonl",
+        begun_record() + "{\"tap\": 1, \"source\": \"initial\"}\n{\"tap\": 2, \"source\": \"" + source + "\"}\n");
+    return list_record(config.parent_path()).row.text("strategy");
+  };
+  EXPECT_EQ(strategy("caller"), "scores of the caller");
+  EXPECT_EQ(strategy("acquisition"), "mixture");
 }
 
 TEST_F(RunsTable, CallsStrategyAndSceneAsTheGroupsAreThatTheConfigNamed) {

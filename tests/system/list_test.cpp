@@ -24,10 +24,12 @@ TEST_F(List, ShowsRunsAndSweepsInTheOrderInWhichTheyWereBegun) {
   const fs::path last = ran("taps=4 name=last scene=ring");
   const Ended all = list();
   EXPECT_EQ(all.err, "");
-  EXPECT_THAT(all.out, MatchesRegex("name +begun +strategy +scene +taps +rmse_m \\[mm\\] +IoU +state +directory\n"
-                                    "object_i +[-0-9T:]+ +weighted +object_i +3 .* done +runs/object_i/[0-9a-f]+\n"
-                                    "many +[-0-9T:]+ +weighted, uncertainty +wave +4 of 4 jobs done +runs/many/.*\n"
-                                    "last +[-0-9T:]+ +weighted +ring +4 .* done +runs/last/[0-9a-f]+\n"));
+  EXPECT_THAT(all.out,
+              MatchesRegex("name +begun +strategy +scene +taps +rmse_m \\[mm\\] +IoU +state +set apart by +directory\n"
+                           "object_i +[-0-9T:]+ +weighted +object_i +3 .* done +runs/object_i/[0-9a-f]+\n"
+                           "many +[-0-9T:]+ +weighted, uncertainty +object_i +4 of 4 jobs done +seed \\(2\\), "
+                           "acquisition \\(2\\) +runs/many/.*\n"
+                           "last +[-0-9T:]+ +weighted +ring +4 .* done +runs/last/[0-9a-f]+\n"));
   EXPECT_EQ(lines(list({"runs/last"}).out), 2);
   EXPECT_THAT(list({"--where", "jobs_done == 4"}).out, AllOf(HasSubstr("many"), Not(HasSubstr("last"))));
   const std::string json = list({"--json", "--where", "taps == 4 and seed == 1"}).out;
@@ -46,7 +48,7 @@ TEST_F(List, OfWhatIsDamagedSaysSoAndShowsTheRest) {
   replace(sweep / "config.yaml", "taps: ", "taps: 1");
   const Ended all = list();
   EXPECT_EQ(lines(all.out), 3) << all.out;
-  EXPECT_THAT(all.out, ContainsRegex("object_i .* 1 +unfinished +runs/object_i/"));
+  EXPECT_THAT(all.out, ContainsRegex("object_i .* 1 +unfinished +seed 2 +runs/object_i/"));
   EXPECT_EQ(lines(all.err), 3) << all.err;
   EXPECT_THAT(all.err, HasSubstr("record.jsonl: its last line is not a JSON object, put the file back"));
   EXPECT_THAT(all.err, HasSubstr("config.yaml or manifest.jsonl was changed since this sweep began"));

@@ -5,6 +5,7 @@
 #include "launch/conduct.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
+#include "record/files.hpp"
 #include "record/record_reader.hpp"
 #include "record/run_directory.hpp"
 #include "record/session.hpp"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <unordered_set>
 
 namespace palpate {
@@ -77,6 +79,33 @@ std::string swept_at(const Sweep& sweep, const char* key) {
   return in_short(values, "values");
 }
 
+std::string strategy_of(const Origins& origins, const Row& config) {
+  const char* const chosen = "acquisition.type";
+  return first_of({origins.group(chosen, "strategy"), origins.group(chosen, "acquisition"), config.text(chosen)});
+}
+
+std::string scene_of(const Origins& origins, const Row& config) {
+  return first_of({origins.group("scene.", "scene"), shapes_in(config)});
+}
+
+/// "seed (30), acquisition (2)": the swept keys, each with how many values it has.
+std::string swept_words(const Sweep& sweep) {
+  std::vector<std::string> out;
+  for (std::size_t key = 0; key < sweep.keys.size(); ++key) {
+    std::set<std::string> values;
+    for (const Job& job : sweep.jobs) values.insert(job.values[key]);
+    if (values.size() > 1) out.push_back(fmt::format("{} ({})", sweep.keys[key], values.size()));
+  }
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+/// Whether scores that a caller gave, and not the acquisition of the config, chose a tap.
+bool by_callers_scores(const fs::path& directory, const Row& config) {
+  if (config.text("backend.type") != "caller") return false;
+  const std::vector<Row> taps = read_run_record(directory).taps;
+  return std::any_of(taps.begin(), taps.end(), [](const Row& tap) { return tap.text("source") == "caller"; });
+}
+
 /// A text, null if there is none.
 Scalar text_or_null(const std::string& text) { return text.empty() ? Scalar() : Scalar(text); }
 
@@ -85,10 +114,9 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   Row& row = out.row;
   row.add("name", text_or_null(config.text("name")));
   row.add("begun", text_or_null(begun_text(directory)));
-  const char* const chosen = "acquisition.type";
-  row.add("strategy", text_or_null(first_of({origins.group(chosen, "strategy"), origins.group(chosen, "acquisition"),
-                                             config.text(chosen)})));
-  row.add("scene", text_or_null(first_of({origins.group("scene.", "scene"), shapes_in(config)})));
+  const std::string by_caller = by_callers_scores(directory, config) ? "scores of the caller" : "";
+  row.add("strategy", text_or_null(first_of({by_caller, strategy_of(origins, config)})));
+  row.add("scene", text_or_null(scene_of(origins, config)));
   const std::optional<Row> summary = read_summary(directory);
   // Only the taps of what has not ended are counted: of the rest the summary tells their number.
   const RunStatus status = summary ? read_ending(directory) : read_status(directory);
@@ -104,9 +132,15 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
   Row& row = out.row;
   row.add("name", text_or_null(sweep_name(sweep)));
   row.add("begun", text_or_null(begun_text(directory)));
-  row.add("strategy", text_or_null(first_of({swept_at(sweep, "strategy"), swept_at(sweep, "acquisition"),
-                                             config.text("acquisition.type")})));
-  row.add("scene", text_or_null(first_of({swept_at(sweep, "scene"), shapes_in(config)})));
+  // What is not swept is in all jobs as in the first.
+  const fs::path first = job_directory(sweep, sweep.jobs.front());
+  const Origins origins(first);
+  const Row job = is_there(first / "config.yaml") ? read_settings(first) : config;
+  row.add(
+      "strategy",
+      text_or_null(first_of({swept_at(sweep, "strategy"), swept_at(sweep, "acquisition"), strategy_of(origins, job)})));
+  row.add("scene", text_or_null(first_of({swept_at(sweep, "scene"), scene_of(origins, job)})));
+  out.swept = swept_words(sweep);
   Standing now = standing_of(sweep, all_jobs(sweep), Also::running);
   row.add("jobs", static_cast<int>(sweep.jobs.size()));
   for (const State state : {State::done, State::failed, State::running})
@@ -131,6 +165,7 @@ ListedRecord list_record(const fs::path& directory) {
   const Row config = read_settings(directory);
   (is_sweep(directory) ? add_sweep : add_run)(out, directory, config);
   out.row.add("directory", directory.string());
+  out.config = config;
   // Of the hundred thousand values that a config may have none is looked for one by one.
   std::unordered_set<std::string> known;
   for (const auto& field : out.beside.fields) known.insert(field.first);
@@ -166,6 +201,26 @@ std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Cond
   return out;
 }
 
+void tell_apart(std::vector<ListedRecord>& records) {
+  constexpr std::size_t kMostKeys = 3;
+  std::map<std::string, std::vector<ListedRecord*>> named;
+  for (ListedRecord& one : records) named[one.row.text("name")].push_back(&one);
+  for (const auto& [name, same] : named) {
+    std::vector<Row> configs;
+    for (ListedRecord* const one : same) configs.push_back(std::move(one->config));
+    const std::vector<std::string> keys = differing_keys(configs);
+    for (std::size_t i = 0; i < same.size(); ++i) {
+      std::vector<std::string> words;
+      if (!same[i]->swept.empty()) words.push_back(same[i]->swept);
+      for (const std::string& key : keys) {
+        if (words.size() < kMostKeys && configs[i].find(key) != nullptr)
+          words.push_back(fmt::format("{} {}", key, configs[i].text(key)));
+      }
+      same[i]->row.add("apart", text_or_null(fmt::format("{}", fmt::join(words, ", "))));
+    }
+  }
+}
+
 std::string runs_table(const std::vector<Row>& rows) {
   if (rows.empty()) return {};
   std::vector<double> errors;
@@ -173,17 +228,17 @@ std::string runs_table(const std::vector<Row>& rows) {
     if (const auto error = row.number(main_error())) errors.push_back(*error);
   }
   const Scale scale = readable_scale(unit_of_column(main_error()), errors);
-  std::vector<std::vector<std::string>> lines{
-      {"name", "begun", "strategy", "scene", "taps", scale.title(main_error()), "IoU", "state", "directory"}};
+  std::vector<std::vector<std::string>> lines{{"name", "begun", "strategy", "scene", "taps", scale.title(main_error()),
+                                               "IoU", "state", "set apart by", "directory"}};
   for (const Row& row : rows) {
     const auto text = [&](const char* name) { return one_line(row.text(name)); };
     const std::optional<double> error = row.number(main_error());
     const std::optional<double> outline = row.number(kOutline);
     lines.push_back({text("name"), text("begun"), text("strategy"), text("scene"), row.cell("taps"),
                      error ? scale.number(*error) : "", outline ? fmt::format("{:.2f}", *outline) : "",
-                     state_words(row), text("directory")});
+                     state_words(row), text("apart"), text("directory")});
   }
-  return aligned(lines, "llllrrrll");
+  return aligned(lines, "llllrrrlll");
 }
 
 }  // namespace palpate
