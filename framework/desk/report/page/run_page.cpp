@@ -205,12 +205,19 @@ static std::vector<std::vector<int>> true_contours_of(const History& history) {
   return out;
 }
 
+/// Where the run stood when it was read: one that has ended since is shown as it was, like all else on the page.
+static RunStatus status_of(const Recording& recording) {
+  if (recording.summary) {
+    const auto state = recording.failed() ? RunStatus::State::failed : RunStatus::State::done;
+    return {state, 0, recording.summary->text("stop_reason")};
+  }
+  const RunStatus now = read_standing(recording.directory);
+  return {now.end ? RunStatus::State::running : now.state, 0, ""};
+}
+
 /// What may change with every tap; `history` has at least one moment.
 static Json json_of_standing(const Recording& recording, const History& history) {
-  // As read_status(), which counts the taps again.
-  const bool held = is_running(recording.directory);
-  RunStatus status = read_ending(recording.directory);
-  if (held && status.state != RunStatus::State::done) status.state = RunStatus::State::running;
+  const RunStatus status = status_of(recording);
   const Curves curves = curves_of(recording, history);
   return {{"state", state_name(status.state)}, {"stop_reason", status.stop_reason},
           {"summary", recording.summary},      {"curves", curves.panels},

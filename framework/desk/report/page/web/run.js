@@ -47,7 +47,7 @@ function facts(data) {
 
 /// How the run stands: what changes with every tap of one that goes on.
 function standing(data) {
-  const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.state;
+  const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.stop_reason ? `${data.state}: ${data.stop_reason}` : data.state;
   const footprint = data.any_side ? [] : [", footprint ", foreign(data.footprint)];
   const strategy = element("p", { class: "sub" }, "id ", data.id, `, seed ${data.seed}, acquisition `, foreign(data.acquisition), ...footprint, ", ", foreign(state), ".");
   return [strategy, facts(data), ...warningList(data.warnings.map((text) => [foreign(text)]))];
@@ -66,7 +66,7 @@ function drawAllCurves(data) {
 /// Where a tap went, as words.
 const whereTo = (tap) => (fromAnySide(tap) ? wayOf(tap) : `at ${place(tap)}`);
 
-const kChosenBy = { initial: "the initial design", acquisition: "the acquisition", fallback: "the fallback" };
+const kChosenBy = { initial: "the initial design", acquisition: "the acquisition", fallback: "the fallback", caller: "the caller" };
 
 /// The moment in words.
 function story(data, moment, drawn) {
