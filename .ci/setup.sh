@@ -42,7 +42,8 @@ follow() {
   done
 }
 
-# told WHAT LOG COMMAND...: runs the command, its output to the log alone, and says how far it is meanwhile.
+# told WHAT LOG COMMAND...: runs the command, its output to the log alone, and says how far it is meanwhile. What ends this
+# script ends the command, too.
 told() {
   what=$1
   output=$2
@@ -50,12 +51,32 @@ told() {
   : >"$output"
   follow "$what" "$output" 8>&- 9>&- &
   follower=$!
+  # A shell that waits for a command hears no signal; one that waits for its child does.
+  "$@" >"$output" 2>&1 <&0 &
+  worker=$!
+  trap 'end_worker 129' HUP
+  trap 'end_worker 130' INT
+  trap 'end_worker 143' TERM
   status=0
-  "$@" >"$output" 2>&1 || status=$?
+  wait $worker || status=$?
+  trap - HUP INT TERM
+  end_follower
+  return $status
+}
+
+end_follower() {
   kill $follower 2>/dev/null || true
   wait $follower 2>/dev/null || true
   [ ! -t 2 ] || printf '\r\033[K' >&2
-  return $status
+}
+
+# end_worker STATUS: ends the command under way, waits until it has gone, and ends this script.
+end_worker() {
+  trap '' HUP INT TERM
+  kill -TERM $worker 2>/dev/null || true
+  wait $worker 2>/dev/null || true
+  end_follower
+  exit "$1"
 }
 
 # packages HEADING...: the packages under these headings of packages.txt.
@@ -95,6 +116,24 @@ fetch() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $list
 }
 
+# become_root: how packages are installed by who is not root: `as_root` is sudo, or none. At a terminal it asks once.
+become_root() {
+  as_root=none
+  command -v sudo >/dev/null 2>&1 || return 0
+  if [ -t 0 ] && [ -t 2 ]; then
+    printf 'missing packages: %s\ninstall them with sudo? [Y/n] ' "$list" >&2
+    read -r answer || answer=n
+    case $answer in
+      '' | [Yy] | [Yy]es) ;;
+      *) return 0 ;;
+    esac
+    # Asks for the password, if it has to, before anything else is written to the terminal.
+    ! sudo -v || as_root=sudo
+  else
+    ! sudo -n true 2>/dev/null || as_root=sudo
+  fi
+}
+
 # install HEADING...: installs what is missing, if it may.
 install() {
   look
@@ -103,23 +142,20 @@ install() {
     [ "$no_install" = no ] || say "no package is missing"
     return 0
   fi
+  by_root="apt-get update && apt-get install --no-install-recommends $list"
   if [ "$no_install" = yes ]; then
-    say "missing packages: $list"
+    say "packages are missing; as root: $by_root"
     return 0
   fi
   as_root=
-  if [ "$(id -u)" != 0 ]; then
-    as_root=sudo
-    # Asks for the password, if it has to, before anything else is written to the terminal.
-    if ! sudo -n true 2>/dev/null && ! { [ -t 0 ] && command -v sudo >/dev/null 2>&1 && sudo -v; }; then as_root=none; fi
-  fi
+  [ "$(id -u)" = 0 ] || become_root
   if ! command -v apt-get >/dev/null 2>&1; then
     say "these packages are missing and cannot be installed from here: $list"
     return 0
   fi
   if [ "$as_root" = none ]; then
     say "packages are missing, which only root can install; going on without them. As root:"
-    say "  apt-get update && apt-get install --no-install-recommends $list"
+    say "  $by_root"
     return 0
   fi
   log=update
@@ -133,6 +169,17 @@ install() {
     say "installing failed, the whole story is in build/$log.log; going on with what is there"
   }
   look
+}
+
+# announce PRESET TARGET...: says how long it will take to build these, where that is more than a moment. A step takes 4 s
+# of one core in the mean.
+announce() {
+  preset=$1
+  shift
+  steps=$(ninja -C "$root/build/$preset" -n "$@" 2>/dev/null | sed -n 's|^\[[0-9]*/\([0-9]*\)\].*|\1|p' | tail -n 1)
+  [ "${steps:-0}" -ge 10 ] || return 0
+  minutes=$((1 + steps / 15 / $(nproc 2>/dev/null || echo 2)))
+  say "building what this command takes: $steps steps, about $minutes minutes"
 }
 
 # build PRESET TARGET...: configures if that was never done or other packages are installed than were then, whoever
@@ -160,6 +207,8 @@ build() {
       *) whole=8 disk='200 MB' ;;
     esac
     say "building preset $preset: about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time, $disk of disk"
+  else
+    announce "$preset" "$@"
   fi
   if ! NINJA_STATUS='[%f/%t] ' told "building preset $preset" "$log" ninja -C "$root/build/$preset" "$@"; then
     grep -v '^\[' "$log" | grep -m 10 -E 'error|FAILED' >&2 || true

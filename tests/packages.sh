@@ -96,6 +96,17 @@ needs cpack lintian dpkg-deb dpkg-shlibdeps file
 
 if [ -f "${1:-}/CPackConfig.cmake" ] && [ $# = 1 ]; then
   build=$(cd "$1" && pwd)
+  # Where a tool is missing it says which, and makes nothing.
+  mkdir "$work/tools"
+  ln -s /usr/bin/* "$work/tools"
+  for tool in file dpkg-shlibdeps; do
+    rm "$work/tools/$tool"
+    if (cd "$build" && PATH=$work/tools "$(command -v cpack)" -B "$work/none") >"$work/cpack.log" 2>&1; then
+      fail "cpack makes packages without $tool"
+    fi
+    grep -q "cpack needs $tool: apt-get install " "$work/cpack.log" || fail "cpack does not say that it needs $tool"
+    ln -s "/usr/bin/$tool" "$work/tools/$tool"
+  done
   pack "$build"
   check_files
   for deb in "$share"/debs/*.deb; do dpkg -x "$deb" "$work/there"; done
@@ -153,12 +164,17 @@ END
   rm -rf "$share/palpate"
 fi
 check_files
+# What the image's file does in its base, a bare root does here.
+image=$(sed -n 's/^RUN //p' "$root/framework/cmake/debian/Containerfile")
+[ -n "$image" ] || fail "the Containerfile installs nothing"
 cat >"$share/stranger" <<END
 set -eux
 useradd --create-home --shell /bin/sh stranger
 get="apt-get install -q -y --no-install-recommends"
 debs=$share/debs
-\$get \$debs/palpate_*.deb
+cp -r \$debs /debs
+$image
+palpate --help >/dev/null
 su - stranger -c 'sh $share/run'
 \$get \$debs/palpate-dev_*.deb g++ ninja-build
 su - stranger -c 'sh $share/plugin'

@@ -10,7 +10,9 @@
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "experiment/room.hpp"
+#include "record/files.hpp"
 #include "record/run_directory.hpp"
+#include "scene/sizes.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +20,8 @@
 #include <map>
 #include <memory>
 #include <string>
+
+#include <unistd.h>
 
 namespace palpate::cli {
 namespace {
@@ -81,10 +85,18 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
             status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
 }
 
+/// After the first run other commands are still to be built, and whoever is at the terminal may have time now.
+void offer_the_rest(const Program& program) {
+  if (::isatty(STDERR_FILENO) == 0 || is_there(program.installation.whole)) return;
+  mention(
+      "sweeps, pages and the other plugins are built when a command first takes them; './palpate build' does it now\n");
+}
+
 }  // namespace
 
 int run(Program& program, const RunArguments& arguments) {
   make_room();
+  check_given_once(arguments.overrides);
   std::vector<Override> overrides;
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
   Tree composed;
@@ -117,9 +129,13 @@ int run(Program& program, const RunArguments& arguments) {
   check_junit(arguments.junit);
   RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
   if (arguments.watch) output.watched = directory;
-  return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
+  const int status = conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
     return start_run(program, config, directory, arguments.force, display, step);
   });
+  if (arguments.quiet) return status;
+  for (const std::string& line : half_said_sizes(config.tree, config.notes)) mention(line + "\n");
+  offer_the_rest(program);
+  return status;
 }
 
 int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,

@@ -1,5 +1,15 @@
 # SPDX-License-Identifier: MIT
 # Read by cpack before it begins: what is packed is of the day of its commit, so that the same build gives the same bytes.
+# Without these tools cpack would fail late, or make packages that depend on nothing.
+foreach(tool_and_package dpkg-shlibdeps:dpkg-dev file:file strip:binutils gzip:gzip)
+  string(REPLACE ":" ";" pair ${tool_and_package})
+  list(GET pair 0 tool)
+  list(GET pair 1 package)
+  find_program(PALPATE_TOOL_${tool} ${tool} NO_CACHE)
+  if(NOT PALPATE_TOOL_${tool})
+    message(FATAL_ERROR "cpack needs ${tool}: apt-get install ${package}")
+  endif()
+endforeach()
 if(NOT DEFINED ENV{SOURCE_DATE_EPOCH})
   execute_process(COMMAND git -C ${CPACK_PALPATE_SOURCE} log -1 --format=%ct OUTPUT_VARIABLE date ERROR_QUIET
                   OUTPUT_STRIP_TRAILING_WHITESPACE)

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 
@@ -97,7 +98,7 @@ TEST_F(SetUp, ConfiguresAgainWhenThatFailedTheLastTime) {
 }
 
 TEST_F(SetUp, BuildsWhatTheCommandTakesAndThenWhatThatNames) {
-  program("ninja", "echo \"$3 $4 $5\" >>'" + here().string() + "/built'");
+  program("ninja", "[ \"$3\" = -n ] || echo \"$3 $4 $5\" >>'" + here().string() + "/built'");
   const std::string asked = "[ \"$*\" = '--needs run a.yaml' ] || exit 0; grep -q sum '" + here().string() +
                             "/built' && echo palpate_kernel_rbf; echo palpate_kernel_sum";
   write("build/release/palpate", "#!/bin/sh\n" + asked + "\n");
@@ -122,9 +123,11 @@ TEST_F(SetUp, ACompletionNeitherWaitsNorBuilds) {
 
 TEST_F(SetUp, SaysWhatIsMissingAndGoesOnAlsoWhereThereIsNoDpkg) {
   installed("three");
-  EXPECT_THAT(call().err, HasSubstr("missing packages: one \n"));
+  const std::string told =
+      "packages are missing; as root: apt-get update && apt-get install --no-install-recommends one \n";
+  EXPECT_THAT(call().err, HasSubstr(told));
   fs::remove(here() / "bin" / "dpkg-query");
-  EXPECT_THAT(call().err, HasSubstr("missing packages: one \n"));
+  EXPECT_THAT(call().err, HasSubstr(told));
   const int before = configured();
   call();
   EXPECT_EQ(configured(), before);
@@ -223,6 +226,52 @@ TEST_F(SetUp, WithoutSudoItSaysWhatToPaste) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_THAT(ended.err, HasSubstr("  apt-get update && apt-get install --no-install-recommends one \n"));
   EXPECT_FALSE(fs::exists(here() / "apt")) << "it may not";
+}
+
+TEST_F(SetUp, AtATerminalItAsksBeforeItCallsSudo) {
+  program("id", "echo 1000");
+  program("sudo", "echo \"$*\" >>'" + here().string() + "/asked'; [ \"$1\" = -v ] || \"$@\"");
+  program("apt-get", "case \"$*\" in *' -y '*) echo 'one three' >'" + here().string() + "/installed' ;; esac");
+  for (const bool yes : {false, true}) {
+    installed("three");
+    Terminal terminal(script("palpate", "status"), here(), environment());
+    EXPECT_TRUE(terminal.shows("missing packages: one \r\ninstall them with sudo? [Y/n] ")) << terminal.screen();
+    EXPECT_FALSE(fs::exists(here() / "asked"));
+    terminal.type(yes ? "\n" : "n\n");
+    EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
+    EXPECT_THAT(terminal.screen(), HasSubstr("handed over to status"));
+    EXPECT_EQ(fs::exists(here() / "asked"), yes);
+    EXPECT_EQ(text_of(here() / "installed"), yes ? "one three\n" : "three\n");
+  }
+}
+
+TEST_F(SetUp, SaysHowLongALaterCommandIsBuilt) {
+  call();
+  const std::string ninja = text_of(here() / "bin" / "ninja");
+  program("nproc", "echo 2");
+  program("ninja", "[ \"$3\" != -n ] || { echo '[1/9] CXX a.o'; echo '[90/90] LINK'; }\n" + ninja);
+  EXPECT_THAT(call().err, HasSubstr("building what this command takes: 90 steps, about 4 minutes\n"));
+  program("ninja", "[ \"$3\" != -n ] || echo '[9/9] LINK'\n" + ninja);
+  EXPECT_THAT(call().err, Not(HasSubstr("steps")));
+}
+
+TEST_F(SetUp, BuildsNothingMoreOnceItIsEnded) {
+  waiting_program("ninja", "[ \"$3\" != -n ] || exit 0\necho $$ >'" + here().string() + "/pid'");
+  Child child(script("palpate"), here(), environment());
+  ASSERT_TRUE(eventually([&] { return fs::exists(here() / "began"); }));
+  const int ninja = std::stoi(text_of(here() / "pid"));
+  EXPECT_EQ(::kill(ninja, 0), 0);
+  ::kill(child.pid(), SIGTERM);
+  EXPECT_EQ(child.wait().status, 143);
+  EXPECT_NE(::kill(ninja, 0), 0);
+}
+
+TEST_F(SetUp, BuildsAllWhenItIsAskedTo) {
+  program("ninja", "[ \"$3\" = -n ] || echo \"$3 $4\" >>'" + here().string() + "/built'");
+  const Ended ended = script_ended("palpate", "build");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(text_of(here() / "built"), "palpate_complete palpate_build_stamp\n");
+  EXPECT_EQ(ended.out, "");
 }
 
 TEST_F(SetUp, SaysBeforehandHowLongItWillBeAndWhatRoomItTakes) {
