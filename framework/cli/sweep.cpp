@@ -15,6 +15,7 @@
 #include "launch/slurm_launcher.hpp"
 #include "record/files.hpp"
 #include "report/words/words.hpp"
+#include "scene/sizes.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
@@ -247,11 +248,13 @@ int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
   check_sbatch_words(arguments.launch.sbatch);
   bool one_at_a_time = false;
+  std::vector<std::string> left_out;
   std::optional<SweepDraft> draft;
   if (!arguments.list) draft.emplace(arguments.runs);
   const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
                                     [&](const Job& job, const ResolvedConfig& config) {
                                       if (draft) draft->add(job, config);
+                                      if (job.index == 0) left_out = half_said_sizes(config.tree, config.notes);
                                       one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
                                     });
   const auto config_of = [&](std::size_t job) { return planned_config(plan, program.host, job); };
@@ -268,6 +271,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   draft.reset();
   if (!is_new) check_builds(campaign, jobs_of(campaign));
   if (!arguments.launch.quiet) {
+    for (const std::string& line : left_out) mention(line + "\n");
     mention(fmt::format("{} in {}{}\n", jobs, plan.sweep.directory.string(),
                         is_new ? "" : ", which exists: what is missing is run"));
   }

@@ -3,6 +3,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/trouble.hpp"
+#include "scene/sizes.hpp"
 
 #include <fmt/format.h>
 
@@ -24,6 +25,8 @@ int validate(Program& program, const std::vector<std::string>& configs) {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
         // Only building finds a broken mesh, or objects for which there is no room.
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
+        for (const std::string& line : half_said_sizes(config.tree, config.notes))
+          said.emplace_back(false, line + "\n");
         said.emplace_back(true, fmt::format("{}: valid, id {}\n", file, config.id));
       }
     });

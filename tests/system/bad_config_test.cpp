@@ -89,6 +89,23 @@ std::vector<Case> cases() {
       whole("TypoInDefaults", "defalts:\n  - kernel: rbf\n", "1:1: unknown option 'defalts', did you mean 'defaults'?"),
       whole("TypoInAGroupThatIsNeeded", without("  - backend") + "backnd: {type: simulator}\n",
             "9:1: unknown option 'backnd', did you mean 'backend'?"),
+      whole("KeysUnderAHeadingOfTheirOwn", "experiment:\n  kernel: rbf\n" + kGood,
+            "1:1: unknown option 'experiment', known: complete, name, seed, taps, initial, candidates, kernel, height, "
+            "weight, "
+            "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
+            "tie_tolerance, "
+            "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
+      whole("GroupUnderAnotherName", without("  - scene") + "world: {area: {width: 23 cm, depth: 23 cm}}\n",
+            "9:1: unknown option 'world', known: complete, name, seed, taps, initial, candidates, kernel, height, "
+            "weight, "
+            "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
+            "tie_tolerance, "
+            "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
+      typed("OptionThatTheGroupsFileHasToo", {"backend=chosen", "backend.motion.speed=6cm/s"},
+            "unknown option 'speed' of backend.motion, known: type, of"),
+      line("OptionThatTheGroupsFileHadForAnotherType",
+           "backend: {motion: {type: chosen, of: [{type: paper}, {type: paper}], pause: 1 s}}",
+           "10:70: unknown option 'pause' of backend.motion, known: type, of"),
       line("OptionOfAnotherPlugin", "acquisition: {type: weighted, count: 4}",
            "10:31: unknown option 'count' of acquisition/weighted, known: type"),
       line("UnknownNameOfAChoice", "posterior: dens", "10:12: posterior: unknown value 'dens', did you mean 'dense'?"),
@@ -149,7 +166,26 @@ std::vector<Case> cases() {
       line("DeepNesting", "name2: " + std::string(200, '[') + std::string(200, ']'),
            "10:108: nested too deeply, at most 100 levels"),
 
+      // Overrides
+      typed("CommentInAnOverride", {"name=a #b"},
+            "name: '#b' is a comment, put the value in quotes of its own: KEY='\"a #b\"'"),
+      typed("CommentInsteadOfAnOverride", {"name=#b"},
+            "name: '#b' is a comment, put the value in quotes of its own: KEY='\"a #b\"'"),
+      typed("KeyGivenTwice", {"taps=6", "seed=2", "taps=7"}, "taps is given twice, leave one of them out"),
+      sweep("KeySweptTwice", "", {"taps=6", "seed=2", "taps=7"},
+            "command line: taps is given twice, leave one of them out"),
+      {"MotionThatTakesTheArmAway",
+       without("  - backend") + "backend: {type: process, command: tap}\n",
+       {"run", "bad.yaml", "backend=chosen"},
+       "command line: backend=chosen would tap with the simulator instead of process, add backend.type=simulator if "
+       "that "
+       "is meant"},
+
       // Files, groups and plugins
+      line("MeshThatIsNotThere", "scene: {objects: [{type: mesh, file: /nowhere.stl, unit: 1 mm}]}",
+           "10:38: scene.objects.0.file: /nowhere.stl: no such file"),
+      line("ViewThatIsNotThere", "prior: {depth: /nowhere.ply}",
+           "10:16: prior.depth: /nowhere.ply: no such file, a relative path starts in the current folder"),
       {"MissingFile", kGood, {"run", "bat.yaml"}, "bat.yaml: no such file, did you mean 'bad.yaml'?"},
       {"DirectoryInsteadOfAFile",
        kGood,

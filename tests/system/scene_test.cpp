@@ -38,8 +38,25 @@ TEST_F(Scenes, WithAMeshThatIsBrokenAreRefusedInOneLineByEveryCommand) {
   }
   EXPECT_TRUE(left_nothing()) << "nothing was begun";
   fs::remove(here() / "broken.stl");
-  EXPECT_THAT(refused("run e.yaml"),
-              StartsWith("broken.stl: no such file, a relative path starts in the current folder, "));
+  EXPECT_THAT(refused("run e.yaml"), StartsWith("e.yaml:5:32: scene.objects.0.file: broken.stl: no such file, a "
+                                                "relative path starts in the current folder, "));
+}
+
+TEST_F(Scenes, WithAnObjectWhoseSizeIsSaidInPartSayWhatTheRestIs) {
+  const auto said_of = [&](const std::string& objects) {
+    write("e.yaml",
+          "name: e\ndefaults: [{kernel: rbf}, {acquisition: weighted}, {backend: simulator}]\n"
+          "scene:\n  area: {width: 23 cm, depth: 23 cm}\n  objects: " +
+              objects + "\n");
+    const Ended ended = palpate("validate e.yaml");
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return ended.err;
+  };
+  EXPECT_EQ(said_of("[{type: block, length: 6 cm, width: 5 cm}]"),
+            "e.yaml:5:20: scene.objects.0: not said and so at its default: height 0.05 m\n");
+  EXPECT_EQ(said_of("[{type: compound, parts: [{type: cone, height: 4 cm}]}]"),
+            "e.yaml:5:45: scene.objects.0.parts.0: not said and so at its default: diameter 0.12 m\n");
+  EXPECT_EQ(said_of("[{type: block}, {type: block, length: 6 cm, width: 5 cm, height: 2 cm}]"), "");
 }
 
 TEST_F(Scenes, NameTheLibraryOfAMeshInTheManifest) {

@@ -57,6 +57,9 @@ fs::path shown(const fs::path& path) {
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
 constexpr Layer kLayersOfGroup = 16;
 
+constexpr const char* kBackend = "backend";
+constexpr const char* kSimulator = "simulator";
+
 [[noreturn]] void refuse_depth(const Place& place) {
   throw Error(place.text(), fmt::format("groups build on each other more than {} deep", kLayersOfGroup),
               "put what they hold into fewer files");
@@ -138,28 +141,6 @@ void mark_complete(Tree& config) {
                 "take a palpate as new as the one that wrote it");
   }
   for_all(config, [](Tree& one) { one.complete = one.is_map(); });
-}
-
-void check_path(const std::string& path, const std::string& place) {
-  const bool has_gap =
-      path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos;
-  if (has_gap) throw Error(place, fmt::format("'{}' is not a dotted path", path), "write it like kernel.length_scale");
-  constexpr std::size_t kMostBytes = 1024;
-  constexpr std::ptrdiff_t kMostLevels = 100;
-  if (path.size() <= kMostBytes && std::count(path.begin(), path.end(), '.') < kMostLevels) return;
-  throw Error(place, fmt::format("'{}...' is too long a path", path.substr(0, 40)),
-              "a path has at most 100 levels and 1024 characters");
-}
-
-Override parse_override(const std::string& text) {
-  const auto equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    throw Error("command line", fmt::format("'{}' is not KEY=VALUE", text), "for example kernel.length_scale=2cm");
-  }
-  Override out{text.substr(0, equals), parse_value(text.substr(equals + 1), "command line")};
-  check_path(out.path, "command line");
-  out.value.set_layer(kCommandLineLayer);
-  return out;
 }
 
 bool Composer::is_inner(const std::string& path) const {
@@ -404,6 +385,30 @@ fs::path Composer::found(const fs::path& file) const {
   return fs::is_regular_file(own, none) ? own.lexically_normal() : file;
 }
 
+void Composer::check_backend(const Choice& chosen, const std::vector<Choice>& before, const Tree& own,
+                             const std::vector<Override>& overrides, const fs::path& beside) {
+  const auto type_of = [](const Tree* group) {
+    const Tree* const type = group != nullptr ? group->find("type") : nullptr;
+    return type != nullptr ? type->text : std::string();
+  };
+  const auto type_in = [&](const Choice& choice) {
+    std::vector<std::string> chain;
+    const Tree content = group_content(kBackend, choice.value.text, choice.value.place, beside, chain);
+    return type_of(&content);
+  };
+  std::string old = type_of(own.find(kBackend));
+  for (const Choice& one : before) {
+    if (old.empty() && one.path == kBackend) old = type_in(one);
+  }
+  const auto is_type = [](const Override& one) { return one.path == std::string(kBackend) + ".type"; };
+  const bool is_said = std::any_of(overrides.begin(), overrides.end(), is_type);
+  const std::string type = type_in(chosen);
+  if (is_said || type != kSimulator || chosen.value.text == type || old.empty() || old == type) return;
+  throw Error(chosen.value.place.text(),
+              fmt::format("backend={} would tap with the {} instead of {}", chosen.value.text, type, old),
+              fmt::format("add backend.type={} if that is meant", type));
+}
+
 Tree Composer::compose(const fs::path& named, const std::vector<Override>& overrides) {
   groups_.clear();
   brought_.clear();
@@ -414,6 +419,7 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   take_names(own, "", choices);
   for (const Override& one : overrides) {
     if (!keys_.is_group(one.path) || !one.value.is_scalar() || is_inner(one.path)) continue;
+    if (one.path == kBackend) check_backend(one, choices, own, overrides, beside);
     drop(choices, [&](const Choice& choice) { return choice.path == one.path; });
     choices.push_back(one);
   }
@@ -442,7 +448,7 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
     if (keys_.is_group(one.path) && !keys_.is_part(one.path) && slot.is_map() && one.value.is_map()) {
       slot.merge(one.value);
     } else {
-      slot = one.value;
+      tree.put(one.path, one.value);
     }
   }
   inherit_shared(tree, keys_);

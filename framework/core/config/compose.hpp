@@ -4,6 +4,7 @@
 #pragma once
 
 #include "config/keys.hpp"
+#include "config/override.hpp"
 #include "config/tree.hpp"
 
 #include <palpate/error.hpp>
@@ -24,18 +25,6 @@ inline constexpr std::int64_t kRecordVersion = 1;
 /// Takes note of `complete` in a config that was read: what it lacks is then not at its default (Tree::complete).
 /// Throws Error for one of a later version than kRecordVersion.
 void mark_complete(Tree& config);
-
-/// One `KEY=VALUE`: a dotted path and a value.
-struct Override {
-  std::string path;
-  Tree value;
-};
-
-/// Splits and reads `KEY=VALUE` as typed. Throws Error for a missing '=' or an empty key.
-Override parse_override(const std::string& text);
-
-/// Throws Error, with `place`, for what is no dotted path, and for one of more than 100 levels or 1024 characters.
-void check_path(const std::string& path, const std::string& place);
 
 /// Reads config files, once each, and composes them.
 ///
@@ -96,6 +85,10 @@ class Composer {
   /// there.
   std::filesystem::path find_group(const std::string& group, const std::string& name, const Place& place,
                                    const std::filesystem::path& beside) const;
+  /// Throws Error where a file chosen on the command line is a simulator's, its name does not say so, and the config
+  /// has another backend: who thinks of a motion would believe that the arm moves.
+  void check_backend(const Choice& chosen, const std::vector<Choice>& before, const Tree& own,
+                     const std::vector<Override>& overrides, const std::filesystem::path& beside);
   void note_group(const Choice& choice, const std::filesystem::path& beside);
   Error no_file(const std::string& group, const std::string& name, const Place& place,
                 const std::filesystem::path& beside) const;

@@ -98,6 +98,7 @@ void MapReader::retired(const Field& field, const FixedValue& last) {
 
 void MapReader::require(bool holds, const char* field, const std::string& reason) {
   if (holds) return;
+  if (notes_.missing) throw Error(*notes_.missing);  // which may be why
   const Place place = input_.place_of(field);
   throw Error(place.file ? place.text() : where(), fmt::format("{}{}: {}", path_, field, reason));
 }
@@ -130,8 +131,8 @@ const Tree* MapReader::claim(const Field& field, Missing missing) {
   known_.emplace_back(field.name);
   claimed_ = find(field);
   if (claimed_ == nullptr && field.required) {
-    refuse_misspelt(field.name);
-    throw Error(where(), fmt::format("'{}' is missing", name(field)), field.meaning);
+    miss(field.name, {where(), fmt::format("'{}' is missing", name(field)), field.meaning});
+    return nullptr;
   }
   if (claimed_ == nullptr && complete_ && missing != Missing::of_its_parts)
     claimed_ = neutral(field, missing == Missing::absent);
@@ -148,9 +149,9 @@ const Tree* MapReader::neutral(const Field& field, bool may_be_absent) {
   const bool is_absent = value.kind == FixedValue::Kind::none;
   if (is_absent && !may_be_absent && !enters(field)) return nullptr;  // any value will do
   if (is_absent && !may_be_absent) {
-    refuse_misspelt(field.name);
-    throw Error(where(), fmt::format("'{}' is missing", name(field)),
-                "what is complete gives every option: put it back, or take 'complete' away");
+    miss(field.name, {where(), fmt::format("'{}' is missing", name(field)),
+                      "what is complete gives every option: put it back, or take 'complete' away"});
+    return nullptr;
   }
   neutral_ = Tree::scalar(is_absent ? "none" : constant_text(value, field.unit), value.kind == FixedValue::Kind::text);
   neutral_.place.file = std::make_shared<const std::string>("neutral value");
@@ -240,12 +241,12 @@ void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::
   throw Error(entry.place.text(), reason + (listed && !(path_.empty() && plugin_.empty()) ? " of " + of : ""), hint);
 }
 
-void MapReader::refuse_misspelt(const std::string& missing) const {
+void MapReader::miss(const std::string& name, Error missing) {
   for (const Tree::Entry& entry : input_.entries) {
-    if (is_known(entry.key) || (nearest(entry.key, {missing}).empty() && !is_below_one_of(entry.key, {missing})))
-      continue;
-    refuse_unknown(entry, {missing});
+    if (is_known(entry.key) || (nearest(entry.key, {name}).empty() && !is_below_one_of(entry.key, {name}))) continue;
+    refuse_unknown(entry, {name});
   }
+  if (!notes_.missing) notes_.missing = std::move(missing);
 }
 
 }  // namespace palpate

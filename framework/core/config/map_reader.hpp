@@ -48,8 +48,8 @@ class MapReader : public Fields {
   [[noreturn]] void refuse(const Tree& at, const Field& field, const std::string& reason,
                            const std::string& hint) const;
   void check_list(const Tree& tree, const Field& field, const char* hint) const;
-  /// Before complaining that `missing` is missing: perhaps it is there under a name that is nearly right.
-  void refuse_misspelt(const std::string& missing) const;
+  /// Refuses a key that is nearly the name of what is missing; else notes that that is missing: see ResolveNotes.
+  void miss(const std::string& name, Error missing);
 
   /// What the config has at the field, or a record at the name that it had then. Null when it does not say it.
   const Tree* find(const Field& field);

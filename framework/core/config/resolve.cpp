@@ -147,9 +147,9 @@ class Resolver final : public MapReader {
   void plugin(PluginChoice& choice, const Field& field) override {
     const Tree* tree = claim(field);
     if (tree != nullptr ? tree->kind == Tree::Kind::null : choice.type.empty()) {
-      refuse_misspelt(field.name);
-      throw Error(tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
-                  fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name));
+      return miss(field.name,
+                  {tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
+                   fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name)});
     }
     output_.at(field.name) = read_plugin(choice, tree, field, field.name);
   }
@@ -181,7 +181,9 @@ class Resolver final : public MapReader {
   }
 
   void adopt(PluginChoice& choice, const Field& field) override {
-    const Tree& type = *claim(field);
+    const Tree* const claimed = claim(field);
+    if (claimed == nullptr) throw Error(*notes_.missing);  // without it nothing is known of the keys beside it
+    const Tree& type = *claimed;
     choice.type = name_of_plugin(type, choice.kind, name(field));
     note_type(type);
     write(field, choice.type);
@@ -268,7 +270,9 @@ Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, R
              const std::vector<std::string>& elsewhere) {
   Resolver resolver(input, "", plugins, notes, {input.place, {}, true, false});
   options.list(resolver);
-  return resolver.finish(elsewhere);
+  Tree out = resolver.finish(elsewhere);
+  if (notes.missing) throw Error(*notes.missing);
+  return out;
 }
 
 void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,
@@ -276,6 +280,7 @@ void fill(const Tree& resolved, const PluginSource& plugins, const std::string& 
   ResolveNotes notes;
   Resolver resolver(resolved, path.empty() ? path : path + ".", plugins, notes, {resolved.place, {}, true, false});
   describe(resolver);
+  if (notes.missing) throw Error(*notes.missing);
 }
 
 }  // namespace palpate

@@ -4,8 +4,10 @@
 
 #include "config/tree.hpp"
 
+#include <palpate/error.hpp>
 #include <palpate/options.hpp>
 
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -38,10 +40,12 @@ struct ResolveNotes {
   PluginNames plugins;          ///< every plugin that the config names
   /// Lines `path=value` of all that decides what a run computes, in the order of the fields: see identity_of().
   std::vector<std::string> identity;
+  std::optional<Error> missing;  ///< the first needed option that is not there; resolve() throws it
 };
 
 /// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first
-/// unknown key, wrong type, missing unit or value out of range. `elsewhere` are keys beside those of `options` that
+/// unknown key, wrong type, missing unit or value out of range, and only then of what is missing, which may stand under
+/// an unknown key. `elsewhere` are keys beside those of `options` that
 /// others read: the hint of an unknown one names them. In a map that is Tree::complete an option that is missing has
 /// its neutral value (Field::neutral). Without one it is an error, unless the option enters no id.
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,

@@ -148,6 +148,16 @@ Tree& Tree::at_path(std::string_view path, const Place& asker) {
   return *tree;
 }
 
+void Tree::put(std::string_view path, Tree value) {
+  Tree& slot = at_path(path, value.place);
+  for_all(*this, [&](Tree& one) {
+    for (Entry& entry : one.entries) {
+      if (&entry.value == &slot) entry.place = value.place;
+    }
+  });
+  slot = std::move(value);
+}
+
 Place Tree::place_of(std::string_view path) const {
   Place best;
   const Tree* tree = this;
@@ -170,17 +180,19 @@ void Tree::shift_layer(int steps) {
 }
 
 void Tree::merge(const Tree& upper) {
-  if (kind == Kind::map && upper.kind == Kind::map) {
-    for (const Entry& entry : upper.entries) {
-      if (Tree* mine = find(entry.key)) {
-        mine->merge(entry.value);
-      } else {
-        entries.push_back(entry);
-      }
-    }
+  if (!is_map() || !upper.is_map()) {
+    if (upper.layer >= layer) *this = upper;
     return;
   }
-  if (upper.layer >= layer) *this = upper;
+  for (const Entry& entry : upper.entries) {
+    const auto mine = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == entry.key; });
+    if (mine == entries.end()) {
+      entries.push_back(entry);
+      continue;
+    }
+    if (entry.value.layer >= mine->value.layer) mine->place = entry.place;
+    mine->value.merge(entry.value);
+  }
 }
 
 std::string Tree::canonical() const {

@@ -70,6 +70,8 @@ struct Tree {
   /// The same, but maps on the way are made as needed, with the place of `asker`, who also is to blame in the Error
   /// thrown where a scalar is in the way or a list is shorter.
   Tree& at_path(std::string_view path, const Place& asker);
+  /// Puts a value at a dotted path, as at_path(); its key then has the place of the value.
+  void put(std::string_view path, Tree value);
   /// The place of the value at a dotted path or, where that has none, of what encloses it; none if nothing is there.
   Place place_of(std::string_view path) const;
 
@@ -79,6 +81,7 @@ struct Tree {
   void shift_layer(int steps);
 
   /// Lays `upper` over this tree: maps are merged key by key, all else is replaced where upper's layer is not lower.
+  /// A key has the place of whoever said it last.
   void merge(const Tree& upper);
 
   /// One line that is equal for equal values, whatever their places.

@@ -2,6 +2,7 @@
 #include "view/view.hpp"
 
 #include "config/hash.hpp"
+#include "config/trouble.hpp"
 #include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
@@ -91,7 +92,10 @@ void PriorOptions::list(Fields& fields) {
                         .at_least(0)
                         .from("5 mm: where a camera is thought to stand, an estimate"));
   fields.section(pose, Field("pose", "where the frame of the points lies; not given, it is the area's"));
-  const std::string found = depth.empty() ? std::string() : hash_of(bytes_of(depth));
+  std::string found;
+  const auto trouble = trouble_in([&] { found = depth.empty() ? "" : hash_of(bytes_of(depth)); });
+  // It has the place of the file, but not of who names it.
+  fields.require(!trouble, "depth", trouble ? trouble->what() : "");
   checksum = found;
   fields.text(checksum, Field("checksum", "of the file's content; if absent, that of the file as it is"));
   fields.require(checksum == found, "checksum", "is not that of " + depth + ", which has " + found);

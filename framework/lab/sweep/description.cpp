@@ -97,6 +97,7 @@ void take_out(Tree& blocks, const std::string& key) {
 }  // namespace
 
 SweepWords parse_sweep_words(const std::vector<std::string>& words) {
+  check_given_once(words);
   SweepWords out;
   ValueCount count;
   for (const std::string& word : words) {
