@@ -59,6 +59,21 @@ TEST_F(Scenes, WithAnObjectWhoseSizeIsSaidInPartSayWhatTheRestIs) {
   EXPECT_EQ(said_of("[{type: block}, {type: block, length: 6 cm, width: 5 cm, height: 2 cm}]"), "");
 }
 
+TEST_F(Scenes, FindTheirMeshFromAnyWorkingFolderAndSoDoesTheirRecord) {
+  const fs::path shipped = ran({"scene=cup"});
+  write("mine/configs/own.stl", text_of(test::source_folder() / "configs/scene/meshes/cup.stl"));
+  write("mine/e.yaml",
+        "name: own\ndefaults: [{kernel: rbf}, {acquisition: weighted}, {backend: simulator}]\n"
+        "scene:\n  area: {width: 23 cm, depth: 23 cm}\n"
+        "  objects: [{type: mesh, file: configs/own.stl, unit: 1 mm}]\n");
+  EXPECT_EQ(palpate("run mine/e.yaml taps=4 --quiet").status, 0);
+  fs::create_directories(here() / "elsewhere");
+  for (const fs::path& run : {shipped, test::only_run(here() / "runs/own")}) {
+    const Ended again = test::palpate({"replay", fs::absolute(run).string()}, here() / "elsewhere");
+    EXPECT_EQ(again.status, 0) << again.err;
+  }
+}
+
 TEST_F(Scenes, NameTheLibraryOfAMeshInTheManifest) {
   const fs::path run = ran({"scene=cup", "scene.objects.0.file=" + config("scene/meshes/cup.stl")});
   EXPECT_THAT(part_of(run, "manifest"), HasSubstr("shape/mesh.so"));

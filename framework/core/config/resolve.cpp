@@ -9,12 +9,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace palpate {
 namespace {
 
 /// What stands for what a config does not say.
 const Tree kNothing;
+
+/// What a file is called that stands in a config at `place`: see Field::names_file().
+std::string found_from(const Place& place, const std::string& file) {
+  namespace fs = std::filesystem;
+  constexpr int kMostLevels = 6;  // from the config of a job up to the folder in which its sweep was begun
+  std::error_code none;
+  if (file.empty() || place.file == nullptr || fs::path(file).is_absolute() || fs::exists(file, none)) return file;
+  fs::path folder = (fs::current_path() / *place.file).lexically_normal();
+  for (int level = 0; level < kMostLevels && folder.has_relative_path(); ++level) {
+    folder = folder.parent_path();
+    if (fs::exists(folder / file, none)) return (folder / file).string();
+  }
+  return file;
+}
 
 bool is_row(const Tree& tree, std::size_t values) {
   return tree.kind == Tree::Kind::list && tree.items.size() == values;
@@ -94,7 +109,7 @@ class Resolver final : public MapReader {
   void text(std::string& value, const Field& field) override {
     if (const Tree* tree = claim(field)) {
       if (!tree->is_scalar()) refuse(*tree, field, "expects a text, not " + shown(*tree), "write a word or two");
-      value = tree->text;
+      value = field.is_file ? found_from(tree->place, tree->text) : tree->text;
     }
     write(field, Tree::scalar(value, true), sized(value));
   }

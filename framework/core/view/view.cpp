@@ -79,9 +79,13 @@ void ViewPose::list(Fields& fields) {
 }
 
 void PriorOptions::list(Fields& fields) {
-  fields.text(depth, Field("depth", "points that a depth camera saw, PLY; a relative path starts in the current folder")
-                         .needed()
-                         .not_identifying());
+  fields.text(
+      depth,
+      Field("depth",
+            "points that a depth camera saw, PLY; a relative path starts in the working folder or beside the config")
+          .needed()
+          .names_file()
+          .not_identifying());
   fields.real(unit, Field("unit", "length of one unit of the file").in(Unit::metre).above(0));
   fields.real(noise, Field("noise", "standard deviation of a height that it saw")
                          .in(Unit::metre)

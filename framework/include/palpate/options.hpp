@@ -113,6 +113,9 @@ class Field {
   Field& neutral(const FixedValue& value) { return neutral_value = value, *this; }
   /// Changes no result of a run, and enters no id; nor does anything below it.
   Field& not_identifying() { return enters_id = false, *this; }
+  /// A text that names a file. Where there is none of a relative name in the working folder, the one beside the config
+  /// that says it counts, or in a folder above that.
+  Field& names_file() { return is_file = true, *this; }
   /// The name that the option had up to some version after 0.1.0. It enters ids by that name, and records may have it.
   Field& was(const char* key) { return former_name = key, *this; }
 
@@ -129,6 +132,7 @@ class Field {
   bool required = false;
   bool is_group = false;
   bool is_drawable = false;
+  bool is_file = false;
   FixedValue neutral_value;
   bool enters_id = true;
   const char* former_name = "";

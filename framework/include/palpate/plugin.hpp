@@ -26,7 +26,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 19;
+constexpr std::uint32_t kPluginAbi = 20;
 
 struct Context;
 

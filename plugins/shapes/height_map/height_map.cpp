@@ -30,8 +30,9 @@ struct HeightMapOptions : Options {
   void list(Fields& fields) override {
     fields.text(file, Field("file",
                             "CSV, NPY or PNG (8 or 16 bits, grey); the first row is at the far side, as in an image; a "
-                            "relative path starts in the current folder")
+                            "relative path starts in the working folder or beside the config")
                           .needed()
+                          .names_file()
                           .not_identifying());
     fields.real(unit, Field("unit", "height that a value of 1 in the file means").in(Unit::metre).above(0).needed());
     fields.real(spacing,

@@ -69,8 +69,10 @@ void list_checksum(const std::string& file, std::string& checksum, Fields& field
 }
 
 void MeshOptions::list(Fields& fields) {
-  fields.text(
-      file, Field("file", "STL, OBJ or PLY; a relative path starts in the current folder").needed().not_identifying());
+  fields.text(file, Field("file", "STL, OBJ or PLY; a relative path starts in the working folder or beside the config")
+                        .needed()
+                        .names_file()
+                        .not_identifying());
   fields.real(unit,
               Field("unit", "length of one unit of the file, for example 1 mm").in(Unit::metre).above(0).needed());
   fields.choice(up, Field("up", "axis of the file that points up; the length lies along its x"),
