@@ -27,7 +27,7 @@ git grep -nE '^#include "(config|plugin|scene|view|gp|experiment|space|record|sw
 # record. record/files.cpp and recorded.cpp open what they write; the devices named here are nobody's.
 git grep -nE 'std::i?fstream|fopen *\(|(^|[ =(!])::open(at)?\(|directory_iterator|opendir *\(|LoadFile *\(' -- \
   'framework/*.[ch]pp' 'plugins/*.[ch]pp' |
-  grep -vE '^(framework/shared/reading/reading|framework/core/record/files|plugins/backends/process/recorded)\.cpp:' |
+  grep -vE '^(framework/shared/reading/reading|framework/core/record/files|plugins/programs/recorded)\.cpp:' |
   grep -vE '"/dev/(null|full)"' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: opens a file or lists a folder itself, which is for shared/reading|' >"$found/reading" || true
 

@@ -88,6 +88,7 @@ pid_t spawn(const Program& program, const std::vector<int>& files) {
   for (const int file : files) ::posix_spawn_file_actions_adddup2(&actions, file, number++);
   // Files that this process holds open without the flag, as streams of the standard library do.
   ::posix_spawn_file_actions_addclosefrom_np(&actions, number);
+  if (!program.folder.empty()) ::posix_spawn_file_actions_addchdir_np(&actions, program.folder.c_str());
   posix_spawnattr_t attributes;
   ::posix_spawnattr_init(&attributes);
   sigset_t usual;

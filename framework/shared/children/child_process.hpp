@@ -67,6 +67,7 @@ struct Program {
   /// In a process group of its own it hears none of the terminal's signals, and takes all others as a fresh program
   /// does; else it ends at Ctrl-C as this process does, and ignores what this one ignores but SIGPIPE and SIGXFSZ.
   bool own_group = true;
+  std::string folder{};  ///< in which it begins; if empty, the current one
 };
 
 /// Starts a program that has `files` open under the numbers 0, 1, 2 ..., and no other file, whatever this process has

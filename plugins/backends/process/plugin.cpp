@@ -7,115 +7,22 @@
 // before tap() returns. If taps are repeatable, or the config says `restart`, the next tap starts it again; else the
 // run ends, for somebody to look at the arm. So no late answer is ever taken for another tap, and each trouble is told
 // in the record.
-#include "process/child.hpp"
 #include "process/protocol.hpp"
-#include "reading/reading.hpp"
+#include "programs/child.hpp"
+#include "programs/command.hpp"
 #include "tapping/motion.hpp"
 
 #include <palpate/error.hpp>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdint>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <sstream>
-
-#include <unistd.h>
 
 #include <fmt/format.h>
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 namespace palpate::backends {
 
-using process::Child;
-
-namespace {
-
-/// The words of `text`, split at blanks. 'single' and "double" quotes keep blanks together and are taken away; nothing
-/// else means anything, neither a backslash nor a dollar sign. None if a quote is left open or no word is there.
-std::optional<std::vector<std::string>> split_command(const std::string& text) {
-  std::vector<std::string> words;
-  bool inside = false;  // of a word: '' is one, though empty
-  char quote = '\0';
-  for (const char c : text) {
-    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-    if (quote == '\0' && blank) {
-      inside = false;
-      continue;
-    }
-    if (!inside) words.emplace_back();
-    inside = true;
-    if (c == quote) {
-      quote = '\0';
-    } else if (quote == '\0' && (c == '\'' || c == '"')) {
-      quote = c;
-    } else {
-      words.back() += c;
-    }
-  }
-  if (quote != '\0' || words.empty() || words.front().empty()) return std::nullopt;
-  return words;
-}
-
-bool executable(const std::string& file) {
-  std::error_code none;
-  return std::filesystem::is_regular_file(file, none) && ::access(file.c_str(), X_OK) == 0;
-}
-
-/// The file that runs as `program`: a path as it stands, a bare name from the folders of PATH. Throws Error where no
-/// such file may be executed.
-std::string find_program(const std::string& program) {
-  const bool is_path = program.find('/') != std::string::npos;
-  if (is_path && executable(program)) return program;
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
-  for (std::string folder; !is_path && std::getline(folders, folder, ':');) {
-    std::string file = (folder.empty() ? "." : folder) + "/" + program;
-    if (executable(file)) return file;
-  }
-  throw Error("command", "there is no program " + process::shown(program),
-              "a name is looked for in PATH, a path from the folder in which palpate runs");
-}
-
-/// Whether a program by that name, whatever its version, runs what another word names.
-bool is_interpreter(const std::string& program) {
-  std::string name = std::filesystem::path(program).filename().string();
-  name.erase(name.find_last_not_of("0123456789.") + 1);
-  constexpr std::array<const char*, 13> kNames{"python", "pypy", "env",  "sh",   "bash", "dash", "zsh",
-                                               "perl",   "ruby", "node", "java", "lua",  "julia"};
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
-
-/// Returns a hash of the command in which the content of the program stands for its name, so that the id of a run
-/// follows what the program does, not where it lies. The program is the first word, or, of an interpreter, the first
-/// one that is there; behind -m and -c none is. One that is found by PATH, and a folder, count by name. Other words are
-/// no content: a program may write the files that they name.
-std::string checksum_of(const std::vector<std::string>& words) {
-  constexpr std::uintmax_t kMostBytes = 64 << 20;  // what is longer is a word
-  bool found = false;
-  std::string all;
-  for (const std::string& word : words) {
-    const bool first = &word == &words.front();
-    const bool by_path = first && word.find('/') == std::string::npos;
-    const bool interprets = first && is_interpreter(word);
-    Reading reading;
-    if (!found && !interprets && !by_path) reading = read_bounded(word, kMostBytes, Origin::user);
-    const bool there = first ? !interprets : reading.kind != Reading::Kind::absent;
-    found = found || there || word == "-m" || word == "-c";
-    const std::string& text = reading ? reading.text : word;
-    all += fmt::format("{} {}:", reading ? "file" : "word", text.size()) + text;
-  }
-  const XXH128_hash_t hash = XXH3_128bits(all.data(), all.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
-
-}  // namespace
+using programs::Child;
 
 struct ProcessOptions : Options {
   std::string command;
@@ -133,9 +40,9 @@ struct ProcessOptions : Options {
                                "blanks together, nothing else is interpreted, no shell")
                              .needed()
                              .not_identifying());
-    const auto words = split_command(command);
+    const auto words = programs::split_command(command);
     fields.require(words.has_value(), "command", "names no program, or a quote is left open");
-    if (words && checksum.empty()) checksum = checksum_of(*words);
+    if (words && checksum.empty()) checksum = programs::content_of(*words).checksum;
     fields.text(checksum, Field("checksum",
                                 "of the command, with the content of the program in place of its name: of the first "
                                 "word, or of what an interpreter runs; if absent, that of the program as it is"));
@@ -170,9 +77,9 @@ class Process final : public Backend {
   Process(const Options& options, const Context& context)
       : options_(options),
         context_(context),
-        words_(split_command(options.command).value()),
-        file_(find_program(words_.front())) {
-    const std::string found = checksum_of(words_);
+        words_(programs::split_command(options.command).value()),
+        file_(programs::find_program(words_.front())) {
+    const std::string found = programs::content_of(words_).checksum;
     if (options.checksum == found) return;
     throw Error("checksum", "is not that of the command and its program, which have " + found,
                 "put the program back that the run began with, or begin another run");
@@ -201,7 +108,7 @@ class Process final : public Backend {
         tapping::describe(options_.motion.of_request(request), context_.scene.desk(), request, request.previous);
     out.insert(out.begin(),
                fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
-                           process::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
+                           programs::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
     return out;
   }
 
@@ -218,7 +125,7 @@ class Process final : public Backend {
 
   static constexpr const char* kLock = "process.lock";
 
-  process::Patience patience(Clock::time_point begin, double seconds) const {
+  programs::Patience patience(Clock::time_point begin, double seconds) const {
     return {begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)), context_.interrupted};
   }
 
@@ -229,20 +136,20 @@ class Process final : public Backend {
 
   /// Starts the program, but where taps are not repeatable only once none of an earlier attempt is there any more: two
   /// must not move one arm. If one still is when the patience is over, there is no child.
-  void start(const process::Patience& patience) {
+  void start(const programs::Patience& patience) {
     Descriptor lock;
     if (!options_.repeatable && !context_.directory.empty()) {
-      lock = process::locked(recorded(kLock), patience);
+      lock = programs::locked(recorded(kLock), patience);
       if (!lock) return;
     }
-    child_ = std::make_unique<Child>(file_, words_, recorded("process.stderr.txt"), lock);
-    if (lock) process::note_holder(lock, child_->pid());
+    child_ = std::make_unique<Child>(Program{words_, file_}, recorded("process.stderr.txt"), lock);
+    if (lock) programs::note_holder(lock, child_->pid());
   }
 
   process::Answer left_behind() const {
     if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
     process::Answer answer =
-        failed("of an earlier attempt, process " + process::noted_holder(recorded(kLock)) + ", still runs: end it");
+        failed("of an earlier attempt, process " + programs::noted_holder(recorded(kLock)) + ", still runs: end it");
     answer.contact.ends_run = true;
     return answer;
   }
@@ -253,12 +160,12 @@ class Process final : public Backend {
 
   bool may_restart() const { return options_.repeatable || options_.restart; }
 
-  process::Answer ask(const TapRequest& request, const process::Patience& patience) {
+  process::Answer ask(const TapRequest& request, const programs::Patience& patience) {
     std::string line;
     process::Answer answer;
     // Whatever there is before the ask is no answer to it, and then the arm had better not move.
     Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
-    if (heard == Child::Heard::line) return failed("said more than its answer: " + process::shown(line));
+    if (heard == Child::Heard::line) return failed("said more than its answer: " + programs::shown(line));
     if (heard == Child::Heard::late) {
       tapping::MotionOptions motion = options_.motion.of_request(request);
       heard = child_->send(process::ask_line(request, context_, motion), patience);
@@ -273,10 +180,10 @@ class Process final : public Backend {
       case Child::Heard::ended:
         return failed(child_->fate());
       case Child::Heard::late:
-        return failed(line.empty() ? not_answered() : "did not end its answer in time: " + process::shown(line),
+        return failed(line.empty() ? not_answered() : "did not end its answer in time: " + programs::shown(line),
                       Outcome::timeout);
       case Child::Heard::too_long:
-        return failed("answered with an endless line: " + process::shown(line));
+        return failed("answered with an endless line: " + programs::shown(line));
       case Child::Heard::interrupted:
         break;
     }

@@ -2,6 +2,8 @@
 // The only user of the JSON library in this plugin.
 #include "process/protocol.hpp"
 
+#include "programs/command.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <optional>
@@ -12,8 +14,7 @@ namespace palpate::process {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t kLongestPiece = 80;
+using programs::shown;
 
 /// Options as JSON in SI, from their field list: an option that the motion gains is sent along without a line here.
 class Written final : public Fields {
@@ -177,12 +178,6 @@ Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds)
   Contact contact = read_contact(reader, bounds);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
   return {true, true, std::move(contact)};
-}
-
-std::string shown(const std::string& text) {
-  std::string out = text.substr(0, kLongestPiece);
-  for (char& c : out) c = c >= 0x20 && c < 0x7f ? c : '?';
-  return "'" + out + (text.size() > kLongestPiece ? "..." : "") + "'";
 }
 
 }  // namespace palpate::process

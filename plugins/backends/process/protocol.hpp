@@ -29,7 +29,4 @@ struct Answer {
 /// Reads a line as the answer to this tap. A value that find_fault() finds is refused.
 Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds);
 
-/// A piece of foreign text, quoted to stand within one line: cut where it is long, '?' for all but printable ASCII.
-std::string shown(const std::string& text);
-
 }  // namespace palpate::process

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "process/recorded.hpp"
+#include "programs/recorded.hpp"
 
 #include "reading/reading.hpp"
 
@@ -17,7 +17,7 @@
 
 #include <fmt/printf.h>
 
-namespace palpate::process {
+namespace palpate::programs {
 namespace {
 
 constexpr const char* kNote = "\n[here %15lld bytes are left out]\n";
@@ -103,4 +103,4 @@ std::string noted_holder(const std::string& file) {
   return holder.empty() ? "?" : holder;
 }
 
-}  // namespace palpate::process
+}  // namespace palpate::programs

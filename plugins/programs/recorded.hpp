@@ -12,7 +12,7 @@
 
 #include <sys/types.h>
 
-namespace palpate::process {
+namespace palpate::programs {
 
 /// Throws Error (kind `run`): what cannot be done, in words, and why, as errno has it.
 [[noreturn]] void fail(const std::string& where, const std::string& what);
@@ -66,4 +66,4 @@ void note_holder(const Descriptor& lock, pid_t holder);
 /// The process that was noted last in `file`, "?" if none is.
 std::string noted_holder(const std::string& file);
 
-}  // namespace palpate::process
+}  // namespace palpate::programs

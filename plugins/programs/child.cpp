@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "process/child.hpp"
+#include "programs/child.hpp"
 
-#include "process/protocol.hpp"
+#include "programs/command.hpp"
 #include "reading/reading.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace palpate::process {
+namespace palpate::programs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -81,9 +81,7 @@ bool carries(pid_t pid, const std::string& mark) {
 
 }  // namespace
 
-Child::Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
-             const Descriptor& kept)
-    : diary_(diary) {
+Child::Child(Program program, const std::string& diary, const Descriptor& kept) : diary_(diary) {
   static std::atomic<int> count{0};
   mark_ = "PALPATE_PROGRAM=" + std::to_string(::getpid()) + "." + std::to_string(++count);
   // From now on the processes that a program leaves behind become this one's children.
@@ -93,10 +91,9 @@ Child::Child(const std::string& file, const std::vector<std::string>& words, con
   if (!in || !out) fail("command", "cannot open a pipe");
   std::vector<int> files{in->to_read.number(), out->to_write.number(), diary_.descriptor().number()};
   if (kept) files.push_back(kept.number());
-  Program program{words, file};
   program.environment.insert(program.environment.begin(), mark_);
   pid_ = spawn(program, files);
-  if (pid_ < 0) fail("command", "cannot start '" + file + "'");
+  if (pid_ < 0) fail("command", "cannot start '" + program.file + "'");
   input_ = std::move(in->to_write);
   output_ = std::move(out->to_read);
   for (const Descriptor* end : {&input_, &output_}) ::fcntl(end->number(), F_SETFL, O_NONBLOCK);
@@ -129,9 +126,26 @@ Child::Heard Child::send(const std::string& text, const Patience& patience) {
   return Heard::line;
 }
 
+std::optional<Child::Heard> Child::hear_more(const Patience& patience) {
+  diary_.trim();
+  if (patience.broken_off()) return Heard::interrupted;
+  // Asked before the look at the pipe: what it said before it ended is then already in there.
+  const bool over = gone();
+  if (glance(output_, POLLIN, over ? Clock::now() : patience.until)) {
+    std::array<char, 65536> some;
+    const ssize_t got = ::read(output_.number(), some.data(), some.size());
+    if (got > 0) heard_.append(some.data(), static_cast<std::size_t>(got));
+    if (got == 0) return Heard::ended;
+  } else if (over) {  // and what it started holds the pipe open
+    return Heard::ended;
+  } else if (Clock::now() >= patience.until) {
+    return Heard::late;
+  }
+  return std::nullopt;
+}
+
 Child::Heard Child::hear(std::string& line, const Patience& patience) {
   for (;;) {
-    diary_.trim();
     const auto end = heard_.find('\n');
     line = heard_.substr(0, end);
     if (line.size() > kLongestLine) return Heard::too_long;
@@ -139,18 +153,20 @@ Child::Heard Child::hear(std::string& line, const Patience& patience) {
       heard_.erase(0, end + 1);
       return Heard::line;
     }
-    if (patience.broken_off()) return Heard::interrupted;
-    // Asked before the look at the pipe: what it said before it ended is then already in there.
-    const bool over = gone();
-    if (glance(output_, POLLIN, over ? Clock::now() : patience.until)) {
-      std::array<char, 4096> some;
-      const ssize_t got = ::read(output_.number(), some.data(), some.size());
-      if (got > 0) heard_.append(some.data(), static_cast<std::size_t>(got));
-      if (got == 0) return Heard::ended;
-    } else if (over) {  // and what it started holds the pipe open
-      return Heard::ended;
-    } else if (Clock::now() >= patience.until) {
-      return Heard::late;
+    if (const auto heard = hear_more(patience)) return *heard;
+  }
+}
+
+Child::Heard Child::hear(std::string& bytes, std::size_t count, const Patience& patience) {
+  for (;;) {
+    if (heard_.size() >= count) {
+      bytes = heard_.substr(0, count);
+      heard_.erase(0, count);
+      return Heard::line;
+    }
+    if (const auto heard = hear_more(patience)) {
+      bytes = heard_;
+      return *heard;
     }
   }
 }
@@ -222,4 +238,4 @@ void Child::end_kin() {
   for (const pid_t pid : kin_) ::waitpid(pid, nullptr, WNOHANG);
 }
 
-}  // namespace palpate::process
+}  // namespace palpate::programs

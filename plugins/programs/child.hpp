@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// A program under way, spoken to in lines. It knows nothing of taps.
+// A program under way, spoken to in lines or in bytes. It knows nothing of taps.
 #pragma once
 
 #include "children/child_process.hpp"
-#include "process/recorded.hpp"
+#include "programs/recorded.hpp"
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <sys/types.h>
 
-namespace palpate::process {
+namespace palpate::programs {
 
 /// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
 /// terminal reaches only the program that decides what follows from it. It inherits the environment and the working
@@ -31,11 +32,9 @@ class Child {
 
   enum class Heard { line, ended, late, interrupted, too_long };
 
-  /// Starts `file` with the arguments `words`, of which the first is its name. Its stderr is appended to `diary`, or
-  /// dropped if that is empty. It inherits `kept` (may be none) as the file after the standard ones. Throws Error when
-  /// it cannot be started.
-  Child(const std::string& file, const std::vector<std::string>& words, const std::string& diary,
-        const Descriptor& kept);
+  /// Starts `program`. Its stderr is appended to `diary`, or dropped if that is empty. It inherits `kept` (may be none)
+  /// as the file after the standard ones. Throws Error when it cannot be started.
+  Child(Program program, const std::string& diary, const Descriptor& kept);
   /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM to its group; then SIGKILL to all that
   /// it started, wherever that has gone. Afterwards nothing of it is left.
   ~Child();
@@ -46,6 +45,9 @@ class Child {
   Heard send(const std::string& text, const Patience& patience);
   /// Takes the next line of its stdout, without the line end. With `ended`, `too_long` and `late`, what there is of it.
   Heard hear(std::string& line, const Patience& patience);
+  /// Takes the next `count` bytes of its stdout; Heard::line when they are there. With `ended` and `late`, what there
+  /// is of them, which stays to be taken.
+  Heard hear(std::string& bytes, std::size_t count, const Patience& patience);
   /// How it ended, for people: "ended with exit status 3, its last words: ...". Waits up to kGrace for that; "closed
   /// its stdin or stdout" if it is still there.
   std::string fate();
@@ -55,6 +57,8 @@ class Child {
  private:
   bool gone() const;
   bool wait_for_end();
+  /// Waits for more of its stdout; none when there is, or when a glance brought nothing.
+  std::optional<Heard> hear_more(const Patience& patience);
 
   // All that the program started, and what those started, however far away they have gone: into a group or a session of
   // their own, or left behind by whoever started them.
@@ -70,4 +74,4 @@ class Child {
   pid_t pid_ = -1;
 };
 
-}  // namespace palpate::process
+}  // namespace palpate::programs

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "programs/command.hpp"
+
+#include "reading/reading.hpp"
+
+#include <palpate/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+namespace palpate::programs {
+
+std::optional<std::vector<std::string>> split_command(const std::string& text) {
+  std::vector<std::string> words;
+  bool inside = false;  // of a word: '' is one, though empty
+  char quote = '\0';
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (quote == '\0' && blank) {
+      inside = false;
+      continue;
+    }
+    if (!inside) words.emplace_back();
+    inside = true;
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '\'' || c == '"')) {
+      quote = c;
+    } else {
+      words.back() += c;
+    }
+  }
+  if (quote != '\0' || words.empty() || words.front().empty()) return std::nullopt;
+  return words;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestPiece = 80;
+
+bool executable(const std::string& file) {
+  std::error_code none;
+  return fs::is_regular_file(file, none) && ::access(file.c_str(), X_OK) == 0;
+}
+
+/// Whether a program by that name, whatever its version, runs what another word names.
+bool is_interpreter(const std::string& program) {
+  std::string name = fs::path(program).filename().string();
+  name.erase(name.find_last_not_of("0123456789.") + 1);
+  constexpr std::array<const char*, 13> kNames{"python", "pypy", "env",  "sh",   "bash", "dash", "zsh",
+                                               "perl",   "ruby", "node", "java", "lua",  "julia"};
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
+}  // namespace
+
+std::string find_program(const std::string& program, const std::string& folder) {
+  const bool is_path = program.find('/') != std::string::npos;
+  const std::string there = (fs::path(folder) / program).string();
+  if (is_path && executable(there)) return there;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
+  for (std::string one; !is_path && std::getline(folders, one, ':');) {
+    std::string file = (one.empty() ? "." : one) + "/" + program;
+    if (executable(file)) return file;
+  }
+  throw Error("command", "there is no program " + shown(program),
+              "a name is looked for in PATH, a path from " +
+                  (folder.empty() ? std::string("the folder in which palpate runs") : "the folder " + folder));
+}
+
+Content content_of(const std::vector<std::string>& words, const std::string& folder) {
+  constexpr std::uintmax_t kMostBytes = 64 << 20;  // what is longer is a word
+  bool found = false;
+  std::string all;
+  Content out;
+  for (const std::string& word : words) {
+    const bool first = &word == &words.front();
+    const bool by_path = first && word.find('/') == std::string::npos;
+    const bool interprets = first && is_interpreter(word);
+    Reading reading;
+    if (!found && !interprets && !by_path) reading = read_bounded(fs::path(folder) / word, kMostBytes, Origin::user);
+    const bool there = first ? !interprets : reading.kind != Reading::Kind::absent;
+    found = found || there || word == "-m" || word == "-c";
+    const std::string& text = reading ? reading.text : word;
+    all += fmt::format("{} {}:", reading ? "file" : "word", text.size()) + text;
+    if (reading) out.program = text;
+  }
+  const XXH128_hash_t hash = XXH3_128bits(all.data(), all.size());
+  out.checksum = fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  return out;
+}
+
+std::string shown(const std::string& text) {
+  std::string out = text.substr(0, kLongestPiece);
+  for (char& c : out) c = c >= 0x20 && c < 0x7f ? c : '?';
+  return "'" + out + (text.size() > kLongestPiece ? "..." : "") + "'";
+}
+
+}  // namespace palpate::programs
