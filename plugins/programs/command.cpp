@@ -70,7 +70,7 @@ bool is_interpreter(const std::string& program) {
 
 std::string find_program(const std::string& program, const std::string& folder) {
   const bool is_path = program.find('/') != std::string::npos;
-  const std::string there = (fs::path(folder) / program).string();
+  std::string there = (fs::path(folder) / program).string();
   if (is_path && executable(there)) return there;
   const char* path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");

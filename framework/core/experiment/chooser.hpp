@@ -18,8 +18,8 @@
 
 namespace palpate {
 
-/// A choice that is not the strategy's: scores of somebody else, one a candidate, or the choice that these had led to,
-/// of which the record tells what the scores would.
+/// A choice that is not the strategy's: scores of somebody else, one a candidate, or the choice that scores had led to
+/// which cannot be asked for again, and of which the record tells what they would.
 struct Wish {
   Eigen::VectorXd scores;           ///< finite; empty if there is a `choice`
   std::optional<TapRecord> choice;  ///< candidate, source, why, and all about its score

@@ -40,8 +40,14 @@ std::optional<TapRecord> Experiment::begin(Journal& journal, int most_taps, cons
   std::optional<std::string> reason = stop_reason(budget, wish != nullptr ? Source::caller : Source::acquisition);
   std::optional<TapRecord> tap;
   if (!reason) {
-    tap = choose_next(wish);
-    if (!tap) reason = "no candidate is left";
+    try {
+      tap = choose_next(wish);
+      if (!tap) reason = "no candidate is left";
+    } catch (const Error&) {
+      // A program that is interrupted over its scores is no failure.
+      if (!stop_wished()) throw;
+      reason = kStoppedByUser;
+    }
   }
   if (tap && !journal.permits(*tap)) reason = kStoppedByUser;
   if (reason) {

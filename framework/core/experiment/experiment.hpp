@@ -48,6 +48,15 @@ class Experiment {
   /// again until the next observe(). None if no candidate is left.
   virtual std::optional<TapRecord> choose_next(const Wish* wish = nullptr) = 0;
 
+  /// Has the strategy choose, from now on, as a record says: the next tap is `next`, none where the record ends. The
+  /// acquisition is not asked then: for those that cannot be asked again.
+  void recall(std::optional<TapRecord> next) {
+    recalls_ = true;
+    recalled_ = std::move(next);
+  }
+  /// Whether the acquisition is asked.
+  bool has_scores() const { return !recalls_; }
+
   /// Notes a tap that was made, wherever. The models take it in when next they are asked.
   virtual void observe(const PastTap& tap) = 0;
 
@@ -104,7 +113,8 @@ class Experiment {
   Context context_;
   std::shared_ptr<Backend> backend_;
   PhaseClock clock_;
-  std::optional<Target> previous_;  ///< of the tap before
+  std::optional<Target> previous_;     ///< of the tap before
+  std::optional<TapRecord> recalled_;  ///< see recall()
 
  private:
   std::optional<std::string> stop_reason(std::int64_t budget, Source source);
@@ -113,6 +123,7 @@ class Experiment {
   bool is_broken_off(const Contact& contact) const;
   void check_backend(const PastTap& tap);
 
+  bool recalls_ = false;
   int failed_in_a_row_ = 0;   ///< of this process: somebody has looked at the arm before a run is carried on
   int refused_in_a_row_ = 0;  ///< taps whose numbers were none
 };

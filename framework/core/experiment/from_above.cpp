@@ -32,9 +32,13 @@ std::optional<TapRecord> FromAbove::choose_next(const Wish* wish) {
   TapRecord tap;
   {
     const PhaseClock::Scope acquire(clock_, Phase::acquire);
-    belief_.ask(reads_for(wish != nullptr              ? Source::caller
-                          : chooser_.starting(belief_) ? Source::initial
-                                                       : Source::acquisition));
+    const bool starting = chooser_.starting(belief_);
+    belief_.ask(reads_for(wish != nullptr ? Source::caller : starting ? Source::initial : Source::acquisition));
+    const Wish recalled{{}, recalled_};
+    if (!has_scores() && wish == nullptr && !starting) {
+      if (!recalled_) return std::nullopt;
+      wish = &recalled;
+    }
     if (!chooser_.choose(belief_, tap, previous_, wish)) return std::nullopt;
   }
   tap.number = watch_.counts().taps + 1;
@@ -110,6 +114,7 @@ std::vector<ModelReader> FromAbove::readers() const {
 }
 
 Eigen::VectorXd FromAbove::scores() {
+  if (!has_scores()) return Eigen::VectorXd::Zero(candidates_.size());
   belief_.ask(reads_for(Source::acquisition));
   return chooser_.scores(belief_);
 }

@@ -33,7 +33,8 @@ class FromAbove final : public Experiment {
   Preview preview(const TapRecord& tap) const override;
   std::vector<ModelReader> readers() const override;
 
-  /// What the acquisition gives each candidate as of now: asked again, which changes nothing (its law).
+  /// What the acquisition gives each candidate as of now: asked again, which changes nothing (its law); 0 where
+  /// it is not asked.
   Eigen::VectorXd scores();
 
   /// Has the belief hold these quantities as of now, for who looks at it; the record is the same without.

@@ -70,24 +70,31 @@ class Collector final : public Journal {
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override { rows.push_back(tap_row(tap)); }
 };
 
-/// What somebody had chosen by scores of their own; none where the strategy chose.
-std::optional<Wish> wish_of(const Row& row, const FromAbove& experiment) {
+/// A recorded choice and all about its score.
+TapRecord choice_of(const Recording& recording, std::size_t index, Experiment& experiment) {
+  const Row& row = recording.rows[index];
+  const PastTap& past = recording.taps[index];
   TapRecord tap;
-  for (const Source source : {Source::caller, Source::fallback}) {
-    if (row.text("source") == source_name(source)) tap.source = source;
+  tap.source = past.source;
+  tap.why = past.why;
+  if (const auto* const above = dynamic_cast<const FromAbove*>(&experiment)) {
+    tap.candidate = above->candidates().nearest(past.target.x, past.target.y, experiment.scene().area());
+  } else if (const auto* const side = dynamic_cast<const FromAnySide*>(&experiment)) {
+    tap.candidate = side->belief().find(approach_of(past));
   }
-  tap.why = row.text("why");
-  if (!tap.of_caller()) return std::nullopt;
-  const Candidates& candidates = experiment.candidates();
-  tap.candidate =
-      candidates.nearest(row.number("x").value_or(0.0), row.number("y").value_or(0.0), experiment.scene().area());
   tap.score = row.number("score");
   if (const auto ties = row.number("ties")) tap.ties = static_cast<int>(*ties);
-  if (const auto x = row.number("runner_up.x")) {
-    tap.runner_up = Target{*x, row.number("runner_up.y").value_or(0.0)};
-    tap.runner_up_score = row.number("runner_up.score");
-  }
-  return Wish{{}, tap};
+  if (const auto x = row.number("runner_up.x")) tap.runner_up = Target{*x, row.number("runner_up.y").value_or(0.0)};
+  tap.runner_up_score = row.number("runner_up.score");
+  return tap;
+}
+
+/// Has the experiment choose tap `number` as the record has it, where its strategy cannot be asked again.
+void recall_choice(Experiment& experiment, const Recording& recording, int number) {
+  if (!recording.scored_by_program()) return;
+  const auto index = static_cast<std::size_t>(number - 1);
+  const bool known = index < recording.rows.size();
+  experiment.recall(known ? std::optional(choice_of(recording, index, experiment)) : std::nullopt);
 }
 
 std::string shown(const Scalar* value) {
@@ -149,6 +156,8 @@ Quantities recorded_quantities(const Row& row) {
 
 bool Recording::truth_known() const { return rows.front().flag("true_on_surface").has_value(); }
 
+bool Recording::scored_by_program() const { return config.notes.plugins.count({"acquisition", "program"}) != 0; }
+
 bool Recording::failed() const { return summary && summary->text("status") == "failed"; }
 
 Recording read_recording(const Workshop& workshop, const fs::path& directory) {
@@ -166,13 +175,16 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
 Playback::Playback(const Workshop& workshop, const Recording& recording)
     : recording_(recording),
       experiment_(make_experiment(recording.config.options, workshop.host, workshop.interrupted,
-                                  no_backend(recording.truth_known()))) {}
+                                  no_backend(recording.truth_known()))) {
+  recall_choice(*experiment_, recording_, 1);
+}
 
 void Playback::advance_to(int taps) {
   recall_lines(*experiment_, recording_, taps_ + 1, taps + 1);
   const auto begin = recording_.taps.begin();
   experiment_->resume({begin + taps_, begin + taps});
   taps_ = taps;
+  recall_choice(*experiment_, recording_, taps + 1);
 }
 
 ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
@@ -187,11 +199,13 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
       make_experiment(options, workshop.host, workshop.interrupted, std::make_shared<Recorded>(recording));
   Experiment& experiment = *made_again;
   recall_lines(experiment, recording, 1, made);
-  const auto* const from_above = dynamic_cast<const FromAbove*>(made_again.get());
+  const bool from_above = dynamic_cast<const FromAbove*>(made_again.get()) != nullptr;
   Collector collector;
   for (std::size_t i = 0;; ++i) {
-    const std::optional<Wish> wish =
-        from_above != nullptr && i < recorded.size() ? wish_of(recorded[i], *from_above) : std::nullopt;
+    std::optional<Wish> wish;  // what somebody had chosen by scores of their own
+    if (from_above && i < recorded.size() && recording.taps[i].of_caller())
+      wish = Wish{{}, choice_of(recording, i, experiment)};
+    recall_choice(experiment, recording, static_cast<int>(i) + 1);
     std::optional<TapRecord> tap = experiment.begin(collector, made, wish ? &*wish : nullptr);
     if (!tap) break;
     tap->contact = recording.taps.at(i).contact;

@@ -31,6 +31,8 @@ struct Recording {
   bool truth_known() const;
   /// Whether the run ended because it could not go on.
   bool failed() const;
+  /// Whether a program scored: what it would say now nobody asks, because who reads a record starts nothing.
+  bool scored_by_program() const;
 };
 
 /// Throws Error for a directory without a recorded tap, a damaged one, and one whose config is not that of its id.
@@ -45,7 +47,7 @@ Quantities recorded_quantities(const Row& row);
 /// Brings the models of a recorded run to the state that they had after any of its taps, from the taps alone: what is
 /// read of them there is what the run would have read. Writes nothing, moves nothing, builds no backend: which
 /// approaches that of a run from any side reached is recorded with each tap. Behind the last tap it counts as reaching
-/// all.
+/// all. Where a program scored, taps are chosen as the record has it, and none behind the last.
 class Playback {
  public:
   /// Before the first tap. `workshop` and `recording` must outlive it. Throws Error for what only building finds out.

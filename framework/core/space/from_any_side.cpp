@@ -62,6 +62,7 @@ std::optional<std::string> FromAnySide::stop_rule(Source) { return std::nullopt;
 
 Eigen::VectorXd FromAnySide::scores() {
   update();
+  if (!has_scores()) return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(belief_.approaches().size()));
   Eigen::VectorXd out(static_cast<Eigen::Index>(belief_.approaches().size()));
   acquisition_->score_approaches(belief_, out);
   if (!all_finite(out)) {
@@ -77,7 +78,11 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   TapRecord tap;
   tap.number = result_.taps + 1;
   tap.source = starting() ? Source::initial : Source::acquisition;
-  if (!starting()) {
+  if (!starting() && !has_scores()) {
+    if (!recalled_) return std::nullopt;
+    tap = *recalled_;
+    tap.number = result_.taps + 1;
+  } else if (!starting()) {
     const Pick picked =
         pick_best(scores(), Allowed::Constant(static_cast<Eigen::Index>(belief_.approaches().size()), true),
                   acquisition_->prior_scale(), options_.tie_tolerance);

@@ -44,7 +44,8 @@ class FromAnySide final : public Experiment {
   const SpaceBelief& belief() const { return belief_; }
   /// Whether an object was seen or hit: before that the surface is anywhere.
   bool knows_object() const { return object_seen_ || result_.first_hit_tap; }
-  /// What the acquisition gives each of the approaches among which the next tap would be chosen.
+  /// What the acquisition gives each of the approaches among which the next tap would be chosen; 0 where it
+  /// is not asked.
   Eigen::VectorXd scores();
   /// The surface that is believed, for a mesh of such cubes; none before an object is known.
   Crossings crossings(double side);

@@ -204,6 +204,13 @@ std::optional<Line> SpaceBelief::along_normal(Random& random) const {
   return out.origin.z() > 0.0 ? std::optional(out) : std::nullopt;
 }
 
+int SpaceBelief::find(const Approach& approach) const {
+  const auto at = std::find_if(approaches_.begin(), approaches_.end(), [&](const Approach& one) {
+    return one.line.origin == approach.line.origin && one.line.direction == approach.line.direction;
+  });
+  return at != approaches_.end() ? static_cast<int>(at - approaches_.begin()) : 0;
+}
+
 void SpaceBelief::draw_approaches() {
   // A stream a tap: what is drawn depends on the touches alone, and a resumed run draws the same.
   Random random = context_.random("space/approaches", static_cast<std::uint64_t>(taps_));

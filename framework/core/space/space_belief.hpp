@@ -57,6 +57,8 @@ class SpaceBelief final : public SurfaceBelief {
 
   // SurfaceBelief, as of the last update().
   const std::vector<Approach>& approaches() const override { return approaches_; }
+  /// The one of them along the same line, the first where there is none.
+  int find(const Approach& approach) const;
   int taps() const override { return taps_; }
   const Eigen::VectorXd& way() const override { return met_; }
   const Eigen::VectorXd& unseen() const override { return unseen_; }

@@ -26,7 +26,7 @@ TapMark mark_of(const Recording& recording, std::size_t index, double desk, cons
 
 /// Whether the scores are a map of their own, beside those that are shown anyhow.
 bool own_scores(const Snapshot& now) {
-  if (now.scores == now.uncertainty) return false;
+  if (!now.has_scores || now.scores == now.uncertainty) return false;
   return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
 }
 
@@ -40,6 +40,7 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
     out.marks.push_back(
         mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk(), experiment.counts()));
   out.next = experiment.choose_next();
+  out.has_scores = experiment.has_scores();
   out.scores = experiment.scores();
   experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
   out.surface = reconstruction(belief);

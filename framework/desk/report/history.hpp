@@ -45,7 +45,8 @@ struct Snapshot : Moment {
   /// else the footprint's p. The other is empty.
   Eigen::VectorXd weight;
   Eigen::VectorXd probability;
-  Eigen::VectorXd scores;  ///< what the strategy gives each candidate
+  bool has_scores = true;  ///< whether the strategy could be asked
+  Eigen::VectorXd scores;  ///< what the strategy gives each candidate; else 0
   bool has_weight() const { return weight.size() > 0; }
   Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, where there is w
 };

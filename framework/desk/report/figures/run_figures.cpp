@@ -45,7 +45,8 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
   constexpr double kPitch = 440;
   constexpr double kSide = 290;
   const Box first = map_box(ground.area, kMargin, kTop, kSide);
-  Sheet sheet(static_cast<int>(kMargin + 2 * kPitch + kSide + 90), static_cast<int>(kTop + first.height + 96));
+  const double steps = last.has_weight() || last.has_scores ? 2 : 1;  // from the first panel to the last
+  Sheet sheet(static_cast<int>(kMargin + steps * kPitch + kSide + 90), static_cast<int>(kTop + first.height + 96));
   struct Panel {
     const char* name;
     const Eigen::VectorXd& values;
@@ -66,7 +67,7 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
     panels.push_back({"e", e, Palette::viridis, most, outside(e, most)});
   } else {
     panels.push_back({"p", last.probability, Palette::viridis, 1.0, ""});
-    panels.push_back({"score", e, Palette::viridis, most, outside(e, most)});
+    if (last.has_scores) panels.push_back({"score", e, Palette::viridis, most, outside(e, most)});
   }
   const std::map<std::string, std::string> titles = map_titles(options);
   sheet.text(options.name, kMargin, 14, 15);

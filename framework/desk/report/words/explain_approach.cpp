@@ -75,6 +75,7 @@ class ApproachExplained final : public Explanation {
       return;
     }
     page_.say(fmt::format("The acquisition chose it: {}.", acquisition_words()));
+    if (!experiment_.has_scores()) return explain_score();
     if (!now || !now->approach || now->approach->line.origin != approach_.line.origin)
       return page_.say(
           "From the same taps this build would tap elsewhere: the run was made by another build or on "
@@ -110,6 +111,12 @@ class ApproachExplained final : public Explanation {
                           line_words(experiment_.belief().approaches()[static_cast<std::size_t>(second)].line),
                           plain_words(scores(second)),
                           less == 0.0 ? "the same" : by + (less > 0.0 ? "less" : "more, which is a tie")));
+  }
+
+  /// What the record has of a score, where a program gave it.
+  void explain_score() {
+    if (const auto score = row_.number("score"))
+      page_.say(fmt::format("Its score is {}; what the program gave the others is not recorded.", plain_words(*score)));
   }
 
   const Composition& best() const { return experiment_.belief().solids().best(); }

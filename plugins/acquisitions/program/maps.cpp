@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "program/maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+namespace palpate::program {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+constexpr char kMagic[] = "\x93NUMPY\x01\x00";
+constexpr std::size_t kMagicLength = 8;
+
+/// A file NPY of such a shape ("2209,"), `bytes` of data at `data`.
+std::string npy(const char* type, const std::string& shape, const void* data, std::size_t bytes) {
+  constexpr std::size_t kAlign = 64;
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
+  header.append(kAlign - 1 - (kNpyStart + header.size()) % kAlign, ' ').append("\n");
+  std::string out(kMagic, kMagicLength);
+  out += static_cast<char>(header.size() & 0xffU);
+  out += static_cast<char>(header.size() >> 8U);
+  return out.append(header).append(static_cast<const char*>(data), bytes);
+}
+
+std::string npy(const Eigen::VectorXd& values) {
+  return npy("<f8", fmt::format("{},", values.size()), values.data(),
+             static_cast<std::size_t>(values.size()) * sizeof(double));
+}
+
+std::string npy(const RowMajor& rows) {
+  return npy("<f8", fmt::format("{}, {}", rows.rows(), rows.cols()), rows.data(),
+             static_cast<std::size_t>(rows.size()) * sizeof(double));
+}
+
+/// A row for each outline, a truth value for each candidate.
+std::string hypotheses(const Belief& belief) {
+  const OutlineSample& sample = belief.outlines();
+  const Eigen::Index places = belief.candidates().rows();
+  constexpr Eigen::Index kBits = 64;
+  std::string out(static_cast<std::size_t>(sample.count * places), '\0');
+  for (Eigen::Index k = 0; k < sample.count; ++k) {
+    for (Eigen::Index i = 0; i < places; ++i) {
+      const bool holds = (sample.holds(k / kBits, i) >> static_cast<unsigned>(k % kBits) & 1U) != 0;
+      out[static_cast<std::size_t>(k * places + i)] = holds ? '\1' : '\0';
+    }
+  }
+  return npy("|b1", fmt::format("{}, {}", sample.count, places), out.data(), out.size());
+}
+
+/// x, y, height, and 1 on an object or 0 on the desk, a row for each contact.
+std::string contacts(const Belief& belief) {
+  const std::vector<Touch>& touches = belief.touches();
+  RowMajor out(static_cast<Eigen::Index>(touches.size()), 4);
+  for (Eigen::Index i = 0; i < out.rows(); ++i) {
+    const Touch& one = touches[static_cast<std::size_t>(i)];
+    out.row(i) << one.place.x, one.place.y, one.height, one.on ? 1.0 : 0.0;
+  }
+  return npy(out);
+}
+
+template <class Part>
+std::string lines(const SurfaceBelief& belief, const Part& part) {
+  RowMajor out(static_cast<Eigen::Index>(belief.approaches().size()), 3);
+  for (Eigen::Index i = 0; i < out.rows(); ++i)
+    out.row(i) = part(belief.approaches()[static_cast<std::size_t>(i)].line).transpose();
+  return npy(out);
+}
+
+/// As a plugin `uncertainty` scores: the variance relative to the largest, along normals.
+std::string relative_variance(const SurfaceBelief& belief) {
+  constexpr double kAlong = 0.999;
+  const double most = belief.deviation().maxCoeff();
+  const double scale = most > 0.0 ? 1.0 / most : 0.0;
+  const Eigen::ArrayXd share = (scale * belief.deviation().array()).square();
+  return npy(Eigen::VectorXd((belief.squareness().array() > kAlong).select(share, 0.0)));
+}
+
+}  // namespace
+
+const std::vector<Map>& maps() {
+  using B = const Belief&;
+  using S = const SurfaceBelief&;
+  static const std::vector<Map> all{
+      {"uncertainty", Quantity::uncertainty, [](B b) { return npy(b.uncertainty()); }, Quantity::deviation,
+       relative_variance},
+      {"label_mean", Quantity::weight, [](B b) { return npy(b.weight()); }, {}, nullptr},
+      {"object_probability", Quantity::probability, [](B b) { return npy(b.probability()); }, {}, nullptr},
+      {"height_mean", Quantity::height, [](B b) { return npy(b.height_mean()); }, {}, nullptr},
+      {"height_std",
+       Quantity::height,
+       [](B b) { return npy(Eigen::VectorXd(b.height_variance().cwiseMax(0.0).cwiseSqrt())); },
+       {},
+       nullptr},
+      {"hypotheses", Quantity::outlines, hypotheses, {}, nullptr},
+      {"expected_discovery_area",
+       Quantity::outlines,
+       [](B b) {
+         const OutlineSample& sample = b.outlines();
+         return npy(sample.count > 0 ? sample.to_find : Eigen::VectorXd::Zero(b.candidates().rows()));
+       },
+       {},
+       nullptr},
+      {"desk_position", {}, [](B b) { return npy(RowMajor(b.candidates())); }, {}, nullptr},
+      {"contacts", {}, contacts, {}, nullptr},
+      {"surface_std", {}, nullptr, Quantity::deviation, [](S s) { return npy(s.deviation()); }},
+      {"incidence_cosine", {}, nullptr, Quantity::deviation, [](S s) { return npy(s.squareness()); }},
+      {"expected_discovery", {}, nullptr, Quantity::unseen, [](S s) { return npy(s.unseen()); }},
+      {"std_reduction", {}, nullptr, Quantity::reduction, [](S s) { return npy(s.reduction()); }},
+      {"expected_distance", {}, nullptr, {}, [](S s) { return npy(s.way()); }},
+      {"start", {}, nullptr, {}, [](S s) { return lines(s, [](const Line& one) { return one.origin; }); }},
+      {"direction", {}, nullptr, {}, [](S s) { return lines(s, [](const Line& one) { return one.direction; }); }}};
+  return all;
+}
+
+const Map* find_map(const std::string& name) {
+  const auto at = std::find_if(maps().begin(), maps().end(), [&](const Map& one) { return name == one.name; });
+  return at != maps().end() ? &*at : nullptr;
+}
+
+std::size_t header_length(const std::string& start) {
+  if (start.compare(0, kMagicLength, kMagic, kMagicLength) != 0)
+    throw std::runtime_error("something that is no array in the format NPY 1.0");
+  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(start[i])); };
+  return byte(kMagicLength) + (byte(kMagicLength + 1) << 8U);
+}
+
+void check_header(const std::string& header, Eigen::Index count) {
+  std::string plain;
+  for (const char c : header) {
+    if (c != ' ' && c != '\n') plain += c == '"' ? '\'' : c;
+  }
+  const auto value = [&](const std::string& key, const char* ends) {
+    const std::string name = "'" + key + "':";
+    const auto at = plain.find(name);
+    if (at == std::string::npos) return std::string();
+    const auto begin = at + name.size();
+    const auto end = plain.find(ends, begin);
+    return plain.substr(begin, end == std::string::npos ? 0 : end - begin + std::strlen(ends));
+  };
+  const std::string type = value("descr", ",");
+  if (type != "'<f8',")
+    throw std::runtime_error(fmt::format("numbers of the type {}, not '<f8', which is float64", type.substr(0, 12)));
+  const std::string shape = value("shape", ")");
+  if (shape != fmt::format("({},)", count))
+    throw std::runtime_error(fmt::format("an array of the shape {}, not ({},)", shape.substr(0, 40), count));
+}
+
+}  // namespace palpate::program

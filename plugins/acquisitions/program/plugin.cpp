@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+// Any program as an acquisition: it reads arrays on its stdin and answers with the scores on its stdout.
+// framework/docs/strategies.md has the protocol.
+//
+// It is started by the first score, and only in a run, whose context has a folder: who reads a record starts nothing.
+// Anything but one array of finite scores in time (an end, silence, another shape, NaN, a byte too many) ends the
+// program and the run, which is carried on by the same program started again. So nothing of a late answer is ever taken
+// for another tap's.
+#include "program/maps.hpp"
+#include "programs/child.hpp"
+#include "programs/command.hpp"
+
+#include <palpate/acquisition.hpp>
+#include <palpate/plugin.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+namespace palpate::acquisitions {
+namespace {
+
+namespace fs = std::filesystem;
+using programs::Child;
+using programs::shown;
+
+/// Rises when an ask or an answer changes its meaning; every ask carries it.
+constexpr int kProtocol = 1;
+
+constexpr const char* kUnsaid = "?";
+
+/// The names in a text, whatever stands between them.
+std::vector<std::string> names_in(const std::string& text) {
+  constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+  std::vector<std::string> out;
+  for (std::size_t at = 0; (at = text.find_first_of(kLetters, at)) != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_not_of(kLetters, at), text.size());
+    out.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return out;
+}
+
+/// What stands between the brackets of each `reads=[...]` in the text of a program: it is looked for, nothing runs.
+std::set<std::string> declarations(const std::string& program) {
+  constexpr std::size_t kMost = 1000;
+  std::set<std::string> out;
+  const std::string word = "reads";
+  for (std::size_t at = program.find(word); at != std::string::npos; at = program.find(word, at + 1)) {
+    std::size_t next = program.find_first_not_of(" \t", at + word.size());
+    if (next == std::string::npos || program[next] != '=') continue;
+    next = program.find_first_not_of(" \t", next + 1);
+    if (next == std::string::npos || program[next] != '[') continue;
+    const std::size_t end = program.find(']', next);
+    if (end == std::string::npos || end - next > kMost) continue;
+    out.insert(fmt::format("{}", fmt::join(names_in(program.substr(next + 1, end - next - 1)), ", ")));
+  }
+  return out;
+}
+
+std::string all_names() {
+  std::string out;
+  for (const program::Map& one : program::maps()) out += (out.empty() ? "" : ", ") + std::string(one.name);
+  return out;
+}
+
+/// The folder of palpate_acquisition.py: beside that of this library, in a build, a package and an installation of pip
+/// alike. Not this folder itself: Python would take random.so for its module `random`.
+std::string python_folder() {
+  Dl_info self{};
+  std::error_code none;
+  if (::dladdr(reinterpret_cast<const void*>(&python_folder), &self) == 0 || self.dli_fname == nullptr) return {};
+  return (fs::weakly_canonical(self.dli_fname, none).parent_path().parent_path() / "python").string();
+}
+
+/// Where Python finds palpate_acquisition, after all that the user says.
+std::string python_path() {
+  const char* const before = std::getenv("PYTHONPATH");
+  return std::string("PYTHONPATH=") + (before != nullptr && *before != '\0' ? std::string(before) + ":" : "") +
+         python_folder();
+}
+
+}  // namespace
+
+struct ProgramOptions : Options {
+  std::string command;
+  std::string folder;
+  std::string checksum;
+  std::string reads = kUnsaid;
+  double deadline = 60.0;
+  double start = 60.0;
+
+  void list(Fields& fields) override {
+    fields.text(command, Field("command",
+                               "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
+                               "blanks together, nothing else is interpreted, no shell")
+                             .needed()
+                             .not_identifying());
+    const auto words = programs::split_command(command);
+    fields.require(words.has_value(), "command", "names no program, or a quote is left open");
+    if (words && folder.empty()) folder = fs::current_path().string();
+    fields.text(folder, Field("folder", "in which the program begins; if absent, the current one").not_identifying());
+    programs::Content content;
+    if (words) content = programs::content_of(*words, folder);
+    if (words && checksum.empty()) checksum = content.checksum;
+    fields.text(checksum, Field("checksum",
+                                "of the command, with the content of the program in place of its name: of the first "
+                                "word, or of what an interpreter runs; if absent, that of the program as it is"));
+    const std::set<std::string> declared = declarations(content.program);
+    if (declared.size() == 1) reads = *declared.begin();
+    fields.text(reads, Field("reads",
+                             "names of the arrays that are sent, separated by commas; if absent, those of reads=[...] "
+                             "in the program"));
+    fields.require(!words || reads != kUnsaid, "reads", unsaid(content.program, declared));
+    for (const std::string& name : names_in(reads)) {
+      fields.require(program::find_map(name) != nullptr, "reads",
+                     "has " + shown(name) + ", which is none of " + all_names());
+    }
+    fields.real(deadline, Field("deadline", "the run fails if scores take longer; it can be carried on")
+                              .in(Unit::second)
+                              .above(0)
+                              .at_most(86400)
+                              .not_identifying());
+    fields.real(start, Field("start", "how much longer the deadline is for the first scores of a program")
+                           .in(Unit::second)
+                           .at_least(0)
+                           .at_most(86400)
+                           .from("an estimate: large libraries take seconds to load")
+                           .not_identifying());
+  }
+
+  std::string unsaid(const std::string& program, const std::set<std::string>& declared) const {
+    if (program.empty())
+      return "is not said, and " + shown(command) + " names no file in " + shown(folder) + " that could say it";
+    return declared.empty() ? "is not said, neither here nor by reads=[...] in the program"
+                            : "is not said here, and the program has several reads=[...]";
+  }
+};
+
+class ProgramAcquisition final : public Acquisition {
+ public:
+  using Options = ProgramOptions;
+
+  /// Throws Error, for a run, when there is no such program, or it is another one than the checksum says.
+  ProgramAcquisition(const Options& options, const Context& context) : options_(options), context_(context) {
+    for (const std::string& name : names_in(options.reads)) maps_.push_back(program::find_map(name));
+    if (!from_above() && !any_side()) {
+      throw Error("reads", "names arrays of taps from above and arrays of taps from any side",
+                  "no scene has both; the page strategies.md lists them");
+    }
+    if (context.directory.empty()) return;
+    words_ = programs::split_command(options.command).value();
+    file_ = programs::find_program(words_.front(), options.folder);
+    const std::string found = programs::content_of(words_, options.folder).checksum;
+    if (options.checksum == found) return;
+    throw Error("checksum", "is not that of the command and its program, which have " + found,
+                "put the program back that the run began with, or begin another run");
+  }
+
+  Quantities reads() const override {
+    Quantities out;
+    for (const program::Map* one : maps_) out = out | one->reads;
+    return out;
+  }
+  Quantities reads_of_approaches() const override {
+    Quantities out;
+    for (const program::Map* one : maps_) out = out | one->reads_of_approaches;
+    return out;
+  }
+  bool from_above() const override {
+    return std::all_of(maps_.begin(), maps_.end(), [](const program::Map* one) { return one->above != nullptr; });
+  }
+  bool any_side() const override {
+    return std::all_of(maps_.begin(), maps_.end(), [](const program::Map* one) { return one->any_side != nullptr; });
+  }
+
+  void score(const Belief& belief, VectorOut out) const override {
+    const Points& places = belief.candidates();
+    Eigen::Index columns = 0;  // of the grid, row after row
+    while (columns < places.rows() && places(columns, 1) == places(0, 1)) ++columns;
+    std::vector<std::string> arrays;
+    for (const program::Map* one : maps_) arrays.push_back(one->above(belief));
+    exchange(fmt::format(R"("tap":{},"initial_taps":{},"rows":{},"columns":{})", belief.taps() + 1,
+                         belief.initial_taps(), places.rows() / columns, columns),
+             arrays, out);
+  }
+
+  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
+    std::vector<std::string> arrays;
+    for (const program::Map* one : maps_) arrays.push_back(one->any_side(belief));
+    exchange(fmt::format(R"("tap":{})", belief.taps() + 1), arrays, out);
+  }
+
+  /// Nobody says how large scores are before the first tap.
+  double prior_scale() const override { return 0.0; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Heard = Child::Heard;
+
+  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+    child_.reset();
+    throw Error("", "the program " + what, remedy, Error::Kind::run);
+  }
+
+  /// Sends what there is to read, and takes the scores.
+  void exchange(const std::string& fields, const std::vector<std::string>& arrays, VectorOut out) const {
+    if (context_.directory.empty())
+      throw Error("", "no program is started outside a run", "look at what the run recorded", Error::Kind::run);
+    double seconds = options_.deadline;
+    if (!child_) {
+      seconds += options_.start;
+      Program program{words_, file_};
+      program.folder = options_.folder;
+      program.environment.insert(program.environment.begin(), python_path());
+      child_ = std::make_unique<Child>(std::move(program), context_.directory + "/" + kDiary, Descriptor());
+    }
+    const programs::Patience patience{
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),
+        context_.interrupted};
+    std::string bytes;
+    // Whatever there is before the ask is no answer to it.
+    if (child_->hear(bytes, 1, {Clock::now(), context_.interrupted}) == Heard::line)
+      fail("said more than its scores", "let it print to stderr");
+    check(child_->send(ask(fields, arrays, out.size()), patience), {});
+    try {
+      check(child_->hear(bytes, program::kNpyStart, patience), bytes);
+      check(child_->hear(bytes, program::header_length(bytes), patience), bytes);
+      program::check_header(bytes, out.size());
+    } catch (const std::runtime_error& wrong) {
+      fail(fmt::format("answered with {}: {}", wrong.what(), shown(bytes)), kCorrect);
+    }
+    check(child_->hear(bytes, static_cast<std::size_t>(out.size()) * sizeof(double), patience), bytes);
+    std::memcpy(out.data(), bytes.data(), bytes.size());
+    for (Eigen::Index i = 0; i < out.size(); ++i) {
+      if (!std::isfinite(out(i)))
+        fail(fmt::format("gave candidate {} the score {}, which is not a finite number", i, out(i)), kCorrect);
+    }
+    answered_ = true;
+  }
+
+  std::string ask(const std::string& fields, const std::vector<std::string>& arrays, Eigen::Index candidates) const {
+    const Area area = context_.scene.area();
+    std::string list;
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+      bytes += arrays[i].size();
+      list += fmt::format(R"({}{{"name":"{}","bytes":{}}})", i == 0 ? "" : ",", maps_[i]->name, arrays[i].size());
+    }
+    std::string out = fmt::format(
+        R"({{"palpate":{},{},"candidates":{},"area":{{"width":{},"depth":{}}},"desk":{},"seed":{},"arrays":[{}],"bytes":{}}})"
+        "\n",
+        kProtocol, fields, candidates, area.width, area.depth, context_.scene.desk(), context_.seed, list, bytes);
+    for (const std::string& array : arrays) out += array;
+    return out;
+  }
+
+  /// Fails unless all that was waited for is there; `bytes` is what came instead.
+  void check(Heard heard, const std::string& bytes) const {
+    switch (heard) {
+      case Heard::line:
+        return;
+      case Heard::ended:
+        fail(child_->fate(), fmt::format("correct it, what it said is in {}", kDiary));
+      case Heard::late:
+        fail(bytes.empty() ? std::string("gave no scores in time") +
+                                 (answered_ ? "" : ", nor ever before: does it flush its output?")
+                           : "did not end its scores in time",
+             "correct it, or give it longer by acquisition.deadline; 'palpate resume --retry-failed' asks it again");
+      case Heard::too_long:
+      case Heard::interrupted:
+        fail("was interrupted", "'palpate resume' carries on");
+    }
+  }
+
+  static constexpr const char* kDiary = "acquisition.stderr.txt";
+  static constexpr const char* kCorrect = "correct it; with another program it is another run";
+
+  Options options_;
+  const Context& context_;
+  std::vector<const program::Map*> maps_;
+  std::vector<std::string> words_;
+  std::string file_;
+  mutable std::unique_ptr<Child> child_;  ///< score() is a pure function of the belief all the same
+  mutable bool answered_ = false;         ///< at least once, by any process of it
+};
+
+PALPATE_PLUGIN(Acquisition, ProgramAcquisition, "program", "scores of any program, in any language")
+
+}  // namespace palpate::acquisitions
