@@ -114,8 +114,9 @@ int replay(Program& program, const std::string& directory);
 void check_one_run(const std::filesystem::path& directory);
 int validate(Program& program, const std::vector<std::string>& configs);
 int plugins(Program& program, const std::string& what, bool json);
-/// Makes the folder `name` with a plugin that builds, and an experiment with it.
-int new_plugin(Program& program, const std::string& kind, const std::string& name);
+/// Makes the folder `name` with a plugin that builds, and an experiment with it; with `python` a program in its place,
+/// of an acquisition.
+int new_plugin(Program& program, const std::string& kind, const std::string& name, bool python);
 int schema(Program& program);
 
 // What of these is about many runs.

@@ -63,6 +63,7 @@ struct CommandLine {
   std::vector<std::string> runs;
   std::string plugin;
   std::string kind;
+  bool python = false;
   bool json = false;
   int tap = 0;
 
@@ -259,14 +260,17 @@ void add_rest(CommandLine& line) {
   show(sub, {"palpate plugins", "palpate plugins kernel/rbf"});
 
   sub = line.add(
-      "new", "Write a plugin to begin with, and an experiment with it", [](Needs&) {}, new_plugin, line.kind, line.to);
+      "new", "Write a plugin to begin with, and an experiment with it", [](Needs&) {}, new_plugin, line.kind, line.to,
+      line.python);
   sub->add_option("KIND", line.kind, fmt::format("of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
       ->type_name("KIND")
       ->required();
   sub->add_option("NAME", line.to, "of the plugin, and of its folder, which is made here")
       ->type_name("NAME")
       ->required();
-  show(sub, {"palpate new kernel my_kernel", "palpate new acquisition curious"});
+  sub->add_flag("--python", line.python, "an acquisition as a function of Python with a test; nothing is compiled");
+  show(sub,
+       {"palpate new kernel my_kernel", "palpate new acquisition curious", "palpate new acquisition --python curious"});
 
   sub = line.add("pareto", "What accuracy costs: the settings of a sweep that none beats in both", &Needs::whole,
                  pareto, line.pareto);

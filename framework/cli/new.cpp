@@ -4,11 +4,13 @@
 #include "cli/output.hpp"
 #include "reading/reading.hpp"
 
+#include <palpate/acquisition.hpp>
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 
 namespace palpate::cli {
@@ -39,7 +41,7 @@ std::string next_steps(const Installation& installation, const std::string& name
 
 }  // namespace
 
-int new_plugin(Program& program, const std::string& kind, const std::string& name) {
+int new_plugin(Program& program, const std::string& kind, const std::string& name, bool python) {
   const std::vector<std::string> kinds = PluginHost::kinds();
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
     throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
@@ -49,6 +51,13 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
     throw Error("", fmt::format("there is a plugin {}/{} already", kind, name), "take another name");
   }
+  if (python && kind != Acquisition::kKind) {
+    throw Error("command line", fmt::format("--python: a plugin of the kind {} cannot be a function of Python", kind),
+                "only an acquisition can; leave it out");
+  }
+  if (python && (name.find('-') != std::string::npos || std::isdigit(static_cast<unsigned char>(name.front())) != 0))
+    throw Error("", fmt::format("'{}' is not the name of a Python module", name),
+                "take letters, digits and _, first a letter");
   const fs::path starters = program.installation.configs.parent_path() / "plugins" / "starters";
   std::error_code trouble;
   if (!fs::create_directory(name, trouble)) {
@@ -62,6 +71,24 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
     std::ofstream out(fs::path(name) / to);
     if (!(out << text).flush()) throw Error(name + "/" + to, "cannot be written", "check the space that is left");
   };
+  if (python) {
+    for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {
+      std::string to = file;
+      replace_all(to, "starter", name);
+      write(starters / "python" / file, to);
+    }
+    const std::string module = "palpate_acquisition.py";  // for the test, which palpate does not start
+    write(program.installation.plugins / "python" / module, module);
+    const fs::path script = program.installation.configs.parent_path() / "palpate";
+    const std::string called = fs::equivalent("palpate", script, trouble) ? "./palpate"
+                               : fs::is_regular_file(script, trouble)     ? script.string()
+                                                                          : "palpate";
+    print_out(
+        "{0}/{0}.py is the acquisition, {0}/test_{0}.py its test, and {0}/{0}.yaml an experiment with it. Test and run "
+        "it from this folder:\n  python3 {0}/test_{0}.py\n  {1} run {0}/{0}.yaml\n",
+        name, called);
+    return kDone;
+  }
   write(starters / "CMakeLists.txt", "CMakeLists.txt");
   write(starters / kind / "starter.cpp", name + ".cpp");
   write(starters / kind / "starter.yaml", name + ".yaml");

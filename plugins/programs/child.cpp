@@ -127,7 +127,6 @@ Child::Heard Child::send(const std::string& text, const Patience& patience) {
 }
 
 std::optional<Child::Heard> Child::hear_more(const Patience& patience) {
-  diary_.trim();
   if (patience.broken_off()) return Heard::interrupted;
   // Asked before the look at the pipe: what it said before it ended is then already in there.
   const bool over = gone();
@@ -146,6 +145,7 @@ std::optional<Child::Heard> Child::hear_more(const Patience& patience) {
 
 Child::Heard Child::hear(std::string& line, const Patience& patience) {
   for (;;) {
+    diary_.trim();
     const auto end = heard_.find('\n');
     line = heard_.substr(0, end);
     if (line.size() > kLongestLine) return Heard::too_long;
@@ -159,6 +159,7 @@ Child::Heard Child::hear(std::string& line, const Patience& patience) {
 
 Child::Heard Child::hear(std::string& bytes, std::size_t count, const Patience& patience) {
   for (;;) {
+    diary_.trim();
     if (heard_.size() >= count) {
       bytes = heard_.substr(0, count);
       heard_.erase(0, count);

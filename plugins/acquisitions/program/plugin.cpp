@@ -38,12 +38,13 @@ using programs::shown;
 /// Rises when an ask or an answer changes its meaning; every ask carries it.
 constexpr int kProtocol = 1;
 
-constexpr const char* kUnsaid = "?";
+constexpr const char* kNoArray = "none";
 
-/// The names in a text, whatever stands between them.
+/// The names in a text, whatever stands between them; `none` stands for none.
 std::vector<std::string> names_in(const std::string& text) {
   constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
   std::vector<std::string> out;
+  if (text == kNoArray) return out;
   for (std::size_t at = 0; (at = text.find_first_of(kLetters, at)) != std::string::npos;) {
     const std::size_t end = std::min(text.find_first_not_of(kLetters, at), text.size());
     out.push_back(text.substr(at, end - at));
@@ -64,7 +65,8 @@ std::set<std::string> declarations(const std::string& program) {
     if (next == std::string::npos || program[next] != '[') continue;
     const std::size_t end = program.find(']', next);
     if (end == std::string::npos || end - next > kMost) continue;
-    out.insert(fmt::format("{}", fmt::join(names_in(program.substr(next + 1, end - next - 1)), ", ")));
+    const std::vector<std::string> names = names_in(program.substr(next + 1, end - next - 1));
+    out.insert(names.empty() ? kNoArray : fmt::format("{}", fmt::join(names, ", ")));
   }
   return out;
 }
@@ -97,7 +99,7 @@ struct ProgramOptions : Options {
   std::string command;
   std::string folder;
   std::string checksum;
-  std::string reads = kUnsaid;
+  std::string reads;
   double deadline = 60.0;
   double start = 60.0;
 
@@ -120,9 +122,9 @@ struct ProgramOptions : Options {
     const std::set<std::string> declared = declarations(content.program);
     if (declared.size() == 1) reads = *declared.begin();
     fields.text(reads, Field("reads",
-                             "names of the arrays that are sent, separated by commas; if absent, those of reads=[...] "
-                             "in the program"));
-    fields.require(!words || reads != kUnsaid, "reads", unsaid(content.program, declared));
+                             "names of the arrays that are sent, separated by commas, or none; if absent, those of "
+                             "reads=[...] in the program"));
+    fields.require(!words || !reads.empty(), "reads", unsaid(content.program, declared));
     for (const std::string& name : names_in(reads)) {
       fields.require(program::find_map(name) != nullptr, "reads",
                      "has " + shown(name) + ", which is none of " + all_names());

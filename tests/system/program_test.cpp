@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Runs and sweeps whose acquisition is a program: killed, resumed, read by others; and the one to begin with.
+#include "support/programs.hpp"
+#include "system/shell.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+namespace palpate {
+namespace {
+
+using test::eventually;
+using test::run_in;
+
+class ProgramRun : public Shell {
+ protected:
+  /// A program that gives back the first of its arrays, and does `more` before each answer.
+  std::string echo(const std::string& reads, const std::string& more = ":") const {
+    write("echo.sh", "# reads=[\"" + reads + "\"]\nwhile read -r ask; do\n" + more +
+                         "\n  b=${ask##*\\\"bytes\\\":}\n  head -c \"${b%\\}}\"\ndone\n");
+    return "acquisition={type: program, command: sh echo.sh}";
+  }
+  static Words few(const std::string& acquisition, const Words& more = {}) {
+    return Words{acquisition, "taps=9"} + more;
+  }
+  static std::string default_config() { return (test::source_folder() / "configs/default.yaml").string(); }
+
+  /// taps.csv of every job, by its number.
+  std::vector<std::string> tables(const fs::path& sweep, int jobs) const {
+    std::vector<std::string> out;
+    for (int i = 0; i < jobs; ++i) out.push_back(text_of(job_of(sweep, i) / "taps.csv"));
+    return out;
+  }
+};
+
+TEST_F(ProgramRun, TapsAsThePluginWithTheSameScoresOnAnyNumberOfThreads) {
+  const std::string acquisition = echo("uncertainty");
+  const fs::path own = ran(few(acquisition, "name=own"));
+  const fs::path plugin = ran(few("acquisition=uncertainty", "name=plugin"));
+  EXPECT_EQ(text_of(own / "taps.csv"), text_of(plugin / "taps.csv"));
+  const fs::path threads = ran(few(acquisition, "name=threads threads=2"));
+  EXPECT_EQ(text_of(own / "taps.csv"), text_of(threads / "taps.csv"));
+  EXPECT_EQ(text_of(own / "acquisition.stderr.txt"), "");
+}
+
+TEST_F(ProgramRun, ASweepThatIsKilledAndResumedEqualsTheUnbrokenOne) {
+  const Words words = few(echo("uncertainty", "sleep 0.05"), "seed=range(0,3) -j 2 --quiet");
+  const auto child = begin(Words{"sweep", paper()} + words);
+  const auto taps = [&] {
+    const fs::path sweep = run_in(here() / "runs");
+    return sweep.empty() || !fs::exists(job_of(sweep, 0) / "record.jsonl") ? 0
+                                                                           : lines(part_of(job_of(sweep, 0), "tap"));
+  };
+  EXPECT_TRUE(eventually([&] { return taps() >= 4; })) << child->err();
+  child->signal(SIGKILL);
+  child->wait();
+  const fs::path sweep = directory();
+  EXPECT_LT(taps(), 9) << "it is not done";
+  // From another folder: where the program lies is known.
+  const Ended resumed = test::palpate({"resume", sweep.string(), "--quiet"}, sweep);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  const fs::path unbroken = swept(words + Words{"--runs", "unbroken"});
+  EXPECT_EQ(tables(sweep, 3), tables(unbroken, 3));
+  EXPECT_EQ(lines(tables(sweep, 3).at(2)), 10);
+}
+
+TEST_F(ProgramRun, WhoReadsARecordStartsNothingAndFindsTheRecordedChoices) {
+  const fs::path run = ran(few(echo("object_probability")) + Words{"fallback=uncertainty"}, default_config());
+  const std::string before = text_of(run / "taps.csv");
+  // As a stranger's record: its program would leave a trace.
+  const std::string trap = "touch " + (here() / "started").string() + "\n";
+  write("echo.sh", trap);
+  for (const Words& words : {Words{"replay", run}, Words{"report", run}, Words{"report", run, "--figures"},
+                             Words{"explain", run, "9"}, Words{"status", run}, Words{"list"},
+                             Words{"report", run, run, "--to", "."}, Words{"export", run, "--to", "out"}}) {
+    const Ended ended = palpate(words);
+    EXPECT_EQ(ended.status, 0) << words.front() << ": " << ended.err;
+    EXPECT_EQ(ended.err, "") << words.front();
+  }
+  EXPECT_THAT(palpate({"replay", run}).out, testing::ContainsRegex("9 taps, [0-9]+ numbers, all equal"));
+  // A table that was lost is written again, a finished run is shown.
+  fs::remove(run / "taps.csv");
+  fs::remove(run / "surface.csv");
+  EXPECT_EQ(resume(run).status, 0);
+  EXPECT_EQ(text_of(run / "taps.csv"), before);
+  EXPECT_FALSE(fs::exists(here() / "started"));
+  // Nor is a config that was received: it is only looked at.
+  const std::string config = write("strange.yaml",
+                                   "strategy: default\nscene: object_i\nacquisition: {type: program, command: sh "
+                                   "echo.sh, reads: uncertainty}\n");
+  EXPECT_EQ(palpate({"validate", config}).status, 0);
+  EXPECT_EQ(palpate({"run", config, "--print-config"}).status, 0);
+  EXPECT_FALSE(fs::exists(here() / "started"));
+}
+
+TEST_F(ProgramRun, AnotherProgramIsAnotherRunAndCarriesNoneOn) {
+  const fs::path first = ran(few(echo("uncertainty")));
+  const fs::path same = ran(few(echo("uncertainty"), "acquisition.deadline=5s"));
+  EXPECT_EQ(first, same) << "how long it may take is not what it says";
+  cut_taps(first);
+  const std::string other = echo("uncertainty", "true");
+  EXPECT_THAT(refused({"resume", first, "--quiet"}),
+              AllOf(HasSubstr("acquisition/program"), HasSubstr("put the program back that the run began with")));
+  const fs::path second = ran(few(other, "--runs other"));
+  EXPECT_NE(first.filename(), second.filename());
+  echo("uncertainty");
+  EXPECT_EQ(resume(first).status, 0);
+  EXPECT_EQ(text_of(first / "taps.csv"), text_of(second / "taps.csv")) << "which scores alike";
+}
+
+TEST_F(ProgramRun, AProgramThatDiesFailsTheRunInOneLineAndTheRunIsCarriedOn) {
+  const std::string acquisition = echo("uncertainty", "[ -e well ] || { echo 'out of memory' >&2; exit 3; }");
+  const std::string told = refused(Words{"run", paper(), "--quiet"} + few(acquisition), 1);
+  EXPECT_EQ(told,
+            "acquisition/program: the program ended with exit status 3, its last words: 'out of memory', correct it, "
+            "what it said is in acquisition.stderr.txt\n");
+  EXPECT_EQ(lines(part_of(directory(), "tap")), 3) << "the initial taps are kept";
+  write("well", "");
+  EXPECT_EQ(resume(directory(), "--retry-failed").status, 0);
+  EXPECT_EQ(outcomes(directory()).size(), 9U);
+}
+
+TEST_F(ProgramRun, AnInterruptEndsTheProgramAndLeavesARunToCarryOn) {
+  const auto child = begin(Words{"run", paper(), "--quiet"} + few(echo("uncertainty", "echo $$ > pid; sleep 600")));
+  EXPECT_TRUE(eventually([&] { return fs::exists(here() / "pid") && !text_of(here() / "pid").empty(); }));
+  child->signal(SIGINT);
+  EXPECT_EQ(child->wait().status, 130);
+  EXPECT_FALSE(test::running(std::stol(text_of(here() / "pid"))));
+  EXPECT_THAT(status_of(directory()).out, HasSubstr("interrupted after 3 of 9 taps"));
+}
+
+TEST_F(ProgramRun, FromAnySideAProgramScoresLinesAndIsReplayedByItsRecord) {
+  const std::string config = (test::source_folder() / "configs/any_side.yaml").string();
+  const Words few{"taps=6", "initial.count=2", "space.approaches=200"};
+  const fs::path own = ran(few + Words{echo("expected_discovery"), "name=own"}, config);
+  write("echo.sh", "exit 1\n");
+  EXPECT_THAT(palpate({"replay", own}).out, HasSubstr("all equal"));
+  EXPECT_EQ(palpate({"explain", own, "6"}).status, 0);
+  EXPECT_THAT(refused(Words{"run", config, echo("object_probability")}),
+              HasSubstr("program scores taps from above alone"));
+}
+
+TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed) {
+  const std::string python = "/usr/bin/python3";  // Debian's own, which has NumPy
+  if (test::run_program({python, "-c", "import numpy"}, here()).status != 0) GTEST_SKIP() << "NumPy is not installed";
+  const Ended made = palpate({"new", "acquisition", "--python", "curious"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("python3 curious/test_curious.py\n"));
+  const Ended tested = test::run_program({python, "-B", "curious/test_curious.py"}, here());
+  EXPECT_EQ(tested.status, 0) << tested.err;
+  const Words run{"taps=6", "acquisition.command=" + python + " -B curious/curious.py"};
+  const fs::path own = ran(run, (here() / "curious/curious.yaml").string());
+  EXPECT_THAT(text_of(own / "config.yaml"), HasSubstr("reads: \"uncertainty, object_probability\""));
+  EXPECT_EQ(palpate({"replay", own}).status, 0);
+  EXPECT_EQ(refused({"new", "kernel", "--python", "mine"}),
+            "command line: --python: a plugin of the kind kernel cannot be a function of Python, only an acquisition "
+            "can; leave it out\n");
+  EXPECT_THAT(refused({"new", "acquisition", "--python", "a-b"}), HasSubstr("is not the name of a Python module"));
+}
+
+TEST_F(ProgramRun, InPythonWhatGoesWrongIsTold) {
+  const std::string python = "/usr/bin/python3";
+  if (test::run_program({python, "-c", "import numpy"}, here()).status != 0) GTEST_SKIP() << "NumPy is not installed";
+  const auto trouble = [&](const std::string& body, const std::string& more = "") {
+    write("mine.py",
+          "import numpy\nfrom palpate_acquisition import acquisition\n\n@acquisition(reads=['uncertainty'])\n"
+          "def score(belief):\n    " +
+              body + "\n");
+    return refused(Words{"run", paper(), "--quiet", "taps=5",
+                         "acquisition={type: program, command: " + python + " -B mine.py" + more + "}"},
+                   1);
+  };
+  EXPECT_THAT(trouble("return belief.uncertainty[1:]"),
+              HasSubstr("score returned an array of shape (2208,), not (2209,)"));
+  EXPECT_THAT(trouble("return belief.height_mean"),
+              HasSubstr("AttributeError: the belief has no height_mean: name it in reads=[...]"));
+  EXPECT_THAT(trouble("return belief.uncertainty", ", reads: height_mean"),
+              HasSubstr("the config says 'reads: height_mean', score has reads=['uncertainty']"));
+  EXPECT_THAT(trouble("print('hello'); return belief.uncertainty / 0"), HasSubstr("which is not a finite number"));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// The acquisition `program` against programs that behave and programs that do not.
+#include "support/mocks.hpp"
+#include "support/programs.hpp"
+#include "support/testing.hpp"
+
+#include <palpate/acquisition.hpp>
+
+#include <atomic>
+#include <cstring>
+
+namespace palpate::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Six candidates in two rows.
+WrittenBelief written() {
+  WrittenBelief out;
+  out.count = 4;
+  out.places.resize(6, 2);
+  out.places << 0.01, 0.05, 0.02, 0.05, 0.03, 0.05, 0.01, 0.06, 0.02, 0.06, 0.03, 0.06;
+  out.u = Eigen::VectorXd{{1.0, 0.5, 0.2, 0.0, 0.8, 0.1}};
+  out.w = Eigen::VectorXd{{0.1, 1.2, -0.3, 0.5, 0.0, 0.25}};
+  out.p = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0, 0.9, 0.75}};
+  out.mean = 0.1 * out.p;
+  out.variance = out.u.cwiseProduct(out.u);
+  return out;
+}
+
+/// Reads an ask and its arrays, in the standard library alone; scores are sent by `answer(values)`.
+constexpr const char* kHead = R"py(import json, os, struct, sys, time
+
+def asks():
+    for line in sys.stdin.buffer:
+        ask = json.loads(line)
+        ask["raw"] = {a["name"]: sys.stdin.buffer.read(a["bytes"]) for a in ask["arrays"]}
+        yield ask
+
+def numbers(raw):
+    return list(struct.unpack("<%dd" % ((len(raw) - 128) // 8), raw[128:]))
+
+def npy(values, descr="<f8", shape=None):
+    header = "{'descr': '%s', 'fortran_order': False, 'shape': %s, }" % (descr, shape or "(%d,)" % len(values))
+    header += " " * (117 - len(header)) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + struct.pack("<%dd" % len(values), *values)
+
+def answer(values, **more):
+    sys.stdout.buffer.write(npy(values, **more))
+    sys.stdout.buffer.flush()
+
+)py";
+
+class ProgramAcquisition : public InFolder {
+ protected:
+  ProgramAcquisition() { fs::create_directory(folder_.path() / "record"); }
+
+  /// The words that start a Python program with this body, which declares what it reads.
+  std::string command(const std::string& body, const std::string& reads = "\"uncertainty\"") const {
+    const std::string declared = "def declares(reads=[" + reads + "]): pass\n";
+    return "python3 -SE '" + folder_.write("program.py", kHead + declared + body).string() + "'";
+  }
+
+  std::shared_ptr<Acquisition> open(const std::string& command, const std::string& more = "") const {
+    return context_.create<Acquisition>(
+        choose(shared_host(), "acquisition", "program", "{command: " + yaml_quoted(command) + more + "}"));
+  }
+
+  static std::vector<double> scores(const Acquisition& acquisition) {
+    Eigen::VectorXd out(6);
+    acquisition.score(written(), out);
+    return {out.data(), out.data() + 6};
+  }
+
+  /// What is said of a program that answers its first ask by `odd`.
+  std::string trouble(const std::string& odd, const std::string& more = "") const {
+    const auto acquisition = open(command("for ask in asks():\n    " + odd + "\n"), more);
+    return error_of([&] { scores(*acquisition); });
+  }
+
+  std::string diary() const { return text_of(folder_.path() / "record" / "acquisition.stderr.txt"); }
+
+  std::atomic<bool> interrupted_{false};
+  Context context_{shared_host(), wave_scene(), 7, &interrupted_, (folder_.path() / "record").string()};
+};
+
+TEST_F(ProgramAcquisition, SendsTheArraysThatTheProgramNamesAndTakesItsScores) {
+  const auto acquisition =
+      open(command("for ask in asks():\n"
+                   "    maps = [numbers(ask['raw'][name]) for name in ('height_std', 'object_probability')]\n"
+                   "    places = numbers(ask.pop('raw')['desk_position'])\n"
+                   "    sys.stderr.write(json.dumps(ask) + str(places[:4]) + '\\n')\n"
+                   "    answer([a * b for a, b in zip(*maps)])\n",
+                   "\"height_std\", 'object_probability',\n  \"desk_position\""));
+  EXPECT_EQ(acquisition->reads(), Quantity::height | Quantity::probability) << "the models of others are not built";
+  const WrittenBelief belief = written();
+  const Eigen::VectorXd expected = belief.u.cwiseProduct(belief.p);  // u is the standard deviation there
+  EXPECT_EQ(scores(*acquisition), std::vector<double>(expected.data(), expected.data() + 6));
+  EXPECT_EQ(diary(),
+            R"({"palpate": 1, "tap": 5, "initial_taps": 3, "rows": 2, "columns": 3, "candidates": 6, )"
+            R"("area": {"width": 0.23, "depth": 0.23}, "desk": 0, "seed": 7, )"
+            R"("arrays": [{"name": "height_std", "bytes": 176}, {"name": "object_probability", "bytes": 176}, )"
+            R"({"name": "desk_position", "bytes": 224}], "bytes": 576}[0.01, 0.05, 0.02, 0.05])" +
+                std::string("\n"));
+}
+
+TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoesInsteadOfScoring) {
+  EXPECT_EQ(trouble("answer([1.0] * 5)"),
+            "acquisition/program: the program answered with an array of the shape (5,), not (6,): '{'descr': '<f8', "
+            "'fortran_order': False, 'shape': (5,), }                       ...', correct it; with another program it "
+            "is another run");
+  EXPECT_THAT(trouble("answer([1.0] * 6, shape='(2, 3)')"), HasSubstr("an array of the shape (2,3), not (6,)"));
+  EXPECT_THAT(trouble("answer([1.0] * 6, descr='<f4')"), HasSubstr("numbers of the type '<f4',, not '<f8'"));
+  EXPECT_THAT(trouble("answer([1.0] * 5 + [float('nan')])"),
+              HasSubstr("gave candidate 5 the score nan, which is not a finite number"));
+  EXPECT_THAT(trouble("print('[1, 2, 3, 4, 5, 6]', flush=True)"),
+              HasSubstr("answered with something that is no array in the format NPY 1.0: '[1, 2, 3, "));
+  EXPECT_EQ(trouble("sys.exit('no torch here')"),
+            "acquisition/program: the program ended with exit status 1, its last words: 'no torch here', correct it, "
+            "what it said is in acquisition.stderr.txt");
+  EXPECT_THAT(trouble("os.kill(os.getpid(), 9)"), HasSubstr("the program was ended by signal 9 (Killed)"));
+  EXPECT_THAT(trouble("time.sleep(600)", ", deadline: 0.2 s, start: 0 s"),
+              AllOf(StartsWith("acquisition/program: the program gave no scores in time, nor ever before"),
+                    HasSubstr("acquisition.deadline")));
+  EXPECT_THAT(trouble("sys.stdout.buffer.write(npy([1.0] * 6)[:-1]); sys.stdout.buffer.flush(); time.sleep(600)",
+                      ", deadline: 0.2 s, start: 0 s"),
+              HasSubstr(" scores in time"));
+  const auto chatty = open(command(
+      "for ask in asks():\n    sys.stdout.buffer.write(npy([1.0] * 6) + b'more')\n    sys.stdout.buffer.flush()\n"));
+  EXPECT_EQ(scores(*chatty), std::vector<double>(6, 1.0));
+  EXPECT_THAT(error_of([&] { scores(*chatty); }), HasSubstr("the program said more than its scores"));
+}
+
+TEST_F(ProgramAcquisition, IsEndedWithAllThatItStarted) {
+  long own = 0;
+  long other = 0;
+  {
+    const auto acquisition =
+        open(command("import subprocess\n"
+                     "for ask in asks():\n"
+                     "    child = subprocess.Popen(['sleep', '600'], start_new_session=True)\n"
+                     "    answer([os.getpid(), child.pid, 0, 0, 0, 0])\n"));
+    own = std::lround(scores(*acquisition).at(0));
+    other = std::lround(scores(*acquisition).at(1));
+    EXPECT_TRUE(running(own) && running(other));
+  }
+  EXPECT_FALSE(running(own));
+  EXPECT_FALSE(running(other));
+}
+
+TEST_F(ProgramAcquisition, IsNotStartedWhereNoRecordIsKept) {
+  const std::string words = command("open('started', 'w')\nfor ask in asks(): answer([1.0] * 6)\n");
+  context_.directory.clear();
+  const auto acquisition = open(words);
+  EXPECT_EQ(error_of([&] { scores(*acquisition); }),
+            "acquisition/program: no program is started outside a run, look at what the run recorded");
+  EXPECT_FALSE(fs::exists("started"));
+}
+
+TEST_F(ProgramAcquisition, SaysWhatIsWrongWithItsOptionsBeforeAnythingStarts) {
+  const auto refusal = [&](const std::string& words, const std::string& more = "") {
+    return error_of([&] { open(words, more); });
+  };
+  EXPECT_EQ(refusal(command("")), "accepted");
+  EXPECT_THAT(refusal(command("", "\"height\"")),
+              AllOf(HasSubstr("plugin.reads: has 'height', which is none of uncertainty, label_mean, ")));
+  EXPECT_THAT(refusal(command("reads=['height_mean']")), HasSubstr("the program has several reads=[...]"));
+  EXPECT_EQ(refusal(command("reads=['height_mean']"), ", reads: \"height_mean\""), "accepted");
+  EXPECT_THAT(refusal("python3 -m mine"), HasSubstr("is not said, and 'python3 -m mine' names no file in"));
+  EXPECT_THAT(refusal(command("", "\"height_mean\", \"surface_std\"")),
+              HasSubstr("names arrays of taps from above and arrays of taps from any side"));
+  EXPECT_THAT(refusal("nobody-has-this x", ", reads: uncertainty"), HasSubstr("there is no program 'nobody-has-this'"));
+  EXPECT_THAT(refusal(command(""), ", checksum: other"), HasSubstr("put the program back that the run began with"));
+}
+
+TEST_F(ProgramAcquisition, BeginsInTheFolderThatTheConfigNames) {
+  fs::create_directory(folder_.path() / "elsewhere");
+  const fs::path program = folder_.path() / "elsewhere" / "here.sh";
+  folder_.write("elsewhere/here.sh",
+                "# reads=[\"uncertainty\"]\npwd >&2\nread -r ask\nb=${ask##*\\\"bytes\\\":}\nhead -c \"${b%\\}}\"\n");
+  const auto acquisition = open("sh here.sh", ", folder: " + yaml_quoted(program.parent_path().string()));
+  const WrittenBelief belief = written();
+  EXPECT_EQ(scores(*acquisition), std::vector<double>(belief.u.data(), belief.u.data() + 6));
+  EXPECT_EQ(diary(), fs::canonical(program.parent_path()).string() + "\n");
+}
+
+TEST_F(ProgramAcquisition, AWaitForItsScoresIsBrokenOff) {
+  const auto acquisition = open(command("for ask in asks(): time.sleep(600)\n"));
+  interrupted_ = true;
+  EXPECT_EQ(error_of([&] { scores(*acquisition); }),
+            "acquisition/program: the program was interrupted, 'palpate resume' carries on");
+}
+
+}  // namespace
+}  // namespace palpate::test
