@@ -71,17 +71,15 @@ class Collector final : public Journal {
 };
 
 /// A recorded choice and all about its score.
-TapRecord choice_of(const Recording& recording, std::size_t index, Experiment& experiment) {
+TapRecord choice_of(const Recording& recording, std::size_t index, const Experiment& experiment) {
   const Row& row = recording.rows[index];
   const PastTap& past = recording.taps[index];
   TapRecord tap;
   tap.source = past.source;
   tap.why = past.why;
-  if (const auto* const above = dynamic_cast<const FromAbove*>(&experiment)) {
+  tap.approach = past.approach;  // of which the candidate is found among the lines that are drawn for the tap
+  if (const auto* const above = dynamic_cast<const FromAbove*>(&experiment))
     tap.candidate = above->candidates().nearest(past.target.x, past.target.y, experiment.scene().area());
-  } else if (const auto* const side = dynamic_cast<const FromAnySide*>(&experiment)) {
-    tap.candidate = side->belief().find(approach_of(past));
-  }
   tap.score = row.number("score");
   if (const auto ties = row.number("ties")) tap.ties = static_cast<int>(*ties);
   if (const auto x = row.number("runner_up.x")) tap.runner_up = Target{*x, row.number("runner_up.y").value_or(0.0)};

@@ -82,6 +82,7 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
     if (!recalled_) return std::nullopt;
     tap = *recalled_;
     tap.number = result_.taps + 1;
+    tap.candidate = belief_.find(approach_of(tap));
   } else if (!starting()) {
     const Pick picked =
         pick_best(scores(), Allowed::Constant(static_cast<Eigen::Index>(belief_.approaches().size()), true),
