@@ -69,6 +69,7 @@ check_files() {
   rm -rf "$share/debs/_CPack_Packages"
   lintian --allow-root --fail-on error "$share"/debs/*.deb >&2 || fail "lintian finds errors"
   for line in 'palpate ./usr/bin/palpate' 'palpate ./usr/lib/palpate/kernel/rbf.so' 'palpate ./usr/lib/palpate/build.json' \
+    'palpate ./usr/lib/palpate/python/palpate_acquisition.py' 'palpate ./usr/share/palpate/plugins/starters/python/starter.py' \
     'palpate ./usr/share/palpate/configs/paper/object_i.yaml' 'palpate ./usr/share/man/man1/palpate-run.1.gz' \
     'palpate ./usr/share/zsh/vendor-completions/_palpate' 'palpate ./usr/share/doc/palpate/copyright' \
     'palpate-dev ./usr/include/palpate/plugin.hpp' 'palpate-dev ./usr/lib/cmake/palpate/palpateConfig.cmake' \

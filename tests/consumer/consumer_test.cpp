@@ -62,13 +62,15 @@ class Consumer : public testing::Test {
 };
 
 TEST_F(Consumer, InstallationIsComplete) {
-  for (const char* file : {"bin/palpate", "lib/palpate/kernel/rbf.so", "lib/palpate/acquisition/weighted.so",
-                           "lib/palpate/fitting/fixed.so", "lib/palpate/backend/simulator.so", "lib/palpate/build.json",
-                           "share/palpate/configs/paper/object_i.yaml", "include/palpate/plugin.hpp",
-                           "lib/cmake/palpate/palpateConfig.cmake", "lib/cmake/palpate/palpateConfigVersion.cmake",
-                           "share/palpate/plugins/starters/kernel/starter.cpp", "share/man/man1/palpate.1",
-                           "share/man/man1/palpate-sweep.1", "share/bash-completion/completions/palpate",
-                           "share/zsh/site-functions/_palpate", "share/fish/vendor_completions.d/palpate.fish"}) {
+  for (const char* file :
+       {"bin/palpate", "lib/palpate/kernel/rbf.so", "lib/palpate/acquisition/weighted.so",
+        "lib/palpate/fitting/fixed.so", "lib/palpate/backend/simulator.so", "lib/palpate/build.json",
+        "lib/palpate/python/palpate_acquisition.py", "share/palpate/plugins/starters/python/starter.py",
+        "share/palpate/configs/paper/object_i.yaml", "include/palpate/plugin.hpp",
+        "lib/cmake/palpate/palpateConfig.cmake", "lib/cmake/palpate/palpateConfigVersion.cmake",
+        "share/palpate/plugins/starters/kernel/starter.cpp", "share/man/man1/palpate.1",
+        "share/man/man1/palpate-sweep.1", "share/bash-completion/completions/palpate",
+        "share/zsh/site-functions/_palpate", "share/fish/vendor_completions.d/palpate.fish"}) {
     EXPECT_TRUE(fs::is_regular_file(prefix() / file)) << file;
   }
   // The program finds its own plugins and configs wherever it was put.
