@@ -79,6 +79,17 @@ TEST_F(Records, AreFoundByNameAlsoWhereAFolderCannotBeCalledSo) {
   EXPECT_THAT(refusal("my  run"), HasSubstr("nothing has that name"));
 }
 
+TEST_F(Records, AreFoundByNameBesideAFolderOfTheSameNameWithoutOne) {
+  const fs::path one = run("first/000000000001", 1);
+  const fs::path last = run("first/000000000002", 2);
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  fs::create_directory("first");  // of sources, as `palpate new` makes it
+  EXPECT_EQ(found("first@latest"), last);
+  EXPECT_THAT(refusal("first"), HasSubstr("stands for 2 runs: "));
+  fs::current_path(before);
+}
+
 TEST_F(Records, OfSeveralAreToldApartByWhatTheirConfigsDoNotShare) {
   const fs::path one = run("first/000000000001", 1, "name: first\nkernel: {type: rbf}\nseed: 1\ntaps: 9\n");
   const fs::path two = run("first/000000000002", 2, "name: first\nkernel: {type: matern52}\nseed: 7\ntaps: 9\n");

@@ -175,12 +175,14 @@ fs::path find_record(const std::string& words, Wanted wanted, const fs::path& ru
   const std::string base = latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
   const bool is_path = is_there(base);
   if (is_path && is_record(base)) return base;
-  const bool is_slug =
-      base.find('~') != std::string::npos && base.find('/') == std::string::npos && is_there(runs / base);
-  const fs::path folder = is_path ? fs::path(base) : is_slug ? runs / base : runs / slug(base);
-  std::vector<fs::path> records = read_catalogue(folder).records;
+  const bool is_word = base.find('/') == std::string::npos;
+  const bool is_slug = base.find('~') != std::string::npos && is_word && is_there(runs / base);
+  const fs::path named = is_slug ? runs / base : runs / slug(base);
+  std::vector<fs::path> records = read_catalogue(is_path ? fs::path(base) : named).records;
+  // A folder of sources may have the name of the runs that are made of them.
+  if (is_path && is_word && records.empty()) records = read_catalogue(named).records;
   if (records.empty()) {
-    if (is_path || base.find('/') != std::string::npos) return base;
+    if (is_path || !is_word) return base;
     throw unknown(words, base, runs);
   }
   const auto fits = [&](const fs::path& one) { return is_sweep(one) == (wanted == Wanted::sweep); };

@@ -40,7 +40,8 @@ enum class Wanted { run, sweep, any };
 /// The directory of the record that `words` mean, in this order:
 ///
 /// 1. a path that exists: a record itself, or a folder with one below;
-/// 2. the name of a run, as its config has it or as its folder in `runs` is called;
+/// 2. the name of a run, as its config has it or as its folder in `runs` is called; also where a folder of that name
+///    has no record below;
 /// 3. either with @latest behind it: of several the one that was begun last.
 ///
 /// A path at which there is no record comes back as it is: who reads it knows what is missing there. Throws Error for a
