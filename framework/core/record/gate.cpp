@@ -2,6 +2,7 @@
 #include "record/gate.hpp"
 
 #include "config/quantity.hpp"
+#include "config/scale.hpp"
 #include "config/utf8.hpp"
 #include "record/fields.hpp"
 #include "record/sample.hpp"
@@ -38,9 +39,12 @@ std::string shown(const Expectation& one, double value) {
   const double scale =
       one.unit.empty() ? 1.0 : read_quantity(Tree::scalar("1 " + one.unit), one.key, unit_of_column(one.field));
   const std::string unit = one.unit.empty() ? "" : " " + one.unit;
-  const std::string brief = fmt::format("{:.4g}", value / scale);
-  const bool same_as_bound = brief == fmt::format("{:.4g}", one.bound / scale) && value != one.bound;
-  return (same_as_bound ? fmt::format("{}", value / scale) : brief) + unit;
+  constexpr int kAll = 17;
+  int digits = 4;
+  while (digits < kAll && value != one.bound &&
+         significant(value / scale, digits) == significant(one.bound / scale, digits))
+    ++digits;
+  return significant(value / scale, digits) + unit;
 }
 
 /// Why a run has no value.

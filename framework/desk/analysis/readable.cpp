@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/readable.hpp"
 
-#include "config/quantity.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace palpate {
 
-std::string Scale::number(double value) const { return fmt::format("{:.{}f}", value / factor, decimals); }
-
-std::string Scale::difference(double value) const {
-  const std::string text = fmt::format("{:+.{}f}", value / factor, decimals);
-  return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
-}
-
-std::string Scale::estimate(const MeanEstimate& mean) const {
+std::string estimate_text(const Scale& scale, const MeanEstimate& mean) {
   if (mean.count == 0) return "-";
-  return with_interval(mean.mean, mean.interval, [&](double value) { return number(value); });
+  return with_interval(mean.mean, mean.interval, [&](double value) { return scale.number(value); });
 }
-
-std::string Scale::title(const std::string& name) const { return name + (unit.empty() ? "" : " [" + unit + "]"); }
 
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number) {
@@ -47,23 +35,6 @@ std::string few_words(std::size_t units, bool seeds, std::size_t least) {
       "only {}: an interval of so few (Student's t) misses the true mean more often than 5 times in 100; run {} or "
       "more\n",
       units_words(units, seeds), kEnoughUnits);
-}
-
-Scale readable_scale(Unit unit, const std::vector<double>& values, int digits) {
-  double largest = 0.0;
-  double least = 0.0;
-  for (const double value : values) {
-    const double size = std::abs(value);
-    if (size == 0.0) continue;
-    largest = std::max(largest, size);
-    least = least == 0.0 ? size : std::min(least, size);
-  }
-  Scale scale{unit_symbol(unit), 1.0, 0};
-  if (unit == Unit::metre && largest < 1.0) scale = {"mm", 1e-3, 0};
-  if (unit == Unit::second && largest < 1.0) scale = {"ms", 1e-3, 0};
-  if (least > 0.0)
-    scale.decimals = std::clamp(digits - 1 - static_cast<int>(std::floor(std::log10(least / scale.factor))), 0, 4);
-  return scale;
 }
 
 std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Numbers and tables for people: units in which values are short, columns that stand under each other; and those for
-// programs, as rows.
+// Tables for people, whose numbers are formatted by config/scale.hpp, with columns that stand under each other; and
+// those for programs, as rows.
 #pragma once
 
 #include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
+#include "config/scale.hpp"
 
 #include <palpate/options.hpp>
 
@@ -15,22 +16,8 @@
 
 namespace palpate {
 
-/// In what unit, and with how many decimals, some values are read best.
-struct Scale {
-  std::string unit;  ///< "" for none
-  double factor = 1.0;
-  int decimals = 0;
-
-  std::string number(double value) const;
-  /// With its sign: "+0.3". What rounds to 0 has none.
-  std::string difference(double value) const;
-  /// "3.21 [3.02, 3.40]", "-" of no values.
-  std::string estimate(const MeanEstimate& mean) const;
-  /// "5 mm"
-  std::string with_unit(const std::string& number) const { return number + (unit.empty() ? "" : " " + unit); }
-  /// "robot_seconds [s]"
-  std::string title(const std::string& name) const;
-};
+/// Returns "3.21 [3.02, 3.40]", "-" of no values.
+std::string estimate_text(const Scale& scale, const MeanEstimate& mean);
 
 /// "3.21 [3.02, 3.40]" of numbers that `number` writes, "3.21 [-]" where there is no interval.
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
@@ -48,10 +35,6 @@ std::string few_words(std::size_t units, bool seeds, std::size_t least);
 
 /// A line that tells how many of a group's jobs are copies of a run, where jobs are the units.
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units);
-
-/// For values of these sizes: millimetres and milliseconds if all are below one, and `digits` digits of the smallest
-/// that is not 0, but at most four decimals.
-Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3);
 
 /// Lines of as many cells each, under each other and two blanks apart; `sides` has an l or r for each column. A
 /// column that is empty in all lines takes no room.
