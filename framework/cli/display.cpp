@@ -2,6 +2,7 @@
 #include "cli/display.hpp"
 
 #include "cli/output.hpp"
+#include "config/scale.hpp"
 #include "reading/reading.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
@@ -15,8 +16,23 @@
 namespace palpate::cli {
 namespace {
 
-std::string scaled(const std::optional<double>& value, double scale, const char* format) {
-  return value ? fmt::format(fmt::runtime(format), *value * scale) : "-";
+std::string place_text(double metres) { return usual_scale(Unit::metre, LengthKind::place).number(metres); }
+std::string error_text(const std::optional<double>& metres) { return usual_scale(Unit::metre).number(metres); }
+std::string error_words(double metres) { return usual_scale(Unit::metre).quantity(metres); }
+
+std::string share_text(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "-"; }
+
+/// "error: 2.6 mm over the scene (expected 3.1 mm), 5.9 mm on the object; footprint IoU 1.00"; without truth what is
+/// expected alone, empty where not even that is known.
+std::string error_line(const Row& summary) {
+  const Errors errors = errors_in(summary);
+  const std::optional<double> expected = summary.number(kExpectedError);
+  if (!errors.rmse && !expected) return {};
+  if (!errors.rmse) return fmt::format("expected error: {} over the scene\n", error_words(*expected));
+  return fmt::format("error: {} over the scene{}, {} on the object; footprint IoU {}\n", error_words(*errors.rmse),
+                     expected ? fmt::format(" (expected {})", error_words(*expected)) : "",
+                     errors.rmse_on_surface ? error_words(*errors.rmse_on_surface) : "-",
+                     share_text(errors.footprint_iou));
 }
 
 /// What had to be done about rounding, in one line; empty when nothing was.
@@ -54,13 +70,13 @@ void TapTable::clear_live_line() const {
 
 void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
-    print_out("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm", "y cm",
-              "height cm", "contact", "max sd cm", "error cm", "IoU", "(the last three before the tap)");
+    print_out("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm", "y cm",
+              "height cm", "contact", "expected mm", "error mm", "IoU", "(the last three before the tap)");
     header_ = true;
   }
   if (!terminal_) return;
-  print_out("{:>4}  of {}, going to ({:.2f}, {:.2f}) cm ...", tap.number, budget_, tap.target.x * 100,
-            tap.target.y * 100);
+  print_out("{:>4}  of {}, going to ({}, {}) cm ...", tap.number, budget_, place_text(tap.target.x),
+            place_text(tap.target.y));
   flush_output();
 }
 
@@ -68,12 +84,11 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
   clear_live_line();
   const bool touched = tap.contact.outcome == Outcome::contact;
   const std::string contact = !touched ? outcome_name(tap.contact.outcome) : *tap.on_surface ? "object" : "desk";
-  const std::string line =
-      fmt::format("{:>4}  {:<11}  {:>6.2f}  {:>6.2f}  {:>9}  {:<11}  {:>9}  {:>8}  {:>5}{}\n", tap.number,
-                  source_name(tap.source), tap.target.x * 100, tap.target.y * 100,
-                  touched ? fmt::format("{:.2f}", tap.contact.height * 100) : std::string("-"), contact,
-                  scaled(tap.max_standard_deviation, 100, "{:.2f}"), scaled(tap.errors.rmse, 100, "{:.2f}"),
-                  scaled(tap.errors.footprint_iou, 1, "{:.2f}"), touched ? "" : "  " + tap.contact.reason);
+  const std::string line = fmt::format(
+      "{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}{}\n", tap.number, source_name(tap.source),
+      place_text(tap.target.x), place_text(tap.target.y), touched ? place_text(tap.contact.height) : std::string("-"),
+      contact, error_text(tap.expected_rmse), error_text(tap.errors.rmse), share_text(tap.errors.footprint_iou),
+      touched ? "" : "  " + tap.contact.reason);
   print_text(line);
   flush_output();
 }
@@ -99,9 +114,10 @@ void print_summary(const RunReport& report) {
   for (const std::string& name : report.restored.made) text += fmt::format("made again from the record: {}\n", name);
   for (const std::string& name : report.restored.lost)
     text += fmt::format("{} is gone or damaged, and this build makes another one from the same taps\n", name);
-  text += fmt::format("{}: {} after {} taps and {} s of robot time\n",
+  const std::optional<double> seconds = row.number("robot_seconds");
+  text += fmt::format("{}: {} after {} taps and {} of robot time\n",
                       report.interrupted ? "interrupted" : row.cell("status"), row.cell("stop_reason"),
-                      row.cell("taps"), scaled(row.number("robot_seconds"), 1, "{:.1f}"));
+                      row.cell("taps"), seconds ? usual_scale(Unit::second).quantity(*seconds) : "-");
   const std::string hit = row.cell("first_hit_tap");
   const std::string missed =
       row.find("missed_taps") != nullptr ? fmt::format(" {} that met nothing,", row.cell("missed_taps")) : "";
@@ -109,11 +125,7 @@ void print_summary(const RunReport& report) {
                       row.cell("off_surface_taps"), missed, row.cell("failed_taps"),
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
   text += relabelled_line(row);
-  if (const Errors errors = errors_in(row); errors.rmse) {
-    text += fmt::format("error: {} cm over the scene, {} cm on the object; footprint IoU {}\n",
-                        scaled(errors.rmse, 100, "{:.2f}"), scaled(errors.rmse_on_surface, 100, "{:.2f}"),
-                        scaled(errors.footprint_iou, 1, "{:.2f}"));
-  }
+  text += error_line(row);
   if (const std::string doubted = row.text("doubted"); !doubted.empty())
     text += fmt::format("doubted: taps that may lie, each with the probability: {}\n", doubted);
   text += numerics_line(row);

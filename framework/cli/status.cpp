@@ -2,6 +2,7 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
+#include "config/scale.hpp"
 #include "record/run_directory.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +21,10 @@ int status(Program& program, const std::string& directory) {
   const std::string reason = status.stop_reason.empty() ? "" : ": " + status.stop_reason;
   print_out("{}: {} after {} of {} taps{}\n", text_at("name"), state_name(status.state), status.taps, text_at("taps"),
             reason);
+  if (status.expected_rmse) {
+    print_out("expected error: {} over the scene{}\n", usual_scale(Unit::metre).quantity(*status.expected_rmse),
+              status.state == RunStatus::State::done ? "" : ", before the last tap");
+  }
   if (status.cut) {
     mention((std::filesystem::path(directory) / kRecordFile).string() +
             ": was cut, as summary.json says that the run had ended; 'palpate resume' makes what is missing again\n");

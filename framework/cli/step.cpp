@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/step.hpp"
-#include "cli/output.hpp"
 
 #include "cli/display.hpp"
+#include "cli/output.hpp"
+#include "config/scale.hpp"
 #include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
@@ -43,11 +44,12 @@ Step::Step(const ExperimentOptions& options, const std::atomic<bool>* stopped)
       interrupted_(stopped) {}
 
 bool Step::permits(const TapRecord& tap, const Preview& preview) {
-  std::string text = fmt::format("tap {} of {} at ({:.2f}, {:.2f}) cm, {}", tap.number, budget_, tap.target.x * 100,
-                                 tap.target.y * 100, who_chose(tap));
+  const Scale places = usual_scale(Unit::metre, LengthKind::place);
+  std::string text = fmt::format("tap {} of {} at ({}, {}) {}, {}", tap.number, budget_, places.number(tap.target.x),
+                                 places.number(tap.target.y), places.unit, who_chose(tap));
   if (const std::optional<Prediction>& expected = preview.expected) {
-    text += fmt::format("; expected height{} {:.1f} +- {:.1f} cm", two_part_ ? " of an object there" : "",
-                        expected->height * 100, expected->standard_deviation * 100);
+    text += fmt::format("; expected height{} {} +- {} {}", two_part_ ? " of an object there" : "",
+                        places.number(expected->height), places.number(expected->standard_deviation), places.unit);
   }
   for (const std::string& line : preview.motion) text += "\n      " + line;
   flush_output();

@@ -31,7 +31,7 @@ class Output : public Shell {
 
   void expect_whole(const fs::path& run, int taps = 5) const {
     EXPECT_THAT(text_of(run / "record.jsonl"), StartsWith("{\"manifest\": 1, "));
-    EXPECT_THAT(text_of(run / "record.jsonl"), Not(HasSubstr("max sd cm"))) << "the printed table";
+    EXPECT_THAT(text_of(run / "record.jsonl"), Not(HasSubstr("expected mm"))) << "the printed table";
     EXPECT_EQ(lines(part_of(run, "tap")), taps);
     EXPECT_THAT(text_of(run / "summary.json"), HasSubstr("\"status\": \"done\""));
   }

@@ -158,8 +158,8 @@ TEST(Readme, TheCaptureIsWhatTheFirstCommandPrintsAndItsErrorFalls) {
   const auto id = ended.out.rfind('/') + 1;
   EXPECT_THAT(text_of(test::source_folder() / "runs/reference/README.md"),
               HasSubstr("\n\"id " + ended.out.substr(id, 12) + ", seed 1, "));
-  // "4 cm while nothing is known, 3 mm after 30 taps"
-  std::vector<double> errors;  // behind tap, source, x, y, height, contact and deviation, centimetres
+  // "40 mm while nothing is known, 3 mm after 30 taps"
+  std::vector<double> errors;  // behind tap, source, x, y, height, contact and expected error, millimetres
   for (const std::string& line : lines_of(ended.out)) {
     std::istringstream cells(line);
     const std::vector<std::string> words{std::istream_iterator<std::string>(cells), {}};
@@ -167,19 +167,19 @@ TEST(Readme, TheCaptureIsWhatTheFirstCommandPrintsAndItsErrorFalls) {
       errors.push_back(std::stod(words[7]));
   }
   ASSERT_EQ(errors.size(), 30U);
-  EXPECT_NEAR(errors.front(), 4.0, 0.05);
+  EXPECT_NEAR(errors.front(), 40.0, 0.5);
   const std::string at_last = "\nerror: ";
   ASSERT_THAT(ended.out, HasSubstr(at_last));
-  EXPECT_NEAR(std::stod(ended.out.substr(ended.out.find(at_last) + at_last.size())), 0.26, 0.05);
+  EXPECT_NEAR(std::stod(ended.out.substr(ended.out.find(at_last) + at_last.size())), 2.6, 0.5);
 }
 
 TEST(Readme, SaysOfThePapersExperimentWhatComesOutOfIt) {
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
   const std::string readme = text_of(test::source_folder() / "README.md");
-  EXPECT_THAT(readme, HasSubstr("finds it at tap 8, and the rule takes over; its 17 taps leave an error of 3.2 cm."));
+  EXPECT_THAT(readme, HasSubstr("finds it at tap 8, and the rule takes over; its 17 taps leave an error of 32 mm."));
   const test::Ended ended = test::run_program({"sh", "-c", "./palpate run configs/paper/object_i.yaml"}, folder.path());
-  EXPECT_THAT(ended.out, HasSubstr("first hit at tap 8\nerror: 3.20 cm over the scene"));
+  EXPECT_THAT(ended.out, HasSubstr("first hit at tap 8\nerror: 32.0 mm over the scene"));
   EXPECT_THAT(ended.out, HasSubstr("\ndone: tap budget after 17 taps"));
 }
 

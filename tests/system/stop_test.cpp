@@ -2,6 +2,7 @@
 // `stop.expected_rmse` as a user meets it.
 #include "system/shell.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -29,10 +30,34 @@ TEST_F(Stops, AtTheExpectedErrorAreInTheRecordAndReplayed) {
   EXPECT_THAT(replay.out, MatchesRegex("[0-9]+ taps, [0-9]+ numbers, all equal\n")) << replay.err;
 }
 
-TEST_F(Stops, AddNothingToTheRecordOfOtherRuns) {
+TEST_F(Stops, AddNothingToTheTapsOfOtherRuns) {
   const fs::path directory = ran("taps=5", config("default.yaml"));
-  for (const char* file : {"record.jsonl", "taps.csv", "summary.json"})
-    EXPECT_THAT(text_of(directory / file), Not(HasSubstr("expected_rmse_m"))) << file;
+  EXPECT_THAT(text_of(directory / "taps.csv"), Not(HasSubstr("expected_rmse_m")));
+  EXPECT_THAT(part_of(directory, "tap"), Not(HasSubstr("expected_rmse_m")));
+}
+
+// What is seen of the expected error, by every way on which people meet it.
+TEST_F(Stops, AreNotNeededToSeeTheExpectedErrorInTableSummaryAndStatus) {
+  const Ended ended = run({"taps=5"}, config("default.yaml"));
+  EXPECT_THAT(ended.out, HasSubstr("contact      expected mm  error mm    IoU"));
+  EXPECT_THAT(ended.out, ContainsRegex("\nerror: [0-9.]+ mm over the scene \\(expected [0-9.]+ mm\\), [0-9.]+ mm on"));
+  const auto expected_in = [&] {
+    return nlohmann::json::parse(text_of(directory() / "summary.json"))["expected_rmse_m"].get<double>();
+  };
+  const double expected = expected_in();
+  EXPECT_THAT(status_of(directory()).out,
+              HasSubstr(fmt::format("\nexpected error: {:.1f} mm over the scene\n", 1e3 * expected)));
+
+  // A run that a kill has ended: what was expected before its last tap is known from the lines with the times.
+  std::string record = text_of(directory() / "record.jsonl");
+  record.resize(record.find("{\"objects\""));
+  fs::remove(directory() / "summary.json");
+  write(directory() / "record.jsonl", record);
+  EXPECT_THAT(
+      status_of(directory()).out,
+      ContainsRegex("unfinished after 5 of 5 taps\nexpected error: [0-9.]+ mm over the scene, before the last tap\n"));
+  EXPECT_EQ(resume(directory()).status, 0);
+  EXPECT_EQ(expected_in(), expected);
 }
 
 TEST_F(Stops, AtBoundsThatMeanNothingAreRefused) {

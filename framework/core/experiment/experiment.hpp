@@ -76,6 +76,10 @@ class Experiment {
   /// same without them, because models that nobody else reads are kept apart.
   virtual Errors errors() = 0;
 
+  /// The RMSE over the candidates that is expected as of now, metres; none where the belief says nothing of it. For
+  /// people who watch, too: it builds no model, and needs no truth.
+  virtual std::optional<double> expected_rmse() { return std::nullopt; }
+
   /// Has the models hold what such readers read, from now on, and choose_next() describe it, as if the strategy read
   /// it.
   virtual void ask(Quantities quantities) = 0;

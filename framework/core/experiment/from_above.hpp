@@ -29,6 +29,7 @@ class FromAbove final : public Experiment {
   const RunResult& counts() const override { return watch_.counts(); }
   RunResult result() override { return watch_.result(belief_); }
   Errors errors() override { return watch_.errors(belief_); }
+  std::optional<double> expected_rmse() override { return watch_.expected_rmse(belief_); }
   void ask(Quantities quantities) override { belief_.ask(quantities); }
   Preview preview(const TapRecord& tap) const override;
   std::vector<ModelReader> readers() const override;

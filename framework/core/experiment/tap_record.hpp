@@ -53,6 +53,7 @@ struct ModelState {
   std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
   std::optional<FootprintState> footprint;
   std::optional<Forecast> forecast;                        ///< where a stop rule asks for it
+  std::optional<double> expected_rmse;                     ///< metres; of a tap for observers alone: see Watch
   std::optional<std::vector<TapBelief::Doubted>> doubted;  ///< where contacts may lie
   Errors errors;
 };

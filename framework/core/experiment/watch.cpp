@@ -27,6 +27,13 @@ ProcessState state_of(const TapBelief::Output& one) {
   return out;
 }
 
+/// `belief` has what the surface is made of.
+Forecast forecast_by(const TapBelief& belief) {
+  Forecaster forecaster;
+  for (const Touch& hit : belief.hits()) forecaster.hit(hit.height);
+  return forecaster.forecast(belief);
+}
+
 FootprintState state_of(const Footprint& footprint) { return {footprint.numbers(), footprint.remark()}; }
 
 }  // namespace
@@ -68,10 +75,18 @@ void Watch::note_object(int candidate) {
 
 std::optional<Forecast> Watch::forecast(TapBelief& belief) const {
   if (!options_.stop.expected_rmse) return std::nullopt;
-  Forecaster forecaster;
-  for (const Touch& hit : belief.hits()) forecaster.hit(hit.height);
-  if (forecaster.hits() > 0) belief.ask(belief.surface_reads());
-  return forecaster.forecast(belief);
+  if (!belief.hits().empty()) belief.ask(belief.surface_reads());
+  return forecast_by(belief);
+}
+
+std::optional<double> Watch::expected_rmse(TapBelief& belief) const {
+  const Quantities reads = belief.surface_reads();
+  for (TapBelief* one : {&belief, beside_.get()}) {
+    if (one == nullptr || one->hits().empty() || !one->has_models_of(reads)) continue;
+    one->build(reads);
+    return forecast_by(*one).rmse;
+  }
+  return std::nullopt;
 }
 
 void Watch::describe(TapRecord& tap, TapBelief& belief) {
@@ -191,6 +206,13 @@ RunResult Watch::result(TapBelief& belief) {
     out.count(factors);
   }
   out.interventions["fit_failed"] = belief.failed_fits();
+  // Last, so that its maps change nothing that is counted above; not by the models beside, which only observers ask
+  // for.
+  if (out.forecast) {
+    out.expected_rmse = out.forecast->rmse;
+  } else if (belief.has_models_of(belief.surface_reads())) {
+    out.expected_rmse = expected_rmse(belief);
+  }
   return out;
 }
 

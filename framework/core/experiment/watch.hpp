@@ -32,6 +32,11 @@ class Watch {
   /// What error is expected, where a stop rule asks for it; from the first hit on it asks `belief` for what it reads.
   std::optional<Forecast> forecast(TapBelief& belief) const;
 
+  /// Returns the RMSE over the candidates that is expected of the surface as it would be reconstructed now, metres,
+  /// whether or not a stop rule asks for it. Uses the models that `belief` has, or those that errors() keeps apart;
+  /// builds their maps and no model. None before the first hit, and where a model is missing that the surface needs.
+  std::optional<double> expected_rmse(TapBelief& belief) const;
+
   /// Notes in `tap` the state that it is chosen from, as far as that belongs to the record.
   void describe(TapRecord& tap, TapBelief& belief);
 

@@ -113,7 +113,7 @@ bool Relay::permits(const TapRecord& tap) {
 }
 
 void Relay::announce(const TapRecord& tap) {
-  if (company_.observer != nullptr && company_.observer->wants_errors()) look_at_errors();
+  if (company_.observer != nullptr && company_.observer->wants_errors()) look_at_surface();
   {
     const PhaseClock::Scope log(experiment_.clock(), Phase::log);
     if (maps_) write_maps(tap.number);
@@ -123,22 +123,25 @@ void Relay::announce(const TapRecord& tap) {
 }
 
 void Relay::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
+  TapRecord told = tap;
+  told.expected_rmse = expected_rmse_;  // stands with the times, not with the tap
   {
     const PhaseClock::Scope log(experiment_.clock(), Phase::log);
-    directory_.record(tap, seconds);
+    directory_.record(told, seconds);
   }
   if (company_.observer == nullptr) return;
-  TapRecord told = tap;
   told.errors = errors_;
   company_.observer->record(told, seconds);
 }
 
 /// Before the tap is announced, and without a say in the run: a model that fails here fails nobody who reads it.
-void Relay::look_at_errors() {
+void Relay::look_at_surface() {
+  errors_ = {};
+  expected_rmse_.reset();
   try {
     errors_ = experiment_.errors();
+    expected_rmse_ = experiment_.expected_rmse();
   } catch (const std::exception&) {  // see above
-    errors_ = {};
   }
 }
 

@@ -35,14 +35,16 @@ class Relay final : public Journal {
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
 
  private:
-  void look_at_errors();
+  void look_at_surface();
   void write_maps(int number) const;
 
   bool maps_;
   Experiment& experiment_;
   RunDirectory& directory_;
   Company company_;
-  Errors errors_;  ///< of the state that the tap under way was chosen from, for the observer
+  // Of the state that the tap under way was chosen from, for the observer.
+  Errors errors_;
+  std::optional<double> expected_rmse_;
 };
 
 /// A run in a directory that this process holds, from its first tap here to what ends it.

@@ -176,14 +176,6 @@ void list_models(FieldList<Record>& list, bool reasons) {
                   [](Row& row, const Record& record) {
                     if (record.doubted) row.add("doubted", if_any(words(*record.doubted)));
                   });
-  list.add_family(
-          "expected_rmse_m",
-          "the error over the scene that is to be expected of what is believed; only with `stop.expected_rmse`, "
-          "null before the first hit",
-          [](Row& row, const Record& record) {
-            if (record.forecast) row.add("expected_rmse_m", record.forecast->rmse);
-          })
-      .in(Unit::metre);
 }
 
 template <class T, class Member>
@@ -295,6 +287,11 @@ FieldList<TapRecord> make_tap_list() {
                  "the probability of an object there; only where the backend asks for it (`adaptive_hover.certainty`)",
                  [](const Tap& t) { return t.predicted->probability; });
   list_models(list, false);
+  list.add_where([](const Tap& t) { return t.forecast.has_value(); }, kExpectedError,
+                 "the RMSE over the scene that is expected of what is believed; only with `stop.expected_rmse`, "
+                 "null before the first hit",
+                 [](const Tap& t) { return t.forecast->rmse; })
+      .in(Unit::metre);
   list.add("true_on_surface", "whether an object truly is there", &Tap::true_on_surface).absent(kNoTruth);
   list.add_shared(error_fields(), [](Row& row, const Tap& t) { add_errors(row, t.errors); });
   return list;
@@ -428,6 +425,14 @@ FieldList<Summary> make_summary_list() {
       "`height.systematic` and from any side",
       [](const Summary& s) { return if_any(words(s.relabelled)); });
   list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
+  list.add(kExpectedError,
+           "`rmse_m` as the final models expect it, for which no truth is needed: the root of the expected mean square "
+           "over the candidates",
+           &Summary::expected_rmse)
+      .in(Unit::metre)
+      .less()
+      .absent("no object was found, nothing read the models of the surface, or the run is one from any side")
+      .called("over the scene, expected");
   list.add("nlpd",
            "mean negative log predictive density of the true height (natural logarithm) over the cells on an object "
            "that "
@@ -490,6 +495,11 @@ FieldList<TapTimes> make_timing_list() {
              [i](const TapTimes& t) { return t.seconds[i]; })
         .in(Unit::second);
   }
+  list.add_where([](const TapTimes& t) { return t.expected_rmse.has_value(); }, kExpectedError,
+                 "no time: the RMSE over the scene that was expected before the tap; only where `palpate run` or "
+                 "`resume` showed it",
+                 [](const TapTimes& t) { return t.expected_rmse; })
+      .in(Unit::metre);
   return list;
 }
 

@@ -28,10 +28,14 @@ struct Summary : RunResult {
   std::optional<std::int64_t> peak_rss_bytes;
 };
 
+/// The field with the RMSE that a run expects at its end.
+inline constexpr const char* kExpectedError = "expected_rmse_m";
+
 /// Wall seconds of one tap by phase, as its line `timing` has them.
 struct TapTimes {
   int tap = 0;
   std::array<double, kPhases> seconds{};
+  std::optional<double> expected_rmse = std::nullopt;  ///< before the tap, metres; where it was shown
 };
 
 /// One of the objects in the line `objects`.

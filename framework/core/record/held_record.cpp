@@ -89,6 +89,7 @@ void HeldRecord::add_tap(const Row& tap, bool sync) { append(to_json_line(tap) +
 void HeldRecord::add_timing(const TapTimes& times) {
   std::string line = fmt::format("{{\"timing\": {}", times.tap);
   for (std::size_t i = 0; i < kPhases; ++i) line += fmt::format(", \"{}\": {:.9f}", kPhaseNames[i], times.seconds[i]);
+  if (times.expected_rmse) line += fmt::format(", \"expected_rmse_m\": {}", *times.expected_rmse);
   append(line + "}\n", false);
 }
 

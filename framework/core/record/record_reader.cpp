@@ -100,6 +100,7 @@ TapTimes times_of(const Row& row) {
   TapTimes out;
   out.tap = static_cast<int>(count_in(row, "timing").value_or(0));
   for (std::size_t i = 0; i < kPhases; ++i) out.seconds[i] = row.number(kPhaseNames[i]).value_or(0.0);
+  out.expected_rmse = row.number(kExpectedError);
   return out;
 }
 

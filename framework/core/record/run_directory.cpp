@@ -93,6 +93,11 @@ RunStatus read_record(const fs::path& directory) {
   RunRecord record = read_run_record(directory);
   RunStatus out = status_of(std::move(record.end), record.manifest.has_value());
   out.taps = static_cast<int>(record.taps.size());
+  if (out.end) {
+    out.expected_rmse = out.end->summary.number(kExpectedError);
+  } else if (!record.timings.empty() && record.timings.back().tap == out.taps) {
+    out.expected_rmse = record.timings.back().expected_rmse;
+  }
   out.cut = !out.end && is_there(directory / kSummaryFile);
   return out;
 }
@@ -160,7 +165,7 @@ void RunDirectory::record(const TapRecord& tap, const std::array<double, kPhases
   Row row = tap_row(tap);
   record_.add_tap(row, sync_);
   rows_.push_back(std::move(row));
-  record_.add_timing({tap.number, seconds});
+  record_.add_timing({tap.number, seconds, tap.expected_rmse});
   for (std::size_t i = 0; i < kPhases; ++i) total_[i] += seconds[i];
 }
 

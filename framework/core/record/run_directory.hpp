@@ -31,7 +31,10 @@ struct RunStatus {
   State state = State::absent;
   int taps = 0;             ///< recorded
   std::string stop_reason;  ///< of a finished run: why it stopped or failed
-  bool cut = false;         ///< there is a summary.json, and the record does not say that the run has ended
+  /// The last RMSE that is known to have been expected, metres: of a run that ended well that of its summary, of others
+  /// that before the last tap, where `palpate run` showed it.
+  std::optional<double> expected_rmse = std::nullopt;
+  bool cut = false;  ///< there is a summary.json, and the record does not say that the run has ended
   std::optional<Ending> end = std::nullopt;  ///< of a finished run
 };
 
