@@ -18,7 +18,7 @@ TEST(Words, TakeTheUnitThatSuitsALength) {
   EXPECT_EQ(length_words(-0.0906652), "-9.067 cm");
   EXPECT_EQ(length_words(1.0), "1 m");
   EXPECT_EQ(plain_words(-0.0), "0");
-  EXPECT_EQ(plain_words(0.38483319), "0.384833");
+  EXPECT_EQ(plain_words(0.38483319), "0.3848");
   EXPECT_EQ(counted(1, "tap"), "1 tap");
   EXPECT_EQ(counted(0, "tap"), "0 taps");
 }

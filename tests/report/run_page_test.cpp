@@ -98,6 +98,38 @@ TEST_F(ReportedRun, MarksTapsAsTheyAreReadAtTheMomentThatIsShown) {
   EXPECT_EQ(seen.values.at(3), json({0, 1}));
 }
 
+TEST_F(ReportedRun, ShowsTheExpectedErrorAndQuantitiesInTheirUnitsWithTheDigitsThatTheyDeserve) {
+  const fs::path directory = made(folder_, {"seed=4"});
+  report(directory);
+  const Browsed seen = test::browse(
+      directory / "report.html",
+      {drawn(17), "return [...document.querySelectorAll('.facts li')].map((one) => one.children[0].textContent)",
+       "return document.getElementById('curve_0').data.map((curve) => [curve.name, curve.y.at(-1)])",
+       "return document.getElementById('curve_0').layout.yaxis.title.text",
+       "return [quantity('rmse_m', 3.24e-6), quantity('rmse_m', 1.5650845800732873e-2), "
+       "quantity('robot_seconds', 65.5), quantity('rmse_m', null), shown(1.23456e-9, 3)]"},
+      false);
+  ASSERT_EQ(seen.trouble, "");
+  const json summary = json::parse(text_of(directory / "summary.json"));
+  const auto millimetres = [&](const char* field) { return 1e3 * summary.at(field).get<double>(); };
+  const json& facts = seen.values.at(0);
+  const auto shows = [&](const char* field) {
+    return std::any_of(facts.begin(), facts.end(), [&](const json& fact) {
+      const auto text = fact.get<std::string>();
+      const bool is_length = text.size() > 3 && text.compare(text.size() - 3, 3, " mm") == 0;
+      return is_length && std::abs(std::stod(text) - millimetres(field)) < 0.006 * millimetres(field);
+    });
+  };
+  EXPECT_TRUE(shows("rmse_m")) << facts;
+  EXPECT_TRUE(shows("expected_rmse_m")) << facts;
+  double drawn_error = 0.0;
+  for (const json& curve : seen.values.at(1))
+    if (curve.at(0) == "over the scene, expected") drawn_error = curve.at(1);
+  EXPECT_NEAR(drawn_error, millimetres("expected_rmse_m"), 1e-9);
+  EXPECT_EQ(seen.values.at(2), "[mm]");
+  EXPECT_EQ(seen.values.at(3), json({"0.00324 mm", "15.7 mm", "65.5 s", "–", "1.23e-9"}));
+}
+
 TEST_F(ReportedRun, ShowsMarksAboveTheSurfaceAndTheNextTap) {
   const fs::path directory = made(folder_, {"seed=4"});
   report(directory);

@@ -50,7 +50,7 @@ TEST_F(RunsPage, ShowsTheErrorsOfAllOfThemOverTapsAndOverRobotTime) {
     const json& over_seconds = seen.values.at(1).at(i);
     EXPECT_EQ(over_taps.at(0), i == 0 ? "A" : "B");
     EXPECT_EQ(over_taps.at(1), summary.at("taps"));
-    EXPECT_NEAR(over_taps.at(2).get<double>(), 100.0 * summary.at("rmse_m").get<double>(), 1e-9);
+    EXPECT_NEAR(over_taps.at(2).get<double>(), 1000.0 * summary.at("rmse_m").get<double>(), 1e-9);
     EXPECT_NEAR(over_seconds.at(1).get<double>(), summary.at("robot_seconds").get<double>(), 1e-9);
     EXPECT_EQ(over_seconds.at(2), over_taps.at(2));
   }

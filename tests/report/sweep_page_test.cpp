@@ -143,8 +143,8 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   const json& cells = seen.values.at(0);
   EXPECT_EQ(cells.at("x"), json({"weighted", "uncertainty"})) << "in the order of the sweep";
   EXPECT_EQ(cells.at("y"), json({"10 mm", "1.7 cm", "2.5cm"})) << "as numbers";
-  EXPECT_EQ(cells.at("title"), "rmse_m [cm], less is better");
-  expect_cells(cells, rows, "acquisition", "kernel.length_scale", "rmse_m", 100.0);
+  EXPECT_EQ(cells.at("title"), "rmse_m [mm], less is better");
+  expect_cells(cells, rows, "acquisition", "kernel.length_scale", "rmse_m", 1000.0);
   const auto of = [&](const Cells& row) {
     return fmt::format("acquisition={}, kernel.length_scale={}, taps={}", row.at("acquisition"),
                        row.at("kernel.length_scale"), row.at("taps"));
@@ -152,15 +152,15 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   ASSERT_EQ(seen.values.at(1).size(), 12U) << "every setting";
   for (const json& box : seen.values.at(1)) {
     expect_near(sorted(box.at(1)),
-                column(rows, "rmse_m", 100.0, [&](const Cells& row) { return of(row) == box.at(0); }));
+                column(rows, "rmse_m", 1000.0, [&](const Cells& row) { return of(row) == box.at(0); }));
   }
-  expect_front(seen.values.at(2), directory, "robot_seconds", 1.0, "rmse_m", 100.0);
+  expect_front(seen.values.at(2), directory, "robot_seconds", 1.0, "rmse_m", 1000.0);
   const json& parallel = seen.values.at(3);
   EXPECT_EQ(parallel.at(0), GetParam() ? "parcoords" : "lines");
   EXPECT_GT(parallel.at(1), 5);
   EXPECT_EQ(parallel.at(2).size(), 48U) << "a line a job";
   if (GetParam()) {
-    expect_near(sorted(parallel.at(2)), column(rows, "rmse_m", 100.0, [](const Cells&) { return true; }));
+    expect_near(sorted(parallel.at(2)), column(rows, "rmse_m", 1000.0, [](const Cells&) { return true; }));
   }
 
   const json& changed = seen.values.at(7);
@@ -224,7 +224,7 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   report(directory);
   const Browsed again = browse(directory, {drawn(1), kFront});
   ASSERT_EQ(again.values.size(), 1U);
-  expect_front(again.values.at(0), directory, "robot_seconds", 1.0, "rmse_m", 100.0);
+  expect_front(again.values.at(0), directory, "robot_seconds", 1.0, "rmse_m", 1000.0);
 }
 
 // sweep_trouble_test.cpp has pages without WebGL, too.

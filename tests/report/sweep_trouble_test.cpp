@@ -213,10 +213,10 @@ TEST_P(SweepTrouble, SaysOfVeryManyJobsWhichOfThemItHasAndCountsThemAll) {
   EXPECT_EQ(seen.values.at(2),
             json({"6 jobs failed, the first is job 7 (seed=3, acquisition=uncertainty): out of luck"}));
   EXPECT_EQ(seen.values.at(3), "150 jobs, one of 4 of 600: the others stand in results.csv");
-  // Job 8 has seed 4 and is the second of its setting on the page; 0.9 cm is what it came to.
+  // Job 8 has seed 4 and is the second of its setting on the page; 9 mm is what it came to.
   EXPECT_EQ(seen.values.at(4).at(0).at(0), "weighted");
   EXPECT_EQ(seen.values.at(4).at(0).at(1), 75);
-  EXPECT_NEAR(seen.values.at(4).at(0).at(2).get<double>(), 0.9, 1e-12);
+  EXPECT_NEAR(seen.values.at(4).at(0).at(2).get<double>(), 9.0, 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(InABrowser, SweepTrouble, ::testing::Bool(), test::webgl_name);

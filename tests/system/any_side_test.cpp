@@ -128,9 +128,9 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
     }
     says("The acquisition chose it: discovery");
     says("Of one piece more than is believed, as far as no touch has contradicted it, the line is expected to find ");
-    says(fmt::format("Its score is {:.6g}, the best of 200 approaches", rows[i].number("score").value()));
+    says(fmt::format("Its score is {:.4g}, the best of 200 approaches", rows[i].number("score").value()));
     says("Runner-up: from x ");
-    says(fmt::format("with a score of {:.6g}, ", rows[i].number("runner_up.score").value()));
+    says(fmt::format("with a score of {:.4g}, ", rows[i].number("runner_up.score").value()));
     const bool met = text.find("by the most probable composition: an object after") != std::string::npos;
     says(met ? "the skin knows it along its normal with a standard deviation of "
              : "By the most probable composition no object is there.");

@@ -55,13 +55,13 @@ class Explain : public Shell {
   }
 
   static void expect_score(const std::string& text, const json& tap) {
-    EXPECT_THAT(text, HasSubstr("Its score there is " + printed("%.6g", tap["score"]) +
+    EXPECT_THAT(text, HasSubstr("Its score there is " + printed("%.4g", tap["score"]) +
                                 (tap["ties"] == 1 ? ", the best of " : ". ")));
     if (tap["ties"] > 1) {
       EXPECT_THAT(text, ContainsRegex("\\. (" + std::to_string(tap["ties"].get<int>()) + "|All) of [0-9]+ candidates"));
     }
     EXPECT_THAT(text, HasSubstr("Runner-up: " + place(tap["runner_up"]) + " with a score of " +
-                                printed("%.6g", tap["runner_up"]["score"]) + ", "));
+                                printed("%.4g", tap["runner_up"]["score"]) + ", "));
   }
 
   static void expect_source(const std::string& text, const json& tap) {
@@ -104,7 +104,7 @@ class Explain : public Shell {
     for (const char* name : {"u", "w", "e", "p"}) {
       const std::string begin = *name == 'e' ? "e = u w = " : name + std::string(" = ");
       if (has(name)) {
-        EXPECT_THAT(text, HasSubstr(begin + printed("%.6g", tap[name]) + (*name == 'e' ? "." : " ")));
+        EXPECT_THAT(text, HasSubstr(begin + printed("%.4g", tap[name]) + (*name == 'e' ? "." : " ")));
       } else {
         EXPECT_THAT(text, Not(ContainsRegex("[ ,]" + begin)));
       }
@@ -282,7 +282,7 @@ TEST_F(Explain, SaysWhatAFitDidAndWhenNoneWasDue) {
     const std::string text = explain(directory, static_cast<int>(i) + 1);
     if (process.contains("fit")) {
       ++fits;
-      EXPECT_THAT(text, HasSubstr("; objective " + printed("%.6g", process["fit"]["objective"]) + " after " +
+      EXPECT_THAT(text, HasSubstr("; objective " + printed("%.4g", process["fit"]["objective"]) + " after " +
                                   std::to_string(process["fit"]["evaluations"].get<int>()) + " evaluation"));
     } else {
       EXPECT_THAT(text, HasSubstr("No fit (ceres) was due after its latest tap"));
@@ -300,7 +300,9 @@ TEST_F(Explain, SaysHowMuchTheRunnerUpIsBehindAndTakesErrorsAfterATapFromTheNext
   const double score = taps[11]["score"];
   const double second = taps[11]["runner_up"]["score"];
   const auto errors = [](const json& before, const json& after) {
-    const auto words = [](const json& record) { return printed("%.4g", 100 * record["rmse_m"].get<double>()) + " cm"; };
+    const auto words = [](const json& record) {
+      return printed("%.3g", 1000 * record["rmse_m"].get<double>()) + " mm";
+    };
     return HasSubstr("over the scene from " + words(before) + " to " + words(after) + ",");
   };
   EXPECT_THAT(explain(directory, 12),

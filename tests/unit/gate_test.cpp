@@ -56,6 +56,7 @@ TEST(Judge, TakesAStatisticOfASingleRunForItsValue) {
 
 TEST(Judge, ShowsAsManyDigitsAsItTakesToTellValueAndBoundApart) {
   EXPECT_EQ(judged("{rmse_m: <= 2 cm}", {run(0, 1, 0.0200001)}), (Texts{"no 2.00001 cm"}));
+  EXPECT_EQ(judged("{rmse_m: <= 1.565 cm}", {run(0, 1, 1.5650845800732873e-2)}), (Texts{"no 1.5651 cm"}));
 }
 
 TEST(Judge, SaysWhyThereIsNoValue) {

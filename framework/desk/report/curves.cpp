@@ -14,6 +14,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kMillimetres = 1e3;
+
 /// What `get` has of every moment.
 template <class Get>
 Curve curve_of(const History& history, const std::string& name, const Get& get) {
@@ -143,7 +145,7 @@ Curves curves_of(const Recording& recording, const History& history) {
       Row row;
       add_errors(row, moment.result.errors);
       std::optional<double> value = row.number(error.name);
-      if (value && is_length) *value *= 100.0;
+      if (value && is_length) *value *= kMillimetres;
       return value;
     });
     if (is_length) {
@@ -152,7 +154,12 @@ Curves curves_of(const Recording& recording, const History& history) {
       shares.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
     }
   }
-  add(any_side ? "Error of the surface" : "Error of the surface (rms)", "cm", CurveAxis::from_zero, std::move(lengths));
+  const RecordField& expected = *find_summary_field(kExpectedError);
+  lengths.push_back(curve_of(history, expected.label, [](const Moment& moment) {
+    const std::optional<double>& rmse = moment.result.expected_rmse;
+    return rmse ? std::optional(kMillimetres * *rmse) : std::nullopt;
+  }));
+  add(any_side ? "Error of the surface" : "Error of the surface (rms)", "mm", CurveAxis::from_zero, std::move(lengths));
   std::move(shares.begin(), shares.end(), std::back_inserter(panels));
   add(any_side ? "Largest standard deviation of the surface" : "Largest standard deviation of a height", "cm",
       CurveAxis::from_zero, one([&](const Moment& moment) {

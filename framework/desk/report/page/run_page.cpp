@@ -96,6 +96,7 @@ static void to_json(Json& out, const Moment& moment) {
               {"relabelled", relabelled(moment)},
               {"surface_drawn", moment.largest_deviation > 0.0},
               {"robot_seconds", result.robot_seconds},
+              {kExpectedError, result.expected_rmse},
               {"least_weight", moment.least_weight},
               {"most_weight", moment.most_weight},
               {"remark", result.footprint ? result.footprint->remark : ""}});
@@ -130,6 +131,12 @@ static void to_json(Json& out, const CurvePanel& panel) {
 
 /// How a page calls an error, and in what unit it has it.
 static void to_json(Json& out, const RecordField& error) { out = {error.name, error.label, unit_symbol(error.unit)}; }
+
+std::vector<RecordField> page_errors() {
+  std::vector<RecordField> out = error_fields();
+  out.insert(out.begin() + 1, *find_summary_field(kExpectedError));
+  return out;
+}
 
 PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
   constexpr double kMost = 65535.0;
@@ -232,7 +239,7 @@ static Json json_of_page(const Recording& recording, const History& history) {
   data.update({{"version", kVersion},
                {"taps", recording.rows},
                {"moments", history.moments},
-               {"errors", error_fields()},
+               {"errors", page_errors()},
                {"titles", map_titles(recording.config.options)},
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},

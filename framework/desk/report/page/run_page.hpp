@@ -27,6 +27,9 @@ std::string waiting_page(const std::string& name, const std::string& id, const s
 /// of those moments alone, and of what may change with every tap. The page is then at `at`.
 std::string run_news(const Recording& recording, const History& history, int moments, const std::string& at);
 
+/// The errors that pages show: those against the truth, and the one that is expected, which needs none.
+std::vector<RecordField> page_errors();
+
 /// Maps in a few bytes a cell. Smooth maps have small steps from cell to cell: steps of 16-bit numbers, their low and
 /// their high bytes apart, are what zlib makes least of.
 struct PackedMaps {

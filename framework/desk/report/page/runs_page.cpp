@@ -25,6 +25,7 @@ Json json_of_standing(const Moment& moment) {
   add_errors(row, moment.result.errors);
   row.add("taps", moment.taps);
   row.add("robot_seconds", moment.result.robot_seconds);
+  row.add(kExpectedError, moment.result.expected_rmse);
   Json out = row;
   out["relabelled"] = Json::array();
   for (const Relabelled& one : moment.result.relabelled) out["relabelled"].push_back(one.tap);
@@ -111,7 +112,7 @@ std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& prog
     described.push_back(json_of_run_beside(run));
     most_taps = std::max(most_taps, run.history.moments.back().taps);
   }
-  for (const RecordField& error : error_fields()) errors.push_back({error.name, error.label, unit_symbol(error.unit)});
+  for (const RecordField& error : page_errors()) errors.push_back({error.name, error.label, unit_symbol(error.unit)});
   Json data{{"version", kVersion},
             {"name", fmt::format("{} runs", runs.size())},
             {"id", "side by side"},

@@ -49,7 +49,7 @@ void Explanation::explain_errors(const std::string& what, const Row& before, con
   std::vector<std::string> others;
   for (const RecordField& error : error_fields()) {
     const bool length = error.unit == Unit::metre;
-    const auto words = length ? length_words : plain_words;
+    const auto words = length ? error_words : plain_words;
     const std::string from = number_words(before, error.name, words);
     const std::string to = number_words(after, error.name, words);
     if (from.empty() || to.empty()) continue;

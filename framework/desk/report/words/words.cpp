@@ -2,24 +2,24 @@
 #include "report/words/words.hpp"
 
 #include "analysis/readable.hpp"
+#include "config/scale.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <sstream>
 
 namespace palpate {
 
-std::string plain_words(double value) { return fmt::format("{:.6g}", value == 0.0 ? 0.0 : value); }
+std::string plain_words(double value) { return significant(value, 4); }
 
-std::string length_words(double metres) {
-  const double size = std::abs(metres);
-  if (size == 0.0) return "0 cm";
-  if (size < 0.00995) return fmt::format("{:.4g} mm", metres * 1e3);
-  return size < 1.0 ? fmt::format("{:.4g} cm", metres * 1e2) : fmt::format("{:.4g} m", metres);
+std::string length_words(double metres) { return readable(metres, Unit::metre, 4, LengthKind::place); }
+
+std::string error_words(double metres) { return readable(metres, Unit::metre, 3, LengthKind::error); }
+
+std::string place_words(double x, double y) {
+  const Scale scale = usual_scale(Unit::metre, LengthKind::place);
+  return fmt::format("x {}, y {}", scale.quantity(x), scale.quantity(y));
 }
-
-std::string place_words(double x, double y) { return fmt::format("x {:.2f} cm, y {:.2f} cm", x * 1e2, y * 1e2); }
 
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double)) {
   const std::optional<double> value = row.number(field);

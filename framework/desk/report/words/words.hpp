@@ -10,11 +10,14 @@
 
 namespace palpate {
 
-/// Six digits at most: "0.384833", "-1.2e-05".
+/// Four digits at most: "0.3848", "-1.2e-05".
 std::string plain_words(double value);
 
-/// Metres as people say them: "0.1 mm", "9.07 cm", "1.2 m", "0 cm"; four digits at most.
+/// Metres in the unit that suits them: "0.1 mm", "9.07 cm", "1.2 m", "0 cm"; four digits at most.
 std::string length_words(double metres);
+
+/// An error in metres as people say it: "2.61 mm"; three digits at most.
+std::string error_words(double metres);
 
 /// "x 12.97 cm, y 7.59 cm", as in the table of a run.
 std::string place_words(double x, double y);

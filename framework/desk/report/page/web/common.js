@@ -90,7 +90,7 @@ const kNothing = "–";
 function shown(value, digits = 4) {
   if (value === null || value === undefined) return kNothing;
   if (typeof value !== "number") return String(value);
-  if (value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6)) return value.toExponential(digits - 1);
+  if (value !== 0 && (Math.abs(value) < 1e-4 || Math.abs(value) >= 1e6)) return value.toExponential(digits - 1);
   return String(Number(value.toPrecision(digits)));
 }
 
@@ -102,12 +102,24 @@ function many(count, what) {
 /// The least and the most of very many numbers.
 const extent = (values) => [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
 
-/// In which unit a quantity is shown, and how many of it are one SI unit; told by the end of its name.
+/// The rule of config/scale.hpp: places, heights and their deviations in centimetres, errors in millimetres, times in
+/// seconds. How many of the unit are one SI unit.
+const kCentimetres = 100;
+const kMillimetres = 1000;
+
+/// In which unit a column of a record is shown, and how many of it are one SI unit; told by the end of its name.
 function unitOf(name) {
-  if (name.endsWith("_m")) return { unit: "cm", factor: 100 };
+  if (name.endsWith("_m")) return { unit: "mm", factor: kMillimetres };
   if (name.endsWith("_seconds") || name.startsWith("compute.")) return { unit: "s", factor: 1 };
   if (name.endsWith("_bytes")) return { unit: "MB", factor: 1e-6 };
   return { unit: "", factor: 1 };
+}
+
+/// A value of such a column with its unit: "2.61 mm".
+function quantity(name, value, digits = 3) {
+  const { unit, factor } = unitOf(name);
+  const text = shown(typeof value === "number" ? value * factor : value, digits);
+  return text === kNothing || unit === "" ? text : `${text} ${unit}`;
 }
 
 function withUnit(name) {

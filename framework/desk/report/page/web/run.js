@@ -28,9 +28,7 @@ function drawCurves(id, panel, taps) {
 
 function facts(data) {
   const last = data.moments[data.moments.length - 1];
-  const errors = data.errors.map(([name, label, unit]) =>
-    unit === "m" ? [shown(last[name] && last[name] * kCentimetres, 3), " cm", `error ${label}`] : [shown(last[name], 3), "", label],
-  );
+  const errors = data.errors.map(([name, label, unit]) => [quantity(name, last[name]), "", unit === "m" ? `error ${label}` : label]);
   const items = [
     [last.taps, ` of ${data.budget}`, "taps"],
     [last.on_surface_taps, "", "on the object"],
@@ -40,7 +38,7 @@ function facts(data) {
     [shown(data.summary?.first_hit_tap), "", "first hit at tap"],
     ...errors,
     [shown(data.summary?.coverage_95, 3), "", "95 % coverage"],
-    [shown(last.robot_seconds, 3), " s", "robot time"],
+    [quantity("robot_seconds", last.robot_seconds), "", "robot time"],
   ];
   return factList(items.filter(([value]) => value !== kNothing).map(([value, unit, name]) => [`${value}${unit}`, name]));
 }

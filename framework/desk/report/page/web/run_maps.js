@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the page of a run draws of one moment: the surface, and the maps over the plane with the taps on them.
 
-const kCentimetres = 100;
 // Even in lightness, as in the figures: one for what is not known, one for what there is and where to tap.
 const kUnknown = "Cividis";
 const kWhere = "Viridis";
@@ -204,7 +203,7 @@ class SurfaceView {
       ...deviationColours(this.deviations[frame]),  // of this frame: a fit may change them a hundredfold
       colorscale: kUnknown,
       customdata: this.deviations[frame],
-      hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.2f} cm<br>standard deviation %{customdata:.2f} cm<extra></extra>",
+      hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.4r} cm<br>standard deviation %{customdata:.3r} cm<extra></extra>",
     };
     const [on, off] = tapsUntil(this.data, moment.taps);
     // Above everything, from where the arm comes down: in sight however the surface is turned.

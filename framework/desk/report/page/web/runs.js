@@ -7,7 +7,7 @@ const letterOf = (index) => String.fromCharCode("A".charCodeAt(0) + index);
 const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
 
 /// The name of an error with its unit.
-const errorTitle = ([, label, unit]) => (unit === "m" ? `error ${label} [cm]` : label);
+const errorTitle = ([name, label, unit]) => (unit === "m" ? `error ${label} [${unitOf(name).unit}]` : label);
 
 /// The latest moment of a run with at most so many taps.
 const momentAt = (run, taps) => run.moments[Math.min(taps, run.moments.length - 1)];
@@ -26,7 +26,7 @@ class ErrorPlots {
   }
 
   elements() {
-    if (this.errors.length === 0) return [element("p", { class: "sub" }, "No run has a known truth: there is no error to show.")];
+    if (this.errors.length === 0) return [element("p", { class: "sub" }, "No run has a known truth or an expected error: there is nothing to show.")];
     const plots = [figure("over_taps", "over taps"), figure("over_seconds", "over robot time")];
     return [element("div", { class: "choices" }, this.choice), element("div", { class: "row wide" }, ...plots)];
   }
@@ -34,8 +34,8 @@ class ErrorPlots {
   async draw() {
     if (this.errors.length === 0) return;
     const error = this.errors.find(([one]) => one === this.choice.value);
-    const [name, , unit] = error;
-    const factor = unit === "m" ? kCentimetres : 1;
+    const [name] = error;
+    const { factor } = unitOf(name);
     const title = errorTitle(error);
     const over = (cost) => this.data.runs.map((run, index) => {
       const moments = run.moments.filter((moment) => typeof moment[name] === "number");
@@ -124,7 +124,7 @@ function standings(data) {
   const rows = data.runs.map((run, index) => {
     const last = momentAt(run, Infinity);
     const state = run.state === "done" ? run.stop_reason : run.state;
-    const numbers = errors.map(([name, , unit]) => shown(typeof last[name] === "number" && unit === "m" ? last[name] * kCentimetres : last[name], 3));
+    const numbers = errors.map(([name]) => shown(typeof last[name] === "number" ? last[name] * unitOf(name).factor : last[name], 3));
     return [foreign(wordsOf(run, index)), String(run.seed), foreign(state), String(last.taps), shown(last.robot_seconds, 4), ...numbers];
   });
   return table(header, rows, 3);
