@@ -31,6 +31,11 @@ git grep -nE 'std::i?fstream|fopen *\(|(^|[ =(!])::open(at)?\(|directory_iterato
   grep -vE '"/dev/(null|full)"' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: opens a file or lists a folder itself, which is for shared/reading|' >"$found/reading" || true
 
+# People see quantities by config/scale.hpp: no line fixes the decimals of a length or a time itself.
+git grep -nE '\{:\.[0-9]f\} (cm|mm|m|s)\b|toFixed\(' -- 'framework/cli/*.cpp' 'framework/desk/analysis/*.cpp' \
+  'framework/desk/report/*.cpp' 'framework/desk/report/page/web/*.js' |
+  sed 's|^\([^:]*:[0-9]*\):.*|\1: fixes the decimals of a quantity, which is for config/scale.hpp or common.js|' >"$found/quantities" || true
+
 if [ "${1:-}" = --all ]; then
   changed=$(git ls-files framework plugins tests)
   most=100000 analyzer=

@@ -41,10 +41,13 @@ std::string Scale::number(double value) const {
   if (!std::isfinite(value)) return fmt::format("{}", value);
   const double shown = (!unit.empty() && std::abs(value) < kReadsAsZero) || value == 0.0 ? 0.0 : value / factor;
   if (scientific && shown != 0.0) return fmt::format("{:.{}e}", shown, decimals);
-  std::string text = fmt::format("{:.{}f}", shown, scientific ? 0 : decimals);
-  if (shown != 0.0 && (reads_as_zero(text) || (open && std::abs(shown) < std::pow(10.0, -decimals))))
-    return significant(shown, 2);
-  return text;
+  const int places = scientific ? 0 : decimals;
+  const bool is_small =
+      open ? std::abs(shown) < std::pow(10.0, 1 - places) : std::abs(shown) < 0.5 * std::pow(10.0, -places);
+  if (shown == 0.0 || !is_small) return fmt::format("{:.{}f}", shown, places);
+  constexpr int kMostDecimals = 9;
+  const int needed = std::max(places, decimals_for(shown, 2));
+  return needed > kMostDecimals ? fmt::format("{:.1e}", shown) : fmt::format("{:.{}f}", shown, needed);
 }
 
 std::string Scale::difference(double value) const {
@@ -79,7 +82,7 @@ Scale readable_scale(Unit unit, const std::vector<double>& values, int digits, L
 Scale usual_scale(Unit unit, LengthKind kind) {
   Scale scale = unit_for(unit, 0.0, kind);
   scale.decimals = unit == Unit::metre && kind == LengthKind::place ? 2 : 1;
-  scale.open = true;
+  scale.open = unit == Unit::metre;
   return scale;
 }
 

@@ -28,7 +28,7 @@ struct Scale {
   double factor = 1.0;  ///< SI units in one of `unit`
   int decimals = 0;
   bool scientific = false;  ///< "1.23e-09": numbers without a unit that are too small or too large for decimals
-  bool open = false;        ///< its values were not known: what is below the last decimal has two significant digits
+  bool open = false;        ///< its values are not known yet: each has two significant digits at least
 
   /// Returns "3.21", `value` in SI without its unit; "nan" and "inf" of what is not finite.
   std::string number(double value) const;
@@ -36,6 +36,9 @@ struct Scale {
   std::string number(const std::optional<double>& value) const { return value ? number(*value) : "-"; }
   /// Returns the number with its sign: "+0.3". What rounds to 0 has none.
   std::string difference(double value) const;
+  /// Returns "3.21 [3.02, 3.40]" of a mean with its interval, "-" of no values: see analysis/readable.hpp.
+  template <class Mean>
+  std::string estimate(const Mean& mean) const;
   /// Returns "5 mm".
   std::string with_unit(const std::string& number) const { return number + (unit.empty() ? "" : " " + unit); }
   /// Returns "3.2 mm" of a value in SI.
@@ -48,7 +51,8 @@ struct Scale {
 /// digits.
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3, LengthKind kind = LengthKind::error);
 
-/// Returns the scale for a table whose values come one by one: the usual unit with two decimals for places, else one.
+/// Returns the scale for a table whose values come one by one: the usual unit with two decimals for places, else one,
+/// and more for small lengths.
 Scale usual_scale(Unit unit, LengthKind kind = LengthKind::error);
 
 /// Returns "1.57 cm": one value in SI that stands alone, with `digits` significant digits and no trailing zeros.

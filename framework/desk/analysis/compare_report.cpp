@@ -78,7 +78,7 @@ std::string group_table(const Comparison& comparison, const Scale& scale) {
     lines.push_back(
         {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.all()), count(Fate::left_out),
          count(Fate::failed), count(Fate::unfinished), count(Fate::without_value), std::to_string(one.mean.count),
-         units_cell(comparison, one.mean), estimate_text(scale, one.mean), any ? short_number(scale, one.median) : "-",
+         units_cell(comparison, one.mean), scale.estimate(one.mean), any ? short_number(scale, one.median) : "-",
          any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-"});
   }
   return aligned(lines, "rlrrrrrrrrrr");

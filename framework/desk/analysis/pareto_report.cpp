@@ -57,7 +57,7 @@ std::string pareto_table(const Pareto& pareto) {
   for (const Setting& one : pareto.settings) {
     const std::string jobs = std::to_string(one.counts.all());
     lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, jobs, cost_text(one, cost),
-                     estimate_text(error, one.error),
+                     error.estimate(one.error),
                      one.counts.words({Fate::failed, Fate::unfinished, Fate::without_value}, " of " + jobs)});
   }
   std::string out = aligned(lines, "rlrrrl");
@@ -101,7 +101,7 @@ std::vector<Row> pareto_rows(const Pareto& pareto) {
 
 std::string error_words(const Pareto& pareto, const Setting& setting) {
   const Scale scale = scale_of(pareto, pareto.error, &Setting::error);
-  return pareto.error.name + " " + scale.with_unit(estimate_text(scale, setting.error));
+  return pareto.error.name + " " + scale.with_unit(scale.estimate(setting.error));
 }
 
 std::string cost_words(const Pareto& pareto, const Setting& setting) {

@@ -7,11 +7,6 @@
 
 namespace palpate {
 
-std::string estimate_text(const Scale& scale, const MeanEstimate& mean) {
-  if (mean.count == 0) return "-";
-  return with_interval(mean.mean, mean.interval, [&](double value) { return scale.number(value); });
-}
-
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number) {
   return number(value) + (ends ? fmt::format(" [{}, {}]", number(ends->low), number(ends->high)) : " [-]");

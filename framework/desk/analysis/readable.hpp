@@ -16,12 +16,15 @@
 
 namespace palpate {
 
-/// Returns "3.21 [3.02, 3.40]", "-" of no values.
-std::string estimate_text(const Scale& scale, const MeanEstimate& mean);
-
 /// "3.21 [3.02, 3.40]" of numbers that `number` writes, "3.21 [-]" where there is no interval.
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number);
+
+template <class Mean>
+std::string Scale::estimate(const Mean& mean) const {
+  if (mean.count == 0) return "-";
+  return with_interval(mean.mean, mean.interval, [&](double value) { return number(value); });
+}
 
 /// "5 seeds", "1 job": units of statistics.
 std::string units_words(std::size_t units, bool seeds);

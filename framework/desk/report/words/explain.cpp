@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/explain.hpp"
 
+#include "config/scale.hpp"
 #include "record/tap_row.hpp"
 #include "report/words/explanation.hpp"
 #include "report/words/models.hpp"
@@ -92,9 +93,9 @@ class FromAboveExplained final : public Explanation {
     explain_repeats();
     if (const std::optional<double> seconds = row_.number("expected_seconds")) {
       page_.say(
-          fmt::format("It was made by motion {} of backend.motion.of, which tells most here in its time: {:.1f} s "
+          fmt::format("It was made by motion {} of backend.motion.of, which tells most here in its time: {} "
                       "were expected.",
-                      tap_.motion, *seconds));
+                      tap_.motion, seconds_words(*seconds)));
     }
   }
 
@@ -233,10 +234,11 @@ class FromAboveExplained final : public Explanation {
   void explain_outcome() {
     const Contact& contact = tap_.contact;
     if (contact.outcome != Outcome::contact) {
-      page_.say(fmt::format(
-          "Found: nothing, the tap failed: {}{}. It took {:.1f} s of the robot. No model learns from "
-          "it, and its place is left out from then on.",
-          outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, contact.seconds));
+      page_.say(
+          fmt::format("Found: nothing, the tap failed: {}{}. It took {} of the robot. No model learns from "
+                      "it, and its place is left out from then on.",
+                      outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason,
+                      seconds_words(contact.seconds)));
     } else {
       explain_contact(contact, on_surface());
       explain_label();
@@ -254,7 +256,8 @@ class FromAboveExplained final : public Explanation {
       text += fmt::format(", {} without what motion and arm were thought to add", length_words(height));
     if (const double more = height - expected_.value_or(height); more != 0.0)
       text += fmt::format(", {} {} than expected", length_words(std::abs(more)), more > 0.0 ? "higher" : "lower");
-    text += fmt::format("; greatest force {:.3g} N, {:.1f} s of the robot.", contact.force, contact.seconds);
+    text += fmt::format("; greatest force {}, {} of the robot.", readable(contact.force, Unit::newton),
+                        seconds_words(contact.seconds));
     if (row_.flag("true_on_surface").value_or(on) != on)
       text += fmt::format(" In truth {} is there: the label is wrong.", on ? "the desk" : "an object");
     page_.say(text);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Why a run from any side made a tap along the line where it made it.
+#include "config/scale.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
 #include "report/words/explanation.hpp"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -23,17 +25,18 @@ std::string line_words(const Line& line) {
                             : std::abs(degrees) < 3.0 ? "level"
                                                       : fmt::format("coming {} at {:.0f} degrees",
                                                                     degrees > 0.0 ? "down" : "up", std::abs(degrees));
-  const Vector3d from = 100.0 * line.origin;
-  return fmt::format("from x {:.2f} cm, y {:.2f} cm, z {:.2f} cm, {}", from.x(), from.y(), from.z(), slope);
+  const Vector3d& from = line.origin;
+  return fmt::format("from {}, z {}, {}", place_words(from.x(), from.y()), place_words(from.z()), slope);
 }
 
 std::string piece_words(const Piece& piece) {
   constexpr const char* kForms[] = {"box", "cylinder", "ellipsoid"};  // by Piece::Form
   const bool bowl = piece.form == Piece::Form::ellipsoid && piece.hollow();
-  const Vector3d extent = 200.0 * piece.half;
-  std::string out =
-      fmt::format("{} of {:.1f} x {:.1f} x {:.1f} cm", bowl ? "bowl" : kForms[static_cast<std::size_t>(piece.form)],
-                  extent.x(), extent.y(), bowl ? 0.5 * extent.z() : extent.z());
+  const Vector3d extent = 2.0 * piece.half;
+  const std::vector<double> sides{extent.x(), extent.y(), bowl ? 0.5 * extent.z() : extent.z()};
+  const Scale scale = readable_scale(Unit::metre, sides, 2, LengthKind::place);
+  std::string out = fmt::format("{} of {} x {} x {}", bowl ? "bowl" : kForms[static_cast<std::size_t>(piece.form)],
+                                scale.number(sides[0]), scale.number(sides[1]), scale.quantity(sides[2]));
   if (piece.hollow()) out += fmt::format(" with a wall of {}", length_words(piece.wall));
   return out;
 }
@@ -185,7 +188,7 @@ class ApproachExplained final : public Explanation {
   void explain_outcome() {
     const Contact& contact = tap_.contact;
     const double along = contact.along.value_or(approach_.length);
-    const std::string robot = fmt::format("{:.1f} s of the robot", contact.seconds);
+    const std::string robot = fmt::format("{} of the robot", seconds_words(contact.seconds));
     if (contact.outcome == Outcome::no_contact) {
       page_.say(fmt::format("Found: nothing in {}; all of the way is free. {}.", length_words(along), robot));
     } else if (contact.outcome != Outcome::contact) {
@@ -198,7 +201,7 @@ class ApproachExplained final : public Explanation {
       if (on && expected_ && along != *expected_)
         text += fmt::format(", {} {} than expected", length_words(std::abs(along - *expected_)),
                             along > *expected_ ? "further" : "earlier");
-      text += fmt::format("; greatest force {:.3g} N, {}.", contact.force, robot);
+      text += fmt::format("; greatest force {}, {}.", readable(contact.force, Unit::newton), robot);
       if (row_.flag("true_on_surface").value_or(on) != on)
         text += fmt::format(" In truth {} is there.", on ? "no object" : "an object");
       page_.say(text);

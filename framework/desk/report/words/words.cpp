@@ -16,10 +16,11 @@ std::string length_words(double metres) { return readable(metres, Unit::metre, 4
 
 std::string error_words(double metres) { return readable(metres, Unit::metre, 3, LengthKind::error); }
 
-std::string place_words(double x, double y) {
-  const Scale scale = usual_scale(Unit::metre, LengthKind::place);
-  return fmt::format("x {}, y {}", scale.quantity(x), scale.quantity(y));
-}
+std::string seconds_words(double seconds) { return usual_scale(Unit::second).quantity(seconds); }
+
+std::string place_words(double coordinate) { return usual_scale(Unit::metre, LengthKind::place).quantity(coordinate); }
+
+std::string place_words(double x, double y) { return fmt::format("x {}, y {}", place_words(x), place_words(y)); }
 
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double)) {
   const std::optional<double> value = row.number(field);

@@ -19,8 +19,13 @@ std::string length_words(double metres);
 /// An error in metres as people say it: "2.61 mm"; three digits at most.
 std::string error_words(double metres);
 
+/// A time as in the table of a run: "2.0 s".
+std::string seconds_words(double seconds);
+
 /// "x 12.97 cm, y 7.59 cm", as in the table of a run.
 std::string place_words(double x, double y);
+/// The height of one, or another coordinate: "3.00 cm".
+std::string place_words(double coordinate);
 
 /// The number at `field` of a record as `words` has it; "" where there is none.
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double) = plain_words);
