@@ -80,8 +80,8 @@ TEST_F(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThemAndCurvesThatEndWithItsSumma
     return std::stod(summary.substr(summary.find("\"" + name + "\": ") + name.size() + 4));
   };
   const Lines errors = curves.at("curve_1_1");
-  EXPECT_THAT(errors.back(), ElementsAre(17, DoubleNear(100 * field("rmse_m"), 1e-6)));
-  EXPECT_THAT(errors.at(3), ElementsAre(3, DoubleNear(100 * run.at(4, "rmse_m"), 1e-6)))
+  EXPECT_THAT(errors.back(), ElementsAre(17, DoubleNear(1000 * field("rmse_m"), 1e-6)));
+  EXPECT_THAT(errors.at(3), ElementsAre(3, DoubleNear(1000 * run.at(4, "rmse_m"), 1e-6)))
       << "what tap 4 was chosen from";
   EXPECT_NEAR(curves.at("curve_2_1").back()[1], field("footprint_iou"), 1e-9);
   EXPECT_NEAR(curves.at("curve_3_1").back()[1], field("on_surface_taps") / 17, 1e-9);
