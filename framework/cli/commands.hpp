@@ -147,6 +147,17 @@ struct CompareArguments {
 };
 int compare(Program& program, const CompareArguments& arguments);
 
+struct CurvesArguments {
+  std::string directory;
+  std::vector<std::string> by;  ///< none: all keys that vary but the seed and the scene's
+  std::string metric;
+  std::string against;
+  std::optional<std::string> where;
+  std::vector<std::string> outputs;  ///< files; none: a picture and a table beside results.csv
+  std::optional<int> workers;
+};
+int curves(Program& program, const CurvesArguments& arguments);
+
 struct ReportArguments {
   std::vector<std::string> directories;  ///< one, or runs to be set side by side
   std::string to;                        ///< the folder of what is written; "" for the record's own

@@ -2,12 +2,10 @@
 #include "analysis/compare_report.hpp"
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
 #include "config/hash.hpp"
 #include "config/trouble.hpp"
-#include "launch/children.hpp"
 #include "record/files.hpp"
 #include "record/resolved.hpp"
 #include "sweep/earlier_results.hpp"
@@ -40,21 +38,8 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
                                                         const std::vector<Occasion>& occasions,
                                                         std::optional<int> workers) {
   const EarlierResults earlier(sweep, occasions);
-  const std::vector<std::size_t>& missing = earlier.missing();
-  const int together = workers.value_or(cores());
-  SweepLine line(false);
-  SweepProgress progress;
-  progress.jobs = static_cast<int>(missing.size());
-  const auto show = [&](std::size_t done) {
-    progress.done = static_cast<int>(done);
-    progress.running = std::min(together, progress.jobs - progress.done);
-    progress.last = done == missing.size();
-    line.show(progress);
-  };
-  listen_for_interrupts();
-  const bool all = in_children(
-      missing.size(), together, [&](std::size_t i) { earlier.compute(program, missing[i]); }, program.interrupted,
-      show);
+  const bool all =
+      compute_jobs(program, earlier.missing(), workers, [&](std::size_t job) { earlier.compute(program, job); });
   if (!all) return std::nullopt;
   std::vector<std::vector<Row>> out;
   for (const Occasion& one : occasions) out.push_back(earlier.write(one));

@@ -37,6 +37,7 @@ int list_runs(Program& program, const ListArguments&) { return hand_over(program
 int watch(Program& program, const WatchArguments&) { return hand_over(program); }
 int pareto(Program& program, const ParetoArguments&) { return hand_over(program); }
 int compare(Program& program, const CompareArguments&) { return hand_over(program); }
+int curves(Program& program, const CurvesArguments&) { return hand_over(program); }
 int report(Program& program, const ReportArguments&) { return hand_over(program); }
 int explain(Program& program, const std::string&, int) { return hand_over(program); }
 int calibrate(Program& program, const std::vector<std::string>&) { return hand_over(program); }

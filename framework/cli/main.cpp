@@ -11,6 +11,7 @@
 #include "config/tree.hpp"
 #include "config/trouble.hpp"
 #include "record/catalogue.hpp"
+#include "record/fields.hpp"
 #include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
@@ -53,6 +54,7 @@ struct CommandLine {
   ResumeArguments resume;
   ParetoArguments pareto;
   CompareArguments compare;
+  CurvesArguments curves{{}, {}, main_error(), "taps", {}, {}, {}};
   ReportArguments report;
   WatchArguments watch;
   ListArguments list;
@@ -328,6 +330,39 @@ void add_compare(CommandLine& line) {
              "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --table"});
 }
 
+void add_curves(CommandLine& line) {
+  CLI::App* sub = line.add("curves", "Groups of a sweep's jobs over their taps, as a figure with bands, and as CSV",
+                           &Needs::everything, curves, line.curves);
+  line.add_record(sub, "DIR", line.curves.directory, Wanted::sweep, "the sweep");
+  sub->add_option("--by", line.curves.by,
+                  "the swept keys that make the groups: acquisition or acquisition,kernel; if not given, all that vary "
+                  "but the seed and the scene, which has a panel of its own for each value")
+      ->type_name("KEYS")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  sub->add_option("--metric", line.curves.metric, "a column of results.csv: footprint_iou")
+      ->type_name("COLUMN")
+      ->capture_default_str();
+  sub->add_option("--against", line.curves.against, "the axis: taps, or robot time")
+      ->type_name("COLUMN")
+      ->check(CLI::IsMember({"taps", "robot_seconds"}))
+      ->capture_default_str();
+  sub->add_option("--where", line.curves.where, "draw only jobs of which this holds: \"first_hit_tap <= 3\"")
+      ->type_name("CONDITION");
+  sub->add_option(
+         "-o", line.curves.outputs,
+         "write this file, by its ending as .png, .pdf, .svg or .csv; may be given more than once; if not given, "
+         "a PNG and a CSV beside results.csv")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  sub->add_option("-j", line.curves.workers,
+                  "jobs at a time whose taps are replayed; if not given, the number of cores; done once, and kept")
+      ->type_name("N")
+      ->check(from(1, kManyWorkers));
+  show(sub, {"palpate curves runs/many/*", "palpate curves runs/many/* --by acquisition -o curves.pdf -o curves.csv",
+             "palpate curves runs/many/* --metric footprint_iou --against robot_seconds -o iou.svg"});
+}
+
 void add_watch(CommandLine& line) {
   CLI::App* sub = line.add("watch", "Serve a page that follows a run or a sweep while it goes on",
                            all_about(line.watch.directory), watch, line.watch);
@@ -391,7 +426,8 @@ void add_commands(CommandLine& line, const std::string& named) {
   if (named == "run") return add_run(line);
   if (named == "sweep") return add_sweep(line);
   if (named == "resume") return add_resume(line);
-  for (const auto add : {add_run, add_sweep, add_resume, add_watch, add_list, add_rest, add_compare, add_about_one})
+  for (const auto add :
+       {add_run, add_sweep, add_resume, add_watch, add_list, add_rest, add_compare, add_curves, add_about_one})
     add(line);
 }
 

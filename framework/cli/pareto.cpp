@@ -34,8 +34,8 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
   const bool empty = std::all_of(pareto.settings.begin(), pareto.settings.end(),
                                  [](const Setting& one) { return one.cost.count == 0; });
   const std::string trouble = empty ? "no setting has a value"
-                                    : draw_png(pareto_script(pareto, title_of(name, pareto), bound, chosen),
-                                               kParetoWidth, kParetoHeight, stem.string() + ".png");
+                                    : draw_picture(pareto_script(pareto, title_of(name, pareto), bound, chosen),
+                                                   kParetoWidth, kParetoHeight, stem.string() + ".png");
   if (trouble.empty()) {
     mention(fmt::format("picture: {0}.png, table: {0}.csv\n", stem.string()));
   } else {

@@ -4,9 +4,11 @@
 #include "cli/output.hpp"
 
 #include "cli/display.hpp"
+#include "launch/children.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -58,6 +60,23 @@ void SweepLine::show(const SweepProgress& progress) {
     if (ended < progress.jobs) line += fmt::format(", {} left", duration_words((progress.jobs - ended) / rate));
   }
   mention(std::string(terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
+}
+
+bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
+                  const std::function<void(std::size_t job)>& work) {
+  const int together = workers.value_or(cores());
+  SweepLine line(false);
+  SweepProgress progress;
+  progress.jobs = static_cast<int>(jobs.size());
+  const auto show = [&](std::size_t done) {
+    progress.done = static_cast<int>(done);
+    progress.running = std::min(together, progress.jobs - progress.done);
+    progress.last = done == jobs.size();
+    line.show(progress);
+  };
+  listen_for_interrupts();
+  return in_children(
+      jobs.size(), together, [&](std::size_t i) { work(jobs[i]); }, program.interrupted, show);
 }
 
 std::string values_text(const Sweep& sweep, const Job& job, const char* gap) {

@@ -2,10 +2,14 @@
 // What a person sees of a sweep while it goes on, and at its end.
 #pragma once
 
+#include "cli/commands.hpp"
 #include "launch/conduct.hpp"
 #include "sweep/sweep.hpp"
 
 #include <chrono>
+#include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +29,11 @@ class SweepLine {
   std::chrono::steady_clock::time_point begun_;
   std::chrono::steady_clock::time_point shown_;
 };
+
+/// Has `work` done for each of these jobs by processes of their own, `workers` at a time or as many as there are cores,
+/// with a SweepLine. Returns false where that was interrupted: what is done then is kept. Throws Error.
+bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
+                  const std::function<void(std::size_t job)>& work);
 
 /// What a job has of the swept keys, each behind a `gap`: " taps=17 seed=3".
 std::string values_text(const Sweep& sweep, const Job& job, const char* gap);

@@ -49,6 +49,26 @@ class Sweeps(InFolder):
         self.assertEqual(table.groupby("kernel")["rmse_m"].count().to_dict(), {"rbf": 2, "matern52": 2})
         self.assertEqual(table["seed"].dtype.kind, "i")
 
+    def test_curves_of_groups_are_arrays_of_what_the_program_writes(self):
+        done = palpate.sweep(DEFAULT, "candidates.count=16", acquisition=["weighted", "random"], taps=5, seed=range(5),
+                             runs=self.folder)
+        heard = []
+        curves = done.curves("rmse_m", by="acquisition", progress=lambda now, jobs: heard.append((now, jobs)))
+        self.assertEqual(heard[-1], (10, 10))
+        program("curves", done.directory, "--by", "acquisition", "-o", self.folder / "curves.csv")
+        rows = cells(self.folder / "curves.csv")
+        self.assertEqual(len(rows), 10)
+        self.assertEqual([(group, str(at)) for group, at in zip(curves["acquisition"], curves["at"])],
+                         [(row["acquisition"], row["at"]) for row in rows])
+        for name in ("mean", "low_95", "high_95"):
+            self.assertEqual([repr(one) for one in curves[name].tolist()],
+                             [repr(float(row[name] or "nan")) for row in rows])
+        last = curves[(curves["acquisition"] == "weighted") & (curves["at"] == 5)]
+        table = done.table[done.table["acquisition"] == "weighted"]
+        self.assertAlmostEqual(float(last["mean"][0]), float(np.mean(table["rmse_m"])), delta=1e-15)
+        self.assertEqual(int(last["n"][0]), 5)
+        self.refuses("curves", "does not vary 'acqisition'", "", lambda: done.curves(by="acqisition"))
+
     def test_jobs_that_have_not_ended_are_in_the_table_without_numbers_and_carried_on(self):
         def interrupt(done, jobs):
             if done >= 1:

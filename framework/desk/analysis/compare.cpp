@@ -49,42 +49,10 @@ Values others(const Values& names, const Values& without) {
   return out;
 }
 
-void check_keys(const Sweep& sweep, const CompareQuery& query) {
-  for (auto key = query.by.begin(); key != query.by.end(); ++key) {
-    if (*key == "seed") {
-      const Values keys = setting_keys(sweep);
-      throw Error("command line", "--by: the seed repeats a job, it makes no groups",
-                  keys.empty() ? "sweep the key whose values are to be compared" : suggestion(*key, keys));
-    }
-    if (!contains(sweep.keys, *key)) {
-      throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
-                  suggestion(*key, setting_keys(sweep)));
-    }
-    if (std::find(query.by.begin(), key, *key) != key) {
-      throw Error("command line", fmt::format("--by: '{}' is named twice", *key), "name it once");
-    }
-  }
-  if (contains(sweep.keys, query.metric)) {
-    throw Error("command line",
-                fmt::format("--metric: '{}' is swept, so it was set and did not come out", query.metric),
-                query.metric == "seed" ? "name a field of the summary" : "give it to --by");
-  }
-}
-
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, const JobUnits& units, Comparison& out) {
-  Values names = columns;
-  for (const std::string& key : others(sweep.keys, columns)) names.push_back(key);
-  const auto keeps = [&](const Job& job, const Row* row) {
-    const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<Condition::Value> {
-      if (contains(sweep.keys, name)) return Condition::Value{value_of(sweep, job, name)};
-      if (!contains(columns, name)) return std::nullopt;
-      const Scalar* value = row != nullptr ? row->find(name) : nullptr;
-      return Condition::Value{value != nullptr ? written_in(name, *value) : std::string(), true};
-    };
-    return query.where == nullptr || query.where->holds(value_in_job, names);
-  };
+  const JobCondition where(sweep, columns, query.where);
   const Values paired = others(sweep.keys, query.by);
   std::vector<Collected> groups;
   for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
@@ -92,7 +60,7 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
     for (const JobResult& one : group.jobs) {
       const auto& [job, row] = one;
       JobOutcome outcome{value_of_job(row, query.metric, "--metric"), units.of(one)};
-      if (!keeps(*job, row)) {
+      if (!where.keeps(one)) {
         out.left_out.add(outcome.value.fate);
         outcome.value = {Fate::left_out};
       }
@@ -111,8 +79,7 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
 
 ComparedGroup summarise(const Collected& collected, bool only_mean) {
   ComparedGroup out;
-  // An option that the plugin of a group does not have is named as such: nothing would look like a slip.
-  for (const std::string& one : collected.values) out.values.push_back(one.empty() ? "(none)" : one_line(one));
+  out.values = shown_values(collected.values);
   out.name = fmt::format("{}", fmt::join(out.values, ", "));
   out.never = collected.never;
   std::vector<double> values;
@@ -256,10 +223,10 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   if (results.empty()) {
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
   }
-  check_keys(sweep, query);
+  check_group_keys(sweep, query.by);
   const Values columns = columns_of(results);
   Comparison out;
-  out.metric = find_column(query.metric, columns, "--metric");
+  out.metric = find_metric(sweep, query.metric, columns);
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());
   out.pairing = varying_keys(sweep, others(sweep.keys, query.by));

@@ -36,18 +36,26 @@ std::string gnuplot_text(const std::string& text) {
   return out + "'";
 }
 
-std::string png_header(int width, int height, const std::string& output) {
-  return fmt::format("set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,12'\nset output {}\n", width,
-                     height, gnuplot_text(output));
+std::string picture_header(int width, int height, const fs::path& file, const std::string& output) {
+  constexpr double kPointsPerInch = 72.0;
+  const std::string extension = file.extension().string();
+  const std::string terminal =
+      extension == ".pdf"
+          ? fmt::format("pdfcairo noenhanced fontscale 0.8 size {:.3f}in,{:.3f}in font 'DejaVu Sans,12'",
+                        width / kPointsPerInch, height / kPointsPerInch)
+      : extension == ".svg"
+          ? fmt::format("svg noenhanced size {},{} font 'DejaVu Sans,12' background rgb 'white'", width, height)
+          : fmt::format("pngcairo noenhanced size {},{} font 'DejaVu Sans,12'", width, height);
+  return fmt::format("set terminal {}\nset output {}\n", terminal, gnuplot_text(output));
 }
 
-std::string draw_png(const std::string& script, int width, int height, const fs::path& file) {
+std::string draw_picture(const std::string& script, int width, int height, const fs::path& file) {
   TemporaryFile picture(file);
   Program program{{"gnuplot", "--default-settings"}};  // a user's own settings would give another picture
   program.own_group = false;                           // whoever presses Ctrl-C wants no picture either
   const std::string output = fs::absolute(picture.path()).string();
   const std::unique_ptr<ChildProcess> gnuplot =
-      ChildProcess::start(program, png_header(width, height, output) + script);
+      ChildProcess::start(program, picture_header(width, height, file, output) + script);
   if (!gnuplot && errno == ENOENT) return "gnuplot is not installed, the package gnuplot-nox has it";
   if (!gnuplot) return fmt::format("gnuplot cannot be started: {}", std::strerror(errno));
   gnuplot->wait();

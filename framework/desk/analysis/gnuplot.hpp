@@ -10,11 +10,12 @@ namespace palpate {
 /// `text` as gnuplot's literal: nothing in it is a command, a macro or a format.
 std::string gnuplot_text(const std::string& text);
 
-/// The first lines of a script: its terminal, a PNG of `width` by `height` pixels, and `output`, its file.
-std::string png_header(int width, int height, const std::string& output);
+/// The first lines of a script: its terminal, by the extension of `file`, which is .png, .pdf or .svg, for a picture of
+/// `width` by `height` pixels, in a PDF points; and `output`, the file that gnuplot writes.
+std::string picture_header(int width, int height, const std::filesystem::path& file, const std::string& output);
 
-/// Draws `script` (without terminal and output) as a PNG of `width` by `height` pixels and renames it to `file`.
-/// Returns "", or in one line why there is no picture.
-std::string draw_png(const std::string& script, int width, int height, const std::filesystem::path& file);
+/// Draws `script` (without terminal and output) and renames the picture to `file`, by whose extension it is a PNG, PDF
+/// or SVG: see picture_header(). Returns "", or in one line why there is no picture.
+std::string draw_picture(const std::string& script, int width, int height, const std::filesystem::path& file);
 
 }  // namespace palpate

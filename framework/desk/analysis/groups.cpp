@@ -1,19 +1,36 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/groups.hpp"
 
-#include "analysis/column.hpp"
 #include "analysis/readable.hpp"
+#include "config/tree.hpp"
+
+#include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <optional>
 
 namespace palpate {
+namespace {
+
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
 
 std::string value_of(const Sweep& sweep, const Job& job, const std::string& key) {
   const auto at = std::find(sweep.keys.begin(), sweep.keys.end(), key);
   return at != sweep.keys.end() ? job.values[static_cast<std::size_t>(at - sweep.keys.begin())] : std::string();
+}
+
+std::vector<std::string> shown_values(const std::vector<std::string>& values) {
+  std::vector<std::string> out;
+  for (const std::string& one : values) out.push_back(one.empty() ? "(none)" : one_line(one));
+  return out;
 }
 
 std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
@@ -58,12 +75,61 @@ std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std:
   return out;
 }
 
+std::vector<std::string> scene_keys(const Sweep& sweep) {
+  std::vector<std::string> out = varying_keys(sweep, sweep.keys);
+  const auto is_other = [](const std::string& key) { return key != "scene" && key.rfind("scene.", 0) != 0; };
+  out.erase(std::remove_if(out.begin(), out.end(), is_other), out.end());
+  return out;
+}
+
+void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys) {
+  for (auto key = keys.begin(); key != keys.end(); ++key) {
+    if (*key == "seed") {
+      const std::vector<std::string> others = setting_keys(sweep);
+      throw Error("command line", "--by: the seed repeats a job, it makes no groups",
+                  others.empty() ? "sweep the key whose values are to be compared" : suggestion(*key, others));
+    }
+    if (!is_among(sweep.keys, *key)) {
+      throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
+                  suggestion(*key, setting_keys(sweep)));
+    }
+    if (std::find(keys.begin(), key, *key) != key) {
+      throw Error("command line", fmt::format("--by: '{}' is named twice", *key), "name it once");
+    }
+  }
+}
+
+Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns) {
+  if (is_among(sweep.keys, name)) {
+    throw Error("command line", fmt::format("--metric: '{}' is swept, so it was set and did not come out", name),
+                name == "seed" ? "name a field of the summary" : "give it to --by");
+  }
+  return find_column(name, columns, "--metric");
+}
+
+JobCondition::JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const Condition* where)
+    : sweep_(sweep), columns_(columns), where_(where), names_(columns) {
+  std::copy_if(sweep.keys.begin(), sweep.keys.end(), std::back_inserter(names_),
+               [&](const std::string& key) { return !is_among(columns, key); });
+}
+
+bool JobCondition::keeps(const JobResult& job) const {
+  if (where_ == nullptr) return true;
+  const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<Condition::Value> {
+    if (is_among(sweep_.keys, name)) return Condition::Value{value_of(sweep_, *job.job, name)};
+    if (!is_among(columns_, name)) return std::nullopt;
+    const Scalar* value = job.row != nullptr ? job.row->find(name) : nullptr;
+    return Condition::Value{value != nullptr ? written_in(name, *value) : std::string(), true};
+  };
+  return where_->holds(value_in_job, names_);
+}
+
 JobUnits::JobUnits(const Sweep& sweep, const std::vector<Row>& results)
     : sweep_(sweep), are_seeds_(!varying_keys(sweep, {"seed"}).empty()) {
   if (are_seeds_) return;
   for (const std::string& name : columns_of(results)) {
-    const bool is_key = std::find(sweep.keys.begin(), sweep.keys.end(), name) != sweep.keys.end();
-    if (!is_key && name != "job" && name != "id" && !depends_on_machine(name)) compared_.insert(name);
+    if (!is_among(sweep.keys, name) && name != "job" && name != "id" && !depends_on_machine(name))
+      compared_.insert(name);
   }
 }
 

@@ -4,8 +4,10 @@
 // tests hold it to the numbers of these.
 #pragma once
 
+#include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
 #include "record/row.hpp"
+#include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
 
 #include <cstddef>
@@ -29,6 +31,10 @@ struct JobGroup {
   std::vector<JobResult> jobs;
 };
 
+/// Returns the values of a group for people, each on one line; "(none)" of an option that its jobs do not have, as
+/// nothing would look like a slip.
+std::vector<std::string> shown_values(const std::vector<std::string>& values);
+
 /// All jobs by the values of `keys`, which are swept ones. Groups stand in the order of their first jobs; with no keys
 /// there is one. `sweep` and `results` must outlive what is returned.
 std::vector<JobGroup> group_jobs(const Sweep& sweep, const std::vector<Row>& results,
@@ -42,6 +48,33 @@ std::vector<std::string> setting_keys(const Sweep& sweep);
 
 /// Those of `keys` that have more than one value in the sweep.
 std::vector<std::string> varying_keys(const Sweep& sweep, const std::vector<std::string>& keys);
+
+/// Returns the keys that say what is tapped and have several values: `scene` and all below it. Results on one scene say
+/// nothing about another, so means, bands and fronts are made of the jobs of one scene.
+std::vector<std::string> scene_keys(const Sweep& sweep);
+
+/// Throws Error, of the command line, unless `keys`, which --by names, make groups: swept ones but the seed, each once.
+void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys);
+
+/// Returns the column that --metric names. Throws Error, of the command line, for one that is swept, and as
+/// find_column() does.
+Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns);
+
+/// A condition on the columns of results.csv, which leaves jobs out.
+class JobCondition {
+ public:
+  /// `where` is null for none. All must outlive the object.
+  JobCondition(const Sweep& sweep, const std::vector<std::string>& columns, const Condition* where);
+
+  /// Throws Error for a column that there is not.
+  bool keeps(const JobResult& job) const;
+
+ private:
+  const Sweep& sweep_;
+  const std::vector<std::string>& columns_;
+  const Condition* where_;
+  std::vector<std::string> names_;  ///< columns, then keys that are none
+};
 
 /// The unit of statistics that each job belongs to: the one place with this rule. Seeds are the units if the seed is
 /// swept and has more than one value: jobs with the same seed share all that is drawn, so they are not independent

@@ -18,9 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a kept summary: the hash of the whole run's.
-constexpr const char* kOf = "of_summary";
-
 std::int64_t taps_of(const Row& summary) { return static_cast<std::int64_t>(summary.number("taps").value_or(0.0)); }
 
 fs::path file_of(const fs::path& job, const Occasion& occasion) {
@@ -28,6 +25,8 @@ fs::path file_of(const fs::path& job, const Occasion& occasion) {
 }
 
 }  // namespace
+
+std::string summary_hash(const Row& summary) { return hash_of(to_json_line(summary)); }
 
 EarlierResults::EarlierResults(const Sweep& sweep, std::vector<Occasion> occasions)
     : sweep_(sweep), occasions_(std::move(occasions)), summaries_(sweep_summaries(sweep)) {
@@ -55,9 +54,9 @@ std::optional<Row> EarlierResults::kept(std::size_t job, const Occasion& occasio
   if (!is_there(file)) return std::nullopt;
   std::optional<Row> row = parse_json_row(read_file(file));
   if (!row) return std::nullopt;
-  const Scalar* of = row->find(kOf);
-  if (of == nullptr || *of != Scalar(hash_of(to_json_line(*summaries_[job])))) return std::nullopt;
-  row->erase(kOf);
+  const Scalar* of = row->find(kOfSummary);
+  if (of == nullptr || *of != Scalar(summary_hash(*summaries_[job]))) return std::nullopt;
+  row->erase(kOfSummary);
   return row;
 }
 
@@ -73,7 +72,7 @@ void EarlierResults::compute(const Workshop& workshop, std::size_t job) const {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     Row row = rows[i].value_or(whole);
     if (!wanted[i].taps()) row.add(kReached, rows[i].has_value());
-    row.add(kOf, hash_of(to_json_line(whole)));
+    row.add(kOfSummary, summary_hash(whole));
     write_file(file_of(directory, wanted[i]), to_json_text(row));
   }
 }

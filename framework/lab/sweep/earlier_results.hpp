@@ -9,12 +9,17 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace palpate {
 
 /// What says of a row at a goal whether the job has got there.
 inline constexpr const char* kReached = "reached";
+
+/// What names in a kept row the hash of the summary of the whole run.
+inline constexpr const char* kOfSummary = "of_summary";
+std::string summary_hash(const Row& summary);
 
 /// A sweep whose jobs are looked at at some occasions.
 class EarlierResults {

@@ -23,6 +23,7 @@ import atexit as _atexit
 import json as _json
 import operator as _operator
 import os as _os
+import tempfile as _tempfile
 
 import numpy as _np
 
@@ -235,6 +236,28 @@ class Sweep:
             columns.append(("status", [None] * len(self)))
         return _table((name, _numbers(values) if name in self.keys else values) for name, values in columns)
 
+    def curves(self, metric="rmse_m", *, by=None, against="taps", where=None, workers=None, progress=None) -> _np.ndarray:
+        """Groups of jobs over their taps, as `palpate curves` has them: a structured array of a row per point and group.
+
+        Its fields: the swept keys of scene and group; `at`, taps or (`against="robot_seconds"`) seconds; `mean` with
+        `low_95` and `high_95`, its 95 % interval, NaN where there is none; `n`, jobs with a value; `units`, seeds; `jobs`,
+        `failed`, `unfinished` and `ended` of the group. SI units. `by`: one key or several; None: all that vary but the seed
+        and the scene. What the jobs had come to after each tap is computed from their records by the program, and kept;
+        `progress(done, jobs)` is called as jobs are done.
+        """
+        keys = [by] if isinstance(by, str) else by
+        with _tempfile.TemporaryDirectory() as folder:
+            file = _os.path.join(folder, "curves.csv")
+            command = [_palpate.program, "curves", self.directory, "--metric", metric, "--against", against, "-o", file]
+            command += ["--by", ",".join(keys)] if keys else []
+            command += ["--where", where] if where is not None else []
+            command += ["-j", str(_operator.index(workers))] if workers is not None else []
+            status, said = _program.conduct(command, progress)
+            if status != 0:
+                raise _error("curves", said.removeprefix("command line: "), "", InputError if status == 2 else Error)
+            return _table((name, _numbers(values) if isinstance(values, list) else values)
+                          for name, values in _program.curve_columns(file, self.keys))
+
 
 def load(directory, runs="runs") -> Run:
     """The run in a directory, or in `runs` by its name: "NAME", "NAME@latest". Raises Error for what is none, or damaged."""
@@ -430,6 +453,6 @@ def _plotted(draw):
 
 
 def _error(place, reason, remedy, kind=InputError):
-    error = kind(f"{place}: {reason}, {remedy}")
+    error = kind(f"{place}: {reason}" + (f", {remedy}" if remedy else ""))
     error.place, error.reason, error.remedy = place, reason, remedy
     return error

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 from os import PathLike
 from types import TracebackType
-from typing import Any, Callable, Iterator
+from typing import Any, Callable, Iterable, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,6 +74,16 @@ class Sweep:
     def __init__(self, directory: str | PathLike[str]) -> None: ...
     def __reduce__(self) -> tuple[type[Sweep], tuple[str]]: ...
     def plot(self, metric: str = "rmse_m") -> Any: ...
+    def curves(
+        self,
+        metric: str = "rmse_m",
+        *,
+        by: str | Iterable[str] | None = None,
+        against: str = "taps",
+        where: str | None = None,
+        workers: int | None = None,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> NDArray[np.void]: ...
     def __len__(self) -> int: ...
     def __getitem__(self, job: int) -> Run: ...
     def __iter__(self) -> Iterator[Run]: ...

@@ -2,6 +2,7 @@
 # mypy: ignore-errors
 """The program `palpate`: what it is told, and how Python has it run a sweep."""
 
+import csv
 import json
 import os
 import re
@@ -76,6 +77,25 @@ def conduct(command, progress):
     lines = [line for line in said.decode(errors="replace").splitlines()
              if line.strip() and not re.match(r"\s*\d+ of \d+ jobs done", line)]
     return child.returncode, lines[-1] if lines else ""
+
+
+def curve_columns(file, keys):
+    """The columns of a CSV of `palpate curves` as arrays, and lists of texts; `keys` are those that are swept."""
+    with open(file, encoding="utf-8", newline="") as text:
+        rows = list(csv.DictReader(text))
+    whole = {"n", "units", "jobs", "left_out", "failed", "unfinished", "without_value", "ended"}
+    out = []
+    for name in rows[0]:
+        cells = [row[name] for row in rows]
+        if name in ("metric", "against"):
+            continue
+        if name in keys:
+            out.append((name, cells))
+        elif name in whole or name == "at" and rows[0]["against"] == "taps":
+            out.append((name, np.array(cells, dtype=int)))
+        else:
+            out.append((name, np.array([float(cell) if cell else np.nan for cell in cells])))
+    return out
 
 
 def run_program():

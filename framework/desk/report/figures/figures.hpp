@@ -3,6 +3,7 @@
 // data, beside it as NAME.gnuplot.
 #pragma once
 
+#include "analysis/group_curves.hpp"
 #include "record/recording.hpp"
 #include "report/history.hpp"
 #include "sweep/sweep.hpp"
@@ -27,6 +28,11 @@ Figures write_run_figures(const Workshop& workshop, const Recording& recording, 
 /// Of a sweep: `distributions` and, where two keys but the seed are swept, `heat_map`. Throws Error as above, and where
 /// no job ended well.
 Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& folder);
+
+/// Draws curves of groups into `file`, a .png, .pdf or .svg: a panel per scene, in each a line with its band per group.
+/// Returns in words what is left out of very many panels or groups, "" for nothing. Throws Error of kind `run` if
+/// gnuplot draws nothing.
+std::string write_curves_figure(const GroupCurves& curves, const std::string& title, const std::filesystem::path& file);
 
 /// Of a run: `paper_progress`, in the layout of the paper's figure 2. Throws Error as above.
 Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder);

@@ -320,12 +320,13 @@ std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Fi
   for (const auto& [name, sheet] : figures) {
     // An older picture would be that of another script.
     fs::remove(folder / (name + ".png"), failed);
-    write_file(folder / (name + ".gnuplot"), png_header(sheet.width(), sheet.height(), name + ".png") + sheet.script());
+    write_file(folder / (name + ".gnuplot"),
+               picture_header(sheet.width(), sheet.height(), name + ".png", name + ".png") + sheet.script());
   }
   std::vector<fs::path> pictures;
   for (const auto& [name, sheet] : figures) {
     pictures.push_back(folder / (name + ".png"));
-    const std::string trouble = draw_png(sheet.script(), sheet.width(), sheet.height(), pictures.back());
+    const std::string trouble = draw_picture(sheet.script(), sheet.width(), sheet.height(), pictures.back());
     if (trouble.empty()) continue;
     throw Error(pictures.back().string(), "was not drawn: " + trouble,
                 fmt::format("'gnuplot {}.gnuplot' in that folder draws it later", name), Error::Kind::run);

@@ -29,6 +29,7 @@ palpate_asset_runs:
 palpate_asset_sweep:
         .incbin "web/sweep_numbers.js"
         .incbin "web/sweep_panels.js"
+        .incbin "web/sweep_curves.js"
         .incbin "web/sweep.js"
         .byte 0
 

@@ -9,6 +9,7 @@
 #include "record/build_info.hpp"
 #include "record/run_directory.hpp"
 #include "report/page/page.hpp"
+#include "report/page/sweep_curves.hpp"
 #include "sweep/read_jobs.hpp"
 
 #include <algorithm>
@@ -161,10 +162,36 @@ std::vector<std::string> first_looks() {
   return names;
 }
 
+/// The config of the sweep with the values that its jobs have at each swept key, in the place of what the config of
+/// which it was made says there.
+Tree swept_config(const Sweep& sweep) {
+  constexpr std::size_t kMostValues = 24;
+  Tree config = read_run_config(sweep.directory);
+  for (const std::string& key : sweep.keys) {
+    if (Tree* const groups = config.find("defaults")) {
+      const auto names_it = [&](const Tree& item) { return item.find(key) != nullptr; };
+      groups->items.erase(std::remove_if(groups->items.begin(), groups->items.end(), names_it), groups->items.end());
+      if (groups->items.empty()) config.erase("defaults");
+    }
+    Tree values = Tree::list();
+    for (const JobGroup& group : group_jobs(sweep, {}, {key})) {
+      if (values.items.size() == kMostValues) {
+        values.items.push_back(Tree::quote("..."));
+        break;
+      }
+      values.items.push_back(group.values.front().empty() ? Tree() : Tree::scalar(group.values.front()));
+    }
+    config.at_path(key, config.place) = values.items.size() == 1 ? values.items.front() : values;
+  }
+  return config;
+}
+
 }  // namespace
 
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs) {
-  return make_page(palpate_asset_sweep, sweep_data(sweep, progress, most_jobs), "");
+  Json data = sweep_data(sweep, progress, most_jobs);
+  if (Json curves = json_of_curves(sweep); !curves.is_null()) data["curves"] = std::move(curves);
+  return make_page(palpate_asset_sweep, data, "");
 }
 
 Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs) {
@@ -199,7 +226,8 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"columns", json_of_columns(results, shown)},
            {"first_looks", first_looks()},
            {"factors", interval_factors(sweep.jobs.size())},
-           {"config", to_yaml(read_run_config(sweep.directory))}};
+           {"scene_keys", scene_keys(sweep)},
+           {"config", to_yaml(swept_config(sweep))}};
   if (step > 1) out["sampled"] = tally.json(sweep, step);
   return out;
 }

@@ -21,10 +21,11 @@ function rangeOf(values, ends) {
 
 /// Settings by mean cost and mean error, those on the front joined; runs behind them, failed ones grey.
 function drawFront(sweep, choice) {
-  const settings = settingsOf(sweep, choice.cost, choice.error);
+  const settings = settingsOf(sweep, choice);
+  const here = (jobs) => jobs.filter((job) => sweep.sceneOf(job) === choice.scene);
   const at = (job) => ({ job, cost: sweep.number(choice.cost, job), error: sweep.number(choice.error, job) });
-  const done = sweep.done.map(at).filter(({ cost, error }) => cost !== null && error !== null);
-  const failed = sweep.failed.map(at).filter(({ cost }) => cost !== null);
+  const done = here(sweep.done).map(at).filter(({ cost, error }) => cost !== null && error !== null);
+  const failed = here(sweep.failed).map(at).filter(({ cost }) => cost !== null);
   listFront(choice, settings.filter((one) => one.front > 0));
   sayOfFront(sweep, choice, settings, failed);
   if (done.length + failed.length === 0) return plotNothing("front");
@@ -105,8 +106,9 @@ function meansWords(sweep, settings) {
 function sayOfFront(sweep, choice, settings, placed) {
   const edged = placed.filter(({ error }) => error === null).length;
   const open = settings.filter((one) => !one.complete).length;
-  const empty = sweep.groups(sweep.settings).length - settings.length;
-  const gone = sweep.failed.length - placed.length;
+  const here = (jobs) => jobs.filter((job) => sweep.sceneOf(job) === choice.scene);
+  const empty = sweep.groups(sweep.settings).filter(({ jobs }) => here(jobs).length > 0).length - settings.length;
+  const gone = here(sweep.failed).length - placed.length;
   const end = sweep.moreIsBetter(choice.error) ? "lower" : "upper";
   say(
     "front",
@@ -321,7 +323,10 @@ function drawPanels(sweep) {
   };
   const choices = (...choosers) => element("p", { class: "choices" }, ...choosers);
   const orNothing = (name) => name || "nothing";
+  const scenes = sweep.scenes();
+  const ofScenes = scenes.length > 1 ? [chooser("scene", sweep.scene_keys.join(", "), scenes, [drawFront])] : [];
   document.body.append(
+    ...(sweep.curves ? [placeCurves(sweep, chooser, choices)] : []),
     element("div", { class: "controls" }, chooser("metric", "show", columns, [drawCells, drawGroups, drawParallel], withUnit)),
     section(
       "By two keys",
@@ -334,16 +339,17 @@ function drawPanels(sweep) {
       figure("groups", ""),
     ),
     section("All keys at once", figure("parallel", "")),
+    ...(sweep.curves ? [] : noCurves(sweep)),
     section(
       "Cost and error",
-      choices(chooser("cost", "cost", costs, [drawFront]), chooser("error", "error", errors, [drawFront])),
+      choices(...ofScenes, chooser("cost", "cost", costs, [drawFront]), chooser("error", "error", errors, [drawFront])),
       figure("front", ""),
       element("div", { id: "front_list" }),
     ),
     jobs.place(),
   );
   jobs.choose(choice);
-  const all = [drawCells, drawGroups, drawParallel, drawFront];
+  const all = [drawCells, drawGroups, drawParallel, ...(sweep.curves ? [drawCurves] : []), drawFront];
   sweep.refresh = () => {
     jobs.show();
     drawAll(all);

@@ -87,6 +87,16 @@ class SweepData {
     return said.map((key) => `${key.name}=${this.text(key, job)}`).join(", ") || "the only setting";
   }
 
+  /// What a job taps: the values of the keys that say it, "" where the sweep has one scene.
+  sceneOf(job) {
+    return this.scene_keys.map((name) => this.text(this.key(name), job)).join(", ");
+  }
+
+  /// The scenes in the order of the sweep.
+  scenes() {
+    return [...new Set(this.jobs.map((job) => this.sceneOf(job)))];
+  }
+
   /// Jobs with equal values of `keys`, in the order of these: a list of {jobs, places}, the place of each value among
   /// those of its key.
   groups(keys) {
@@ -143,15 +153,16 @@ function estimate(values, units, factors, unit = 1) {
 
 /// The settings, all keys but the seed, with their means of cost and error over the jobs that are done and have both:
 /// {words, jobs, cost, error, complete, front}, in the order of cost. As `palpate pareto` has it, only settings all of
-/// whose jobs have both are compared; `front` counts from 1.
-function settingsOf(sweep, cost, error) {
+/// whose jobs have both are compared; `front` counts from 1. They are those of one scene, by its name in sweep.scenes().
+function settingsOf(sweep, { cost, error, scene }) {
   const sign = sweep.moreIsBetter(error) ? -1 : 1;
-  const settings = sweep.groups(sweep.settings).map(({ jobs }) => {
+  const ofScene = sweep.groups(sweep.settings).filter(({ jobs }) => sweep.sceneOf(jobs[0]) === scene);
+  const settings = ofScene.map(({ jobs }) => {
     const valued = jobs.filter((job) => job.state === "done" && sweep.raw(cost, job) !== null && sweep.raw(error, job) !== null);
     const units = valued.map((job) => sweep.unit(job));
     const over = (column) => [valued.map((job) => sweep.raw(column, job)), units, sweep.factors];
     return {
-      words: sweep.words(jobs[0]),
+      words: sweep.words(jobs[0], sweep.varying.filter((key) => !sweep.scene_keys.includes(key.name))),
       jobs,
       cost: estimate(...over(cost), unitOf(cost).factor),
       error: estimate(...over(error), unitOf(error).factor),
@@ -214,6 +225,10 @@ function firstChoices(sweep) {
     up,
     group: sweep.varying.length > 1 && sweep.groups(sweep.settings).length <= 16 ? kEachSetting : fewest?.name ?? across,
     then: "",
+    scene: sweep.scenes()[0],
+    curve_of: sweep.curves?.metrics[0],
+    against: "taps",
+    curves_by: sweep.curves?.by[0],
     cost: costs.find((name) => differs(sweep, name)) ?? costs[0] ?? names[0],
     error,
   };

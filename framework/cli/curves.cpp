@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/group_curves_report.hpp"
+#include "cli/commands.hpp"
+#include "cli/display.hpp"
+#include "cli/output.hpp"
+#include "cli/sweep_display.hpp"
+#include "record/files.hpp"
+#include "report/figures/figures.hpp"
+#include "sweep/tap_summaries.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 4> kExtensions{".csv", ".png", ".pdf", ".svg"};
+
+/// The files to write: those that are named, else a picture and a table beside results.csv.
+std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arguments,
+                                  const std::vector<std::string>& by) {
+  std::vector<fs::path> out(arguments.outputs.begin(), arguments.outputs.end());
+  for (const fs::path& file : out) {
+    if (std::find(kExtensions.begin(), kExtensions.end(), file.extension().string()) == kExtensions.end())
+      throw Error("command line", fmt::format("-o: '{}' does not end in what is written", file.string()),
+                  fmt::format("end it in one of {}", fmt::join(kExtensions, ", ")));
+    const fs::path folder = fs::absolute(file).parent_path();
+    if (!fs::is_directory(folder))
+      throw Error("command line", fmt::format("-o: there is no folder '{}'", folder.string()), "make it first");
+  }
+  if (!out.empty()) return out;
+  const std::string groups = by.empty() ? "all" : slug(fmt::format("{}", fmt::join(by, "_")));
+  const std::string name = fmt::format("curves_{}_{}_{}", groups, slug(arguments.metric), arguments.against);
+  return {sweep.directory / (name + ".csv"), sweep.directory / (name + ".png")};
+}
+
+}  // namespace
+
+int curves(Program& program, const CurvesArguments& arguments) {
+  const Sweep sweep = read_sweep(arguments.directory);
+  const std::vector<std::string> by = arguments.by.empty() ? curve_keys(sweep) : arguments.by;
+  const std::vector<fs::path> files = curve_files(sweep, arguments, by);
+  std::optional<Condition> where;
+  if (arguments.where) where = Condition::of_command_line(*arguments.where);
+  const std::vector<Row> results = sweep_results(sweep);
+  // What cannot be asked is found out before anything is computed.
+  check_group_keys(sweep, by);
+  if (!results.empty()) find_metric(sweep, arguments.metric, columns_of(results));
+  const TapSummaries before(sweep);
+  const bool all = compute_jobs(program, before.missing(), arguments.workers,
+                                [&](std::size_t job) { before.compute(program, job); });
+  if (!all) return kInterrupted;
+  const TapSummaries summaries(sweep);
+  const GroupCurves made =
+      make_group_curves(sweep, results, tap_values(sweep, summaries, {arguments.metric, arguments.against}),
+                        {by, arguments.metric, arguments.against, where ? &*where : nullptr});
+  print_text(curves_table(made));
+  for (const fs::path& file : files) {
+    if (file.extension() == ".csv") {
+      write_file(file, to_csv(curves_rows(made)));
+      mention(fmt::format("table: {}\n", file.string()));
+      continue;
+    }
+    std::string title = sweep_name(sweep);
+    if (arguments.where) title += ", where " + *arguments.where;
+    const std::string note = write_curves_figure(made, title, file);
+    if (!note.empty()) mention(note + "\n");
+    mention(fmt::format("picture: {}\n", file.string()));
+  }
+  return kDone;
+}
+
+}  // namespace palpate::cli

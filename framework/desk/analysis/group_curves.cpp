@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/group_curves.hpp"
+
+#include "analysis/bootstrap.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr int kTimes = 60;  ///< points of a curve against time
+
+/// One job that counts, and the unit of statistics that it belongs to.
+struct JobCurve {
+  const std::vector<double>* metric = nullptr;
+  const std::vector<double>* seconds = nullptr;  ///< at the end of each tap; null against taps
+  std::string unit;
+
+  /// The value as of `at` taps, or seconds: that after the last tap by then.
+  double value(double at) const {
+    std::size_t taps = std::min(static_cast<std::size_t>(std::max(at, 0.0)), metric->size());
+    if (seconds != nullptr)
+      taps = static_cast<std::size_t>(std::upper_bound(seconds->begin(), seconds->end(), at) - seconds->begin());
+    return taps > 0 ? (*metric)[taps - 1] : std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+/// Where the curve of these jobs has points.
+std::vector<double> points_of(const std::vector<JobCurve>& jobs) {
+  std::vector<double> out;
+  if (jobs.empty()) return out;
+  if (jobs.front().seconds == nullptr) {
+    std::size_t most = 0;
+    for (const JobCurve& job : jobs) most = std::max(most, job.metric->size());
+    for (std::size_t taps = 1; taps <= most; ++taps) out.push_back(static_cast<double>(taps));
+    return out;
+  }
+  double first = 0.0;
+  double last = 0.0;
+  for (const JobCurve& job : jobs) {
+    first = std::max(first, job.seconds->front());
+    last = std::max(last, job.seconds->back());
+  }
+  for (int i = 0; i < kTimes; ++i) {
+    out.push_back(i + 1 == kTimes ? last : first + (last - first) * i / (kTimes - 1));
+    if (last <= first) break;
+  }
+  return out;
+}
+
+MeanEstimate estimate_at(const std::vector<JobCurve>& jobs, double at, bool students) {
+  UnitClusters units;
+  for (const JobCurve& job : jobs) {
+    if (const double value = job.value(at); std::isfinite(value)) units.add(job.unit, value);
+  }
+  if (!students) return mean_of_sample(units.clusters());
+  MeanEstimate out = estimate_mean(units.clusters());
+  if (out.clusters < kLeastForInterval) out.interval.reset();
+  return out;
+}
+
+bool has_value(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double one) { return std::isfinite(one); });
+}
+
+/// Throws Error if there is nothing to draw, with the reason.
+void check_points(const GroupCurves& made, const Sweep& sweep) {
+  if (made.curves.empty())
+    throw Error("command line", fmt::format("--where: leaves none of the {} jobs", made.jobs),
+                "results.csv has the values that it is compared with");
+  int without_value = 0;
+  bool is_drawn = false;
+  bool takes_time = made.against.name == kAgainstTaps;
+  for (const GroupCurve& curve : made.curves) {
+    without_value += curve.counts.of(Fate::without_value);
+    is_drawn = is_drawn || !curve.points.empty();
+    takes_time = takes_time || (!curve.points.empty() && curve.points.back().at > 0.0);
+  }
+  if (is_drawn && takes_time) return;
+  if (is_drawn) throw Error("command line", "--against: no job took any robot time", "'--against taps' needs none");
+  if (without_value == 0)
+    throw Error(sweep.directory.string(), "none of the jobs to draw ended well", "'palpate status' says why");
+  const RecordField* field = find_summary_field(made.metric.name);
+  throw Error("command line", fmt::format("--metric: no job has a value of '{}' after any tap", made.metric.name),
+              field != nullptr ? field->when_null : "");
+}
+
+}  // namespace
+
+std::vector<TapValues> tap_values(const Sweep& sweep, const TapSummaries& summaries,
+                                  const std::vector<std::string>& columns) {
+  std::vector<TapValues> out(sweep.jobs.size());
+  for (std::size_t job = 0; job < out.size(); ++job) {
+    const std::optional<std::vector<Row>> rows = summaries.of(job);
+    if (!rows) continue;
+    for (const std::string& column : columns) {
+      std::vector<double>& values = out[job][column];
+      std::size_t near = 0;
+      for (const Row& row : *rows)
+        values.push_back(number_of(row.find(column, near)).value.value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+  }
+  return out;
+}
+
+std::string GroupCurve::name() const {
+  return values.empty() ? "all jobs" : fmt::format("{}", fmt::join(shown_values(values), ", "));
+}
+
+std::string GroupCurve::scene_name() const { return fmt::format("{}", fmt::join(shown_values(scene), ", ")); }
+
+std::vector<std::string> GroupCurves::scene_names() const {
+  std::vector<std::string> out;
+  for (const GroupCurve& curve : curves) {
+    std::string name = curve.scene_name();
+    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
+  }
+  return out;
+}
+
+std::vector<std::string> curve_keys(const Sweep& sweep) {
+  const std::vector<std::string> scenes = scene_keys(sweep);
+  std::vector<std::string> out = varying_keys(sweep, setting_keys(sweep));
+  const auto is_scene = [&](const std::string& key) {
+    return std::find(scenes.begin(), scenes.end(), key) != scenes.end();
+  };
+  out.erase(std::remove_if(out.begin(), out.end(), is_scene), out.end());
+  return out;
+}
+
+GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& results, const std::vector<TapValues>& values,
+                              const CurvesQuery& query) {
+  if (results.empty())
+    throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
+  check_group_keys(sweep, query.by);
+  const std::vector<std::string> columns = columns_of(results);
+  GroupCurves out;
+  out.metric = find_metric(sweep, query.metric, columns);
+  // `taps` may be swept: then it is a key, and still what was made.
+  out.against = query.against == kAgainstTaps ? Column{kAgainstTaps} : find_column(query.against, columns, "--against");
+  out.by = query.by;
+  out.jobs = static_cast<int>(sweep.jobs.size());
+  for (const std::string& key : scene_keys(sweep)) {
+    if (std::find(query.by.begin(), query.by.end(), key) == query.by.end()) out.scenes.push_back(key);
+  }
+  const JobUnits units(sweep, results);
+  out.by_seed = units.are_seeds();
+  const JobCondition where(sweep, columns, query.where);
+  std::vector<std::string> keys = out.scenes;
+  keys.insert(keys.end(), query.by.begin(), query.by.end());
+  for (const JobGroup& group : group_jobs(sweep, results, keys)) {
+    const auto split = group.values.begin() + static_cast<std::ptrdiff_t>(out.scenes.size());
+    GroupCurve curve;
+    curve.scene.assign(group.values.begin(), split);
+    curve.values.assign(split, group.values.end());
+    std::vector<JobCurve> jobs;
+    for (const JobResult& one : group.jobs) {
+      Fate fate = value_of_job(one.row, query.metric, "--metric").fate;
+      const TapValues& of_job = values[static_cast<std::size_t>(one.job->index)];
+      const auto metric = of_job.find(query.metric);
+      if (fate == Fate::counted || fate == Fate::without_value)
+        fate = metric != of_job.end() && has_value(metric->second) ? Fate::counted : Fate::without_value;
+      if (!where.keeps(one)) fate = Fate::left_out;
+      curve.counts.add(fate);
+      if (fate != Fate::counted) continue;
+      const bool taps = query.against == kAgainstTaps;
+      jobs.push_back({&metric->second, taps ? nullptr : &of_job.at(query.against), units.of(one)});
+    }
+    std::size_t most = 0;
+    for (const JobCurve& job : jobs) most = std::max(most, job.metric->size());
+    for (const JobCurve& job : jobs) curve.ended += job.metric->size() < most ? 1 : 0;
+    for (const double at : points_of(jobs)) curve.points.push_back({at, estimate_at(jobs, at, query.students)});
+    if (!curve.counts.all_are(Fate::left_out)) out.curves.push_back(std::move(curve));
+  }
+  std::stable_sort(out.curves.begin(), out.curves.end(), [names = out.scene_names()](const auto& a, const auto& b) {
+    const auto place = [&](const GroupCurve& one) { return std::find(names.begin(), names.end(), one.scene_name()); };
+    return place(a) < place(b);
+  });
+  check_points(out, sweep);
+  return out;
+}
+
+}  // namespace palpate

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/group_curves_report.hpp"
+
+#include "analysis/bootstrap.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kShownPlaces = 4;
+
+/// The least and the largest number of units of all points.
+std::pair<std::size_t, std::size_t> units_at_points(const GroupCurves& curves) {
+  std::pair<std::size_t, std::size_t> out{SIZE_MAX, 0};
+  for (const GroupCurve& curve : curves.curves) {
+    for (const CurvePoint& point : curve.points) {
+      out.first = std::min(out.first, point.mean.clusters);
+      out.second = std::max(out.second, point.mean.clusters);
+    }
+  }
+  return out;
+}
+
+/// Points of the longest curve, evenly along it; the last one is its end.
+std::vector<double> shown_places(const GroupCurves& curves) {
+  const auto longest =
+      std::max_element(curves.curves.begin(), curves.curves.end(),
+                       [](const GroupCurve& a, const GroupCurve& b) { return a.points.size() < b.points.size(); });
+  const std::size_t count = longest->points.size();
+  std::vector<double> out;
+  for (std::size_t i = 1; i <= kShownPlaces; ++i) {
+    const double at = longest->points[(count * i + kShownPlaces - 1) / kShownPlaces - 1].at;
+    if (out.empty() || at > out.back()) out.push_back(at);
+  }
+  return out;
+}
+
+/// The last point up to `at`; null before the first one and behind the last.
+const CurvePoint* point_at(const GroupCurve& curve, double at) {
+  const CurvePoint* out = nullptr;
+  for (const CurvePoint& point : curve.points) {
+    if (point.at <= at) out = &point;
+  }
+  return !curve.points.empty() && curve.points.back().at < at ? nullptr : out;
+}
+
+}  // namespace
+
+Scale metric_scale(const GroupCurves& curves) {
+  std::vector<double> means;
+  for (const GroupCurve& curve : curves.curves) {
+    for (const CurvePoint& point : curve.points) {
+      if (point.mean.count > 0) means.push_back(point.mean.mean);
+    }
+  }
+  return readable_scale(curves.metric.unit, means);
+}
+
+std::string curve_units_words(const GroupCurves& curves) {
+  const auto [least, most] = units_at_points(curves);
+  const std::string words = units_words(most, curves.by_seed);
+  return least < most ? fmt::format("{} to {}", least, words) : words;
+}
+
+std::string curve_remarks(const GroupCurves& curves) {
+  std::string out;
+  for (const GroupCurve& curve : curves.curves) {
+    const std::string scene = curve.scene_name();
+    const std::string name = (scene.empty() ? "" : scene + ", ") + curve.name();
+    const std::string lost = curve.counts.words({Fate::left_out, Fate::failed, Fate::unfinished, Fate::without_value});
+    if (!lost.empty()) out += fmt::format("{}: of {} jobs in no point: {}\n", name, curve.counts.all(), lost);
+    if (curve.points.empty()) continue;
+    if (curve.ended > 0) {
+      out += fmt::format("{}: {} of {} jobs made fewer taps than others and count behind them as they ended\n", name,
+                         curve.ended, curve.counts.of(Fate::counted));
+    }
+    const auto fewer = [](const CurvePoint& a, const CurvePoint& b) { return a.mean.count < b.mean.count; };
+    const auto [fewest, most] = std::minmax_element(curve.points.begin(), curve.points.end(), fewer);
+    if (fewest->mean.count < most->mean.count) {
+      out += fmt::format("{}: {} to {} jobs have a value, by the place on the curve\n", name, fewest->mean.count,
+                         most->mean.count);
+    }
+  }
+  return out + few_words(units_at_points(curves).first, curves.by_seed, kLeastForInterval);
+}
+
+std::string curves_table(const GroupCurves& curves) {
+  const Scale scale = metric_scale(curves);
+  const std::vector<double> places = shown_places(curves);
+  const Scale axis = readable_scale(curves.against.unit, places);
+  const bool many_scenes = curves.scene_names().size() > 1;
+  const std::string better = curves.metric.better_words();
+  std::string out = fmt::format("{} against {}{}\n", scale.title(curves.metric.name), axis.title(curves.against.name),
+                                better.empty() ? "" : "; " + better);
+  std::vector<std::string> head{many_scenes ? fmt::format("{}", fmt::join(curves.scenes, ", ")) : "",
+                                curves.by.empty() ? "group" : fmt::format("{}", fmt::join(curves.by, ", ")), "jobs"};
+  const bool taps = curves.against.name == kAgainstTaps;
+  for (const double at : places)
+    head.push_back(taps ? fmt::format("{:.0f} taps", at) : axis.with_unit(axis.number(at)));
+  std::vector<std::vector<std::string>> lines{std::move(head)};
+  for (const GroupCurve& curve : curves.curves) {
+    lines.push_back({many_scenes ? curve.scene_name() : "", curve.name(), std::to_string(curve.counts.all())});
+    for (const double at : places) {
+      const CurvePoint* const point = point_at(curve, at);
+      lines.back().push_back(point != nullptr ? scale.estimate(point->mean) : "-");
+    }
+  }
+  out += aligned(lines, "llr" + std::string(places.size(), 'r'));
+  out += fmt::format(
+      "mean [95 % interval] over {}, as 'palpate compare' has it; a job that has ended counts as it ended\n",
+      curve_units_words(curves));
+  return out + curve_remarks(curves);
+}
+
+std::vector<Row> curves_rows(const GroupCurves& curves) {
+  std::vector<Row> rows;
+  const bool taps = curves.against.name == kAgainstTaps;
+  for (const GroupCurve& curve : curves.curves) {
+    for (const CurvePoint& point : curve.points) {
+      Row row;
+      const auto add_keys = [&](const std::vector<std::string>& keys, const std::vector<std::string>& values) {
+        for (std::size_t i = 0; i < keys.size(); ++i)
+          row.add(keys[i], values[i].empty() ? Scalar() : Scalar(values[i]));
+      };
+      row.add("metric", curves.metric.name);
+      row.add("against", curves.against.name);
+      add_keys(curves.scenes, curve.scene);
+      add_keys(curves.by, curve.values);
+      row.add("at", taps ? Scalar(static_cast<std::int64_t>(point.at)) : Scalar(point.at));
+      row.add("n", static_cast<std::int64_t>(point.mean.count));
+      row.add("units", static_cast<std::int64_t>(point.mean.clusters));
+      add_mean(row, "", point.mean);
+      add_counts(row, curve.counts, true);
+      row.add("ended", curve.ended);
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+}  // namespace palpate

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "report/page/sweep_curves.hpp"
+
+#include "analysis/group_curves_report.hpp"
+#include "record/fields.hpp"
+#include "report/page/sweep_page.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMostGroupsOfAScene = 14;  ///< on the page: twice as many as it has colours
+
+/// The keys that a reader may group by: all at once, then each alone, as far as they make few enough groups.
+std::vector<std::vector<std::string>> choices_of_keys(const Sweep& sweep) {
+  const std::vector<std::string> all = curve_keys(sweep);
+  std::vector<std::vector<std::string>> out;
+  const auto add = [&](const std::vector<std::string>& keys) {
+    if (group_jobs(sweep, {}, keys).size() <= kMostGroupsOfAScene) out.push_back(keys);
+  };
+  if (all.size() != 1) add(all);
+  for (const std::string& key : all) add({key});
+  return out;
+}
+
+/// The fields that are worth a first look and have a number after some tap, the main error first.
+std::vector<std::string> metrics_of(const std::vector<TapValues>& values, const std::vector<std::string>& names) {
+  std::vector<std::string> out;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(out), [&](const std::string& name) {
+    return std::any_of(values.begin(), values.end(), [&](const TapValues& job) {
+      const auto found = job.find(name);
+      return found != job.end() &&
+             std::any_of(found->second.begin(), found->second.end(), [](double one) { return std::isfinite(one); });
+    });
+  });
+  return out;
+}
+
+Json json_of_curve(const GroupCurve& curve) {
+  std::vector<double> at;
+  std::vector<std::optional<double>> mean, low, high;
+  std::vector<std::size_t> jobs;
+  for (const CurvePoint& point : curve.points) {
+    const auto& ends = point.mean.interval;
+    at.push_back(point.at);
+    jobs.push_back(point.mean.count);
+    mean.push_back(point.mean.count > 0 ? std::optional(point.mean.mean) : std::nullopt);
+    low.push_back(ends ? std::optional(ends->low) : std::nullopt);
+    high.push_back(ends ? std::optional(ends->high) : std::nullopt);
+  }
+  return {{"scene", curve.scene_name()},
+          {"name", curve.name()},
+          {"at", at},
+          {"mean", mean},
+          {"low", low},
+          {"high", high},
+          {"jobs", jobs}};
+}
+
+}  // namespace
+
+Json json_of_curves(const Sweep& sweep) {
+  if (sweep.jobs.size() > kMostJobsOnAPage || !TapSummaries::any_kept(sweep)) return {};
+  const TapSummaries summaries(sweep);
+  if (!summaries.missing().empty()) return {};
+  const std::vector<Row> results = sweep_results(sweep);
+  const std::vector<std::vector<std::string>> keys = choices_of_keys(sweep);
+  if (keys.empty()) return {};
+  std::vector<std::string> columns{main_error()};
+  for (const RecordField& field : summary_fields()) {
+    const bool swept = std::find(sweep.keys.begin(), sweep.keys.end(), field.name) != sweep.keys.end();
+    if (field.first_look && field.name != main_error() && field.name != kAgainstTime && !swept)
+      columns.push_back(field.name);
+  }
+  std::vector<std::string> read = columns;
+  read.emplace_back(kAgainstTime);
+  const std::vector<TapValues> values = tap_values(sweep, summaries, read);
+  const std::vector<std::string> metrics = metrics_of(values, columns);
+  if (metrics.empty()) return {};
+  const bool takes_time = std::any_of(values.begin(), values.end(), [](const TapValues& job) {
+    const auto found = job.find(kAgainstTime);
+    return found != job.end() && found->second.back() > 0.0;
+  });
+  Json by = Json::array();
+  Json sets = Json::array();
+  for (const std::vector<std::string>& one : keys) {
+    const std::string name = one.empty() ? "all jobs" : fmt::format("{}", fmt::join(one, ", "));
+    by.push_back(name);
+    for (const std::string& metric : metrics) {
+      for (const char* const against : {kAgainstTaps, kAgainstTime}) {
+        if (against == kAgainstTime && !takes_time) continue;
+        const GroupCurves made = make_group_curves(sweep, results, values, {one, metric, against, nullptr, true});
+        Json curves = Json::array();
+        for (const GroupCurve& curve : made.curves) {
+          if (!curve.points.empty()) curves.push_back(json_of_curve(curve));
+        }
+        sets.push_back({{"metric", metric},
+                        {"against", against},
+                        {"by", name},
+                        {"over", curve_units_words(made)},
+                        {"remarks", curve_remarks(made)},
+                        {"curves", curves}});
+      }
+    }
+  }
+  return {{"metrics", metrics}, {"by", by}, {"sets", sets}};
+}
+
+}  // namespace palpate
