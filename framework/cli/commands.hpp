@@ -142,7 +142,7 @@ struct CompareArguments {
   std::vector<int> at;               ///< numbers of taps; none: as the jobs ended
   std::optional<std::string> until;  ///< or once they were that good
   bool ratio = false;
-  bool table = false;
+  std::string format = "text";  ///< of what is printed: text, markdown, csv, json or latex
   std::optional<int> workers;
 };
 int compare(Program& program, const CompareArguments& arguments);

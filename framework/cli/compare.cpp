@@ -10,11 +10,15 @@
 #include "record/resolved.hpp"
 #include "sweep/earlier_results.hpp"
 
+#include <palpate/error.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
+#include <utility>
 
 namespace palpate::cli {
 namespace {
@@ -57,6 +61,32 @@ std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
   return out;
 }
 
+/// What the format shows. Throws Error where pairs are asked for that it has no place for.
+CompareExtent extent_of(const CompareArguments& arguments) {
+  const bool pairs = arguments.format != "markdown" && arguments.format != "latex";
+  for (const char* const option : {arguments.ratio ? "--ratio" : "", arguments.baseline ? "--baseline" : ""}) {
+    if (!pairs && *option != '\0')
+      throw Error("command line",
+                  fmt::format("{}: a table as {} has groups alone, and no pairs", option, arguments.format),
+                  "'--format text', csv or json has both");
+  }
+  if (pairs) return CompareExtent::pairs;
+  return arguments.format == "latex" ? CompareExtent::intervals : CompareExtent::means;
+}
+
+/// The rows of all comparisons for programs: as CSV, or as a list of JSON objects, one a line.
+std::string rows_text(const std::vector<Comparison>& comparisons, const CompareArguments& arguments) {
+  std::vector<Row> rows;
+  for (const Comparison& one : comparisons) {
+    std::vector<Row> more = compare_rows(one, arguments.where.value_or(""));
+    std::move(more.begin(), more.end(), std::back_inserter(rows));
+  }
+  if (arguments.format == "csv") return to_csv(rows);
+  std::string out = "[";
+  for (const Row& row : rows) out += (&row == &rows.front() ? "\n" : ",\n") + to_json_line(row);
+  return out + "\n]\n";
+}
+
 /// All that is asked, of the jobs as they ended or as they were at some occasions; none if it was interrupted. Made as
 /// a whole before anything is shown: an unknown metric is no reason for half of an answer.
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
@@ -67,7 +97,7 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
   const auto add = [&](const std::vector<Row>& results, const std::optional<Occasion>& occasion) {
     for (const std::string& metric : arguments.metrics) {
       const CompareQuery query{arguments.by,       metric,          where ? &*where : nullptr,
-                               arguments.baseline, arguments.ratio, arguments.table};
+                               arguments.baseline, arguments.ratio, extent_of(arguments)};
       comparisons.push_back(palpate::compare(sweep, results, query));
       comparisons.back().occasion = occasion;
     }
@@ -81,7 +111,8 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
   // What cannot be compared is found out before anything is computed; of which jobs a condition holds is not known yet.
   for (const std::string& metric : arguments.metrics) {
     if (arguments.until && metric == kReached) continue;
-    palpate::compare(sweep, sweep_results(sweep), {arguments.by, metric, nullptr, arguments.baseline, false, true});
+    palpate::compare(sweep, sweep_results(sweep),
+                     {arguments.by, metric, nullptr, arguments.baseline, false, CompareExtent::means});
   }
   const auto results = results_at(program, sweep, occasions, arguments.workers);
   if (!results) return std::nullopt;
@@ -92,11 +123,16 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
 }  // namespace
 
 int compare(Program& program, const CompareArguments& arguments) {
+  extent_of(arguments);
   const Sweep sweep = read_sweep(arguments.directory);
   const auto comparisons = compare_all(program, sweep, arguments);
   if (!comparisons) return kInterrupted;
-  if (arguments.table) {
-    print_text(means_table(*comparisons));
+  if (arguments.format == "csv" || arguments.format == "json") {
+    print_data(rows_text(*comparisons, arguments));
+    return kDone;
+  }
+  if (arguments.format != "text") {
+    print_text(arguments.format == "latex" ? latex_table(*comparisons) : means_table(*comparisons));
     return kDone;
   }
   for (const Comparison& one : *comparisons) print_out("{}\n", compare_tables(one));

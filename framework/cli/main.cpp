@@ -307,9 +307,8 @@ void add_compare(CommandLine& line) {
       ->required();
   sub->add_option("--where", line.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"")
       ->type_name("CONDITION");
-  CLI::Option* baseline =
-      sub->add_option("--baseline", line.compare.baseline, "compare all groups with this one only: uncertainty")
-          ->type_name("GROUP");
+  sub->add_option("--baseline", line.compare.baseline, "compare all groups with this one only: uncertainty")
+      ->type_name("GROUP");
   CLI::Option* at = list("--at", line.compare.at, "NUMBERS",
                          "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, "
                          "and kept")
@@ -319,15 +318,19 @@ void add_compare(CommandLine& line) {
                   "was counts as it ended")
       ->type_name("COLUMN=VALUE")
       ->excludes(at);
-  CLI::Option* ratio = sub->add_flag("--ratio", line.compare.ratio, "of every pair also the ratio of the means");
-  sub->add_flag("--table", line.compare.table, "the means alone, all metrics and numbers of taps in one Markdown table")
-      ->excludes(baseline)
-      ->excludes(ratio);
+  sub->add_flag("--ratio", line.compare.ratio, "of every pair also the ratio of the means");
+  sub->add_option(
+         "--format", line.compare.format,
+         "what is printed: text for people, which also leaves CSV files beside results.csv; csv or json, groups "
+         "and pairs; latex, a table for booktabs with means, intervals and n; markdown, a table of the means")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"text", "markdown", "csv", "json", "latex"}))
+      ->capture_default_str();
   sub->add_option("-j", line.compare.workers, "with --at or --until, jobs at a time; if not given, the number of cores")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate compare runs/many/* --by acquisition --metric on_surface_taps",
-             "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --table"});
+             "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --format latex"});
 }
 
 void add_curves(CommandLine& line) {

@@ -55,5 +55,33 @@ TEST(MeansTable, SaysWhatIsInNoMeanAndLeavesOutWhatIsLeftOut) {
             "\n2 jobs failed and 1 have not ended: they are in no mean.\n");
 }
 
+TEST(LatexTable, HasMeansWithTheirIntervalsAndNBetweenTheRulesOfBooktabs) {
+  Comparison one = comparison("rmse_m", Unit::metre, 17, {group("out_line", 4, 0.0261), group("[a, b]", 3, 0.0412)});
+  one.by_seed = true;
+  one.groups[0].mean.clusters = 4;
+  one.groups[1].mean.clusters = 3;
+  one.groups[0].mean.interval = {0.0242, 0.0281};
+  EXPECT_EQ(latex_table({one}),
+            "% \\usepackage{booktabs}\n"
+            "% mean [95 % interval of the mean] and number of jobs; units of the intervals: 3 to 4 seeds\n"
+            "% rmse_m: mean over the runs that have one (else no truth is known).\n"
+            "\\begin{tabular}{lrrr}\n\\toprule\nstrategy & taps & rmse\\_m [mm] & $n$ \\\\\n\\midrule\n"
+            "out\\_line & 17 & $26\\ [24, 28]$ & 4 \\\\\n"
+            "{[a, b]} & 17 & $41$ & 3 \\\\\n"
+            "\\bottomrule\n\\end{tabular}\n");
+}
+
+TEST(LatexTable, HasNForEachMetricWhereTheyDifferAndNoCommandOfAName) {
+  const std::string table =
+      latex_table({comparison("rmse_m", Unit::metre, {}, {group("a&b\\c%~^{}$#", 4, 0.0261)}),
+                   comparison("first_hit_tap", Unit::none, {}, {group("a&b\\c%~^{}$#", 0, 0.0)})});
+  EXPECT_NE(table.find("{lrrrr}"), std::string::npos) << table;
+  EXPECT_NE(
+      table.find(
+          "\na\\&b\\textbackslash{}c\\%\\textasciitilde{}\\textasciicircum{}\\{\\}\\$\\# & $26$ & 4 & -- & 0 \\\\\n"),
+      std::string::npos)
+      << table;
+}
+
 }  // namespace
 }  // namespace palpate

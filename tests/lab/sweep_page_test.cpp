@@ -120,7 +120,8 @@ TEST_F(LargeSweep, HasAllJobsInItsTableItsComparisonAndTheList) {
     EXPECT_EQ(rows[i].at("taps"), "3");
     EXPECT_EQ(rows[i].at("rmse_m"), FakedJob::failed(index) ? "" : csv_cell(FakedJob::error(index)));
   }
-  const Comparison compared = compare(read, results, {{"acquisition"}, "rmse_m", nullptr, {}, false, true});
+  const Comparison compared =
+      compare(read, results, {{"acquisition"}, "rmse_m", nullptr, {}, false, CompareExtent::means});
   ASSERT_EQ(compared.groups.size(), 2U);
   EXPECT_EQ(compared.groups[0].mean.count, 1000U);
   EXPECT_EQ(compared.groups[1].mean.count, 980U) << "all that failed are of this one";

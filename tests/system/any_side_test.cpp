@@ -311,7 +311,7 @@ TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
   const fs::path sweep = swept(
       {"acquisition=random,discovery", "scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=8"}, config());
   const Ended ended =
-      palpate({"compare", sweep, "--by", "acquisition", "--metric", "nearest_m", "--at", "5", "--table"});
+      palpate({"compare", sweep, "--by", "acquisition", "--metric", "nearest_m", "--at", "5", "--format", "markdown"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const fs::path alone =
       ran({"scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=5", "acquisition=random"}, config());

@@ -91,7 +91,7 @@ TEST_F(Benchmark, TheDefaultIsRightWithoutEffectsAndHonestWithThem) {
 
 TEST_F(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
   const fs::path directory = narrowed("scene=object_i,ring");
-  const Words words = "--by strategy,scene.effects --metric found,rmse_m,first_hit_tap --at 8,20 --table";
+  const Words words = "--by strategy,scene.effects --metric found,rmse_m,first_hit_tap --at 8,20 --format markdown";
   const Ended ended = compare(directory, words);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("| strategy | scene.effects | taps | found | rmse_m [mm] | first_hit_tap |\n"
@@ -170,7 +170,7 @@ TEST_F(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
 TEST_F(Benchmark, TakesANumberOfTapsOnceAndAConditionAsItHeldThen) {
   const fs::path directory = cubes(8);
   const Words words =
-      Words("--by strategy --metric rmse_m,found --table --where") + Words{"off_surface_taps <= 3", "--at"};
+      Words("--by strategy --metric rmse_m,found --format markdown --where") + Words{"off_surface_taps <= 3", "--at"};
   const Ended once = compare(directory, words + "3");
   EXPECT_EQ(once.status, 0) << once.err;
   EXPECT_EQ(lines(once.out), 4) << once.out;
@@ -196,7 +196,7 @@ TEST_F(Benchmark, CountsAJobThatNeverGetsThereAsItEnded) {
   }
   EXPECT_EQ(csv_rows(text_of(directory / "compare_strategy_robot_seconds_until_rmse_m_0.015.csv"))[0].at("never"), "2");
   EXPECT_EQ(compare(directory, words).err.find("jobs done"), std::string::npos) << "nothing is computed twice";
-  EXPECT_THAT(compare(directory, "--by strategy --metric robot_seconds --table --until rmse_m=15mm").out,
+  EXPECT_THAT(compare(directory, "--by strategy --metric robot_seconds --format markdown --until rmse_m=15mm").out,
               HasSubstr("\n2 jobs never got there and count as they ended.\n"));
 }
 
@@ -238,8 +238,12 @@ TEST_F(Benchmark, RefusesWhatCannotBeShown) {
   EXPECT_THAT(refusal("--until rmse_m=8s"), HasSubstr("--until rmse_m"));
   EXPECT_EQ(refusal("--at 4,9"), "command line: --at: no job made 9 taps, the most are 8\n");
   EXPECT_THAT(refusal("--at 0"), HasSubstr("--at"));
-  EXPECT_THAT(refusal("--table --ratio"), HasSubstr("--ratio excludes --table"));
-  EXPECT_THAT(refusal("--table --baseline grid"), HasSubstr("--baseline excludes --table"));
+  EXPECT_EQ(
+      refusal("--format markdown --ratio"),
+      "command line: --ratio: a table as markdown has groups alone, and no pairs, '--format text', csv or json has "
+      "both\n");
+  EXPECT_THAT(refusal("--format latex --baseline grid"), StartsWith("command line: --baseline: a table as latex"));
+  EXPECT_THAT(refusal("--format tex"), HasSubstr("latex"));
   EXPECT_THAT(refusal("--at 4 --metric rmse"), HasSubstr("results.csv has no column 'rmse'"));
   EXPECT_FALSE(fs::exists(directory / "results_at_4.csv")) << "found out before anything is computed";
 }

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `palpate compare` as a user calls it: tables, the CSV beside results.csv, and what it refuses.
+#include "config/tree.hpp"
+#include "record/json.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cstdlib>
 
 namespace palpate {
 namespace {
@@ -87,6 +91,40 @@ TEST_F(Compare, ShowsATableForEachMetricNamedInAListOrOneByOne) {
   EXPECT_THAT(list.out, HasSubstr("\nfound by acquisition; more is better\n"));
   EXPECT_TRUE(fs::exists(directory / "compare_acquisition_rmse_m.csv"));
   EXPECT_TRUE(fs::exists(directory / "compare_acquisition_found.csv"));
+}
+
+TEST_F(Compare, PrintsTheRowsOfItsTableAsCsvAndJsonAndLeavesNothingThen) {
+  const fs::path directory = strategies();
+  const Words words = "--by acquisition --metric rmse_m,found";
+  const Ended csv = compare(directory, words + "--format csv");
+  const Ended list = compare(directory, words + "--format json");
+  EXPECT_FALSE(fs::exists(directory / "compare_acquisition_rmse_m.csv"));
+  const std::vector<Cells> rows = csv_rows(csv.out);
+  ASSERT_EQ(rows.size(), 6U) << "two groups and a pair of each metric";
+  const std::string object = "{\"rows\": " + list.out + "}";
+  const Tree tree = *parse_json(object, 0, object.size(), "stdout").find("rows");
+  ASSERT_EQ(tree.items.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const char* name : {"kind", "metric", "group", "n", "mean", "low_95", "high_95"})
+      EXPECT_EQ(tree.items[i].find(name)->text, rows[i].at(name)) << i << " " << name;
+  }
+  compare(directory, words);
+  const std::vector<Cells> left = csv_rows(text_of(directory / "compare_acquisition_rmse_m.csv"));
+  for (std::size_t i = 0; i < left.size(); ++i) EXPECT_EQ(rows[i].at("mean"), left[i].at("mean"));
+}
+
+TEST_F(Compare, PrintsATableThatLatexCompilesWithBooktabs) {
+  const fs::path directory = strategies();
+  const Ended ended = compare(directory, "--by acquisition,taps --metric rmse_m,footprint_iou --format latex");
+  EXPECT_THAT(ended.out, HasSubstr("\nuncertainty & 8 & $"));
+  EXPECT_THAT(ended.out, HasSubstr("rmse\\_m [mm] & footprint\\_iou & $n$ \\\\\n\\midrule\n"));
+  if (std::system("kpsewhich booktabs.sty > /dev/null 2>&1 && command -v pdflatex > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "nothing compiles it: texlive-latex-recommended is not installed";
+  write("table.tex",
+        "\\documentclass{article}\n\\usepackage{booktabs}\n\\begin{document}\n" + ended.out + "\\end{document}\n");
+  const std::string command = "cd '" + here().string() + "' && pdflatex -interaction=nonstopmode -halt-on-error table";
+  EXPECT_EQ(std::system((command + " > latex.out 2>&1").c_str()), 0) << text_of(here() / "latex.out");
+  EXPECT_THAT(text_of(here() / "table.pdf"), StartsWith("%PDF"));
 }
 
 TEST_F(Compare, WithAConditionHasAFileOfItsOwnThatNamesIt) {

@@ -234,7 +234,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.by_seed = units.are_seeds();
   const Values paired = others(sweep.keys, query.by);
   const std::vector<Collected> groups = collect(sweep, results, columns, query, units, out);
-  for (const Collected& group : groups) out.groups.push_back(summarise(group, query.only_groups));
+  for (const Collected& group : groups) out.groups.push_back(summarise(group, query.extent == CompareExtent::means));
   check_values(out, sweep);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -243,7 +243,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   const std::size_t baseline = query.baseline ? find_baseline(out.groups, *query.baseline) : kept.front();
   out.compared = kept.size();
   out.ratios = query.ratios;
-  if (query.only_groups) return out;
+  if (query.extent != CompareExtent::pairs) return out;
   out.one_baseline = query.baseline || kept.size() > kMostGroupsInPairs;
   for (auto second = kept.begin(); second != kept.end(); ++second) {
     if (out.one_baseline && *second != baseline) continue;

@@ -19,6 +19,10 @@
 
 namespace palpate {
 
+/// How much of a comparison is computed: the means of the groups, with their intervals, or with all pairs, too.
+/// Intervals and pairs are what takes time.
+enum class CompareExtent { means, intervals, pairs };
+
 /// What is asked.
 struct CompareQuery {
   std::vector<std::string> by;          ///< swept keys; jobs that have the same values of them are a group
@@ -26,7 +30,7 @@ struct CompareQuery {
   const Condition* where = nullptr;     ///< on the columns of results.csv: other jobs are left out; null for none
   std::optional<std::string> baseline;  ///< the group that all others are compared with: "weighted, rbf"
   bool ratios = false;                  ///< of the means of each pair, too
-  bool only_groups = false;             ///< no pairs, and no intervals, which are what takes time
+  CompareExtent extent = CompareExtent::pairs;
 };
 
 struct ComparedGroup {

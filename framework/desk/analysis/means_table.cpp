@@ -7,6 +7,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -26,24 +31,84 @@ Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, st
 }
 
 /// A '|' in a name would end its cell.
-std::string cell(std::string text) {
+std::string markdown_cell(std::string text) {
   for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) text.insert(at, 1, '\\');
   return text;
 }
 
-std::string line_of(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
+std::string markdown_line(const std::vector<std::string>& cells) {
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
+
+/// Text in which LaTeX sees no command. What begins with '[' would be taken for an argument of the line before it.
+std::string latex_cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (std::string_view("&%$#_{}").find(c) != std::string_view::npos) {
+      out += std::string("\\") + c;
+    } else if (c == '\\' || c == '~' || c == '^') {
+      out += c == '\\' ? "\\textbackslash{}" : c == '~' ? "\\textasciitilde{}" : "\\textasciicircum{}";
+    } else {
+      out += c;
+    }
+  }
+  return !out.empty() && out.front() == '[' ? "{" + out + "}" : out;
+}
+
+std::string latex_line(const std::vector<std::string>& cells) {
+  return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
+}
+
+/// "$3.21\ [3.02, 3.40]$": as mathematics, so that a minus is one.
+std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
+  if (mean.count == 0) return "--";
+  const auto& ends = mean.interval;
+  return fmt::format("${}{}$", scale.number(mean.mean),
+                     ends ? fmt::format("\\ [{}, {}]", scale.number(ends->low), scale.number(ends->high)) : "");
+}
 
 bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps(); }
 
-std::string head(const std::vector<Comparison>& comparisons, const std::vector<Scale>& scales) {
-  const Comparison& first = comparisons.front();
-  std::vector<std::string> names;
-  for (const std::string& key : first.by) names.push_back(cell(key));
-  std::vector<std::string> sides(names.size(), "---");
-  if (has_taps(first)) names.emplace_back("taps");
-  for (std::size_t i = 0; i < scales.size(); ++i) names.push_back(cell(scales[i].title(comparisons[i].metric.name)));
-  sides.resize(names.size(), "---:");
-  return line_of(names) + fmt::format("|{}|\n", fmt::join(sides, "|"));
+/// The comparisons of a table: `metrics` at an occasion, then as many at the next one.
+struct MeansLayout {
+  std::size_t metrics = 0;
+  std::vector<Scale> scales;  ///< of each metric
+};
+
+MeansLayout layout_of(const std::vector<Comparison>& comparisons) {
+  MeansLayout out;
+  out.metrics =
+      static_cast<std::size_t>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& one) {
+        return one.occasion == comparisons.front().occasion;
+      }));
+  for (std::size_t metric = 0; metric < out.metrics; ++metric)
+    out.scales.push_back(scale_of(comparisons, metric, out.metrics));
+  return out;
+}
+
+/// Calls `write` for each row: its names, and the group of each metric.
+void for_each_row(
+    const std::vector<Comparison>& comparisons, const MeansLayout& layout,
+    const std::function<void(std::vector<std::string> names, const std::vector<const ComparedGroup*>& groups)>& write) {
+  for (std::size_t block = 0; block < comparisons.size(); block += layout.metrics) {
+    const Comparison& first = comparisons[block];
+    for (std::size_t i = 0; i < first.groups.size(); ++i) {
+      if (first.groups[i].counts.all_are(Fate::left_out)) continue;
+      std::vector<std::string> names = first.groups[i].values;
+      if (has_taps(first)) names.push_back(std::to_string(*first.occasion->taps()));
+      std::vector<const ComparedGroup*> groups;
+      for (std::size_t metric = 0; metric < layout.metrics; ++metric)
+        groups.push_back(&comparisons[block + metric].groups[i]);
+      write(std::move(names), groups);
+    }
+  }
+}
+
+/// The titles of the columns that name a row.
+std::vector<std::string> name_titles(const Comparison& first) {
+  std::vector<std::string> out = first.by;
+  if (has_taps(first)) out.emplace_back("taps");
+  return out;
 }
 
 /// What is in no mean, or not in all: a metric that some runs lack, jobs that failed or have not ended.
@@ -79,29 +144,67 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
 }  // namespace
 
 std::string means_table(const std::vector<Comparison>& comparisons) {
-  const auto metrics =
-      static_cast<std::size_t>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& one) {
-        return one.occasion == comparisons.front().occasion;
-      }));
-  std::vector<Scale> scales;
-  for (std::size_t metric = 0; metric < metrics; ++metric) scales.push_back(scale_of(comparisons, metric, metrics));
-  std::string out = head(comparisons, scales);
-  for (std::size_t block = 0; block < comparisons.size(); block += metrics) {
-    const Comparison& first = comparisons[block];
-    for (std::size_t i = 0; i < first.groups.size(); ++i) {
-      if (first.groups[i].counts.all_are(Fate::left_out)) continue;
-      std::vector<std::string> cells;
-      for (const std::string& value : first.groups[i].values) cells.push_back(cell(value));
-      if (has_taps(first)) cells.push_back(std::to_string(*first.occasion->taps()));
-      for (std::size_t metric = 0; metric < metrics; ++metric) {
-        const MeanEstimate& mean = comparisons[block + metric].groups[i].mean;
-        cells.push_back(mean.count > 0 ? scales[metric].number(mean.mean) : "-");
-      }
-      out += line_of(cells);
+  const MeansLayout layout = layout_of(comparisons);
+  std::vector<std::string> titles = name_titles(comparisons.front());
+  std::vector<std::string> sides(comparisons.front().by.size(), "---");
+  for (std::size_t i = 0; i < layout.metrics; ++i) titles.push_back(layout.scales[i].title(comparisons[i].metric.name));
+  sides.resize(titles.size(), "---:");
+  for (std::string& title : titles) title = markdown_cell(title);
+  std::string out = markdown_line(titles) + fmt::format("|{}|\n", fmt::join(sides, "|"));
+  for_each_row(comparisons, layout, [&](std::vector<std::string> cells, const auto& groups) {
+    for (std::string& cell : cells) cell = markdown_cell(cell);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      const MeanEstimate& mean = groups[i]->mean;
+      cells.push_back(mean.count > 0 ? layout.scales[i].number(mean.mean) : "-");
     }
-  }
-  const std::string notes = remarks(comparisons, metrics);
+    out += markdown_line(cells);
+  });
+  const std::string notes = remarks(comparisons, layout.metrics);
   return out + (notes.empty() ? "" : "\n" + notes);
+}
+
+std::string latex_table(const std::vector<Comparison>& comparisons) {
+  const Comparison& first = comparisons.front();
+  const MeansLayout layout = layout_of(comparisons);
+  // One column with n where it is the same for all metrics.
+  bool same = true;
+  std::size_t least = SIZE_MAX;
+  std::size_t most = 0;
+  std::string lines;
+  for_each_row(comparisons, layout, [&](const auto&, const auto& groups) {
+    for (const ComparedGroup* group : groups) {
+      same = same && group->mean.count == groups.front()->mean.count;
+      least = std::min(least, group->mean.clusters);
+      most = std::max(most, group->mean.clusters);
+    }
+  });
+  std::vector<std::string> titles = name_titles(first);
+  for (std::string& title : titles) title = latex_cell(title);
+  std::string sides = std::string(first.by.size(), 'l') + std::string(titles.size() - first.by.size(), 'r');
+  for (std::size_t i = 0; i < layout.metrics; ++i) {
+    titles.push_back(latex_cell(layout.scales[i].title(comparisons[i].metric.name)));
+    sides += 'r';
+    if (same && i + 1 < layout.metrics) continue;
+    titles.emplace_back("$n$");
+    sides += 'r';
+  }
+  for_each_row(comparisons, layout, [&](std::vector<std::string> cells, const auto& groups) {
+    for (std::string& cell : cells) cell = latex_cell(cell);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      cells.push_back(latex_estimate(layout.scales[i], groups[i]->mean));
+      if (!same || i + 1 == groups.size()) cells.push_back(std::to_string(groups[i]->mean.count));
+    }
+    lines += latex_line(cells);
+  });
+  const std::string units = units_words(most, first.by_seed);
+  std::string out = "% \\usepackage{booktabs}\n";
+  out += fmt::format("% mean [95 % interval of the mean] and number of jobs; units of the intervals: {}\n",
+                     least < most ? fmt::format("{} to {}", least, units) : units);
+  std::string notes = remarks(comparisons, layout.metrics);
+  for (std::size_t begin = 0, end; (end = notes.find('\n', begin)) != std::string::npos; begin = end + 1)
+    out += "% " + notes.substr(begin, end - begin) + "\n";
+  return out + fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n{}\\bottomrule\n\\end{{tabular}}\n",
+                           sides, latex_line(titles), lines);
 }
 
 }  // namespace palpate
