@@ -130,6 +130,7 @@ struct ParetoArguments {
   std::string cost;
   std::string error;
   std::optional<std::string> within;
+  std::optional<std::string> where;
 };
 int pareto(Program& program, const ParetoArguments& arguments);
 

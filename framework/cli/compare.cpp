@@ -4,7 +4,6 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
-#include "config/hash.hpp"
 #include "config/trouble.hpp"
 #include "record/files.hpp"
 #include "record/resolved.hpp"
@@ -27,12 +26,10 @@ namespace fs = std::filesystem;
 
 /// Beside results.csv. Comparisons on other conditions, or after fewer taps, have files of their own.
 fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std::string& where) {
-  constexpr std::size_t kDigits = 6;
   std::string name = fmt::format("compare_{}_{}", slug(fmt::format("{}", fmt::join(comparison.by, "_"))),
                                  slug(comparison.metric.name));
   if (comparison.occasion) name += "_" + comparison.occasion->key();
-  if (!where.empty()) name += "_where_" + hash_of(where).substr(0, kDigits);
-  return sweep.directory / (name + ".csv");
+  return sweep.directory / (name + where_suffix(where) + ".csv");
 }
 
 /// At each of the occasions the rows of results.csv as they would be, had all jobs stopped there. What is missing is

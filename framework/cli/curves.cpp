@@ -38,7 +38,8 @@ std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arg
   }
   if (!out.empty()) return out;
   const std::string groups = by.empty() ? "all" : slug(fmt::format("{}", fmt::join(by, "_")));
-  const std::string name = fmt::format("curves_{}_{}_{}", groups, slug(arguments.metric), arguments.against);
+  const std::string name = fmt::format("curves_{}_{}_{}{}", groups, slug(arguments.metric), arguments.against,
+                                       where_suffix(arguments.where.value_or("")));
   return {sweep.directory / (name + ".csv"), sweep.directory / (name + ".png")};
 }
 

@@ -284,6 +284,8 @@ void add_rest(CommandLine& line) {
   sub->add_option("--within", line.pareto.within,
                   "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm")
       ->type_name("VALUE");
+  sub->add_option("--where", line.pareto.where, "only jobs of which this holds: \"scene == ring\"")
+      ->type_name("CONDITION");
   show(sub, {"palpate pareto runs/many/* --cost robot_seconds --error rmse_m",
              "palpate pareto runs/many/* --cost taps --error rmse_m --within 5mm"});
 

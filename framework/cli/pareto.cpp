@@ -27,9 +27,10 @@ std::string title_of(const std::string& name, const Pareto& pareto) {
 }
 
 /// The picture and the table beside results.csv.
-void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& name, const std::optional<double>& bound,
-                 const Setting* chosen) {
-  const fs::path stem = sweep.directory / fmt::format("pareto_{}_{}", slug(pareto.cost.name), slug(pareto.error.name));
+void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& name, const std::string& where,
+                 const std::optional<double>& bound, const Setting* chosen) {
+  const fs::path stem = sweep.directory / fmt::format("pareto_{}_{}{}", slug(pareto.cost.name), slug(pareto.error.name),
+                                                      where_suffix(where));
   write_file(stem.string() + ".csv", to_csv(pareto_rows(pareto)));
   const bool empty = std::all_of(pareto.settings.begin(), pareto.settings.end(),
                                  [](const Setting& one) { return one.cost.count == 0; });
@@ -64,7 +65,10 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
 
 int pareto(Program&, const ParetoArguments& arguments) {
   const Sweep sweep = read_sweep(arguments.directory);
-  const Pareto pareto = make_pareto(sweep, sweep_results(sweep), arguments.cost, arguments.error);
+  std::optional<Condition> where;
+  if (arguments.where) where = Condition::of_command_line(*arguments.where);
+  const Pareto pareto =
+      make_pareto(sweep, sweep_results(sweep), arguments.cost, arguments.error, where ? &*where : nullptr);
   const bool asked = arguments.within.has_value();
   const std::optional<double> bound = asked ? std::optional(read_bound(pareto, *arguments.within)) : std::nullopt;
   const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
@@ -74,7 +78,7 @@ int pareto(Program&, const ParetoArguments& arguments) {
   asked ? mention(pareto_table(pareto)) : print_text(pareto_table(pareto));
   // First what was asked for: the directory may be one where nothing can be written.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);
-  write_files(sweep, pareto, sweep_name(sweep), bound, chosen);
+  write_files(sweep, pareto, sweep_name(sweep), arguments.where.value_or(""), bound, chosen);
   if (!bound || chosen != nullptr) return kDone;
   const Setting* best = best_bounded(pareto);
   throw Error("", fmt::format("no setting keeps to {} within {}", pareto.error.name, bound_words(pareto, *bound)),

@@ -4,6 +4,7 @@
 #include "cli/output.hpp"
 
 #include "cli/display.hpp"
+#include "config/hash.hpp"
 #include "launch/children.hpp"
 
 #include <fmt/format.h>
@@ -77,6 +78,11 @@ bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, 
   listen_for_interrupts();
   return in_children(
       jobs.size(), together, [&](std::size_t i) { work(jobs[i]); }, program.interrupted, show);
+}
+
+std::string where_suffix(const std::string& where) {
+  constexpr std::size_t kDigits = 6;
+  return where.empty() ? "" : "_where_" + hash_of(where).substr(0, kDigits);
 }
 
 std::string values_text(const Sweep& sweep, const Job& job, const char* gap) {

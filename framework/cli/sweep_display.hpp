@@ -35,6 +35,9 @@ class SweepLine {
 bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
                   const std::function<void(std::size_t job)>& work);
 
+/// Ends the name of a file about the jobs of which a condition holds: "_where_1f2e3d"; "" for no condition.
+std::string where_suffix(const std::string& where);
+
 /// What a job has of the swept keys, each behind a `gap`: " taps=17 seed=3".
 std::string values_text(const Sweep& sweep, const Job& job, const char* gap);
 

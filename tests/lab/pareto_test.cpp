@@ -17,6 +17,7 @@
 namespace palpate {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -295,6 +296,64 @@ TEST(ParetoScript, QuotesEveryNameSoThatNothingInItIsACommand) {
   EXPECT_THAT(script, Not(HasSubstr("\nset output")));
   EXPECT_THAT(script, Not(HasSubstr("x'; ")));
   EXPECT_THAT(script, HasSubstr("x''; system("));
+}
+
+/// A sweep of two strategies on an easy scene and on a hard one, where each is worse than any on the easy one.
+Pareto on_two_scenes(const char* where = nullptr) {
+  static Sweep sweep{"runs/x/0123456789ab", {"acquisition", "scene", "seed"}, {}};
+  static std::vector<Row> results;
+  sweep.jobs.clear();
+  results.clear();
+  for (const char* scene : {"cube", "ring"}) {
+    for (const char* strategy : {"a", "b"}) {
+      for (const int seed : {1, 2}) {
+        const double hard = scene == std::string_view("ring") ? 1.0 : 0.0;
+        const double slow = strategy == std::string_view("b") ? 1.0 : 0.0;
+        const auto index = static_cast<int>(sweep.jobs.size());
+        sweep.jobs.push_back({index, "id", {strategy, scene, std::to_string(seed)}});
+        Row row;
+        row.add("job", index);
+        row.add("status", "done");
+        row.add("rmse_m", 0.1 + hard - 0.05 * slow + 0.001 * seed);
+        row.add("robot_seconds", 10.0 + 10.0 * hard + slow + 0.1 * seed);
+        results.push_back(std::move(row));
+      }
+    }
+  }
+  if (where == nullptr) return make_pareto(sweep, results, "robot_seconds", "rmse_m");
+  const Condition condition(Tree::scalar(where, true));
+  return make_pareto(sweep, results, "robot_seconds", "rmse_m", &condition);
+}
+
+TEST(ParetoOfScenes, HasAFrontOfEachAndNoneOfSeveral) {
+  const Pareto made = on_two_scenes();
+  EXPECT_EQ(made.scenes, (std::vector<std::string>{"scene=cube", "scene=ring"}));
+  ASSERT_EQ(made.settings.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(made.settings[i].scene, i / 2);
+    EXPECT_EQ(made.settings[i].front, static_cast<int>(i % 2) + 1)
+        << "the easy scene beats no strategy on the hard one";
+  }
+  EXPECT_THAT(pareto_table(made), HasSubstr("\n2 scenes, each with a front of its own\n"));
+  const std::string script = pareto_script(made, "two", {}, nullptr);
+  EXPECT_THAT(script, AllOf(HasSubstr("'front: scene=cube'"), HasSubstr("'front: scene=ring'")));
+}
+
+TEST(ParetoOfScenes, ChoosesWithinABoundOnOneSceneAlone) {
+  try {
+    read_bound(on_two_scenes(), "2 m");
+    FAIL() << "accepted";
+  } catch (const Error& trouble) {
+    EXPECT_STREQ(
+        trouble.what(),
+        "command line: --within: the sweep has 2 scenes, and what is best on one is not best on another, choose "
+        "one: --where \"scene == cube\"");
+  }
+  const Pareto ring = on_two_scenes("scene == ring");
+  EXPECT_EQ(ring.settings.size(), 2U);
+  const Setting* const cheapest = cheapest_within(ring, read_bound(ring, "2 m"));
+  ASSERT_NE(cheapest, nullptr);
+  EXPECT_EQ(cheapest->name, "acquisition=a, scene=ring");
 }
 
 }  // namespace

@@ -11,11 +11,15 @@
 namespace palpate {
 namespace {
 
+using ::testing::_;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
-/// The table of a job for each of `groups`, with three initial taps; each first hits at tap 2.
-std::string table_of(const std::vector<std::string>& keys, const std::vector<std::vector<std::string>>& groups) {
+/// The table of a job for each of `groups`, with three initial taps; each first hits at tap 2, and has one of `errors`.
+std::string table_of(const std::vector<std::string>& keys, const std::vector<std::vector<std::string>>& groups,
+                     const std::vector<double>& errors = {}) {
   Sweep sweep{"runs/x/0123456789ab", keys, {}};
   std::vector<Row> results;
   for (const std::vector<std::string>& values : groups) {
@@ -27,18 +31,40 @@ std::string table_of(const std::vector<std::string>& keys, const std::vector<std
     row.add("status", "done");
     row.add("first_hit_tap", 2);
     row.add("on_surface_taps", 7);
-    row.add("rmse_height_m", 0.021);
+    row.add("rmse_m", errors.empty() ? 0.021 : errors.at(static_cast<std::size_t>(index)));
+    row.add("footprint_iou", 0.8);
     results.push_back(std::move(row));
   }
   return sweep_table(sweep, results, [](std::size_t) { return 3; });
 }
 
 TEST(SweepTable, IsThisLetterByLetter) {
-  EXPECT_EQ(table_of({"kernel", "seed"}, {{"rbf", "1"}, {"matern52", "1"}}),
-            "group     runs  dead starts   found  failed  on-surface, live  on-surface, all  height cm, live\n"
-            "rbf          1         0.0%  100.0%       0           7 (7-7)          7 (7-7)    2.1 (2.1-2.1)\n"
-            "matern52     1         0.0%  100.0%       0           7 (7-7)          7 (7-7)    2.1 (2.1-2.1)\n"
-            "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n");
+  EXPECT_EQ(table_of({"kernel", "seed"}, {{"rbf", "1"}, {"matern52", "1"}}, {0.021, 0.0152}),
+            "group     runs  dead starts   found  on-surface, live  on-surface, all  rmse_m [mm]     footprint_iou\n"
+            "matern52     1         0.0%  100.0%           7 (7-7)          7 (7-7)   15 (15-15)  0.80 (0.80-0.80)\n"
+            "rbf          1         0.0%  100.0%           7 (7-7)          7 (7-7)   21 (21-21)  0.80 (0.80-0.80)\n"
+            "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n"
+            "The least rmse_m first.\n");
+}
+
+TEST(SweepTable, KeepsTheGroupsOfASceneTogetherEachWithTheLeastErrorFirst) {
+  const std::string table = table_of({"acquisition", "scene", "seed"},
+                                     {{"a", "cube", "1"}, {"a", "ring", "1"}, {"b", "cube", "1"}, {"b", "ring", "1"}},
+                                     {0.03, 0.01, 0.02, 0.04});
+  std::vector<std::string> groups;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) groups.push_back(line.substr(0, line.find("  ")));
+  EXPECT_THAT(groups, ElementsAre("group", "acquisition=b, scene=cube", "acquisition=a, scene=cube",
+                                  "acquisition=a, scene=ring", "acquisition=b, scene=ring", _,
+                                  "The least rmse_m first, scene by scene."));
+}
+
+TEST(SweepTable, NamesAGroupByTheKeysThatVaryAlone) {
+  const std::string table = table_of({"name", "kernel", "taps", "seed"},
+                                     {{"many", "rbf", "17", "1"}, {"many", "matern52", "17", "1"}}, {0.01, 0.02});
+  EXPECT_THAT(table, HasSubstr("\nrbf "));
+  EXPECT_THAT(table, Not(HasSubstr("many")));
+  EXPECT_THAT(table, Not(HasSubstr("17")));
 }
 
 TEST(SweepTable, KeepsItsNumbersToTheWidthOfAScreenThoughGroupsHaveLongNames) {
@@ -72,21 +98,20 @@ std::string table_of_seeds(const std::string& status, const std::optional<int>& 
 }
 
 TEST(SweepTable, HasNoSharesOfAGroupInWhichNoJobIsDone) {
-  EXPECT_THAT(table_of_seeds("failed", 3), HasSubstr("\nall seeds     2            -      -       2 "));
+  EXPECT_THAT(table_of_seeds("failed", 3), HasSubstr("\nall jobs     2            -      -       2 "));
 }
 
 TEST(SweepTable, HasNoDeadStartsWhereNoConfigTellsWhichTapsWereInitial) {
   Row fields;
   fields.add("first_hit_tap", 2);
-  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall seeds     2         0.0%  100.0%       0 "));
-  EXPECT_THAT(table_of_seeds("done", std::nullopt, fields),
-              HasSubstr("\nall seeds     2            -  100.0%       0 "));
+  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall jobs     2         0.0%  100.0%  "));
+  EXPECT_THAT(table_of_seeds("done", std::nullopt, fields), HasSubstr("\nall jobs     2            -  100.0%  "));
 }
 
 TEST(SweepTable, LeavesOutWhatIsNoNumber) {
   Row fields;
-  for (const char* name : {"first_hit_tap", "on_surface_taps", "rmse_height_m"}) fields.add(name, "x");
-  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall seeds     2       100.0%   0.0%       0 "));
+  for (const char* name : {"first_hit_tap", "on_surface_taps", "rmse_m", "footprint_iou"}) fields.add(name, "x");
+  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall jobs     2       100.0%   0.0%  "));
 }
 
 TEST(SweepTable, NamesAGroupOfJobsThatHaveNoneOfTheKeys) {
@@ -95,8 +120,8 @@ TEST(SweepTable, NamesAGroupOfJobsThatHaveNoneOfTheKeys) {
 }
 
 TEST(SweepTable, HasALineAGroupWhateverIsInItsName) {
-  const std::string table = table_of({"name", "seed"}, {{"two\nlines", "1"}});
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+  const std::string table = table_of({"name", "seed"}, {{"two\nlines", "1"}, {"one", "1"}});
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
 }
 
 }  // namespace

@@ -4,12 +4,15 @@
 #include "support/parts.hpp"
 
 #include <numeric>
+#include <tuple>
 
 namespace palpate {
 namespace {
 
 using ::testing::EndsWith;
 using ::testing::MatchesRegex;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 class SweepNumbers : public test::SweepPages {};
 
@@ -225,6 +228,58 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   const Browsed again = browse(directory, {drawn(1), kFront});
   ASSERT_EQ(again.values.size(), 1U);
   expect_front(again.values.at(0), directory, "robot_seconds", 1.0, "rmse_m", 1000.0);
+}
+
+TEST_P(SweepNumbers, HaveCurvesOfGroupsWithBandsForEachSceneAndNoFrontOfTwo) {
+  const fs::path directory = swept({paper_, "acquisition=weighted,uncertainty", "scene=object_i,object_ii", "taps=6",
+                                    "seed=range(0,5)", "candidates.count=16"});
+  report(directory);
+  const Browsed before = browse(directory, {drawn(1), "return document.getElementById('how_to_curves').textContent"});
+  EXPECT_THAT(before.values.at(0).get<std::string>(), StartsWith("palpate curves " + directory.string() + " computes"));
+  for (const char* metric : {"rmse_m", "footprint_iou"}) {
+    const test::Ended ended = test::palpate(
+        {"curves", directory.string(), "--metric", metric, "-o", fmt::format("{}.csv", metric)}, folder_.path());
+    ASSERT_EQ(ended.status, 0) << ended.err;
+  }
+  report(directory);
+  const std::string curves =
+      "return [0, 1].map((i) => { const e = document.getElementById(`curves_${i}`); return [e.closest('figure')."
+      "querySelector('figcaption').textContent, e.data.filter((t) => t.name).map((t, k) => [t.name, t.x, t.y, "
+      "e.data[3 * k].y, e.data[3 * k + 1].y])]; })";
+  const Browsed seen = browse(directory, {drawn(1), curves, choose("curve_of", "footprint_iou"), drawn(2), curves,
+                                          data_of("front", "d[0].x.length"), choose("scene", "object_ii"), drawn(3),
+                                          data_of("front", "d[0].text.concat(d[4].text).join()"),
+                                          "return document.querySelector('section pre').textContent"});
+  ASSERT_EQ(seen.values.size(), 7U);
+  for (const auto& [place, metric, factor] : {std::tuple(0U, "rmse_m", 100.0), std::tuple(2U, "footprint_iou", 1.0)}) {
+    const std::vector<Cells> rows = csv_rows(text_of(folder_.path() / fmt::format("{}.csv", metric)));
+    std::size_t compared = 0;
+    for (const json& scene : seen.values.at(place)) {
+      for (const json& curve : scene.at(1)) {
+        for (const Cells& row : rows) {
+          if (row.at("scene") != scene.at(0) || row.at("acquisition") != curve.at(0)) continue;
+          const std::size_t tap = std::stoul(row.at("at")) - 1;
+          EXPECT_EQ(curve.at(1).at(tap), std::stod(row.at("at")));
+          for (const auto& [column, name] :
+               {std::pair(2U, "mean"), std::pair(3U, "low_95"), std::pair(4U, "high_95")}) {
+            const json& number = curve.at(column).at(tap);
+            if (row.at(name).empty()) {
+              EXPECT_TRUE(number.is_null()) << name;
+              continue;
+            }
+            EXPECT_NEAR(number.get<double>(), factor * std::stod(row.at(name)), 1e-9) << name;
+          }
+          ++compared;
+        }
+      }
+    }
+    EXPECT_EQ(compared, 24U) << "two strategies on two scenes, six taps";
+  }
+  EXPECT_EQ(seen.values.at(3), 10) << "the jobs of one scene";
+  EXPECT_THAT(seen.values.at(5).get<std::string>(),
+              AllOf(HasSubstr("scene=object_ii"), Not(HasSubstr("scene=object_i,"))));
+  EXPECT_THAT(seen.values.at(6).get<std::string>(),
+              AllOf(HasSubstr("scene: [object_i, object_ii]\n"), HasSubstr("seed: [0, 1, 2, 3, 4]\n")));
 }
 
 // sweep_trouble_test.cpp has pages without WebGL, too.

@@ -159,7 +159,8 @@ inline Coverages coverages_of(const Population& from, std::size_t seeds, std::si
   for (int sample = 0; sample < samples; ++sample) {
     Random random(static_cast<std::uint64_t>(sample), fmt::format("{} {} {}", from.name, seeds, others));
     const DrawnSweep drawn = draw_sweep(from, seeds, others, copies, random);
-    const Comparison made = compare(drawn.sweep, drawn.results, {{"group"}, from.metric, nullptr, {}, false, CompareExtent::pairs});
+    const Comparison made =
+        compare(drawn.sweep, drawn.results, {{"group"}, from.metric, nullptr, {}, false, CompareExtent::pairs});
     for (std::size_t i = 0; i < 2; ++i) out.means.add(made.groups[i].mean.interval, drawn.truths[i]);
     out.differences.add(made.pairs.front().difference.interval, drawn.truths[1] - drawn.truths[0]);
   }

@@ -112,13 +112,19 @@ TEST_F(Pareto, NotesJobsThatHaveNotEndedAndComparesOnlyTheOthers) {
   EXPECT_THAT(ended.out, AllOf(HasSubstr("1 of 4 unfinished"), HasSubstr("are not compared\n")));
 }
 
-TEST_F(Pareto, NeverNamesASettingWithAFailedJobAndSaysSo) {
+TEST_F(Pareto, OfTwoScenesNamesASettingOnTheOneThatIsAskedForAndNeverOneWithAFailedJob) {
   const fs::path directory =
       swept("scene.placement=random scene.objects.0.length=10cm,40cm seed=range(0,3)", paper(), 1);
-  const Ended ended = pareto(directory, "--within 1m");
+  EXPECT_THAT(pareto(directory).out, HasSubstr("3 of 3 failed"));
+  EXPECT_THAT(
+      pareto(directory, "--within 1m").err,
+      StartsWith("command line: --within: the sweep has 2 scenes, and what is best on one is not best on another, "
+                 "choose one: --where \"scene.objects.0.length == 10cm\"\n"));
+  const Ended ended = pareto(directory, Words{"--within", "1m", "--where", "scene.objects.0.length == 10cm"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, StartsWith("# scene.objects.0.length=10cm\n"));
-  EXPECT_THAT(ended.err, HasSubstr("3 of 3 failed"));
+  EXPECT_THAT(ended.err, ContainsRegex("pareto_robot_seconds_rmse_m_where_[0-9a-f]+\\.png"));
+  EXPECT_EQ(pareto(directory, Words{"--within", "1m", "--where", "scene.objects.0.length == 40cm"}).status, 1);
 }
 
 TEST_F(Pareto, WithoutAPictureItSaysWhyAndTheTableIsStillRight) {

@@ -74,10 +74,12 @@ TEST_F(Sweeps, WithABadValueAreRefusedBeforeAnyJobStartsAndLeaveNothing) {
 
 /// The dead starts in a group's row of the table at the end of a sweep.
 std::string dead_starts(const std::string& table, const std::string& group) {
-  std::istringstream row(table.substr(table.find("\n" + group + " ") + 1));
-  std::string name, runs, dead;
-  row >> name >> runs >> dead;
-  EXPECT_EQ(name, group);
+  const auto begin = table.find("\n" + group + " ");
+  EXPECT_NE(begin, std::string::npos) << group << "\n" << table;
+  if (begin == std::string::npos) return {};
+  std::istringstream row(table.substr(begin + 1 + group.size()));
+  std::string runs, dead;
+  row >> runs >> dead;
   return dead;
 }
 
@@ -87,10 +89,10 @@ TEST_F(Sweeps, CountDeadStartsByTheInitialTapsOfEachGroup) {
   };
   const std::string one = table("1");
   const std::string eleven = table("11");
-  EXPECT_NE(dead_starts(one, "1"), dead_starts(eleven, "11")) << "else this tests nothing";
+  EXPECT_NE(dead_starts(one, "all jobs"), dead_starts(eleven, "all jobs")) << "else this tests nothing";
   for (const std::string& made : {table("1,11"), table("11,1")}) {
-    EXPECT_EQ(dead_starts(made, "1"), dead_starts(one, "1"));
-    EXPECT_EQ(dead_starts(made, "11"), dead_starts(eleven, "11"));
+    EXPECT_EQ(dead_starts(made, "1"), dead_starts(one, "all jobs"));
+    EXPECT_EQ(dead_starts(made, "11"), dead_starts(eleven, "all jobs"));
   }
 }
 
@@ -108,7 +110,7 @@ TEST_F(Sweeps, CountAsDeadStartsOfASearchWhatItNeverFound) {
   }
   EXPECT_GT(never, 0) << "else this tests nothing";
   EXPECT_GT(late, 0) << "else this tests nothing";
-  EXPECT_THAT(table, ContainsRegex(" 10 +" + std::to_string(10 * never) + ".0% .* strategy=default,"));
+  EXPECT_EQ(dead_starts(table, "default"), std::to_string(10 * never) + ".0%");
 }
 
 TEST_F(Sweeps, CarryOnWithWhatIsMissing) {

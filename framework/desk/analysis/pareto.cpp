@@ -25,13 +25,14 @@ Column make_key(const std::string& name, const std::vector<std::string>& columns
 }
 
 /// The jobs of one setting, counted, and their means.
-Setting make_setting(const JobGroup& group, const JobUnits& units, const Pareto& pareto) {
+Setting make_setting(const JobGroup& group, const JobUnits& units, const JobCondition& where, const Pareto& pareto) {
   Setting out;
   out.values = group.values;
   out.first_job = static_cast<std::size_t>(group.jobs.front().job->index);
   UnitClusters costs;
   UnitClusters errors;
   for (const JobResult& one : group.jobs) {
+    if (!where.keeps(one)) continue;
     const JobValue paid = value_of_job(one.row, pareto.cost.name, "--cost");
     const JobValue missed = value_of_job(one.row, pareto.error.name, "--error");
     const Fate fate = std::min(paid.fate, missed.fate);
@@ -54,12 +55,18 @@ double cautious_loss(const Pareto& pareto, const Setting& setting) {
   return loss(pareto, pareto.more_is_better() ? setting.error.interval->low : setting.error.interval->high);
 }
 
-/// Of settings in the order of cost, and of loss where costs are equal: such a one is beaten if one before it is at
-/// most as large in loss, but for its twins.
+/// Of the settings of a scene in the order of cost, and of loss where costs are equal: such a one is beaten if one
+/// before it is at most as large in loss, but for its twins.
 void number_front(Pareto& pareto) {
   const Setting* last = nullptr;  // the best so far
   int number = 0;
+  std::size_t scene = 0;
   for (Setting& one : pareto.settings) {
+    if (one.scene != scene) {
+      scene = one.scene;
+      last = nullptr;
+      number = 0;
+    }
     if (!one.complete()) continue;
     const bool twin = last != nullptr && one.cost.mean == last->cost.mean && one.error.mean == last->error.mean;
     if (last != nullptr && !twin && loss(pareto, one.error.mean) >= loss(pareto, last->error.mean)) continue;
@@ -71,7 +78,7 @@ void number_front(Pareto& pareto) {
 }  // namespace
 
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
-                   const std::string& error) {
+                   const std::string& error, const Condition* where) {
   if (results.empty()) {
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
   }
@@ -86,16 +93,27 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
   pareto.keys = setting_keys(sweep);
   const JobUnits units(sweep, results);
   pareto.by_seed = units.are_seeds();
+  const JobCondition condition(sweep, columns, where);
+  const std::vector<std::string> scenes = scene_keys(sweep);
   const std::vector<std::string> differing = varying_keys(sweep, pareto.keys);
   for (const JobGroup& group : group_jobs(sweep, results, pareto.keys)) {
-    Setting setting = make_setting(group, units, pareto);
+    Setting setting = make_setting(group, units, condition, pareto);
+    if (setting.counts.all() == 0) continue;
+    const std::string scene = key_words(sweep, *group.jobs.front().job, scenes, true);
+    const auto place = std::find(pareto.scenes.begin(), pareto.scenes.end(), scene);
+    setting.scene = static_cast<std::size_t>(place - pareto.scenes.begin());
+    if (place == pareto.scenes.end()) pareto.scenes.push_back(scene);
     setting.name = key_words(sweep, *group.jobs.front().job, differing, true);
     if (setting.name.empty()) setting.name = "the only setting";
     pareto.jobs += setting.counts.all();
     pareto.unfinished += setting.counts.of(Fate::unfinished);
     pareto.settings.push_back(std::move(setting));
   }
+  if (pareto.settings.empty())
+    throw Error("command line", fmt::format("--where: leaves none of the {} jobs", sweep.jobs.size()),
+                "results.csv has the values that it is compared with");
   std::stable_sort(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& a, const Setting& b) {
+    if (a.scene != b.scene) return a.scene < b.scene;
     const bool has_a = a.cost.count > 0;
     const bool has_b = b.cost.count > 0;
     if (!has_a || !has_b) return has_a && !has_b;
@@ -107,6 +125,15 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
 }
 
 double read_bound(const Pareto& pareto, const std::string& within) {
+  if (pareto.scenes.size() > 1) {
+    const std::string& scene = pareto.scenes.front();
+    const auto end = scene.find('=');
+    throw Error("command line",
+                fmt::format("--within: the sweep has {} scenes, and what is best on one is not best on another",
+                            pareto.scenes.size()),
+                fmt::format("choose one: --where \"{} == {}\"", scene.substr(0, end),
+                            scene.substr(end + 1, scene.find(", ") - end - 1)));
+  }
   return read_quantity(parse_value(within, "command line"), "--within", pareto.error.unit);
 }
 

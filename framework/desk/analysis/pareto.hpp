@@ -5,6 +5,7 @@
 
 #include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
+#include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
 
 #include <cstddef>
@@ -18,11 +19,12 @@ struct Setting {
   std::vector<std::string> values;  ///< one for each of Pareto::keys
   std::string name;                 ///< "acquisition=weighted, taps=17": the keys that differ within the sweep
   std::size_t first_job = 0;        ///< index in Sweep::jobs
+  std::size_t scene = 0;            ///< index in Pareto::scenes
   FateCounts counts;                ///< without a value: of cost or error
   MeanEstimate cost;                ///< over the jobs that are done and have both values; clusters: their units
   MeanEstimate error;
-  /// Its number on the front, from 1 in the order of cost; 0 if it is not on it: another complete one is at least as
-  /// good in both and better in one. Equal ones are on it together or not at all.
+  /// Its number on the front of its scene, from 1 in the order of cost; 0 if it is not on it: another complete one of
+  /// this scene is at least as good in both and better in one. Equal ones are on it together or not at all.
   int front = 0;
 
   /// Whether every job has both values. Others are shown, but the front is made, and the cheapest chosen, without them:
@@ -33,8 +35,9 @@ struct Setting {
 struct Pareto {
   Column cost;
   Column error;
-  std::vector<std::string> keys;  ///< the swept ones but the seed
-  std::vector<Setting> settings;  ///< in the order of cost, those without a value last
+  std::vector<std::string> keys;    ///< the swept ones but the seed
+  std::vector<std::string> scenes;  ///< "scene=ring"; one "" where the sweep has one: see scene_keys()
+  std::vector<Setting> settings;    ///< of each scene in the order of cost, those without a value last
   int jobs = 0;
   int unfinished = 0;
   bool by_seed = false;  ///< seeds are the units: see JobUnits
@@ -42,12 +45,14 @@ struct Pareto {
   bool more_is_better() const { return error.better == RecordField::Better::more; }
 };
 
-/// Groups the results of `sweep` by all keys but the seed. Throws Error, of the command line, for a column that does
-/// not exist, holds no numbers, is best neither small nor large (coverage_95), or, as cost, is better when it is more.
+/// Groups the results of `sweep` by all keys but the seed. Jobs of which `where` (may be null) does not hold belong to
+/// no setting. Throws Error, of the command line, for a column that does not exist, holds no numbers, is best neither
+/// small nor large (coverage_95), or, as cost, is better when it is more.
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
-                   const std::string& error);
+                   const std::string& error, const Condition* where = nullptr);
 
-/// Reads what `--within` says, in the unit of the error. Throws Error.
+/// Reads what `--within` says, in the unit of the error. Throws Error, also where there are several scenes: what is
+/// best on one is not what is best on another.
 double read_bound(const Pareto& pareto, const std::string& within);
 
 /// The complete setting of the least mean cost whose interval keeps to `bound` at its cautious end: the upper one, or

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace palpate {
@@ -66,6 +67,7 @@ std::string pareto_table(const Pareto& pareto) {
       "both\n",
       pareto.by_seed ? fmt::format("mean over {}", seeds_words(pareto)) : "the seed is not swept: mean over jobs",
       pareto.more_is_better() ? "more" : "less", pareto.error.name);
+  if (pareto.scenes.size() > 1) out += fmt::format("{} scenes, each with a front of its own\n", pareto.scenes.size());
   out += few_words(seeds_of(pareto).first, pareto.by_seed, 2);
   bool equal = false;
   for (const Setting& one : pareto.settings) {
@@ -168,8 +170,11 @@ PlotAxis plot_axis(const Pareto& pareto, const Column& key, Field field, const s
 
 constexpr double kListLeft = 0.635;  // of the picture's width: where the list of names begins
 
-constexpr const char* kFrontColour = "#0b5394";
+/// Of the fronts, one a scene.
+constexpr std::array<const char*, 5> kFrontColours{"#0b5394", "#00795a", "#7a3e9d", "#8c6d46", "#404040"};
 constexpr const char* kChosenColour = "#c1440e";
+
+const char* front_colour(const Setting& setting) { return kFrontColours[setting.scene % kFrontColours.size()]; }
 
 /// An entry of the list at height `y`, which it lowers: the mark that the setting has in the picture, and its name.
 std::string list_entry(const Setting& one, const char* colour, double& y) {
@@ -199,7 +204,7 @@ std::string front_list(const Pareto& pareto, const Setting* chosen) {
   for (const Setting& one : pareto.settings) {
     if (one.front == 0 && &one != chosen) continue;
     if (y > kBottom || &one == chosen) {
-      out += list_entry(one, &one == chosen ? kChosenColour : kFrontColour, y);
+      out += list_entry(one, &one == chosen ? kChosenColour : front_colour(one), y);
     } else {
       ++left_out;
     }
@@ -217,14 +222,14 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
                           const Setting* chosen) {
   const PlotAxis x = plot_axis(pareto, pareto.cost, &Setting::cost, {});
   const PlotAxis y = plot_axis(pareto, pareto.error, &Setting::error, bound);
-  std::string front;
+  std::vector<std::string> fronts(pareto.scenes.size());
   std::string others;
   std::string incomplete;
   std::string choice;
   for (const Setting& one : pareto.settings) {
     if (one.cost.count == 0) continue;
     const std::string line = fmt::format("{} {} {}\n", x.columns(one.cost), y.columns(one.error), one.front);
-    (one.front > 0 ? front : one.complete() ? others : incomplete) += line;
+    (one.front > 0 ? fronts[one.scene] : one.complete() ? others : incomplete) += line;
     if (&one == chosen) choice = line;
   }
 
@@ -256,13 +261,22 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
                      gnuplot_text((pareto.more_is_better() ? "wanted: at least " : "wanted: at most ") +
                                   bound_words(pareto, *bound))));
   }
-  draw("front", front,
-       {"1:4 with steps lw 2 lc rgb '#0b5394' title 'front: dominated by none'",
-        "1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '#0b5394' notitle",
-        "1:4 with points pt 7 ps 2.4 lc rgb '#0b5394' notitle"});
+  for (std::size_t scene = 0; scene < fronts.size(); ++scene) {
+    const char* const colour = kFrontColours[scene % kFrontColours.size()];
+    const std::string name =
+        pareto.scenes[scene].empty() ? "front: dominated by none" : "front: " + pareto.scenes[scene];
+    draw(fmt::format("front_{}", scene + 1), fronts[scene],
+         {fmt::format("1:4 with steps lw 2 lc rgb '{}' title {}", colour, gnuplot_text(name)),
+          fmt::format("1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '{}' notitle", colour),
+          fmt::format("1:4 with points pt 7 ps 2.4 lc rgb '{}' notitle", colour)});
+  }
   draw("choice", choice,
        {"1:4 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest whose 95 % bound keeps to it'"});
-  if (!front.empty()) plot("$front using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle");
+  for (std::size_t scene = 0; scene < fronts.size(); ++scene) {
+    if (fronts[scene].empty()) continue;
+    plot(fmt::format("$front_{} using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle",
+                     scene + 1));
+  }
   return out + plots + "\n";
 }
 

@@ -5,72 +5,125 @@
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
+#include "record/fields.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
 
 namespace palpate {
 namespace {
 
-std::string spread(std::vector<double> values, const char* format, double scale) {
+/// A row of the table before it is written.
+struct SweepTableRow {
+  std::string name;
+  std::size_t scene = 0;  ///< place of its scene in the sweep
+  int runs = 0;
+  int dead = 0;
+  int found = 0;
+  int failed = 0;
+  bool is_initial_known = false;
+  std::vector<double> on_surface_live, on_surface_all, rmse, iou;  ///< of the jobs that are done, ascending
+
+  /// By which the rows of a scene are sorted: of what has no error it is more than any.
+  double median_rmse() const { return rmse.empty() ? std::numeric_limits<double>::infinity() : quantile(rmse, 0.5); }
+};
+
+/// "5.4 (4.5-6.3)": median, and the values that 10 % and 90 % stay below.
+std::string spread(const std::vector<double>& values, const Scale& scale) {
   if (values.empty()) return "-";
-  std::sort(values.begin(), values.end());
-  const auto shown = [&](double share) { return fmt::format(fmt::runtime(format), quantile(values, share) * scale); };
-  return fmt::format("{} ({}-{})", shown(0.5), shown(0.1), shown(0.9));
+  return fmt::format("{} ({}-{})", scale.number(quantile(values, 0.5)), scale.number(quantile(values, 0.1)),
+                     scale.number(quantile(values, 0.9)));
+}
+
+SweepTableRow row_of(const JobGroup& group, const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
+  SweepTableRow out;
+  std::optional<int> initial;  // taps of those that are done
+  for (const auto& [job, row] : group.jobs) {
+    if (row == nullptr) continue;
+    ++out.runs;
+    if (!is_done(*row)) {
+      ++out.failed;
+      continue;
+    }
+    if (!initial) initial = initial_taps(static_cast<std::size_t>(job->index));
+    const std::optional<double> hit = row->number("first_hit_tap");
+    const bool is_dead = !hit || !initial || *hit > *initial;
+    out.dead += is_dead ? 1 : 0;
+    out.found += hit ? 1 : 0;
+    const auto add = [&, of = row](std::vector<double>& values, const std::string& field) {
+      if (const auto value = of->number(field)) values.push_back(*value);
+    };
+    add(out.on_surface_all, "on_surface_taps");
+    add(out.rmse, main_error());
+    add(out.iou, "footprint_iou");
+    if (!is_dead) add(out.on_surface_live, "on_surface_taps");
+  }
+  out.is_initial_known = initial.has_value();
+  for (std::vector<double>* values : {&out.on_surface_live, &out.on_surface_all, &out.rmse, &out.iou})
+    std::sort(values->begin(), values->end());
+  return out;
 }
 
 }  // namespace
 
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
                         const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
-  const std::vector<std::string> keys = setting_keys(sweep);
-  std::vector<std::vector<std::string>> lines{
-      {"group", "runs", "dead starts", "found", "failed", "on-surface, live", "on-surface, all", "height cm, live"}};
+  const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
+  const std::vector<std::string> scenes = scene_keys(sweep);
+  std::map<std::string, std::size_t> places;
+  std::vector<SweepTableRow> rows;
   std::size_t longest = 0;
   for (const JobGroup& group : group_jobs(sweep, results, keys)) {
-    std::optional<int> initial;  // taps of those that are done
-    int runs = 0;
-    int dead = 0;
-    int found = 0;
-    int failed = 0;
-    std::vector<double> on_surface_live, on_surface_all, height_live;
-    for (const auto& [job, row] : group.jobs) {
-      if (row == nullptr) continue;
-      ++runs;
-      if (!is_done(*row)) {
-        ++failed;
-        continue;
-      }
-      if (!initial) initial = initial_taps(static_cast<std::size_t>(job->index));
-      const std::optional<double> hit = row->number("first_hit_tap");
-      const bool is_dead = !hit || !initial || *hit > *initial;
-      dead += is_dead ? 1 : 0;
-      found += hit ? 1 : 0;
-      const std::optional<double> on_surface = row->number("on_surface_taps");
-      if (on_surface) on_surface_all.push_back(*on_surface);
-      if (is_dead) continue;
-      if (on_surface) on_surface_live.push_back(*on_surface);
-      if (const auto error = row->number("rmse_height_m")) height_live.push_back(*error);
-    }
-    if (runs == 0) continue;
-    std::string name = key_words(sweep, *group.jobs.front().job, keys, sweep.keys.size() > 2);
-    // Where the seed alone is swept there is but one, and it has no value of its own.
-    if (name.empty()) name = keys.empty() ? "all seeds" : "(none)";
-    longest = std::max(longest, name.size());
-    const int done = runs - failed;
-    const auto share = [&](int count) { return done > 0 ? fmt::format("{:.1f}%", 100.0 * count / done) : "-"; };
-    lines.push_back({name, std::to_string(runs), initial ? share(dead) : "-", share(found), std::to_string(failed),
-                     spread(on_surface_live, "{:.0f}", 1.0), spread(on_surface_all, "{:.0f}", 1.0),
-                     spread(height_live, "{:.1f}", 100.0)});
+    SweepTableRow row = row_of(group, initial_taps);
+    if (row.runs == 0) continue;
+    const Job& first = *group.jobs.front().job;
+    row.scene = places.emplace(key_words(sweep, first, scenes, true), places.size()).first->second;
+    row.name = key_words(sweep, first, keys, keys.size() > 1);
+    // Where no key but the seed has several values there is but one group.
+    if (row.name.empty()) row.name = keys.empty() ? "all jobs" : "(none)";
+    longest = std::max(longest, row.name.size());
+    rows.push_back(std::move(row));
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const SweepTableRow& a, const SweepTableRow& b) {
+    return a.scene != b.scene ? a.scene < b.scene : a.median_rmse() < b.median_rmse();
+  });
+  std::vector<double> medians;
+  bool any_failed = false;
+  bool any_iou = false;
+  for (const SweepTableRow& row : rows) {
+    if (!row.rmse.empty()) medians.push_back(row.median_rmse());
+    any_failed = any_failed || row.failed > 0;
+    any_iou = any_iou || !row.iou.empty();
+  }
+  const Scale error = readable_scale(unit_of_column(main_error()), medians, 2);
+  const Scale share{"", 1.0, 2};
+  const Scale count{"", 1.0, 0};
+  std::vector<std::vector<std::string>> lines{
+      {"group", "runs", "dead starts", "found", any_failed ? "failed" : "", "on-surface, live", "on-surface, all",
+       medians.empty() ? "" : error.title(main_error()), any_iou ? "footprint_iou" : ""}};
+  for (const SweepTableRow& row : rows) {
+    const int done = row.runs - row.failed;
+    const auto part = [&](int jobs) { return done > 0 ? fmt::format("{:.1f}%", 100.0 * jobs / done) : "-"; };
+    lines.push_back({row.name, std::to_string(row.runs), row.is_initial_known ? part(row.dead) : "-", part(row.found),
+                     any_failed ? std::to_string(row.failed) : "", spread(row.on_surface_live, count),
+                     spread(row.on_surface_all, count), medians.empty() ? "" : spread(row.rmse, error),
+                     any_iou ? spread(row.iou, share) : ""});
   }
   // Long names stand at the end of their lines, so that the numbers keep to the width of a screen.
   constexpr std::size_t kLongest = 32;
   for (std::vector<std::string>& line : lines) {
     if (longest > kLongest) std::rotate(line.begin(), line.begin() + 1, line.end());
   }
-  return aligned(lines, longest > kLongest ? "rrrrrrrl" : "lrrrrrrr") +
-         "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n";
+  std::string out = aligned(lines, longest > kLongest ? "rrrrrrrrl" : "lrrrrrrrr");
+  out += "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n";
+  if (rows.size() < 2 || medians.empty()) return out;
+  return out + fmt::format("The least {} first{}.\n", main_error(), places.size() > 1 ? ", scene by scene" : "");
 }
 
 }  // namespace palpate

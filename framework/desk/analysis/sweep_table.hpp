@@ -11,8 +11,9 @@
 
 namespace palpate {
 
-/// Median, spread and dead starts by group: all swept keys but the seed. One line a group under a header. How many taps
-/// of a job are initial may be swept, so it is asked of the first job of each group.
+/// Medians and spreads of taps on the object, RMSE and IoU, and dead starts, by group: all keys that vary but the seed.
+/// One line per group under a header; those of a scene stand together, the least median RMSE first. How many taps of a
+/// job are initial may be swept, so it is asked of the first job of each group.
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
                         const std::function<std::optional<int>(std::size_t job)>& initial_taps);
 

@@ -168,7 +168,7 @@ Tree swept_config(const Sweep& sweep) {
   constexpr std::size_t kMostValues = 24;
   Tree config = read_run_config(sweep.directory);
   for (const std::string& key : sweep.keys) {
-    if (Tree* const groups = config.find("defaults")) {
+    if (Tree* const groups = config.find("defaults"); groups != nullptr && groups->kind == Tree::Kind::list) {
       const auto names_it = [&](const Tree& item) { return item.find(key) != nullptr; };
       groups->items.erase(std::remove_if(groups->items.begin(), groups->items.end(), names_it), groups->items.end());
       if (groups->items.empty()) config.erase("defaults");
@@ -181,7 +181,11 @@ Tree swept_config(const Sweep& sweep) {
       }
       values.items.push_back(group.values.front().empty() ? Tree() : Tree::scalar(group.values.front()));
     }
-    config.at_path(key, config.place) = values.items.size() == 1 ? values.items.front() : values;
+    // Where there is no map to put it into, as below a group that is swept itself, it stands by its whole name.
+    const Tree* const around = config.find_path(key.substr(0, key.rfind('.')));
+    const bool by_path = key.find('.') != std::string::npos && around != nullptr && around->is_map();
+    (by_path ? config.at_path(key, config.place) : config.at(key)) =
+        values.items.size() == 1 ? values.items.front() : values;
   }
   return config;
 }
