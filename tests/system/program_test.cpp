@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Runs and sweeps whose acquisition is a program: killed, resumed, read by others; and the one to begin with.
+#include "support/lasting.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 
