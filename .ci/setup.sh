@@ -73,7 +73,8 @@ end_follower() {
 # end_worker STATUS: ends the command under way, waits until it has gone, and ends this script.
 end_worker() {
   trap '' HUP INT TERM
-  kill -TERM $worker 2>/dev/null || true
+  # What root runs, only root may end.
+  kill -TERM $worker 2>/dev/null || ${as_root:-false} kill -TERM $worker 2>/dev/null || true
   wait $worker 2>/dev/null || true
   end_follower
   exit "$1"
@@ -100,8 +101,8 @@ missing() {
   [ $# -eq 0 ] || printf '%s\n' "$@" | grep -vxF -e "$installed" || true
 }
 
-# refresh: asks which packages there are, as root by `as_root`.
-refresh() { $as_root apt-get update -q; }
+# refresh: asks which packages there are, as root by `as_root`. It and fetch become apt: whoever ends them ends that.
+refresh() { exec $as_root apt-get update -q; }
 
 # room: what apt says that the packages of `list` take: ", 147 MB to fetch, 708 MB of disk"; nothing where it does not
 # say. Told not to go on, and to fetch and no more: where apt has nothing to ask it goes on.
@@ -113,7 +114,7 @@ room() {
 
 # fetch: installs the packages of `list`, as root by `as_root`.
 fetch() {
-  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $list
+  exec $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $list
 }
 
 # become_root: how packages are installed by who is not root: `as_root` is sudo, or none. At a terminal it asks once.

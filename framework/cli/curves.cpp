@@ -4,6 +4,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
+#include "config/trouble.hpp"
 #include "record/files.hpp"
 #include "report/figures/figures.hpp"
 #include "sweep/tap_summaries.hpp"
@@ -72,7 +73,14 @@ int curves(Program& program, const CurvesArguments& arguments) {
     }
     std::string title = sweep_name(sweep);
     if (arguments.where) title += ", where " + *arguments.where;
-    const std::string note = write_curves_figure(made, title, file);
+    std::string note;
+    const auto trouble = trouble_in([&] { note = write_curves_figure(made, title, file); });
+    // Asked for by name it is all that was asked for; else the table is there.
+    if (trouble && !arguments.outputs.empty()) throw *trouble;
+    if (trouble) {
+      mention(fmt::format("no picture was drawn: {}\n", trouble->what()));
+      continue;
+    }
     if (!note.empty()) mention(note + "\n");
     mention(fmt::format("picture: {}\n", file.string()));
   }

@@ -5,7 +5,7 @@ foreach(tool_and_package dpkg-shlibdeps:dpkg-dev file:file strip:binutils gzip:g
   string(REPLACE ":" ";" pair ${tool_and_package})
   list(GET pair 0 tool)
   list(GET pair 1 package)
-  find_program(PALPATE_TOOL_${tool} ${tool} NO_CACHE)
+  find_program(PALPATE_TOOL_${tool} ${tool} PATHS ENV PATH NO_DEFAULT_PATH NO_CACHE)
   if(NOT PALPATE_TOOL_${tool})
     message(FATAL_ERROR "cpack needs ${tool}: apt-get install ${package}")
   endif()

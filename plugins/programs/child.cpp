@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
@@ -83,7 +84,9 @@ bool carries(pid_t pid, const std::string& mark) {
 
 Child::Child(Program program, const std::string& diary, const Descriptor& kept) : diary_(diary) {
   static std::atomic<int> count{0};
-  mark_ = "PALPATE_PROGRAM=" + std::to_string(::getpid()) + "." + std::to_string(++count);
+  // Each plugin with programs has a count of its own, and its address is none of another's.
+  const auto whose = reinterpret_cast<std::uintptr_t>(&count);
+  mark_ = "PALPATE_PROGRAM=" + std::to_string(::getpid()) + "." + std::to_string(whose) + "." + std::to_string(++count);
   // From now on the processes that a program leaves behind become this one's children.
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::optional<Pipe> in = open_pipe();
@@ -121,9 +124,20 @@ Child::Heard Child::send(const std::string& text, const Patience& patience) {
     }
     if (errno != EAGAIN && errno != EINTR) return Heard::ended;
     if (patience.broken_off()) return Heard::interrupted;
-    if (!glance(input_, POLLOUT, patience.until) && Clock::now() >= patience.until) return Heard::late;
+    if (Clock::now() >= patience.until) return Heard::late;
+    // A program may answer while it reads: its pipe must not be full when it wants to go on.
+    pollfd ends[]{{input_.number(), POLLOUT, 0}, {output_.number(), POLLIN, 0}};
+    ::poll(ends, heard_.size() < kMostHeard ? 2 : 1, static_cast<int>(kGlance.count()));
+    if ((ends[1].revents & POLLIN) != 0) read_some();
   }
   return Heard::line;
+}
+
+ssize_t Child::read_some() {
+  std::array<char, 65536> some;
+  const ssize_t got = ::read(output_.number(), some.data(), some.size());
+  if (got > 0) heard_.append(some.data(), static_cast<std::size_t>(got));
+  return got;
 }
 
 std::optional<Child::Heard> Child::hear_more(const Patience& patience) {
@@ -131,10 +145,7 @@ std::optional<Child::Heard> Child::hear_more(const Patience& patience) {
   // Asked before the look at the pipe: what it said before it ended is then already in there.
   const bool over = gone();
   if (glance(output_, POLLIN, over ? Clock::now() : patience.until)) {
-    std::array<char, 65536> some;
-    const ssize_t got = ::read(output_.number(), some.data(), some.size());
-    if (got > 0) heard_.append(some.data(), static_cast<std::size_t>(got));
-    if (got == 0) return Heard::ended;
+    if (read_some() == 0) return Heard::ended;
   } else if (over) {  // and what it started holds the pipe open
     return Heard::ended;
   } else if (Clock::now() >= patience.until) {

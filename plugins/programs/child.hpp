@@ -27,6 +27,8 @@ class Child {
  public:
   /// A longer line is refused: a program that never ends its line must not fill the memory.
   static constexpr std::size_t kLongestLine = 65536;
+  /// So much is taken of its stdout while it is written to; what it says beyond that waits.
+  static constexpr std::size_t kMostHeard = std::size_t{64} << 20;
   /// How long a program may take for each step of its end: by itself, and after SIGTERM.
   static constexpr std::chrono::milliseconds kGrace{1000};
 
@@ -41,7 +43,8 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Writes `text`; Heard::line when all of it is in the pipe, Heard::ended when nobody reads.
+  /// Writes `text`, and keeps what it says meanwhile; Heard::line when all of it is in the pipe, Heard::ended when
+  /// nobody reads.
   Heard send(const std::string& text, const Patience& patience);
   /// Takes the next line of its stdout, without the line end. With `ended`, `too_long` and `late`, what there is of it.
   Heard hear(std::string& line, const Patience& patience);
@@ -57,6 +60,8 @@ class Child {
  private:
   bool gone() const;
   bool wait_for_end();
+  /// Reads what is in the pipe from its stdout, as read() returns it.
+  ssize_t read_some();
   /// Waits for more of its stdout; none when there is, or when a glance brought nothing.
   std::optional<Heard> hear_more(const Patience& patience);
 

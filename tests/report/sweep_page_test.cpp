@@ -251,7 +251,7 @@ TEST_P(SweepNumbers, HaveCurvesOfGroupsWithBandsForEachSceneAndNoFrontOfTwo) {
                                           data_of("front", "d[0].text.concat(d[4].text).join()"),
                                           "return document.querySelector('section pre').textContent"});
   ASSERT_EQ(seen.values.size(), 7U);
-  for (const auto& [place, metric, factor] : {std::tuple(0U, "rmse_m", 100.0), std::tuple(2U, "footprint_iou", 1.0)}) {
+  for (const auto& [place, metric, factor] : {std::tuple(0U, "rmse_m", 1000.0), std::tuple(2U, "footprint_iou", 1.0)}) {
     const std::vector<Cells> rows = csv_rows(text_of(folder_.path() / fmt::format("{}.csv", metric)));
     std::size_t compared = 0;
     for (const json& scene : seen.values.at(place)) {

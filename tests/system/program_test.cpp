@@ -47,16 +47,21 @@ TEST_F(ProgramRun, TapsAsThePluginWithTheSameScoresOnAnyNumberOfThreads) {
 }
 
 TEST_F(ProgramRun, ASweepThatIsKilledAndResumedEqualsTheUnbrokenOne) {
-  const Words words = few(echo("uncertainty", "sleep 0.05"), "seed=range(0,3) -j 2 --quiet");
+  // After as many answers in all it waits until the killed sweep has gone.
+  const std::string wait = "echo >> '" + (here() / "answers").string() + "'; n=0; while [ \"$(wc -l < '" +
+                           (here() / "answers").string() + "')\" -ge 6 ] && [ ! -e '" + (here() / "go").string() +
+                           "' ] && [ $n -lt 6000 ]; do n=$((n + 1)); sleep 0.1; done";
+  const Words words = few(echo("uncertainty", wait), "seed=range(0,3) -j 2 --quiet");
   const auto child = begin(Words{"sweep", paper()} + words);
   const auto taps = [&] {
     const fs::path sweep = run_in(here() / "runs");
     return sweep.empty() || !fs::exists(job_of(sweep, 0) / "record.jsonl") ? 0
                                                                            : lines(part_of(job_of(sweep, 0), "tap"));
   };
-  EXPECT_TRUE(eventually([&] { return taps() >= 4; })) << child->err();
+  EXPECT_TRUE(eventually([&] { return lines(text_of(here() / "answers")) >= 6 && taps() >= 3; })) << child->err();
   child->signal(SIGKILL);
   child->wait();
+  write("go", "");
   const fs::path sweep = directory();
   EXPECT_LT(taps(), 9) << "it is not done";
   // From another folder: where the program lies is known.
@@ -65,6 +70,35 @@ TEST_F(ProgramRun, ASweepThatIsKilledAndResumedEqualsTheUnbrokenOne) {
   const fs::path unbroken = swept(words + Words{"--runs", "unbroken"});
   EXPECT_EQ(tables(sweep, 3), tables(unbroken, 3));
   EXPECT_EQ(lines(tables(sweep, 3).at(2)), 10);
+}
+
+TEST_F(ProgramRun, BesideARobotsProgramLeavesThatToEndByItself) {
+  const std::string robot =
+      write("robot.py", test::python("for ask in asks():\n    contact(ask)\nopen('parked', 'w').close()\n")).string();
+  const Words words{"backend=process", "backend.command=python3 -SE '" + robot + "'", "backend.repeatable=false"};
+  ran(few(echo("uncertainty"), words));
+  EXPECT_TRUE(fs::exists(here() / "parked")) << "its stdin ended, and it had time to see to its arm";
+}
+
+TEST_F(ProgramRun, MayAnswerWhileItReads) {
+  const fs::path own = ran(Words{echo("uncertainty"), "name=own", "candidates.count=300", "taps=4"});
+  EXPECT_EQ(lines(text_of(own / "taps.csv")), 5);
+}
+
+TEST_F(ProgramRun, BeginsInTheFolderThatTheConfigNamesAndIsFoundFromElsewhere) {
+  echo("uncertainty");
+  write("mine/own", "#!/bin/sh\n" + text_of(here() / "echo.sh"));
+  fs::permissions(here() / "mine/own", fs::perms::owner_all);
+  const std::string own = "acquisition={type: program, command: ./own, folder: '" + (here() / "mine").string() + "'}";
+  const fs::path run = ran(few(own));
+  EXPECT_EQ(lines(text_of(run / "taps.csv")), 10);
+  const fs::path cut = ran(few(own, "name=cut"));
+  break_off(cut);
+  const Ended resumed = test::palpate({"resume", fs::absolute(cut).string(), "--quiet"}, here() / "mine");
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(text_of(cut / "taps.csv"), text_of(run / "taps.csv"));
+  EXPECT_THAT(refused(Words{"run", paper(), "acquisition={type: program, command: ./own, folder: mine}"}),
+              testing::HasSubstr("folder: is no whole path"));
 }
 
 TEST_F(ProgramRun, WhoReadsARecordStartsNothingAndFindsTheRecordedChoices) {
@@ -136,7 +170,6 @@ TEST_F(ProgramRun, AnInterruptEndsTheProgramAndLeavesARunToCarryOn) {
 
 TEST_F(ProgramRun, FromAnySideAProgramScoresLinesAndIsReplayedByItsRecord) {
   const std::string config = (test::source_folder() / "configs/any_side.yaml").string();
-  fs::create_directory_symlink(test::source_folder() / "configs", here() / "configs");  // of the meshes
   const Words few = "taps=9 scene=any_bowl space.approaches=200 space.moves=100";
   const fs::path own = ran(few + Words{echo("expected_discovery"), "name=own"}, config);
   write("echo.sh", "exit 1\n");

@@ -68,7 +68,7 @@ TEST_F(Scenes, FindTheirMeshFromAnyWorkingFolderAndSoDoesTheirRecord) {
         "  objects: [{type: mesh, file: configs/own.stl, unit: 1 mm}]\n");
   EXPECT_EQ(palpate("run mine/e.yaml taps=4 --quiet").status, 0);
   fs::create_directories(here() / "elsewhere");
-  for (const fs::path& run : {shipped, test::only_run(here() / "runs/own")}) {
+  for (const fs::path& run : {shipped, fs::directory_iterator(here() / "runs/own")->path()}) {
     const Ended again = test::palpate({"replay", fs::absolute(run).string()}, here() / "elsewhere");
     EXPECT_EQ(again.status, 0) << again.err;
   }

@@ -266,6 +266,17 @@ TEST_F(SetUp, BuildsNothingMoreOnceItIsEnded) {
   EXPECT_NE(::kill(ninja, 0), 0);
 }
 
+TEST_F(SetUp, InstallsNothingMoreOnceItIsEnded) {
+  installed("three");
+  program("id", "echo 0");
+  waiting_program("apt-get", "case \"$*\" in *' -y '*) ;; *) exit 0 ;; esac\necho $$ >'" + here().string() + "/pid'");
+  const Child child(script("palpate"), here(), environment());
+  ASSERT_TRUE(eventually([&] { return fs::exists(here() / "began"); }));
+  const int apt = std::stoi(text_of(here() / "pid"));
+  ::kill(child.pid(), SIGTERM);
+  EXPECT_TRUE(eventually([&] { return ::kill(apt, 0) != 0; }));
+}
+
 TEST_F(SetUp, BuildsAllWhenItIsAskedTo) {
   program("ninja", "[ \"$3\" = -n ] || echo \"$3 $4\" >>'" + here().string() + "/built'");
   const Ended ended = script_ended("palpate", "build");

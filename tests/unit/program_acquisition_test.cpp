@@ -108,11 +108,11 @@ TEST_F(ProgramAcquisition, SendsTheArraysThatTheProgramNamesAndTakesItsScores) {
 
 TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoesInsteadOfScoring) {
   EXPECT_EQ(trouble("answer([1.0] * 5)"),
-            "acquisition/program: the program answered with an array of the shape (5,), not (6,): '{'descr': '<f8', "
+            "acquisition/program: the program answered with an array of the shape '(5,)', not (6,): '{'descr': '<f8', "
             "'fortran_order': False, 'shape': (5,), }                       ...', correct it; with another program it "
             "is another run");
-  EXPECT_THAT(trouble("answer([1.0] * 6, shape='(2, 3)')"), HasSubstr("an array of the shape (2,3), not (6,)"));
-  EXPECT_THAT(trouble("answer([1.0] * 6, descr='<f4')"), HasSubstr("numbers of the type '<f4',, not '<f8'"));
+  EXPECT_THAT(trouble("answer([1.0] * 6, shape='(2, 3)')"), HasSubstr("an array of the shape '(2,3)', not (6,)"));
+  EXPECT_THAT(trouble("answer([1.0] * 6, descr='<f4')"), HasSubstr("numbers of the type '<f4', not '<f8'"));
   EXPECT_THAT(trouble("answer([1.0] * 5 + [float('nan')])"),
               HasSubstr("gave candidate 5 the score nan, which is not a finite number"));
   EXPECT_THAT(trouble("print('[1, 2, 3, 4, 5, 6]', flush=True)"),

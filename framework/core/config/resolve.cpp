@@ -22,11 +22,13 @@ std::string found_from(const Place& place, const std::string& file) {
   namespace fs = std::filesystem;
   constexpr int kMostLevels = 6;  // from the config of a job up to the folder in which its sweep was begun
   std::error_code none;
-  if (file.empty() || place.file == nullptr || fs::path(file).is_absolute() || fs::exists(file, none)) return file;
+  const bool is_in_file = place.file != nullptr && place.line > 0;  // and not on a command line
+  if (file.empty() || !is_in_file || fs::path(file).is_absolute() || fs::exists(file, none)) return file;
   fs::path folder = (fs::current_path() / *place.file).lexically_normal();
   for (int level = 0; level < kMostLevels && folder.has_relative_path(); ++level) {
     folder = folder.parent_path();
-    if (fs::exists(folder / file, none)) return (folder / file).string();
+    // No link is followed to where nobody pointed.
+    if (fs::is_regular_file(fs::symlink_status(folder / file, none))) return (folder / file).string();
   }
   return file;
 }

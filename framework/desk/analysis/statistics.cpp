@@ -10,9 +10,16 @@
 
 namespace palpate {
 
+namespace {
+
+/// In double precision: long doubles make no interval better, and not every machine has them.
+using Doubles = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
+}  // namespace
+
 double student_factor(std::size_t degrees) {
   constexpr double kTail = 0.025;
-  const boost::math::students_t_distribution<double> distribution(static_cast<double>(degrees));
+  const boost::math::students_t_distribution<double, Doubles> distribution(static_cast<double>(degrees));
   return boost::math::quantile(boost::math::complement(distribution, kTail));
 }
 
@@ -81,7 +88,7 @@ MeanEstimate estimate_mean(const Clusters& clusters, double scale) {
 }
 
 double normal_quantile(double share) {
-  return boost::math::quantile(boost::math::normal_distribution<double>(), share);
+  return boost::math::quantile(boost::math::normal_distribution<double, Doubles>(), share);
 }
 
 }  // namespace palpate

@@ -20,7 +20,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSummariesFile = "summaries.jsonl";
 
-std::size_t taps_made(const Row& summary) { return static_cast<std::size_t>(summary.number("taps").value_or(0.0)); }
+/// 0 where the summary has no number that can be one of taps: who reads the record says what is wrong with it.
+std::size_t taps_made(const Row& summary) {
+  constexpr double kMost = 1e9;
+  const double taps = summary.number("taps").value_or(0.0);
+  return taps >= 1.0 && taps <= kMost ? static_cast<std::size_t>(taps) : 0;
+}
 
 bool has_ended_well(const std::optional<Row>& summary) {
   return summary && summary->text("status") == "done" && taps_made(*summary) > 0;
@@ -74,11 +79,13 @@ void TapSummaries::compute(const Workshop& workshop, std::size_t job) const {
   refuse_link(directory.parent_path());
   refuse_link(directory);
   const Row& whole = *summaries_[job];
+  // Read first: as many taps as the summary says are in the record, or it is refused.
+  const Recording recording = read_recording(workshop, directory);
   std::vector<Occasion> all;
   for (std::size_t taps = 1; taps < taps_made(whole); ++taps) all.push_back(Occasion::after(static_cast<int>(taps)));
   const std::string hash = summary_hash(whole);
   std::string lines;
-  for (const std::optional<Row>& summary : summaries_at(workshop, read_recording(workshop, directory), all)) {
+  for (const std::optional<Row>& summary : summaries_at(workshop, recording, all)) {
     Row row = numbers_of(*summary);
     row.add(kOfSummary, hash);
     lines += to_json_line(row) + "\n";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "program/maps.hpp"
 
+#include "programs/command.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -130,6 +132,17 @@ std::size_t header_length(const std::string& start) {
   return byte(kMagicLength) + (byte(kMagicLength + 1) << 8U);
 }
 
+namespace {
+
+/// What a program wrote, without quotes of its own: "'<f4'" of `'<f4',`.
+std::string bare(std::string text) {
+  while (!text.empty() && text.back() == ',') text.pop_back();
+  text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
+  return programs::shown(text);
+}
+
+}  // namespace
+
 void check_header(const std::string& header, Eigen::Index count) {
   std::string plain;
   for (const char c : header) {
@@ -144,11 +157,12 @@ void check_header(const std::string& header, Eigen::Index count) {
     return plain.substr(begin, end == std::string::npos ? 0 : end - begin + std::strlen(ends));
   };
   const std::string type = value("descr", ",");
-  if (type != "'<f8',")
-    throw std::runtime_error(fmt::format("numbers of the type {}, not '<f8', which is float64", type.substr(0, 12)));
+  if (type != "'<f8',") {
+    throw std::runtime_error(fmt::format("numbers of the type {}, not '<f8', which is float64", bare(type)));
+  }
   const std::string shape = value("shape", ")");
   if (shape != fmt::format("({},)", count))
-    throw std::runtime_error(fmt::format("an array of the shape {}, not ({},)", shape.substr(0, 40), count));
+    throw std::runtime_error(fmt::format("an array of the shape {}, not ({},)", bare(shape), count));
 }
 
 }  // namespace palpate::program

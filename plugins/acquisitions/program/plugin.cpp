@@ -112,7 +112,11 @@ struct ProgramOptions : Options {
     const auto words = programs::split_command(command);
     fields.require(words.has_value(), "command", "names no program, or a quote is left open");
     if (words && folder.empty()) folder = fs::current_path().string();
-    fields.text(folder, Field("folder", "in which the program begins; if absent, the current one").not_identifying());
+    fields.text(
+        folder,
+        Field("folder", "in which the program begins, a whole path; if absent, the current one").not_identifying());
+    fields.require(folder.empty() || fs::path(folder).is_absolute(), "folder",
+                   "is no whole path: whoever carries the run on may be elsewhere; write it from /");
     programs::Content content;
     if (words) content = programs::content_of(*words, folder);
     if (words && checksum.empty()) checksum = content.checksum;

@@ -63,7 +63,7 @@ Grid from_csv(std::string bytes, const std::string& file) {
       double value = 0.0;
       const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
       if (read.ec != std::errc() || read.ptr != cell.data() + cell.size() || cell.empty()) {
-        throw Error(fmt::format("{}:{}", file, rows), fmt::format("'{}' is not a number", cell),
+        throw Error(fmt::format("{}:{}", file, rows), fmt::format("'{}' is not a number", cell.substr(0, 40)),
                     "a row of numbers a line, with commas between them, and no header");
       }
       values.push_back(value);
