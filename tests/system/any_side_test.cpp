@@ -33,7 +33,7 @@ class AnySide : public Shell {
     return out;
   }
   fs::path touched(const Words& more) const {
-    return ran(Words{"scene=any_bowl", "space.approaches=200", "space.moves=100"} + more, config());
+    return ran(set_by({"scene=any_bowl", "space.approaches=200", "space.moves=100"}, more), config());
   }
 };
 
@@ -156,7 +156,7 @@ TEST_F(AnySide, ARunIsPlayedAgainToTheLastBit) {
 
 TEST_F(AnySide, ARunWhoseApproachesAreLimitedByTheToolOrTheArmIsPlayedAgainAndExplainedAsItWas) {
   const Words few = "taps=6 space.moves=20 name=limited";
-  const std::vector<double> free = starts_of(touched(few + "name=free"));
+  const std::vector<double> free = starts_of(touched(set_by(few, "name=free")));
   std::vector<const char*> limits{"{tip_radius: {radius: 2 cm}}", "{shaft: {radius: 2 cm, length: 3 cm}}",
                                   "{reach: {base: [-55 cm, 13 cm], radius: 75 cm}}"};
   if (test::kSanitized) limits.resize(1);

@@ -10,8 +10,8 @@ namespace {
 
 class CalibrateCommand : public Shell {
  protected:
-  fs::path tapped(const std::string& more = {}) const {
-    return ran("scene=block acquisition=random taps=30 scene.effects=standard " + more, config("default.yaml"));
+  fs::path tapped(const Words& more = {}) const {
+    return ran(set_by("scene=block acquisition=random taps=30 scene.effects=standard", more), config("default.yaml"));
   }
 };
 

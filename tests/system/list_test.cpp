@@ -103,10 +103,12 @@ TEST_F(List, ANameThatSeveralRunsHaveIsRefusedWithWhatSetsThemApart) {
             "'object_i'?\n");
 }
 
-TEST_F(List, APathThatExistsWinsOverAName) {
+TEST_F(List, AFolderWithARecordWinsOverANameAndOneWithoutDoesNot) {
   ran("taps=3");
   fs::create_directory(here() / "object_i");
-  EXPECT_EQ(refused("status object_i"), "object_i: is not a run directory, it has no config.yaml\n");
+  EXPECT_EQ(palpate("status object_i").out.substr(0, 38), "object_i: done after 3 of 3 taps: tap ") << "sources, say";
+  fs::copy(ran("taps=4 name=other"), here() / "object_i/one", fs::copy_options::recursive);
+  EXPECT_THAT(palpate("status object_i").out, HasSubstr("other: done after 4 of 4 taps"));
 }
 
 }  // namespace

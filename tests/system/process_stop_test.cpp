@@ -12,7 +12,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <csignal>
 #include <map>
 #include <thread>
@@ -38,10 +37,9 @@ class ARobotsRun : public Shell {
   /// The words of a run on a program of this body, behind kNotes, whose taps cannot be repeated.
   Words robots(const std::string& body, const Words& more = {}) const {
     const std::string program = write("program.py", test::python(kNotes + body)).string();
-    return Words{"run", config("process.yaml"), "backend.command=python3 -SE '" + program + "'", "--quiet"} +
-           (std::count(more.begin(), more.end(), "backend.repeatable=true") > 0 ? Words{}
-                                                                                : Words{"backend.repeatable=false"}) +
-           more;
+    return set_by({"run", config("process.yaml"), "backend.command=python3 -SE '" + program + "'",
+                   "backend.repeatable=false", "--quiet"},
+                  more);
   }
   Ended retry() const { return resume(directory(), "--retry-failed"); }
 

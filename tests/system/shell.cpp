@@ -3,6 +3,7 @@
 
 #include "record/json.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <set>
@@ -18,6 +19,18 @@ Words::Words(const std::string& text) {
 Words operator+(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
+}
+
+Words set_by(const Words& words, const Words& more) {
+  const auto key = [](const std::string& word) { return word.substr(0, word.find('=')); };
+  Words out;
+  for (const std::string& word : words) {
+    const auto same = [&](const std::string& other) {
+      return word.find('=') != std::string::npos && key(other) == key(word);
+    };
+    if (std::none_of(more.begin(), more.end(), same)) out.push_back(word);
+  }
+  return out + more;
 }
 
 namespace {

@@ -25,6 +25,8 @@ struct Words : std::vector<std::string> {
 };
 
 Words operator+(Words words, const Words& more);
+/// The same, but what `more` sets KEY=VALUE takes the place of what `words` sets: a key may be given once.
+Words set_by(const Words& words, const Words& more);
 
 class Shell : public testing::Test {
  protected:
@@ -95,6 +97,7 @@ using test::jobs_of;
 using test::outcomes;
 using test::part_of;
 using test::rows_of;
+using test::set_by;
 using test::Shell;
 using test::Words;
 

@@ -27,9 +27,9 @@ class StepRun : public Shell {
 
   /// Four taps of a program that is taken for a robot, two of them of the initial design.
   static Words robot(const Words& more = {}) {
-    return Words{"run",    config("process.yaml"), "backend.command=python3 -SE program.py", "backend.repeatable=false",
-                 "taps=4", "initial.count=2"} +
-           more;
+    return set_by({"run", config("process.yaml"), "backend.command=python3 -SE program.py", "backend.repeatable=false",
+                   "taps=4", "initial.count=2"},
+                  more);
   }
 
   std::unique_ptr<Terminal> at_terminal(const Words& words) const {

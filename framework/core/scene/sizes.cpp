@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "scene/sizes.hpp"
 
+#include "config/quantity.hpp"
+#include "config/scale.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <boost/algorithm/string/predicate.hpp>
@@ -8,6 +11,14 @@
 #include <map>
 
 namespace palpate {
+
+namespace {
+
+std::string shown_length(const Tree& value) {
+  return readable(read_quantity(value, "", Unit::metre), Unit::metre, 3, LengthKind::place);
+}
+
+}  // namespace
 
 std::vector<std::string> half_said_sizes(const Tree& resolved, const ResolveNotes& notes) {
   struct Object {
@@ -25,7 +36,7 @@ std::vector<std::string> half_said_sizes(const Tree& resolved, const ResolveNote
     if (value == nullptr || !value->is_scalar() || !boost::ends_with(value->text, " m")) continue;
     const bool is_said = one.place != "default";
     object.has_size = object.has_size || is_said;
-    if (!is_said) object.left_out.push_back(fmt::format("{} {}", one.path.substr(dot + 1), value->text));
+    if (!is_said) object.left_out.push_back(fmt::format("{} {}", one.path.substr(dot + 1), shown_length(*value)));
   }
   std::vector<std::string> out;
   for (const auto& [path, object] : objects) {

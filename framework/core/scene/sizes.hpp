@@ -10,7 +10,7 @@
 namespace palpate {
 
 /// Returns a line for each object of which the config says some lengths and leaves others at their defaults:
-/// "e.yaml:4:7: scene.objects.0: not said and so at its default: height 0.05 m". `resolved` is the tree that resolve()
+/// "e.yaml:4:7: scene.objects.0: not said and so at its default: height 5 cm". `resolved` is the tree that resolve()
 /// returned with `notes`.
 std::vector<std::string> half_said_sizes(const Tree& resolved, const ResolveNotes& notes);
 
