@@ -46,6 +46,23 @@ std::optional<std::vector<std::string>> split_command(const std::string& text) {
   return words;
 }
 
+std::optional<std::vector<std::string>> list_command(std::string& command, Fields& fields) {
+  fields.text(command, Field("command",
+                             "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
+                             "blanks together, nothing else is interpreted, no shell")
+                           .needed()
+                           .not_identifying());
+  auto words = split_command(command);
+  fields.require(words.has_value(), "command", "names no program, or a quote is left open");
+  return words;
+}
+
+void list_checksum(std::string& checksum, Fields& fields) {
+  fields.text(checksum, Field("checksum",
+                              "of the command, with the content of the program in place of its name: of the first "
+                              "word, or of what an interpreter runs; if absent, that of the program as it is"));
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -2,6 +2,8 @@
 // The command of a config that starts a program, and what of the program enters the id of a run.
 #pragma once
 
+#include <palpate/options.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +13,12 @@ namespace palpate::programs {
 /// The words of `text`, split at blanks. 'single' and "double" quotes keep blanks together and are taken away; nothing
 /// else means anything, neither a backslash nor a dollar sign. None if a quote is left open or no word is there.
 std::optional<std::vector<std::string>> split_command(const std::string& text);
+
+/// Lists `command`, the option by which a config names a program, and returns its words. Refused where there are none.
+std::optional<std::vector<std::string>> list_command(std::string& command, Fields& fields);
+
+/// Lists `checksum`, the option that has the hash of content_of().
+void list_checksum(std::string& checksum, Fields& fields);
 
 /// The file that runs as `program`: a path from `folder` (from the current one if that is empty), a bare name from the
 /// folders of PATH. Throws Error where no such file may be executed.

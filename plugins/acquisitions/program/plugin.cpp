@@ -104,13 +104,7 @@ struct ProgramOptions : Options {
   double start = 60.0;
 
   void list(Fields& fields) override {
-    fields.text(command, Field("command",
-                               "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
-                               "blanks together, nothing else is interpreted, no shell")
-                             .needed()
-                             .not_identifying());
-    const auto words = programs::split_command(command);
-    fields.require(words.has_value(), "command", "names no program, or a quote is left open");
+    const auto words = programs::list_command(command, fields);
     if (words && folder.empty()) folder = fs::current_path().string();
     fields.text(
         folder,
@@ -120,9 +114,7 @@ struct ProgramOptions : Options {
     programs::Content content;
     if (words) content = programs::content_of(*words, folder);
     if (words && checksum.empty()) checksum = content.checksum;
-    fields.text(checksum, Field("checksum",
-                                "of the command, with the content of the program in place of its name: of the first "
-                                "word, or of what an interpreter runs; if absent, that of the program as it is"));
+    programs::list_checksum(checksum, fields);
     const std::set<std::string> declared = declarations(content.program);
     if (declared.size() == 1) reads = *declared.begin();
     fields.text(reads, Field("reads",

@@ -35,17 +35,9 @@ struct ProcessOptions : Options {
   tapping::BackendMotion motion;
 
   void list(Fields& fields) override {
-    fields.text(command, Field("command",
-                               "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
-                               "blanks together, nothing else is interpreted, no shell")
-                             .needed()
-                             .not_identifying());
-    const auto words = programs::split_command(command);
-    fields.require(words.has_value(), "command", "names no program, or a quote is left open");
+    const auto words = programs::list_command(command, fields);
     if (words && checksum.empty()) checksum = programs::content_of(*words).checksum;
-    fields.text(checksum, Field("checksum",
-                                "of the command, with the content of the program in place of its name: of the first "
-                                "word, or of what an interpreter runs; if absent, that of the program as it is"));
+    programs::list_checksum(checksum, fields);
     fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
                               .in(Unit::second)
                               .above(0)
