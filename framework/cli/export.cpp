@@ -65,6 +65,8 @@ int export_run(Program& program, const std::string& directory, const std::string
   auto* const any_side = dynamic_cast<FromAnySide*>(&playback.experiment());
   const std::string surface =
       any_side != nullptr ? surface_ply(*any_side, run) : surface_ply(reconstruct(playback.from_above()), run);
+  if (playback.truth_lost())
+    mention(fmt::format("surface.ply is without true heights: {}\n", playback.truth_lost()->what()));
   const fs::path folder = folder_for(recording.directory, to);
   mention_state(recording.directory, recording.taps.size());
   write_into(folder, "surface.ply", surface);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
+#include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
@@ -20,6 +21,7 @@ int replay(Program& program, const std::string& directory) {
   constexpr std::size_t kShown = 10;
   check_one_run(directory);
   const ReplayReport report = replay_run(program, directory);
+  if (report.truth_lost) mention(fmt::format("what needs the truth is not compared: {}\n", report.truth_lost->what()));
   if (report.differences.empty()) {
     print_out("{} taps, {} numbers, all equal\n", report.taps, report.numbers);
     return kDone;

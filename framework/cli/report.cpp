@@ -7,6 +7,7 @@
 #include "report/page/run_page.hpp"
 #include "report/page/runs_page.hpp"
 #include "report/page/sweep_page.hpp"
+#include "report/words/words.hpp"
 
 #include <palpate/error.hpp>
 
@@ -60,11 +61,17 @@ void check_from_above(const Recording& recording, const std::string& what) {
               "'palpate report' with nothing else makes its page");
 }
 
+/// Says of a run whose truth is not known any more that its errors are those of the record.
+void mention_lost(const History& history) {
+  if (history.truth_lost) mention(truth_lost_words(*history.truth_lost) + "\n");
+}
+
 void report_run(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
   const Recording recording = read_recording(workshop, arguments.directories.front());
   if (arguments.figures || arguments.paper) check_from_above(recording, "--figures and --paper are");
   Patience patience("taps");
   const History history = make_history(workshop, recording, std::ref(patience));
+  mention_lost(history);
   write_page(to / "report.html", run_page(recording, history, std::ref(patience)));
   if (arguments.figures) show(write_run_figures(workshop, recording, history, to / "figures"));
   if (arguments.paper) show(write_paper_figures(workshop, recording, to / "figures"));
@@ -108,6 +115,7 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
     Recording recording = read_recording(workshop, directory);
     check_from_above(recording, "pages of several are");
     History history = make_history(workshop, recording, Patience("taps"));
+    mention_lost(history);
     name += "_" + recording.config.id;
     runs.push_back({std::move(recording), std::move(history)});
   }

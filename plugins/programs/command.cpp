@@ -122,6 +122,14 @@ Content content_of(const std::vector<std::string>& words, const std::string& fol
   return out;
 }
 
+void check_content(const std::string& command, const std::vector<std::string>& words, const std::string& folder,
+                   const std::string& checksum) {
+  const std::string found = content_of(words, folder).checksum;
+  if (checksum == found) return;
+  throw Error("checksum", "is not that of " + shown(command) + " with its program, which has " + found,
+              "put the program back that the run began with, or begin another run");
+}
+
 std::string shown(const std::string& text) {
   std::string out = text.substr(0, kLongestPiece);
   for (char& c : out) c = c >= 0x20 && c < 0x7f ? c : '?';

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -555,6 +556,19 @@ Unit unit_of_column(const std::string& name) {
 bool depends_on_machine(const std::string& name) {
   const RecordField* field = find_summary_field(name);
   return field != nullptr && field->of_machine;
+}
+
+bool needs_truth(const std::string& name) {
+  static const std::set<std::string> names = [] {
+    std::set<std::string> out;
+    for (const auto& fields : {tap_list().fields(), summary_fields(), error_fields()}) {
+      for (const RecordField& one : fields) {
+        if (boost::starts_with(one.when_null, kNoTruth)) out.insert(one.name);
+      }
+    }
+    return out;
+  }();
+  return names.count(name) != 0;
 }
 
 const std::vector<RecordField>& error_fields() {

@@ -65,6 +65,9 @@ Unit unit_of_column(const std::string& name);
 /// Whether a field of the summary depends on clock, memory or machine rather than on the config.
 bool depends_on_machine(const std::string& name);
 
+/// Whether a field of a tap or of the summary has a value only where the truth is known.
+bool needs_truth(const std::string& name);
+
 /// How far a surface is from the truth, best known first: the fields that a tap and a summary share.
 const std::vector<RecordField>& error_fields();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/recording.hpp"
 
+#include "config/trouble.hpp"
 #include "record/fields.hpp"
 #include "record/record_reader.hpp"
 #include "record/tap_row.hpp"
@@ -38,7 +39,7 @@ class Absent : public Backend {
 /// shows.
 class Recorded final : public Absent {
  public:
-  explicit Recorded(const Recording& recording) : Absent(recording.truth_known()), recording_(recording) {}
+  Recorded(const Recording& recording, bool truth_known) : Absent(truth_known), recording_(recording) {}
   Quantities expects() const override {
     Quantities out;
     if (recording_.rows.front().number("predicted.height")) out = out | Quantity::height;
@@ -100,14 +101,36 @@ std::string shown(const Scalar* value) {
   return csv_cell(*value);
 }
 
+/// An experiment with the options of a recorded run, for its taps to be taken in again; `backend` makes what stands in
+/// for its backend. `truth_lost` as of Playback.
+template <class MakeBackend>
+std::unique_ptr<Experiment> experiment_of(const Workshop& workshop, const Recording& recording,
+                                          ExperimentOptions options, std::optional<Error>& truth_lost,
+                                          const MakeBackend& backend) {
+  std::unique_ptr<Experiment> out;
+  const auto make = [&](bool truth) {
+    return trouble_in([&] { out = make_experiment(options, workshop.host, workshop.interrupted, backend(truth)); });
+  };
+  const bool truth_known = recording.truth_known();
+  const std::optional<Error> trouble = make(truth_known);
+  if (!trouble) return out;
+  options.scene.objects.clear();
+  if (make(false)) throw Error(*trouble);  // which the objects are not to blame for
+  if (truth_known) truth_lost = trouble;
+  return out;
+}
+
 void compare(const Row& recorded, const Row& replayed, int tap, ReplayReport& report) {
+  const auto left_out = [&](const std::string& field) {
+    return depends_on_machine(field) || (report.truth_lost && needs_truth(field));
+  };
   for (const auto& [field, value] : recorded.fields) {
-    if (depends_on_machine(field) || replayed.find(field) != nullptr) continue;
+    if (left_out(field) || replayed.find(field) != nullptr) continue;
     ++report.numbers;
     report.differences.push_back({tap, field, shown(&value), "nothing"});
   }
   for (const auto& [field, value] : replayed.fields) {
-    if (depends_on_machine(field)) continue;
+    if (left_out(field)) continue;
     ++report.numbers;
     const std::string before = shown(recorded.find(field));
     const std::string now = shown(&value);
@@ -172,8 +195,7 @@ Recording read_recording(const Workshop& workshop, const fs::path& directory) {
 
 Playback::Playback(const Workshop& workshop, const Recording& recording)
     : recording_(recording),
-      experiment_(make_experiment(recording.config.options, workshop.host, workshop.interrupted,
-                                  no_backend(recording.truth_known()))) {
+      experiment_(experiment_of(workshop, recording, recording.config.options, truth_lost_, no_backend)) {
   recall_choice(*experiment_, recording_, 1);
 }
 
@@ -185,6 +207,16 @@ void Playback::advance_to(int taps) {
   recall_choice(*experiment_, recording_, taps + 1);
 }
 
+RunResult Playback::result() {
+  RunResult out = experiment_->result();
+  if (!truth_lost_) return out;
+  // A row has the errors of the state that its tap was chosen from.
+  const auto next = static_cast<std::size_t>(taps_);
+  const Row none;
+  out.errors = errors_in(next < recording_.rows.size() ? recording_.rows[next] : recording_.summary.value_or(none));
+  return out;
+}
+
 ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   const Recording recording = read_recording(workshop, directory);
   const std::vector<Row>& recorded = recording.rows;
@@ -193,8 +225,10 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   // A run that ended by this rule failed by its arm: here its taps are compared like any other's.
   ExperimentOptions options = recording.config.options;
   options.stop.failed_in_a_row.reset();
+  ReplayReport report;
   const std::unique_ptr<Experiment> made_again =
-      make_experiment(options, workshop.host, workshop.interrupted, std::make_shared<Recorded>(recording));
+      experiment_of(workshop, recording, options, report.truth_lost,
+                    [&](bool truth_known) { return std::make_shared<Recorded>(recording, truth_known); });
   Experiment& experiment = *made_again;
   recall_lines(experiment, recording, 1, made);
   const bool from_above = dynamic_cast<const FromAbove*>(made_again.get()) != nullptr;
@@ -210,7 +244,6 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
     experiment.end(*tap, collector);
   }
 
-  ReplayReport report;
   report.taps = made;
   for (std::size_t i = 0; i < recorded.size(); ++i) {
     const int number = static_cast<int>(i) + 1;
@@ -247,6 +280,7 @@ std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Rec
   const bool timed = seconds.size() == recording.taps.size() + 1;
   const double all = total(seconds.back());
   Playback playback(workshop, recording);
+  if (playback.truth_lost()) throw Error(*playback.truth_lost());
   const auto summary_after = [&](int count) {
     playback.advance_to(count);
     playback.experiment().ask(asked_after(recording, static_cast<std::size_t>(count)));

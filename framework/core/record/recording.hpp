@@ -51,11 +51,20 @@ Quantities recorded_quantities(const Row& row);
 class Playback {
  public:
   /// Before the first tap. `workshop` and `recording` must outlive it. Throws Error for what only building finds out.
+  ///
+  /// The objects of the scene serve the truth alone. Where they cannot be built any more, because a file of theirs is
+  /// gone or another by now, the desk is bare: the models are the same, and no truth is known.
   Playback(const Workshop& workshop, const Recording& recording);
+
+  /// Why the truth, which the run knew, is not known any more; none where it is, or where the run did not know it.
+  const std::optional<Error>& truth_lost() const { return truth_lost_; }
 
   /// Takes in the recorded taps up to the `taps`-th, from 0 to all; never back.
   void advance_to(int taps);
   int taps() const { return taps_; }
+
+  /// The result as of now. Where the truth is lost, with the errors that the record has of this state.
+  RunResult result();
 
   /// The experiment as of now: beliefs, errors, and the tap that it would choose next. Not to be run.
   Experiment& experiment() { return *experiment_; }
@@ -64,6 +73,7 @@ class Playback {
 
  private:
   const Recording& recording_;
+  std::optional<Error> truth_lost_;
   std::unique_ptr<Experiment> experiment_;
   int taps_ = 0;
 };
@@ -79,6 +89,8 @@ struct Difference {
 struct ReplayReport {
   int taps = 0;
   int numbers = 0;  ///< compared
+  /// Why those that need the truth are left out; none where they are not: see Playback::truth_lost().
+  std::optional<Error> truth_lost;
   std::vector<Difference> differences;
 };
 
@@ -91,7 +103,7 @@ ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& d
 /// none of one that has not come. Equal to that of a run whose budget ends there, in all that depends on the config
 /// alone: choosing a tap looks at no budget, and reading a model changes none. Only the engines are those that
 /// `posterior: auto` took for the run's own budget; where it would take another for less, numbers may differ as far as
-/// `accuracy` lets them.
+/// `accuracy` lets them. Throws Error where the run knew the truth and that is lost, see Playback.
 ///
 /// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and
 /// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody

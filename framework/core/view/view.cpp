@@ -96,13 +96,11 @@ void PriorOptions::list(Fields& fields) {
                         .at_least(0)
                         .from("5 mm: where a camera is thought to stand, an estimate"));
   fields.section(pose, Field("pose", "where the frame of the points lies; not given, it is the area's"));
-  std::string found;
-  const auto trouble = trouble_in([&] { found = depth.empty() ? "" : hash_of(bytes_of(depth)); });
-  // It has the place of the file, but not of who names it.
-  fields.require(!trouble, "depth", trouble ? trouble->what() : "");
-  checksum = found;
+  const auto trouble = trouble_in([&] { checksum = depth.empty() ? "" : hash_of(bytes_of(depth)); });
   fields.text(checksum, Field("checksum", "of the file's content; if absent, that of the file as it is"));
-  fields.require(checksum == found, "checksum", "is not that of " + depth + ", which has " + found);
+  // A record has the checksum, and is read without the file. The error has the place of the file, but not of who names
+  // it.
+  fields.require(!trouble || !checksum.empty(), "depth", trouble ? trouble->what() : "");
 }
 
 PointCloud placed(const PointCloud& points, const PriorOptions& options) {
@@ -156,7 +154,12 @@ std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& optio
 
 std::vector<Sight> sights_of(const std::optional<PriorOptions>& options, const Scene& scene) {
   if (!options) return {};
-  return sights_of(placed(read_points(bytes_of(options->depth), options->depth), *options), *options, scene);
+  std::string bytes;
+  if (const auto trouble = trouble_in([&] { bytes = bytes_of(options->depth); }))
+    throw Error("prior.depth", trouble->what(), {}, trouble->kind());
+  if (const std::string found = hash_of(bytes); !options->checksum.empty() && found != options->checksum)
+    throw Error("prior.checksum", "is not that of " + options->depth + ", which has " + found);
+  return sights_of(placed(read_points(bytes, options->depth), *options), *options, scene);
 }
 
 }  // namespace palpate

@@ -32,7 +32,8 @@ struct PriorOptions : Options {
   std::optional<ViewPose> pose;
   std::string checksum;  ///< so that the id of a run follows the content of the file
 
-  /// Reads the file for its checksum: throws Error if it cannot be read.
+  /// Reads the file for its checksum. One that cannot be read is refused, unless the checksum is given: then the file is
+  /// needed only where its points are, and records are read without it.
   void list(Fields& fields) override;
 };
 
@@ -56,7 +57,8 @@ PointCloud placed(const PointCloud& points, const PriorOptions& options);
 /// where no point lies in the area.
 std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& options, const Scene& scene);
 
-/// Those of the file of `options`, or none without.
+/// Those of the file of `options`, or none without. Throws Error, its `where` "prior.depth" or "prior.checksum", for a
+/// file that cannot be read, or is another than the checksum says.
 std::vector<Sight> sights_of(const std::optional<PriorOptions>& options, const Scene& scene);
 
 }  // namespace palpate

@@ -54,7 +54,7 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
     out.probability = belief.probability();
   }
   out.largest_deviation = std::sqrt(belief.all_taps_variance().maxCoeff());
-  out.result = experiment.result();
+  out.result = playback.result();
   return out;
 }
 
@@ -79,6 +79,7 @@ HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recordin
     : recording_(recording),
       playback_(workshop, recording),
       any_side_(dynamic_cast<FromAnySide*>(&playback_.experiment())) {
+  grown_.truth_lost = playback_.truth_lost();
   if (any_side_ != nullptr) {
     add_surface();
     return;
@@ -104,7 +105,7 @@ void HistoryGrower::add_surface() {
   now.taps = playback_.taps();
   now.next = experiment.choose_next();
   if (now.next) now.next_along = experiment.belief().meeting(*now.next->approach, experiment.belief().solids().best());
-  now.result = experiment.result();
+  now.result = playback_.result();
   grown_.surfaces.push_back(experiment.crossings(kSide));
   for (const Crossings::Vertex& one : grown_.surfaces.back().vertices)
     now.largest_deviation = std::max(now.largest_deviation, one.deviation);
@@ -155,7 +156,7 @@ void HistoryGrower::thin(std::size_t most) {
 
 History HistoryGrower::since(int moment) const {
   const auto first = std::lower_bound(grown_.shown.begin(), grown_.shown.end(), moment);
-  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_contours};
+  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_contours, grown_.truth_lost};
   if (!grown_.surfaces.empty())
     out.surfaces = {grown_.surfaces.end() - (grown_.shown.end() - first), grown_.surfaces.end()};
   for (const MapSeries& map : grown_.maps)

@@ -5,6 +5,7 @@
 
 #include "record/recording.hpp"
 
+#include <palpate/error.hpp>
 #include <palpate/types.hpp>
 
 #include <functional>
@@ -78,6 +79,8 @@ struct History {
   /// moment, where it is known.
   std::vector<Crossings> surfaces;
   std::vector<Ring> true_contours;
+  /// Why the truth is not known any more, see Playback::truth_lost(); the errors are those of the record then.
+  std::optional<Error> truth_lost;
 };
 
 /// Tells how many of all taps are done.

@@ -160,10 +160,7 @@ class ProgramAcquisition final : public Acquisition {
     if (context.directory.empty()) return;
     words_ = programs::split_command(options.command).value();
     file_ = programs::find_program(words_.front(), options.folder);
-    const std::string found = programs::content_of(words_, options.folder).checksum;
-    if (options.checksum == found) return;
-    throw Error("checksum", "is not that of the command and its program, which have " + found,
-                "put the program back that the run began with, or begin another run");
+    programs::check_content(options.command, words_, options.folder, options.checksum);
   }
 
   Quantities reads() const override {

@@ -71,10 +71,7 @@ class Process final : public Backend {
         context_(context),
         words_(programs::split_command(options.command).value()),
         file_(programs::find_program(words_.front())) {
-    const std::string found = programs::content_of(words_).checksum;
-    if (options.checksum == found) return;
-    throw Error("checksum", "is not that of the command and its program, which have " + found,
-                "put the program back that the run began with, or begin another run");
+    programs::check_content(options.command, words_, {}, options.checksum);
   }
 
   Contact tap(const TapRequest& request) override {

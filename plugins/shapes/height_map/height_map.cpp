@@ -45,7 +45,7 @@ class HeightMap final : public Shape {
  public:
   using Options = HeightMapOptions;
   HeightMap(const Options& options, const Context&) : spacing_(options.spacing) {
-    const Grid all = read_grid(read_file(options.file), options.file);
+    const Grid all = read_grid(read_file(options.file, options.checksum), options.file);
     // Rows and columns of zeros around the object are the desk's, but for the ones to which it slopes down.
     const auto [first_row, rows] = range_of(all.rowwise().maxCoeff() > 0.0);
     const auto [first_column, columns] = range_of((all.colwise().maxCoeff() > 0.0).transpose());

@@ -40,7 +40,10 @@ fs::path place_of(const std::string& file) {
 
 }  // namespace
 
-std::string read_file(const std::string& file) {
+namespace {
+
+/// Throws Error, its `where` the file.
+std::string bytes_of(const std::string& file) {
   Reading reading = read_bounded(place_of(file), kMostMeshBytes, Origin::user);
   if (reading.kind == Reading::Kind::absent) {
     std::string hint;
@@ -55,17 +58,31 @@ std::string read_file(const std::string& file) {
   return std::move(reading.text);
 }
 
+}  // namespace
+
+std::string read_file(const std::string& file, const std::string& checksum) {
+  std::string bytes;
+  try {
+    bytes = bytes_of(file);
+  } catch (const Error& trouble) {  // which has the place of the file, but not of who names it
+    throw Error("file", trouble.what(), {}, trouble.kind());
+  }
+  const std::string found = checksum_of(bytes);
+  if (checksum.empty() || found == checksum) return bytes;
+  throw Error("checksum", "is not that of " + file + ", which has " + found);
+}
+
 void list_checksum(const std::string& file, std::string& checksum, Fields& fields) {
   // So that the id of a run follows the content of the file, and a run is not carried on with another.
-  std::string found;
+  std::string trouble;
   try {
-    if (!file.empty()) found = checksum_of(read_file(file));
-  } catch (const Error& trouble) {  // which has the place of the file, but not of who names it
-    fields.require(false, "file", trouble.what());
+    if (!file.empty()) checksum = checksum_of(bytes_of(file));
+  } catch (const Error& error) {
+    trouble = error.what();
   }
-  checksum = found;
   fields.text(checksum, Field("checksum", "of the file's content; if absent, that of the file as it is"));
-  fields.require(checksum == found, "checksum", "is not that of " + file + ", which has " + found);
+  // A record has the checksum, and is read without the file.
+  fields.require(trouble.empty() || !checksum.empty(), "file", trouble);
 }
 
 void MeshOptions::list(Fields& fields) {

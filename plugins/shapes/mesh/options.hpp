@@ -17,16 +17,16 @@ struct MeshOptions : Options {
   Holes holes = Holes::refuse;
   std::string checksum;
 
-  /// Reads the file, whose content the checksum stands for: throws what read_file() does.
   void list(Fields& fields) override;
 };
 
-/// Lists `checksum`, that of the content of `file`, which the field `file` named: so that the id of a run follows it. A
-/// file that cannot be read, or is another than a record says, is refused at its field.
+/// Lists `checksum`, that of the content of `file`, which the field `file` named: so that the id of a run follows it.
+/// Where a config has none, that of the file as it is; a file that cannot be read is then refused at the field `file`.
+/// Where it has one, the file is needed only when the shape is built: records are read without it.
 void list_checksum(const std::string& file, std::string& checksum, Fields& fields);
 
-/// The whole file. Throws Error, its `where` the file: missing, not readable, no regular file, empty, or larger than
-/// 500 MB.
-std::string read_file(const std::string& file);
+/// Returns the whole file. Throws Error, its `where` "file": missing, not readable, no regular file, empty, or larger
+/// than 500 MB; or "checksum": the content has another than `checksum`.
+std::string read_file(const std::string& file, const std::string& checksum);
 
 }  // namespace palpate::shapes

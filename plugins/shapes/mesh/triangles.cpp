@@ -130,7 +130,7 @@ Triangles join(const Soup& soup, const MeshOptions& options) {
 }  // namespace
 
 Triangles read_surface(const MeshOptions& options) {
-  const Triangles out = join(import_triangles(read_file(options.file), options.file), options);
+  const Triangles out = join(import_triangles(read_file(options.file, options.checksum), options.file), options);
   check_areas(out, options.file);
   check_doubles(out, options.file);
   if (options.holes == MeshOptions::Holes::refuse) check_closed(out, options.file);

@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Json json_of_run(const Recording& recording) {
+Json json_of_run(const Recording& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
   return {{"name", options.name},
           {"id", recording.config.id},
@@ -42,7 +42,7 @@ Json json_of_run(const Recording& recording) {
           {"width", options.scene.area.width},
           {"depth", options.scene.area.depth},
           {"desk", options.scene.desk},
-          {"truth", recording.truth_known()},
+          {"truth", recording.truth_known() && !history.truth_lost},
           {"any_side", options.scene.touch == SceneOptions::Touch::any}};
 }
 
@@ -234,7 +234,7 @@ static Json json_of_standing(const Recording& recording, const History& history)
 /// All that a page has of a run, but for its maps.
 static Json json_of_page(const Recording& recording, const History& history) {
   const Tree manifest = recording.manifest.value_or(Tree::map());
-  Json data = json_of_run(recording);
+  Json data = json_of_run(recording, history);
   data.update(json_of_standing(recording, history));
   data.update({{"version", kVersion},
                {"taps", recording.rows},

@@ -134,6 +134,7 @@ std::vector<std::string> warnings_of(const Recording& recording, const History& 
         fmt::format("The footprint, {}, says: {}.", recording.config.options.footprint.type, last.footprint->remark));
   warn_of_weights(recording, history, out);
   warn_of_numbers(last, out);
+  if (history.truth_lost) out.push_back(truth_lost_words(*history.truth_lost) + ".");
   if (!recording.truth_known()) out.push_back("The truth is not known here: there are no errors to show.");
   return out;
 }

@@ -16,6 +16,10 @@ std::string length_words(double metres) { return readable(metres, Unit::metre, 4
 
 std::string error_words(double metres) { return readable(metres, Unit::metre, 3, LengthKind::error); }
 
+std::string truth_lost_words(const Error& lost) {
+  return fmt::format("The truth is not known any more, and errors are those of the record: {}", lost.what());
+}
+
 std::string seconds_words(double seconds) { return usual_scale(Unit::second).quantity(seconds); }
 
 std::string place_words(double coordinate) { return usual_scale(Unit::metre, LengthKind::place).quantity(coordinate); }

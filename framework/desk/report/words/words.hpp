@@ -34,6 +34,9 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
 /// agree with the other taps have no object there".
 std::string doubt_words(const TapBelief::Doubted& one);
 
+/// What is said once of a run whose truth is lost, see Playback::truth_lost(): a sentence without its full stop.
+std::string truth_lost_words(const Error& lost);
+
 /// "1 tap", "3 taps"
 std::string counted(long count, const std::string& noun);
 
