@@ -133,6 +133,23 @@ TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoes
   EXPECT_THAT(error_of([&] { scores(*chatty); }), HasSubstr("the program said more than its scores"));
 }
 
+TEST_F(ProgramAcquisition, BesideAnotherInAMixtureHasItsOwnFileForWhatItSays) {
+  const auto part = [&](const char* name) {
+    const std::string body = std::string("for ask in asks():\n    sys.stderr.write('") + name +
+                             "\\n')\n    sys.stderr.flush()\n    answer([1.0] * 6)\n";
+    const fs::path file = folder_.write(std::string(name) + ".py", kHead + body);
+    return "{type: program, reads: none, command: " + yaml_quoted("python3 -SE '" + file.string() + "'") + "}";
+  };
+  const std::string both = "{acquisitions: [" + part("first") + ", " + part("second") + "]}";
+  const std::string record = (folder_.path() / "record").string();
+  for (int process = 1; process <= 2; ++process) {  // as when a run is resumed
+    const auto mixture = context_.create<Acquisition>(choose(shared_host(), "acquisition", "mixture", both));
+    EXPECT_EQ(scores(*mixture), std::vector<double>(6, 2.0));
+  }
+  EXPECT_EQ(text_of(record + "/acquisition.stderr.txt"), "first\nfirst\n");
+  EXPECT_EQ(text_of(record + "/acquisition_2.stderr.txt"), "second\nsecond\n");
+}
+
 TEST_F(ProgramAcquisition, IsEndedWithAllThatItStarted) {
   long own = 0;
   long other = 0;
