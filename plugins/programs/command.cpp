@@ -115,6 +115,7 @@ Content content_of(const std::vector<std::string>& words, const std::string& fol
     found = found || there || word == "-m" || word == "-c";
     const std::string& text = reading ? reading.text : word;
     all += fmt::format("{} {}:", reading ? "file" : "word", text.size()) + text;
+    if (reading) out.file = word;
     if (reading) out.program = text;
   }
   const XXH128_hash_t hash = XXH3_128bits(all.data(), all.size());
@@ -127,7 +128,7 @@ void check_content(const std::string& command, const std::vector<std::string>& w
   const std::string found = content_of(words, folder).checksum;
   if (checksum == found) return;
   throw Error("checksum", "is not that of " + shown(command) + " with its program, which has " + found,
-              "put the program back that the run began with, or begin another run");
+              "put the program back that the run began with, or begin another run", Error::Kind::busy);
 }
 
 std::string shown(const std::string& text) {

@@ -27,7 +27,8 @@ std::string find_program(const std::string& program, const std::string& folder =
 /// A command as its program's content has it.
 struct Content {
   std::string checksum;  ///< 32 hex digits
-  std::string program;   ///< the content of the program, empty where the command names no file that can be read
+  std::string file;      ///< the program, as the command names it; empty where that names no file that can be read
+  std::string program;   ///< the content of that file
 };
 
 /// Returns a hash of the command in which the content of the program stands for its name, so that the id of a run

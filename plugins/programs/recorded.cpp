@@ -42,6 +42,10 @@ void fail(const std::string& where, const std::string& what) {
   throw Error(where, what + ": " + std::strerror(errno), {}, Error::Kind::run);
 }
 
+void keep_copy(const std::string& file, const std::string& text) {
+  if (!write_all(open_recorded(file, O_WRONLY | O_TRUNC), text)) fail(file, "cannot be written");
+}
+
 // An empty name stands for a file that stays empty: there is nothing to cut out, and there are no words.
 Diary::Diary(const std::string& file) : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)) {
   begin_ = size();

@@ -56,6 +56,9 @@ class Diary {
   long long left_out_ = 0;  ///< bytes
 };
 
+/// Writes `text` into `file`, over what was there. Throws Error.
+void keep_copy(const std::string& file, const std::string& text);
+
 /// Makes `file` if need be and locks it, once no program holds it any more; none if one still does when the patience is
 /// over. The program that inherits it holds it until that and all that it started and that kept its files are gone,
 /// whatever becomes of this process. Throws Error if `file` cannot be made or locked.

@@ -19,7 +19,7 @@ class Error : public std::exception {
   enum class Kind {
     usage,  ///< wrong command line, config or plugin: exit 2
     run,    ///< the run itself failed: exit 1
-    busy,   ///< another process holds the run: exit 75
+    busy,   ///< not now: another process holds the run or its arm, or a program was changed; nothing was begun: exit 75
   };
 
   Error(std::string where, std::string reason, std::string hint = {}, Kind kind = Kind::usage)

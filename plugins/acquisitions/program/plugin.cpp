@@ -19,9 +19,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -95,41 +93,6 @@ std::string python_path() {
          python_folder();
 }
 
-/// Numbers the programs of a run, of which a mixture may have several: from 1, in the order in which they are made, so
-/// that each has the same number when the run is resumed.
-class Number {
- public:
-  explicit Number(const Context& run) : run_(&run) {
-    const std::lock_guard lock(mutex());
-    std::set<int>& taken = all()[run_];
-    while (taken.count(value_) != 0) ++value_;
-    taken.insert(value_);
-  }
-  ~Number() {
-    const std::lock_guard lock(mutex());
-    const auto taken = all().find(run_);
-    taken->second.erase(value_);
-    if (taken->second.empty()) all().erase(taken);
-  }
-  Number(const Number&) = delete;
-  Number& operator=(const Number&) = delete;
-
-  int value() const { return value_; }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex out;
-    return out;
-  }
-  static std::map<const Context*, std::set<int>>& all() {
-    static std::map<const Context*, std::set<int>> out;
-    return out;
-  }
-
-  const Context* run_;
-  int value_ = 1;
-};
-
 }  // namespace
 
 struct ProgramOptions : Options {
@@ -188,8 +151,7 @@ class ProgramAcquisition final : public Acquisition {
   using Options = ProgramOptions;
 
   /// Throws Error, for a run, when there is no such program, or it is another one than the checksum says.
-  ProgramAcquisition(const Options& options, const Context& context)
-      : options_(options), context_(context), number_(context) {
+  ProgramAcquisition(const Options& options, const Context& context) : options_(options), context_(context) {
     for (const std::string& name : names_in(options.reads)) maps_.push_back(program::find_map(name));
     if (!from_above() && !any_side()) {
       throw Error("reads", "names arrays of taps from above and arrays of taps from any side",
@@ -257,7 +219,8 @@ class ProgramAcquisition final : public Acquisition {
       Program program{words_, file_};
       program.folder = options_.folder;
       program.environment.insert(program.environment.begin(), python_path());
-      child_ = std::make_unique<Child>(std::move(program), context_.directory + "/" + diary(), Descriptor());
+      keep_program();
+      child_ = std::make_unique<Child>(std::move(program), in_record(".stderr.txt"), Descriptor());
     }
     const programs::Patience patience{
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),
@@ -305,7 +268,7 @@ class ProgramAcquisition final : public Acquisition {
       case Heard::line:
         return;
       case Heard::ended:
-        fail(child_->fate(), "correct it, what it said is in " + diary());
+        fail(child_->fate(), "correct it, what it said is in " + in_record(".stderr.txt"));
       case Heard::late:
         fail(bytes.empty() ? std::string("gave no scores in time") +
                                  (answered_ ? "" : ", nor ever before: does it flush its output?")
@@ -317,17 +280,24 @@ class ProgramAcquisition final : public Acquisition {
     }
   }
 
-  /// The file for what this program says. Others of the same run have their own: its middle may be cut out.
-  std::string diary() const {
-    const int number = number_.value();
-    return number == 1 ? "acquisition.stderr.txt" : fmt::format("acquisition_{}.stderr.txt", number);
+  /// Returns the path of a file of this program in the run's folder. Each program of a mixture has its own.
+  std::string in_record(const std::string& ending) const {
+    constexpr std::size_t kEnough = 8;
+    return context_.directory + "/acquisition_" + options_.checksum.substr(0, kEnough) + ending;
+  }
+
+  /// Keeps the program's text with the run: its file may be another one tomorrow.
+  void keep_program() const {
+    constexpr std::size_t kMostBytes = 1 << 20;  // more than anybody writes by hand
+    const programs::Content content = programs::content_of(words_, options_.folder);
+    if (content.program.empty() || content.program.size() > kMostBytes) return;
+    programs::keep_copy(in_record(fs::path(content.file).extension().string()), content.program);
   }
 
   static constexpr const char* kCorrect = "correct it; with another program it is another run";
 
   Options options_;
   const Context& context_;
-  Number number_;
   std::vector<const program::Map*> maps_;
   std::vector<std::string> words_;
   std::string file_;
