@@ -74,6 +74,20 @@ TEST_F(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   EXPECT_TRUE(text_of(directory / "record.jsonl") == record);
 }
 
+TEST_F(Report, SaysThatAProgramChoosesTheNextTapAndOfAPluginWhereThatIs) {
+  const std::string echo = (test::source_folder() / "plugins/acquisitions/program/echo.sh").string();
+  for (const bool asks : {true, false}) {
+    const fs::path directory = ran(
+        Words{asks ? "acquisition={type: program, command: sh " + echo + "}" : "acquisition=uncertainty", "taps=6"});
+    const json last = reported(directory).at("moments").back();
+    EXPECT_EQ(last.contains("next"), !asks);
+    EXPECT_EQ(last.at("is_next_known"), !asks);
+    ASSERT_EQ(palpate({"report", directory, "--figures"}).status, 0);
+    const std::string maps = text_of(directory / "figures/maps.gnuplot");
+    EXPECT_EQ(maps.find("next tap") != std::string::npos, !asks);
+  }
+}
+
 TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
   const fs::path directory = ran("footprint.contradictions=0.01 log.maps=true", config("default.yaml"));
   const json data = reported(directory);

@@ -40,6 +40,7 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
     out.marks.push_back(
         mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk(), experiment.counts()));
   out.next = experiment.choose_next();
+  out.is_next_known = out.next || experiment.has_scores();
   out.has_scores = experiment.has_scores();
   out.scores = experiment.scores();
   experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
@@ -104,6 +105,7 @@ void HistoryGrower::add_surface() {
   Moment now;
   now.taps = playback_.taps();
   now.next = experiment.choose_next();
+  now.is_next_known = now.next || experiment.has_scores();
   if (now.next) now.next_along = experiment.belief().meeting(*now.next->approach, experiment.belief().solids().best());
   now.result = playback_.result();
   grown_.surfaces.push_back(experiment.crossings(kSide));
@@ -156,7 +158,8 @@ void HistoryGrower::thin(std::size_t most) {
 
 History HistoryGrower::since(int moment) const {
   const auto first = std::lower_bound(grown_.shown.begin(), grown_.shown.end(), moment);
-  History out{grown_.moments, {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_contours, grown_.truth_lost};
+  History out{grown_.moments,   {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_contours,
+              grown_.truth_lost};
   if (!grown_.surfaces.empty())
     out.surfaces = {grown_.surfaces.end() - (grown_.shown.end() - first), grown_.surfaces.end()};
   for (const MapSeries& map : grown_.maps)

@@ -29,7 +29,8 @@ struct TapMark {
 struct Moment {
   int taps = 0;
   RunResult result;                  ///< what summary.json would say if the run had ended here
-  std::optional<TapRecord> next;     ///< what would be tapped next; absent if no candidate is left
+  std::optional<TapRecord> next;     ///< what would be tapped next; absent if no candidate is left, or if nobody says
+  bool is_next_known = true;         ///< false where a program chooses, which is not started for a record
   std::optional<double> next_along;  ///< of it, from any side: how far it would come by the most probable composition
   double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres; from any side of the surface
   /// Of the candidates, as the weight process has it; absent where the footprint is not the weight.

@@ -82,7 +82,7 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
     sheet.bar({left + first.width + 14, kTop, 14, first.height}, colours);
     left += kPitch;
   }
-  sheet.legend(kMargin + 6, kTop + first.height + 68, last.result.failed_taps > 0);
+  sheet.legend(kMargin + 6, kTop + first.height + 68, last.result.failed_taps > 0, last.next.has_value());
   return {"maps", std::move(sheet)};
 }
 

@@ -99,7 +99,8 @@ static void to_json(Json& out, const Moment& moment) {
               {kExpectedError, result.expected_rmse},
               {"least_weight", moment.least_weight},
               {"most_weight", moment.most_weight},
-              {"remark", result.footprint ? result.footprint->remark : ""}});
+              {"remark", result.footprint ? result.footprint->remark : ""},
+              {"is_next_known", moment.is_next_known}});
   if (result.doubted) out["doubted"] = *result.doubted;
   if (moment.next) {
     out["next"] = {{"x", moment.next->target.x},

@@ -24,6 +24,8 @@ std::string Explanation::heading(const std::string& where) const {
 std::string Explanation::acquisition_words() const {
   const std::string& type = options_.acquisition.type;
   const std::vector<PluginListing> found = workshop_.host.list("acquisition", type);
+  if (const Tree* command = options_.acquisition.options->find("command"))
+    return fmt::format("{}, command {}", type, command->text);
   return found.empty() || found.front().summary.empty() ? type : fmt::format("{} ({})", type, found.front().summary);
 }
 
@@ -53,11 +55,15 @@ void Explanation::explain_errors(const std::string& what, const Row& before, con
     const std::string from = number_words(before, error.name, words);
     const std::string to = number_words(after, error.name, words);
     if (from.empty() || to.empty()) continue;
-    const std::string change = from == to ? "still " + to : fmt::format("from {} to {}", from, to);
-    (length ? lengths : others).push_back(fmt::format("{} {}", error.label, change));
+    const bool same = from == to;
+    if (length)
+      lengths.push_back(fmt::format("{} {}", error.label, same ? "still " + to : "from " + from + " to " + to));
+    if (!length)
+      others.push_back(
+          fmt::format("The {} {}.", error.label, same ? "stays " + to : "goes from " + from + " to " + to));
   }
   if (!lengths.empty()) page_.say(fmt::format("{}: {}.", what, fmt::join(lengths, ", ")));
-  for (const std::string& one : others) page_.say(fmt::format("Of the {}.", one));
+  for (const std::string& one : others) page_.say(one);
   if (lengths.empty() && others.empty())
     page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
 }

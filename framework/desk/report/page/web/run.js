@@ -89,7 +89,7 @@ function story(data, moment, drawn) {
     const ties = moment.next.ties > 1 ? `, one of ${moment.next.ties} that are tied` : "";
     out.push(`Next: ${whereTo(moment.next)}, by ${kChosenBy[moment.next.source]}${score}${ties}.`);
   } else {
-    out.push("No candidate is left.");
+    out.push(moment.is_next_known ? "No candidate is left." : "The next tap is chosen by a program, which is not started to show a record.");
   }
   for (const one of moment.doubted ?? []) out.push(`Tap ${one.tap} may lie: ${one.words}.`);
   if (moment.remark) out.push(`The footprint, ${data.footprint}, says: ${moment.remark}.`);
