@@ -518,8 +518,9 @@ class Help final : public CLI::FormatterBase {
 template <class Act>
 int with_program(int argc, char** argv, const Act& act) {
   const Installation installation = find_installation();
-  const PluginHost host(PluginHost::search_path(installation.plugins));
+  PluginHost host(PluginHost::search_path(installation.plugins));
   Composer composer(installation.configs, config_keys());
+  host.set_group_names([&](const std::string& kind) { return composer.names_of(kind); });
   Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
   return act(program);
 }

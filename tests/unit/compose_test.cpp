@@ -203,7 +203,7 @@ TEST_F(Compose, RefusesANameWithAPathInIt) {
     const std::string plain = std::string(name) == "''" ? "" : name;
     EXPECT_EQ(refusal(std::string("defaults:\n  - kernel: ") + name + "\n"),
               "c.yaml:2:13: '" + plain +
-                  "' is not the name of a kernel, a name has letters, digits, '_' and '-', and no path");
+                  "' is no name for the group kernel, a name has letters, digits, '_' and '-', and no path");
   }
 }
 

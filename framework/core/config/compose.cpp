@@ -68,7 +68,8 @@ constexpr const char* kSimulator = "simulator";
 /// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
 /// name, and for a file that is being read already.
 void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
-  if (!is_name(name)) throw Error(place.text(), fmt::format("'{}' is not the name of a {}", name, group), kNameHint);
+  if (!is_name(name))
+    throw Error(place.text(), fmt::format("'{}' is no name for the group {}", name, group), kNameHint);
   const std::string link = group + "/" + name;
   const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
   chain.push_back(link);
@@ -204,6 +205,12 @@ std::map<std::string, fs::path> Composer::files_of(const std::string& group, con
       }
     }
   }
+  return out;
+}
+
+std::vector<std::string> Composer::names_of(const std::string& group) const {
+  std::vector<std::string> out;
+  for (const auto& [name, file] : files_of(group, beside_)) out.push_back(name);
   return out;
 }
 
@@ -415,6 +422,7 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   const fs::path file = found(named);
   Tree own = load(file);
   const fs::path beside = fs::absolute(file).parent_path();
+  beside_ = beside;
   std::vector<Choice> choices = take_defaults(own);
   take_names(own, "", choices);
   for (const Override& one : overrides) {

@@ -71,6 +71,8 @@ class Composer {
   /// The files that a name may choose at a group, by that name, for a config in the folder `beside`.
   std::map<std::string, std::filesystem::path> files_of(const std::string& group,
                                                         const std::filesystem::path& beside) const;
+  /// The names that a config may choose at a group, sorted: beside the config of the last composition.
+  std::vector<std::string> names_of(const std::string& group) const;
 
  private:
   /// Of a group by its name, which is the value: the type that the group brings has the layer of that.
@@ -123,6 +125,7 @@ class Composer {
   std::map<std::array<std::string, 3>, Tree> bases_;
   std::map<std::string, Tree> brought_;  ///< by the strategy of this composition, for keys of the run
   std::vector<Group> groups_;
+  std::filesystem::path beside_;  ///< the folder of the config of the last composition
   /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.
   mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;
 };

@@ -284,7 +284,12 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
                     fmt::format("the folder {} {}, see PALPATE_PLUGIN_PATH", folder.string(), trouble));
       }
     }
-    throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, names(kind)));
+    std::vector<std::string> known = group_names_ ? group_names_(kind) : std::vector<std::string>();
+    for (const std::string& one : names(kind)) {
+      if (std::find(known.begin(), known.end(), one) == known.end()) known.push_back(one);
+    }
+    std::sort(known.begin(), known.end());
+    throw Error("", fmt::format("no plugin {}/{}", kind, name), suggestion(name, known));
   }
   if (found.size() > 1) {
     throw Error("",

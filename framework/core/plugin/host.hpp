@@ -8,6 +8,7 @@
 #include <palpate/plugin.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -46,6 +47,12 @@ class PluginHost final : public PluginSource, public PluginFactory {
   /// Looks for <folder>/<kind>/<name>.so in each of `folders`.
   explicit PluginHost(const std::vector<std::filesystem::path>& folders);
   ~PluginHost() override;
+
+  /// What users may also write in the place of a plugin of a kind, the names of groups: known to errors about a name
+  /// that is none. To be set before the host is used by several threads.
+  void set_group_names(std::function<std::vector<std::string>(const std::string& kind)> names) {
+    group_names_ = std::move(names);
+  }
 
   /// The folders of PALPATE_PLUGIN_PATH (separated by ':'), then `shipped`.
   static std::vector<std::filesystem::path> search_path(const std::filesystem::path& shipped);
@@ -87,6 +94,7 @@ class PluginHost final : public PluginSource, public PluginFactory {
   std::vector<std::pair<std::string, std::filesystem::path>> files(const std::string& kind) const;
 
   std::vector<std::filesystem::path> folders_;
+  std::function<std::vector<std::string>(const std::string& kind)> group_names_;  ///< may be empty
   mutable std::mutex mutex_;
   mutable std::map<std::pair<std::string, std::string>, std::shared_ptr<const Library>> libraries_;
 };
