@@ -117,11 +117,13 @@ Launcher::State LocalLauncher::poll(double seconds) {
   if (running_.empty() && later_.empty()) seconds = 0.0;
   ChildProcess::listen(processes, seconds);
   State state;
+  // All that ran: who has just ended makes room for the next at once.
+  state.running = static_cast<int>(running_.size());
   const auto ended =
       std::stable_partition(running_.begin(), running_.end(), [](const Running& one) { return !one.process->ended(); });
   for (auto one = ended; one != running_.end(); ++one) conclude(one->job, *one->process, state);
   running_.erase(ended, running_.end());
-  state.running = static_cast<int>(running_.size());
+  if (waiting_.empty()) state.running = static_cast<int>(running_.size());
   state.waiting = static_cast<int>(waiting_.size() + later_.size());
   return state;
 }
