@@ -67,7 +67,7 @@ TEST_F(Schema, AcceptsEveryShippedExperiment) {
 }
 
 TEST_F(Schema, RefusesWhatTheProgramRefuses) {
-  const Json good = as_json(read_yaml(test::source_folder() / "runs/reference/object_i_right_seed_3/config.yaml"));
+  const Json good = as_json(read_yaml(test::source_folder() / "runs/reference/object_i_right_seed_3.yaml"));
   ASSERT_TRUE(accepts(good));
   const auto refused = [&](const char* pointer, const Json& value) {
     Json config = good;
