@@ -180,8 +180,10 @@ announce() {
   steps=$(ninja -C "$root/build/$preset" -n "$@" 2>/dev/null | sed -n 's|^\[[0-9]*/\([0-9]*\)\].*|\1|p' | tail -n 1)
   [ "${steps:-0}" -ge 10 ] || return 0
   minutes=$((1 + steps / 15 / $(nproc 2>/dev/null || echo 2)))
-  say "building what this command takes: $steps steps, about $minutes minutes"
+  say "building what this command takes: $steps steps, about $(minutes_words "$minutes")"
 }
+
+minutes_words() { if [ "$1" = 1 ]; then echo "1 minute"; else echo "$1 minutes"; fi; }
 
 # build PRESET TARGET...: configures if that was never done or other packages are installed than were then, whoever
 # installed them, and builds what changed. Where CI=true, as services of continuous integration set it, warnings are errors.
@@ -191,6 +193,8 @@ build() {
   log=$root/build/$preset.log
   known=$root/build/$preset/packages # that were installed when it was configured
   if [ ! -f "$root/build/$preset/build.ninja" ] || [ ! -f "$known" ] || [ "$(cat "$known")" != "$installed" ]; then
+    again=no
+    [ ! -f "$root/build/$preset/build.ninja" ] || again=yes
     warnings=
     [ "${CI:-}" != true ] || warnings=-DPALPATE_WERROR=ON
     if ! told "configuring preset $preset" "$log" cmake --preset "$preset" -S "$root" $warnings; then
@@ -199,6 +203,9 @@ build() {
       exit 1
     fi
     printf '%s\n' "$installed" >"$known"
+    if [ $again = yes ]; then
+      announce "$preset" "$@"
+    else
     # Minutes of one core, and room, that everything takes, what ./check builds, and what the first ./palpate run asks
     # for with the plugins of configs/default.yaml.
     case "$preset $*" in
@@ -208,6 +215,7 @@ build() {
       *) whole=8 disk='200 MB' ;;
     esac
     say "building preset $preset: about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time, $disk of disk"
+    fi
   else
     announce "$preset" "$@"
   fi
