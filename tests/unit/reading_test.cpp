@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "reading/reading.hpp"
+#include "reading/npy.hpp"
+#include "reading/ply.hpp"
 
 #include "support/testing.hpp"
+
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <sys/stat.h>
 
@@ -101,6 +108,64 @@ TEST(Printable, ShowsEachByteThatIsNoTextWhereverItStands) {
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80") << "half a surrogate pair";
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80") << "beyond Unicode";
   EXPECT_EQ(printable("\xe2\x82z"), "\\xe2\\x82z");
+}
+
+TEST(NpyHeader, SaysWhatFollowsInWhateverOrderAndQuotes) {
+  // As numpy.lib.format writes it, but for the second.
+  const NpyHeader usual = read_npy_header("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }       \n");
+  EXPECT_EQ(usual.type, "<f8");
+  EXPECT_EQ(usual.order, "False");
+  EXPECT_EQ(usual.shape, "(3,4)");
+  EXPECT_EQ(usual.sizes, (std::vector<std::uint64_t>{3, 4}));
+  const NpyHeader other = read_npy_header("{\"shape\":(7,),\"fortran_order\":True,\"descr\":\"|u1\"}");
+  EXPECT_EQ(other.type, "|u1");
+  EXPECT_EQ(other.order, "True");
+  EXPECT_EQ(other.sizes, std::vector<std::uint64_t>{7});
+  // The names of a record's fields are no keys.
+  const NpyHeader record = read_npy_header(
+      "{'descr': [('shape', '<f8'), ('descr', '|b1', (2, 2))], 'fortran_order': False, 'shape': (5,), }");
+  EXPECT_EQ(record.type, "[('shape','<f8'),('descr','|b1',(2,2))]");
+  EXPECT_EQ(record.sizes, std::vector<std::uint64_t>{5});
+}
+
+TEST(NpyHeader, LeavesEmptyWhatIsNotInTheWordsOfTheFormat) {
+  EXPECT_THAT(read_npy_header("{'shape': (), }").sizes, testing::IsEmpty()) << "a single number";
+  for (const char* shape : {"(3, 1234567890)", "(-3,)", "(3, 4", "3", "(a,)", "(,)", "((3,), 4)"})
+    EXPECT_THAT(read_npy_header(std::string("{'shape': ") + shape + "}").sizes, testing::IsEmpty()) << shape;
+  for (const char* text : {"", "{", "'descr': '<f8'", "[{'descr': '<f8'}]", "{'descr", "{descr: '<f8'}"})
+    EXPECT_EQ(read_npy_header(text).type, "") << text;
+}
+
+TEST(NpyHeader, LiesWhereItsVersionSays) {
+  const auto place = [](const std::string& bytes) {
+    const auto found = npy_header_place(bytes);
+    return found ? std::pair(found->begin, found->length) : std::pair<std::size_t, std::size_t>();
+  };
+  const std::string magic = "\x93NUMPY";
+  const auto bytes = [](std::initializer_list<int> all) { return std::string(all.begin(), all.end()); };
+  EXPECT_EQ(place(magic + bytes({1, 0, 0x76, 0x01})), (std::pair<std::size_t, std::size_t>(10, 0x176)));
+  EXPECT_EQ(place(magic + bytes({2, 0, 1, 2, 3, 4})), (std::pair<std::size_t, std::size_t>(12, 0x04030201)));
+  EXPECT_EQ(place(magic + bytes({3, 0, 0xff, 0, 0, 0xff})), (std::pair<std::size_t, std::size_t>(12, 0xff0000ff)));
+  for (const std::string& none :
+       {std::string(), magic, magic + bytes({1, 0, 7}), magic + bytes({2, 0, 1, 2, 3}), magic + bytes({0, 0, 7, 0}),
+        magic + bytes({4, 0, 7, 0, 0, 0}), "NUMPY\x93" + bytes({1, 0, 7, 0})})
+    EXPECT_FALSE(npy_header_place(none)) << printable(none);
+}
+
+TEST(PlyScalar, IsTheSameByEitherOfItsNames) {
+  const char bytes[8] = {'\x01', '\x80', 0, '\xc0', 0, 0, '\xf0', '\x3f'};
+  const auto value = [&](const char* name) { return ply_scalar(name)->read(bytes); };
+  for (const auto& [one, other, size, wanted] :
+       {std::tuple("char", "int8", 1U, 1.0), std::tuple("short", "int16", 2U, -32767.0),
+        std::tuple("ushort", "uint16", 2U, 32769.0), std::tuple("int", "int32", 4U, -1073709055.0),
+        std::tuple("uint", "uint32", 4U, 3221258241.0), std::tuple("float", "float32", 4U, -2.0078127)}) {
+    EXPECT_EQ(ply_scalar(one), ply_scalar(other)) << one;
+    EXPECT_EQ(ply_scalar(one)->size, size) << one;
+    EXPECT_NEAR(value(one), wanted, 1e-7) << one;
+  }
+  EXPECT_EQ(ply_scalar("double")->size, 8U);
+  EXPECT_EQ(ply_scalar("uchar"), ply_scalar("uint8"));
+  EXPECT_EQ(ply_scalar("list"), nullptr);
 }
 
 }  // namespace

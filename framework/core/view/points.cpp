@@ -11,8 +11,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -21,44 +19,15 @@
 namespace palpate {
 namespace {
 
-/// Size in bytes of a scalar, and how its bytes read as a number; those of ascii read alike.
-struct Scalar {
-  std::size_t size;
-  double (*read)(const char* bytes);
-};
-
-template <class Number>
-double number_in(const char* bytes) {
-  Number out;
-  std::memcpy(&out, bytes, sizeof out);
-  return static_cast<double>(out);
-}
-
-const Scalar* scalar_named(std::string_view name) {
-  static const std::array<std::pair<std::array<const char*, 2>, Scalar>, 8> kScalars{
-      {{{"char", "int8"}, {1, number_in<std::int8_t>}},
-       {{"uchar", "uint8"}, {1, number_in<std::uint8_t>}},
-       {{"short", "int16"}, {2, number_in<std::int16_t>}},
-       {{"ushort", "uint16"}, {2, number_in<std::uint16_t>}},
-       {{"int", "int32"}, {4, number_in<std::int32_t>}},
-       {{"uint", "uint32"}, {4, number_in<std::uint32_t>}},
-       {{"float", "float32"}, {4, number_in<float>}},
-       {{"double", "float64"}, {8, number_in<double>}}}};
-  for (const auto& [names, scalar] : kScalars) {
-    if (name == names[0] || name == names[1]) return &scalar;
-  }
-  return nullptr;
-}
-
 enum class Format { ascii, little, big };
 
 /// What the header says of the vertices, which come first in every file that is read here.
 struct Header {
   Format format = Format::ascii;
   long points = -1;
-  std::vector<const Scalar*> properties;  ///< of a vertex
-  std::array<int, 3> places{-1, -1, -1};  ///< of x, y and z among them
-  std::size_t length = 0;                 ///< bytes, its last line end included
+  std::vector<const BinaryNumber*> properties;  ///< of a vertex
+  std::array<int, 3> places{-1, -1, -1};        ///< of x, y and z among them
+  std::size_t length = 0;                       ///< bytes, its last line end included
 };
 
 class Reader {
@@ -128,7 +97,7 @@ class Reader {
   }
 
   void add_property(Header& header, const std::string& type, const std::string& name) const {
-    const Scalar* scalar = scalar_named(type);
+    const BinaryNumber* scalar = ply_scalar(type);
     if (scalar == nullptr) refuse("has vertices with a property of type '" + type + "'");
     for (std::size_t k = 0; k < 3; ++k) {
       if (name == std::array{"x", "y", "z"}[k]) header.places[k] = static_cast<int>(header.properties.size());
@@ -163,14 +132,14 @@ class Reader {
 
   PointCloud in_bytes(const Header& header, std::string_view body) const {
     std::size_t row = 0;
-    for (const Scalar* scalar : header.properties) row += scalar->size;
+    for (const BinaryNumber* scalar : header.properties) row += scalar->size;
     if (body.size() / row < static_cast<std::size_t>(header.points)) refuse_short(header.points);
     std::vector<double> numbers(header.properties.size());
     std::vector<Eigen::Vector3d> out;
     const char* at = body.data();
     for (long i = 0; i < header.points; ++i) {
       for (std::size_t k = 0; k < numbers.size(); ++k) {
-        const Scalar& scalar = *header.properties[k];
+        const BinaryNumber& scalar = *header.properties[k];
         std::array<char, 8> bytes{};
         std::copy_n(at, scalar.size, bytes.begin());
         if (header.format == Format::big) std::reverse(bytes.begin(), bytes.begin() + static_cast<long>(scalar.size));

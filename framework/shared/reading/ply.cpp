@@ -16,24 +16,8 @@ namespace {
 
 /// Bytes of a scalar in a binary file; 0 for an unknown name.
 std::size_t size_of(const std::string& type) {
-  constexpr std::array<std::pair<const char*, std::size_t>, 16> kSizes{{{"char", 1},
-                                                                        {"int8", 1},
-                                                                        {"uchar", 1},
-                                                                        {"uint8", 1},
-                                                                        {"short", 2},
-                                                                        {"int16", 2},
-                                                                        {"ushort", 2},
-                                                                        {"uint16", 2},
-                                                                        {"int", 4},
-                                                                        {"int32", 4},
-                                                                        {"uint", 4},
-                                                                        {"uint32", 4},
-                                                                        {"float", 4},
-                                                                        {"float32", 4},
-                                                                        {"double", 8},
-                                                                        {"float64", 8}}};
-  const auto found = std::find_if(kSizes.begin(), kSizes.end(), [&](const auto& one) { return type == one.first; });
-  return found == kSizes.end() ? 0 : found->second;
+  const BinaryNumber* const scalar = ply_scalar(type);
+  return scalar != nullptr ? scalar->size : 0;
 }
 
 struct Property {
@@ -144,6 +128,22 @@ class Splitter {
 };
 
 }  // namespace
+
+const BinaryNumber* ply_scalar(std::string_view name) {
+  static constexpr std::array<std::pair<std::array<const char*, 2>, BinaryNumber>, 8> kScalars{
+      {{{"char", "int8"}, binary_number<std::int8_t>()},
+       {{"uchar", "uint8"}, binary_number<std::uint8_t>()},
+       {{"short", "int16"}, binary_number<std::int16_t>()},
+       {{"ushort", "uint16"}, binary_number<std::uint16_t>()},
+       {{"int", "int32"}, binary_number<std::int32_t>()},
+       {{"uint", "uint32"}, binary_number<std::uint32_t>()},
+       {{"float", "float32"}, binary_number<float>()},
+       {{"double", "float64"}, binary_number<double>()}}};
+  for (const auto& [names, scalar] : kScalars) {
+    if (name == names[0] || name == names[1]) return &scalar;
+  }
+  return nullptr;
+}
 
 std::string plain_ply(std::string bytes, const std::vector<std::string>& elements) {
   drop_byte_order_mark(bytes);

@@ -2,11 +2,12 @@
 #include "program/maps.hpp"
 
 #include "programs/command.hpp"
+#include "reading/npy.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 
@@ -126,43 +127,19 @@ const Map* find_map(const std::string& name) {
 }
 
 std::size_t header_length(const std::string& start) {
-  if (start.compare(0, kMagicLength, kMagic, kMagicLength) != 0)
-    throw std::runtime_error("something that is no array in the format NPY 1.0");
-  const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(start[i])); };
-  return byte(kMagicLength) + (byte(kMagicLength + 1) << 8U);
+  const std::optional<NpyPlace> place = npy_header_place(start);
+  if (!place || place->begin != kNpyStart) throw std::runtime_error("something that is no array in the format NPY 1.0");
+  return place->length;
 }
 
-namespace {
-
-/// What a program wrote, without quotes of its own: "'<f4'" of `'<f4',`.
-std::string bare(std::string text) {
-  while (!text.empty() && text.back() == ',') text.pop_back();
-  text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
-  return programs::shown(text);
-}
-
-}  // namespace
-
-void check_header(const std::string& header, Eigen::Index count) {
-  std::string plain;
-  for (const char c : header) {
-    if (c != ' ' && c != '\n') plain += c == '"' ? '\'' : c;
+void check_header(const std::string& text, Eigen::Index count) {
+  const NpyHeader header = read_npy_header(text);
+  if (header.type != "<f8") {
+    throw std::runtime_error(
+        fmt::format("numbers of the type {}, not '<f8', which is float64", programs::shown(header.type)));
   }
-  const auto value = [&](const std::string& key, const char* ends) {
-    const std::string name = "'" + key + "':";
-    const auto at = plain.find(name);
-    if (at == std::string::npos) return std::string();
-    const auto begin = at + name.size();
-    const auto end = plain.find(ends, begin);
-    return plain.substr(begin, end == std::string::npos ? 0 : end - begin + std::strlen(ends));
-  };
-  const std::string type = value("descr", ",");
-  if (type != "'<f8',") {
-    throw std::runtime_error(fmt::format("numbers of the type {}, not '<f8', which is float64", bare(type)));
-  }
-  const std::string shape = value("shape", ")");
-  if (shape != fmt::format("({},)", count))
-    throw std::runtime_error(fmt::format("an array of the shape {}, not ({},)", bare(shape), count));
+  if (header.shape != fmt::format("({},)", count))
+    throw std::runtime_error(fmt::format("an array of the shape {}, not ({},)", programs::shown(header.shape), count));
 }
 
 }  // namespace palpate::program

@@ -27,12 +27,10 @@ const std::vector<Map>& maps();
 /// Null for a name that is none of theirs.
 const Map* find_map(const std::string& name);
 
-/// Bytes of magic, version and length, with which a file NPY begins.
-constexpr std::size_t kNpyStart = 10;
-/// Returns the length of the header that follows such bytes. Throws std::runtime_error with a clause that follows "the
-/// program answered with ", for bytes that begin no file NPY of version 1.
+/// Returns the length of the header that follows the first kNpyStart bytes of a file NPY. Throws std::runtime_error
+/// with a clause that follows "the program answered with ", for bytes that begin no file NPY of version 1.
 std::size_t header_length(const std::string& start);
 /// Throws likewise unless the header is that of `count` numbers of type '<f8'.
-void check_header(const std::string& header, Eigen::Index count);
+void check_header(const std::string& text, Eigen::Index count);
 
 }  // namespace palpate::program

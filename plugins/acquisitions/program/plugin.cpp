@@ -9,6 +9,7 @@
 #include "program/maps.hpp"
 #include "programs/child.hpp"
 #include "programs/command.hpp"
+#include "reading/npy.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
@@ -231,7 +232,7 @@ class ProgramAcquisition final : public Acquisition {
       fail("said more than its scores", "let it print to stderr");
     check(child_->send(ask(fields, arrays, out.size()), patience), {});
     try {
-      check(child_->hear(bytes, program::kNpyStart, patience), bytes);
+      check(child_->hear(bytes, kNpyStart, patience), bytes);
       check(child_->hear(bytes, program::header_length(bytes), patience), bytes);
       program::check_header(bytes, out.size());
     } catch (const std::runtime_error& wrong) {

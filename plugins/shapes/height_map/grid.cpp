@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "grid.hpp"
 
+#include "reading/binary_number.hpp"
+#include "reading/npy.hpp"
 #include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
@@ -13,10 +15,9 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <optional>
-#include <regex>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -78,65 +79,44 @@ Grid from_csv(std::string bytes, const std::string& file) {
   return Eigen::Map<Grid>(values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
 }
 
-template <class Number>
-double number_in(const char* bytes) {
-  Number out;
-  std::memcpy(&out, bytes, sizeof out);
-  return static_cast<double>(out);
-}
+/// Types of NPY without their byte order.
+constexpr std::array<std::pair<const char*, BinaryNumber>, 10> kScalars{{{"f4", binary_number<float>()},
+                                                                         {"f8", binary_number<double>()},
+                                                                         {"i1", binary_number<std::int8_t>()},
+                                                                         {"u1", binary_number<std::uint8_t>()},
+                                                                         {"i2", binary_number<std::int16_t>()},
+                                                                         {"u2", binary_number<std::uint16_t>()},
+                                                                         {"i4", binary_number<std::int32_t>()},
+                                                                         {"u4", binary_number<std::uint32_t>()},
+                                                                         {"i8", binary_number<std::int64_t>()},
+                                                                         {"u8", binary_number<std::uint64_t>()}}};
 
-struct Scalar {
-  const char* name;  ///< as NumPy's header has it, without the byte order
-  std::size_t size;
-  double (*read)(const char*);
-};
-constexpr std::array<Scalar, 10> kScalars{{{"f4", 4, number_in<float>},
-                                           {"f8", 8, number_in<double>},
-                                           {"i1", 1, number_in<std::int8_t>},
-                                           {"u1", 1, number_in<std::uint8_t>},
-                                           {"i2", 2, number_in<std::int16_t>},
-                                           {"u2", 2, number_in<std::uint16_t>},
-                                           {"i4", 4, number_in<std::int32_t>},
-                                           {"u4", 4, number_in<std::uint32_t>},
-                                           {"i8", 8, number_in<std::int64_t>},
-                                           {"u8", 8, number_in<std::uint64_t>}}};
-
-/// Where the header of an .npy begins and ends; none where it is no such file.
-std::optional<std::pair<std::size_t, std::size_t>> header_of(const std::string& bytes) {
-  constexpr std::string_view kMagic = "\x93NUMPY";
-  if (bytes.size() < 10 || bytes.compare(0, kMagic.size(), kMagic) != 0) return std::nullopt;
-  const bool is_long = bytes[6] >= 2;
-  const std::size_t begin = is_long ? 12 : 10;
-  if (bytes.size() < begin) return std::nullopt;
-  const std::size_t length = is_long ? static_cast<std::size_t>(number_in<std::uint32_t>(&bytes[8]))
-                                     : static_cast<std::size_t>(number_in<std::uint16_t>(&bytes[8]));
-  if (length > bytes.size() - begin) return std::nullopt;
-  return std::pair(begin, begin + length);
+/// None for a type that is not read.
+const BinaryNumber* scalar_named(const std::string& type) {
+  if (type.empty() || std::string_view("<>|=").find(type.front()) == std::string_view::npos) return nullptr;
+  const auto* const found = std::find_if(kScalars.begin(), kScalars.end(),
+                                         [&](const auto& one) { return type.compare(1, type.npos, one.first) == 0; });
+  if (found == kScalars.end() || (found->second.size > 1 && type.front() == '>')) return nullptr;
+  return &found->second;
 }
 
 Grid from_npy(const std::string& bytes, const std::string& file) {
-  const auto header = header_of(bytes);
-  if (!header) throw Error(file, "is no array of NumPy, or cut short", kExportAgain);
-  constexpr std::size_t kMostHeader = 4096;
-  const std::string text = bytes.substr(header->first, std::min(header->second - header->first, kMostHeader));
-  static const std::regex kType("'descr': *'([<>|=])([a-z][0-9]+)'");
-  static const std::regex kOrder("'fortran_order': *(True|False)");
-  static const std::regex kShape("'shape': *\\(([0-9]{1,9}), *([0-9]{1,9})\\)");
-  std::smatch type, order, shape;
-  if (!std::regex_search(text, shape, kShape))
-    throw Error(file, "has no two dimensions", "save an array of rows and columns");
-  const bool known = std::regex_search(text, type, kType) && std::regex_search(text, order, kOrder);
-  const auto scalar =
-      std::find_if(kScalars.begin(), kScalars.end(), [&](const Scalar& one) { return known && type[2] == one.name; });
-  if (scalar == kScalars.end() || (scalar->size > 1 && type[1] == ">"))
+  const std::optional<NpyPlace> place = npy_header_place(bytes);
+  if (!place || place->length > bytes.size() - place->begin)
+    throw Error(file, "is no array of NumPy, or cut short", kExportAgain);
+  const std::size_t begin = place->begin + place->length;
+  const NpyHeader header = read_npy_header(std::string_view(bytes).substr(place->begin, place->length));
+  if (header.sizes.size() != 2) throw Error(file, "has no two dimensions", "save an array of rows and columns");
+  const bool by_columns = header.order == "True";
+  const BinaryNumber* const scalar = by_columns || header.order == "False" ? scalar_named(header.type) : nullptr;
+  if (scalar == nullptr)
     throw Error(file, "has values of a type that is not read", "save it as float64: array.astype(float)");
-  const std::uint64_t rows = std::stoull(shape[1]);
-  const std::uint64_t columns = std::stoull(shape[2]);
+  const std::uint64_t rows = header.sizes[0];
+  const std::uint64_t columns = header.sizes[1];
   check_size(file, rows, columns);
-  if ((bytes.size() - header->second) / scalar->size < rows * columns) throw Error(file, "is cut short", kExportAgain);
+  if ((bytes.size() - begin) / scalar->size < rows * columns) throw Error(file, "is cut short", kExportAgain);
   Grid out(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-  const char* at = bytes.data() + header->second;
-  const bool by_columns = order[1] == "True";
+  const char* at = bytes.data() + begin;
   for (Eigen::Index i = 0; i < out.size(); ++i, at += scalar->size) {
     const Eigen::Index row = by_columns ? i % out.rows() : i / out.cols();
     out(row, by_columns ? i / out.rows() : i % out.cols()) = scalar->read(at);
