@@ -7,10 +7,13 @@
 #include "report/curves.hpp"
 #include "report/page/run_page.hpp"
 #include "report/page/warnings.hpp"
+#include "support/parts.hpp"
 #include "support/runs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 namespace palpate {
 namespace {
@@ -21,6 +24,7 @@ using test::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A run that was made in this process.
 class Recorded {
@@ -207,6 +211,27 @@ TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
 std::vector<std::string> warnings(const std::string& base, const std::vector<std::string>& words) {
   const Recorded run(base, words);
   return warnings_of(run.recording(), run.history());
+}
+
+TEST(RunPage, SaysOneThingOfARunThatEndsOrGoesOnWhileItIsMade) {
+  const Recorded run("paper/object_i.yaml", {"taps=6"});
+  const History history = run.history();
+  const fs::path file = run.directory / "record.jsonl";
+  const std::string whole = test::text_of(file);
+  const std::string begun = test::record_until(whole, 6);
+  ASSERT_LT(begun.size(), whole.size());
+  const auto write = [&](const std::string& text) { std::ofstream(file, std::ios::binary) << text; };
+  // The record is read in one state, and stands in the other when the page is made.
+  const Recording ended = run.recording();
+  write(begun);
+  const Recording going_on = run.recording();
+  EXPECT_THAT(run_news(ended, history, 7, ""),
+              AllOf(HasSubstr(R"("state":"done")"), HasSubstr(R"("stop_reason":"tap budget")"),
+                    Not(HasSubstr("The run has not ended"))));
+  write(whole);
+  EXPECT_THAT(run_news(going_on, history, 7, ""),
+              AllOf(Not(HasSubstr(R"("state":"done")")), HasSubstr(R"("stop_reason":"")"),
+                    HasSubstr("The run has not ended: this is how it stands after 6 taps.")));
 }
 
 TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
