@@ -5,7 +5,8 @@ namespace palpate::fuzz {
 
 const std::vector<Door>& doors() {
   static const std::vector<Door> all{
-      {"config", config}, {"words", words}, {"record", record}, {"plan", plan}, {"answer", answer}, {"table", table},
+      {"config", config}, {"words", words}, {"record", record},   {"plan", plan},
+      {"answer", answer}, {"table", table}, {"heights", heights}, {"scores", scores},
 #ifdef PALPATE_FUZZ_MESH
       {"mesh", mesh},
 #endif

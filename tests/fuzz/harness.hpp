@@ -30,6 +30,11 @@ void answer(const std::string& bytes);
 void table(const std::string& bytes);
 /// A mesh as STL, OBJ or PLY (the first byte says which), made a surface.
 void mesh(const std::string& bytes);
+/// A height map as CSV, NPY or PNG (the first byte says which), read as a grid. What is accepted is heights alone.
+void heights(const std::string& bytes);
+/// What a program answers that is an acquisition: the begin of an array and its header. What is accepted says that six
+/// numbers follow.
+void scores(const std::string& bytes);
 /// What a master of ROS answers when it is asked for its network.
 void xmlrpc(const std::string& bytes);
 

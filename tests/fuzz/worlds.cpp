@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Files that a scene or a backend is made of.
+// Files that a scene or a backend is made of, and arrays of programs.
 #include "fuzz/ground.hpp"
 #include "fuzz/harness.hpp"
 
+#include "acquisitions/program/maps.hpp"
+#include "shapes/height_map/grid.hpp"
+
 #include "config/compose.hpp"
 #include "experiment/from_above.hpp"
+#include "reading/npy.hpp"
 #include "record/resolved.hpp"
 
 #include <palpate/error.hpp>
 
 #include <array>
+#include <stdexcept>
 
 namespace palpate::fuzz {
 namespace {
@@ -46,6 +51,34 @@ void mesh(const std::string& bytes) {
     FromAbove(config.options, host(), nullptr);
   } catch (const Error&) {
   }
+}
+
+void heights(const std::string& bytes) {
+  static const std::array<const char*, 3> files{"map.csv", "map.npy", "map.png"};
+  if (bytes.empty()) return;
+  shapes::Grid grid;
+  try {
+    grid = shapes::read_grid(bytes.substr(1), files[static_cast<unsigned char>(bytes.front()) % files.size()]);
+  } catch (const Error&) {
+    return;
+  }
+  const bool is_sound = grid.rows() >= 2 && grid.cols() >= 2 && grid.size() <= shapes::kMostNodes && grid.allFinite();
+  if (!is_sound || grid.minCoeff() < 0.0 || grid.maxCoeff() <= 0.0)
+    throw std::logic_error("a grid was accepted that is none of heights");
+}
+
+void scores(const std::string& bytes) {
+  constexpr Eigen::Index kCount = 6;
+  if (bytes.size() < kNpyStart) return;  // no more is asked for than came
+  std::string header;
+  try {
+    header = bytes.substr(kNpyStart, program::header_length(bytes.substr(0, kNpyStart)));
+    program::check_header(header, kCount);
+  } catch (const std::runtime_error&) {
+    return;
+  }
+  if (header.find("<f8") == std::string::npos || header.find('6') == std::string::npos)
+    throw std::logic_error("a header was accepted that does not say what follows");
 }
 
 }  // namespace palpate::fuzz

@@ -161,7 +161,8 @@ class Run:
 
     @property
     def truth(self) -> _np.ndarray | None:
-        """Heights of the scene that was tapped, metres; None where another world was tapped, as by a robot."""
+        """Heights of the scene that was tapped, metres; None where another world was tapped, as by a robot, or where the file
+        of an object is gone or another by now."""
         return self._record.truth()
 
     @property
