@@ -133,6 +133,8 @@ Restored restore_files(const Workshop& workshop, RunDirectory& held) {
     playback.experiment().result();  // reads what the run read at its end
     const auto [name, text] = surface_file(playback.experiment());
     restore(one, name == one.name ? whole_of(text) : "");
+    const bool is_made = out.lost.empty() || out.lost.back() != one.name;
+    if (!is_made && playback.truth_lost()) throw Error(*playback.truth_lost());
   }
   // Last, as a run does.
   const std::string summary = to_json_text(record.end->summary);
