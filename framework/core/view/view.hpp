@@ -32,8 +32,8 @@ struct PriorOptions : Options {
   std::optional<ViewPose> pose;
   std::string checksum;  ///< so that the id of a run follows the content of the file
 
-  /// Reads the file for its checksum. One that cannot be read is refused, unless the checksum is given: then the file is
-  /// needed only where its points are, and records are read without it.
+  /// Reads the file for its checksum. One that cannot be read is refused, unless the checksum is given: then the file
+  /// is needed only where its points are, and records are read without it.
   void list(Fields& fields) override;
 };
 
