@@ -63,9 +63,9 @@ std::string heights(const std::string& file, const std::string& unit) {
 
 std::string table(const std::string& height) {
   std::string out = "x,y,outcome,height\n";
-  for (int i = 0; i < 9; ++i)
-    out += std::to_string(0.05 + 0.05 * (i % 3)) + "," + std::to_string(0.05 + 0.05 * (i / 3)) + ",contact," + height +
-           "\n";
+  for (const char* x : {"0.05", "0.1", "0.15"}) {
+    for (const char* y : {"0.05", "0.1", "0.15"}) out += std::string(x) + "," + y + ",contact," + height + "\n";
+  }
   return out;
 }
 
