@@ -29,8 +29,6 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
-
 Json json_of_run(const Recording& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
   return {{"name", options.name},

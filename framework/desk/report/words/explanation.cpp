@@ -56,11 +56,9 @@ void Explanation::explain_errors(const std::string& what, const Row& before, con
     const std::string to = number_words(after, error.name, words);
     if (from.empty() || to.empty()) continue;
     const bool same = from == to;
-    if (length)
-      lengths.push_back(fmt::format("{} {}", error.label, same ? "still " + to : "from " + from + " to " + to));
-    if (!length)
-      others.push_back(
-          fmt::format("The {} {}.", error.label, same ? "stays " + to : "goes from " + from + " to " + to));
+    const std::string change = same ? to : fmt::format("from {} to {}", from, to);
+    if (length) lengths.push_back(fmt::format("{} {}{}", error.label, same ? "still " : "", change));
+    if (!length) others.push_back(fmt::format("The {} {} {}.", error.label, same ? "stays" : "goes", change));
   }
   if (!lengths.empty()) page_.say(fmt::format("{}: {}.", what, fmt::join(lengths, ", ")));
   for (const std::string& one : others) page_.say(one);
