@@ -162,13 +162,45 @@ TEST_F(Compare, CountsWhatFailedAndWhatHasNotEnded) {
   EXPECT_EQ(first.at("low_95"), "") << "two values have no interval";
 }
 
+TEST_F(Compare, ReachesASweptKeyAndTheResultOfTheSameName) {
+  const fs::path directory = strategies();
+  const Ended ended = compare(directory, "--by taps --metric taps,summary.taps --until rmse_m=3cm --format csv");
+  // The taps that each job needed, as they are kept in its folder.
+  std::map<std::string, double> needed;
+  int fewer = 0;
+  for (const Cells& job : csv_rows(text_of(directory / "results.csv"))) {
+    const fs::path folder = directory / "jobs" / job.at("id");
+    const Row summary = *parse_json_row(text_of(folder / "summary_until_rmse_m_0.03.json"));
+    needed[job.at("taps")] += *summary.number("taps") / 12.0;
+    fewer += std::to_string(static_cast<int>(*summary.number("taps"))) != job.at("taps") ? 1 : 0;
+  }
+  ASSERT_GT(fewer, 0);
+  int groups = 0;
+  for (const Cells& row : csv_rows(ended.out)) {
+    if (row.at("kind") != "group") continue;
+    EXPECT_NEAR(std::stod(row.at("mean")), needed.at(row.at("group")), 1e-12);
+    ++groups;
+  }
+  EXPECT_EQ(groups, 4) << "two budgets, each name";
+  const auto kept = [&](const std::string& where) {
+    return csv_rows(
+               compare(directory,
+                       Words("--by acquisition --metric rmse_m --until rmse_m=3cm --format csv --where") + Words{where})
+                   .out)
+        .front()
+        .at("left_out");
+  };
+  EXPECT_EQ(kept("taps == 8"), "6") << "the budget";
+  EXPECT_EQ(kept("summary.taps > 0"), "0") << "what was made";
+}
+
 TEST_F(Compare, RefusesInOneLineWhatCannotBeCompared) {
   const Words compare{"compare", strategies()};
   EXPECT_EQ(refused(compare + "--by aquisition --metric rmse_m"),
             "command line: --by: this sweep does not vary 'aquisition', did you mean 'acquisition'?\n");
   EXPECT_EQ(refused(compare + "--by acquisition --metric rmse_m,rsme_m"),
             "command line: --metric: results.csv has no column 'rsme_m', did you mean 'rmse_m'?\n");
-  EXPECT_THAT(refused(compare + "--by acquisition --metric taps"), HasSubstr("'taps' is swept"));
+  EXPECT_THAT(refused(compare + "--by taps --metric acquisition"), HasSubstr("'acquisition' is swept"));
   EXPECT_THAT(refused(compare + "--by acquisition"), StartsWith("--metric is required"));
   const Words where = compare + "--by acquisition --metric rmse_m --where";
   EXPECT_THAT(refused(where + Words{"taps >"}), StartsWith("command line: --where: the condition 'taps >'"));

@@ -40,12 +40,16 @@ std::vector<std::string> columns_of(const std::vector<Row>& results) {
 }
 
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option) {
-  if (std::find(columns.begin(), columns.end(), name) == columns.end()) {
+  const std::string of_run = field_name(name);
+  const auto is_there = [&](const std::string& one) {
+    return std::find(columns.begin(), columns.end(), one) != columns.end();
+  };
+  const RecordField* field = find_summary_field(of_run);
+  if (!is_there(name) && !(field != nullptr && is_there(of_run))) {
     throw Error("command line", fmt::format("{}: results.csv has no column '{}'", option, name),
                 suggestion(name, columns));
   }
-  const RecordField* field = find_summary_field(name);
-  return {name, unit_of_column(name), field != nullptr ? field->better : RecordField::Better::neither};
+  return {name, unit_of_column(of_run), field != nullptr ? field->better : RecordField::Better::neither};
 }
 
 CellNumber number_of(const Scalar* cell) {
@@ -73,7 +77,7 @@ std::string written_in(const std::string& column, const Scalar& cell) {
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option) {
   if (row == nullptr) return {Fate::unfinished};
   if (!is_done(*row)) return {Fate::failed};
-  const CellNumber number = number_of(row->find(column));
+  const CellNumber number = number_of(result_of(*row, column));
   if (number.is_text) {
     throw Error("command line",
                 fmt::format("{}: the column '{}' holds {}, not numbers", option, column, row->cell(column)),

@@ -4,6 +4,7 @@
 
 #include "record/fields.hpp"
 #include "record/row.hpp"
+#include "sweep/sweep.hpp"
 
 #include <palpate/options.hpp>
 
@@ -26,7 +27,8 @@ struct Column {
 /// The names of all columns that `results` have.
 std::vector<std::string> columns_of(const std::vector<Row>& results);
 
-/// The column that `option` ("--cost") names. Throws Error, of the command line, if there is none.
+/// The column that `option` ("--cost") names; that of a result is also `summary.NAME`: see result_of(). Throws Error,
+/// of the command line, if there is none.
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option);
 
 /// The number in a cell; flags are 0 and 1, and swept values, which are text, count if they are plain numbers.

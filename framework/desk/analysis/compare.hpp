@@ -82,8 +82,8 @@ struct Comparison {
 inline constexpr std::size_t kMostGroupsInPairs = 8;
 
 /// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error, of the command line, for keys
-/// that are not swept, a metric that is swept, does not exist, holds no numbers or has no value in any job, a baseline
-/// that is no group, and a condition that asks for unknown columns or leaves nothing.
+/// that are not swept, a metric that is swept and no result, does not exist, holds no numbers or has no value in any
+/// job, a baseline that is no group, and a condition that asks for unknown columns or leaves nothing.
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query);
 
 }  // namespace palpate

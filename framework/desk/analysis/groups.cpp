@@ -100,7 +100,7 @@ void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys) 
 }
 
 Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns) {
-  if (is_among(sweep.keys, name)) {
+  if (is_among(sweep.keys, name) && (name == "seed" || find_summary_field(name) == nullptr)) {
     throw Error("command line", fmt::format("--metric: '{}' is swept, so it was set and did not come out", name),
                 name == "seed" ? "name a field of the summary" : "give it to --by");
   }
@@ -117,9 +117,10 @@ bool JobCondition::keeps(const JobResult& job) const {
   if (where_ == nullptr) return true;
   const Condition::Values value_in_job = [&](const std::string& name) -> std::optional<Condition::Value> {
     if (is_among(sweep_.keys, name)) return Condition::Value{value_of(sweep_, *job.job, name)};
-    if (!is_among(columns_, name)) return std::nullopt;
-    const Scalar* value = job.row != nullptr ? job.row->find(name) : nullptr;
-    return Condition::Value{value != nullptr ? written_in(name, *value) : std::string(), true};
+    const std::string field = field_name(name);
+    if (!is_among(columns_, name) && (field == name || !is_among(columns_, field))) return std::nullopt;
+    const Scalar* value = job.row != nullptr ? result_of(*job.row, name) : nullptr;
+    return Condition::Value{value != nullptr ? written_in(field, *value) : std::string(), true};
   };
   return where_->holds(value_in_job, names_);
 }

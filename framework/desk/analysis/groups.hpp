@@ -56,8 +56,8 @@ std::vector<std::string> scene_keys(const Sweep& sweep);
 /// Throws Error, of the command line, unless `keys`, which --by names, make groups: swept ones but the seed, each once.
 void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys);
 
-/// Returns the column that --metric names. Throws Error, of the command line, for one that is swept, and as
-/// find_column() does.
+/// Returns the column that --metric names, which is a result also where a swept key has its name: see result_of().
+/// Throws Error, of the command line, for what is swept and no result, and as find_column() does.
 Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns);
 
 /// A condition on the columns of results.csv, which leaves jobs out.

@@ -160,9 +160,27 @@ Row result_row(const Sweep& sweep, const Job& job, Row summary) {
   for (auto& field : summary.fields) {
     const auto same = [&](const auto& one) { return one.first == field.first; };
     const auto keys = row.fields.begin();
-    if (std::none_of(keys, keys + behind, same)) row.fields.push_back(std::move(field));
+    const auto key = std::find_if(keys, keys + behind, same);
+    const bool hidden = key != keys + behind;
+    if (hidden && csv_cell(key->second) == csv_cell(field.second)) continue;
+    if (hidden) field.first = kOfRun + field.first;
+    row.fields.push_back(std::move(field));
   }
   return row;
+}
+
+std::string field_name(const std::string& column) {
+  const std::string prefix = kOfRun;
+  return column.compare(0, prefix.size(), prefix) == 0 ? column.substr(prefix.size()) : column;
+}
+
+const Scalar* result_of(const Row& row, const std::string& name) {
+  const std::string field = field_name(name);
+  const Scalar* found = row.find(field);
+  // The values of keys are texts.
+  if (found == nullptr || !std::holds_alternative<std::string>(*found)) return found;
+  const Scalar* of_run = row.find(kOfRun + field);
+  return of_run != nullptr ? of_run : found;
 }
 
 std::vector<Row> sweep_results(const Sweep& sweep) {

@@ -18,7 +18,7 @@ namespace palpate {
 struct Job {
   int index = 0;
   std::string id;
-  std::vector<std::string> values;  ///< one for each swept key; "" where the job's plugins have no such option
+  std::vector<std::string> values;       ///< one for each swept key; "" where the job's plugins have no such option
 };
 
 /// A line of manifest.jsonl.
@@ -59,8 +59,18 @@ std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
 /// The summary of each job, none for those that have not ended; see read_outcome().
 std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
-/// A row of results.csv: job, id, the swept keys, then the fields of the summary.
+/// What stands before the name of a field of the summary in results.csv where a swept key has that name.
+inline constexpr const char* kOfRun = "summary.";
+
+/// A row of results.csv: job, id, the swept keys, then the fields of the summary. A field with the name of a key stands
+/// as `summary.taps`, in the rows in which the two differ.
 Row result_row(const Sweep& sweep, const Job& job, Row summary);
+
+/// The field of the summary that `name` means in such a row: `taps`, or `summary.taps`, whether `taps` is swept or not.
+/// Null where there is none.
+const Scalar* result_of(const Row& row, const std::string& name);
+/// `taps` of `summary.taps`, and of itself.
+std::string field_name(const std::string& column);
 
 /// All of them, for jobs that ended. Those of very many take much memory: who has summaries gives them away for it.
 std::vector<Row> sweep_results(const Sweep& sweep);

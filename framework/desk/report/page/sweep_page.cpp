@@ -55,15 +55,22 @@ Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const s
   return {{"name", key}, {"values", values}, {"of_job", of_job}};
 }
 
-/// The columns of the results that hold numbers and nothing else: one for each job, null where a job has none.
+/// The columns of the results that hold numbers and nothing else: one for each job, null where a job has none. One with
+/// the name of a key holds what came out.
 Json json_of_columns(const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
   Json columns = Json::array();
-  for (const std::string& name : columns_of(results)) {
-    if (name == "job" || name == "id" || name == "seed") continue;
+  const std::vector<std::string> names = columns_of(results);
+  for (const std::string& name : names) {
+    if (name == "job" || name == "id" || name == "seed" || name != field_name(name)) continue;
+    const bool hidden = std::find(names.begin(), names.end(), kOfRun + name) != names.end();
     std::vector<CellNumber> cells;
     std::size_t near = 0;
-    for (const JobResult& job : jobs)
-      cells.push_back(number_of(job.row != nullptr ? job.row->find(name, near) : nullptr));
+    for (const JobResult& job : jobs) {
+      const Scalar* const cell = job.row == nullptr ? nullptr
+                                 : hidden           ? result_of(*job.row, name)
+                                                    : job.row->find(name, near);
+      cells.push_back(number_of(cell));
+    }
     if (std::any_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.is_text; })) continue;
     if (std::none_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.value; })) continue;
     Json numbers;
