@@ -126,7 +126,7 @@ int status_of_sweep(Program& program, const std::string& directory);
 std::size_t jobs_of_sweep(Program& program, const std::string& config);
 
 struct ParetoArguments {
-  std::string directory;
+  std::vector<std::string> records;  ///< sweeps and runs, taken as one sweep: see find_records()
   std::string cost;
   std::string error;
   std::optional<std::string> within;
@@ -135,7 +135,7 @@ struct ParetoArguments {
 int pareto(Program& program, const ParetoArguments& arguments);
 
 struct CompareArguments {
-  std::string directory;
+  std::vector<std::string> records;  ///< sweeps and runs, taken as one sweep: see find_records()
   std::vector<std::string> by;
   std::vector<std::string> metrics;
   std::optional<std::string> where;
@@ -149,8 +149,8 @@ struct CompareArguments {
 int compare(Program& program, const CompareArguments& arguments);
 
 struct CurvesArguments {
-  std::string directory;
-  std::vector<std::string> by;  ///< none: all keys that vary but the seed and the scene's
+  std::vector<std::string> records;  ///< sweeps and runs, taken as one sweep: see find_records()
+  std::vector<std::string> by;       ///< none: all keys that vary but the seed and the scene's
   std::string metric;
   std::string against;
   std::optional<std::string> where;

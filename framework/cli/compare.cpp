@@ -121,7 +121,7 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
 
 int compare(Program& program, const CompareArguments& arguments) {
   extent_of(arguments);
-  const Sweep sweep = read_sweep(arguments.directory);
+  const Sweep sweep = read_records(arguments.records, arguments.by);
   const auto comparisons = compare_all(program, sweep, arguments);
   if (!comparisons) return kInterrupted;
   if (arguments.format == "csv" || arguments.format == "json") {

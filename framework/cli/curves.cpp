@@ -47,7 +47,7 @@ std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arg
 }  // namespace
 
 int curves(Program& program, const CurvesArguments& arguments) {
-  const Sweep sweep = read_sweep(arguments.directory);
+  const Sweep sweep = read_records(arguments.records, arguments.by);
   const std::vector<std::string> by = arguments.by.empty() ? curve_keys(sweep) : arguments.by;
   const std::vector<fs::path> files = curve_files(sweep, arguments, by);
   std::optional<Condition> where;

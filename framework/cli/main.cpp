@@ -83,6 +83,13 @@ struct CommandLine {
     sub->add_option(name, texts, help + kMeantBy)->type_name(of)->required()->transform(CLI::Validator(find, ""));
   }
 
+  /// Arguments that say which sweeps and runs are taken as one sweep: see find_records().
+  static void add_records(CLI::App* sub, std::vector<std::string>& words) {
+    sub->add_option("DIR", words, "the sweep, or several sweeps and runs, taken as one; each" + std::string(kMeantBy))
+        ->type_name("SWEEP")
+        ->required();
+  }
+
   /// The arguments are read when the command is performed.
   template <class... Parameters, class... Arguments>
   CLI::App* add(const char* name, const char* help, const Need& takes, int (*command)(Program&, Parameters...),
@@ -276,7 +283,7 @@ void add_rest(CommandLine& line) {
 
   sub = line.add("pareto", "What accuracy costs: the settings of a sweep that none beats in both", &Needs::whole,
                  pareto, line.pareto);
-  line.add_record(sub, "DIR", line.pareto.directory, Wanted::sweep, "the sweep");
+  line.add_records(sub, line.pareto.records);
   sub->add_option("--cost", line.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")
       ->type_name("COLUMN")
       ->required();
@@ -298,7 +305,7 @@ void add_compare(CommandLine& line) {
       "compare", "Groups of a sweep's jobs, with intervals and paired tests",
       [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
       compare, line.compare);
-  line.add_record(sub, "DIR", line.compare.directory, Wanted::sweep, "the sweep");
+  line.add_records(sub, line.compare.records);
   const auto list = [&](const char* name, auto& values, const char* of, const char* help) {
     return sub->add_option(name, values, help)->type_name(of)->delimiter(',')->allow_extra_args(false);
   };
@@ -338,7 +345,7 @@ void add_compare(CommandLine& line) {
 void add_curves(CommandLine& line) {
   CLI::App* sub = line.add("curves", "Groups of a sweep's jobs over their taps, as a figure with bands, and as CSV",
                            &Needs::everything, curves, line.curves);
-  line.add_record(sub, "DIR", line.curves.directory, Wanted::sweep, "the sweep");
+  line.add_records(sub, line.curves.records);
   sub->add_option("--by", line.curves.by,
                   "the swept keys that make the groups: acquisition or acquisition,kernel; if not given, all that vary "
                   "but the seed and the scene, which has a panel of its own for each value")

@@ -5,6 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
+#include "cli/sweep_display.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 
@@ -64,7 +65,7 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
 }  // namespace
 
 int pareto(Program&, const ParetoArguments& arguments) {
-  const Sweep sweep = read_sweep(arguments.directory);
+  const Sweep sweep = read_records(arguments.records, {});
   std::optional<Condition> where;
   if (arguments.where) where = Condition::of_command_line(*arguments.where);
   const Pareto pareto =

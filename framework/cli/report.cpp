@@ -8,6 +8,7 @@
 #include "report/page/runs_page.hpp"
 #include "report/page/sweep_page.hpp"
 #include "report/words/words.hpp"
+#include "sweep/pooled_sweep.hpp"
 
 #include <palpate/error.hpp>
 
@@ -84,19 +85,6 @@ void report_sweep(const Workshop& workshop, const ReportArguments& arguments, co
   if (arguments.paper) show(write_paper_figures(workshop, sweep, to / "figures"));
 }
 
-/// The folder that has all of them.
-fs::path common_folder(const std::vector<std::string>& directories) {
-  const auto parent = [](const std::string& one) { return fs::weakly_canonical(one).parent_path(); };
-  fs::path out = parent(directories.front());
-  for (const std::string& one : directories) {
-    const fs::path other = parent(one);
-    fs::path both;
-    for (auto a = out.begin(), b = other.begin(); a != out.end() && b != other.end() && *a == *b; ++a, ++b) both /= *a;
-    out = both;
-  }
-  return fs::proximate(out);
-}
-
 void report_several(const Workshop& workshop, const ReportArguments& arguments) {
   const std::vector<std::string>& directories = arguments.directories;
   const auto refuse = [](const std::string& reason, const std::string& hint) {
@@ -119,7 +107,8 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
     name += "_" + recording.config.id;
     runs.push_back({std::move(recording), std::move(history)});
   }
-  const fs::path to = arguments.to.empty() ? common_folder(directories) : fs::path(arguments.to);
+  const fs::path to =
+      arguments.to.empty() ? common_folder({directories.begin(), directories.end()}) : fs::path(arguments.to);
   write_page(to / (name + ".html"), runs_page(runs, Patience("taps")));
 }
 

@@ -6,6 +6,8 @@
 #include "cli/display.hpp"
 #include "config/hash.hpp"
 #include "launch/children.hpp"
+#include "record/catalogue.hpp"
+#include "sweep/pooled_sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -78,6 +80,12 @@ bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, 
   listen_for_interrupts();
   return in_children(
       jobs.size(), together, [&](std::size_t i) { work(jobs[i]); }, program.interrupted, show);
+}
+
+Sweep read_records(const std::vector<std::string>& words, const std::vector<std::string>& by) {
+  PooledSweep pooled = read_pooled(find_records(words), by);
+  for (const std::string& note : pooled.notes) mention("note: " + note + "\n");
+  return std::move(pooled.sweep);
 }
 
 std::string where_suffix(const std::string& where) {

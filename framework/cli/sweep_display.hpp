@@ -30,6 +30,10 @@ class SweepLine {
   std::chrono::steady_clock::time_point shown_;
 };
 
+/// Reads the sweeps and runs that `words` mean as one sweep, with its notes on stderr: see read_pooled() and
+/// find_records(). Throws Error.
+Sweep read_records(const std::vector<std::string>& words, const std::vector<std::string>& by);
+
 /// Has `work` done for each of these jobs by processes of their own, `workers` at a time or as many as there are cores,
 /// with a SweepLine. Returns false where that was interrupted: what is done then is kept. Throws Error.
 bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,

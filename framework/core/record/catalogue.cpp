@@ -78,7 +78,7 @@ void add_values(const Tree& tree, const std::string& path, Row& out) {
 }
 
 /// The same of who only compares: of a damaged config nothing is known.
-Row settings_of(const fs::path& directory) {
+Row known_settings(const fs::path& directory) {
   Row out;
   trouble_in([&] { out = read_settings(directory); });
   return out;
@@ -94,7 +94,7 @@ Error several(const std::string& words, const std::string& base, std::vector<fs:
   std::reverse(records.begin(), records.end());
   records.resize(std::min(all, kShown));
   std::vector<Row> configs;
-  for (const fs::path& one : records) configs.push_back(settings_of(one));
+  for (const fs::path& one : records) configs.push_back(known_settings(one));
   std::vector<std::string> keys = differing_keys(configs);
   std::vector<std::string> shown;
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -122,6 +122,38 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
                misspelt        ? fmt::format("behind a name {} alone may stand", kLatest)
                : !near.empty() ? fmt::format("did you mean '{}'?", near)
                                : "'palpate list' shows what there is");
+}
+
+/// The records that words mean.
+struct Meant {
+  std::string base;  ///< the words, without @latest
+  bool latest = false;
+  std::vector<fs::path> records;  ///< in the order in which they were begun; none of a path without one
+};
+
+/// Throws Error for a name that nothing has.
+Meant find_meant(const std::string& words, Wanted wanted, const fs::path& runs) {
+  Meant out;
+  out.latest = !is_there(words) && boost::ends_with(words, kLatest);
+  out.base = out.latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
+  const std::string& base = out.base;
+  std::vector<fs::path>& records = out.records;
+  const bool is_path = is_there(base);
+  if (is_path && is_record(base)) return records = {base}, out;
+  const bool is_word = base.find('/') == std::string::npos;
+  const bool is_slug = base.find('~') != std::string::npos && is_word && is_there(runs / base);
+  const fs::path named = is_slug ? runs / base : runs / slug(base);
+  records = read_catalogue(is_path ? fs::path(base) : named).records;
+  // A folder of sources may have the name of the runs that are made of them.
+  if (is_path && is_word && records.empty()) records = read_catalogue(named).records;
+  if (records.empty()) {
+    if (is_path || !is_word) return out;
+    throw unknown(words, base, runs);
+  }
+  const auto fits = [&](const fs::path& one) { return is_sweep(one) == (wanted == Wanted::sweep); };
+  if (wanted != Wanted::any && std::any_of(records.begin(), records.end(), fits))
+    records.erase(std::stable_partition(records.begin(), records.end(), fits), records.end());
+  return out;
 }
 
 }  // namespace
@@ -164,32 +196,31 @@ std::string begun_text(const fs::path& directory) {
   return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &local)};
 }
 
-Row read_settings(const fs::path& directory) {
+Row settings_of(const Tree& config) {
   Row out;
-  add_values(read_run_config(directory), "", out);
+  add_values(config, "", out);
   return out;
 }
 
+Row read_settings(const fs::path& directory) { return settings_of(read_run_config(directory)); }
+
 fs::path find_record(const std::string& words, Wanted wanted, const fs::path& runs) {
-  const bool latest = !is_there(words) && boost::ends_with(words, kLatest);
-  const std::string base = latest ? words.substr(0, words.size() - std::string_view(kLatest).size()) : words;
-  const bool is_path = is_there(base);
-  if (is_path && is_record(base)) return base;
-  const bool is_word = base.find('/') == std::string::npos;
-  const bool is_slug = base.find('~') != std::string::npos && is_word && is_there(runs / base);
-  const fs::path named = is_slug ? runs / base : runs / slug(base);
-  std::vector<fs::path> records = read_catalogue(is_path ? fs::path(base) : named).records;
-  // A folder of sources may have the name of the runs that are made of them.
-  if (is_path && is_word && records.empty()) records = read_catalogue(named).records;
-  if (records.empty()) {
-    if (is_path || !is_word) return base;
-    throw unknown(words, base, runs);
+  const Meant meant = find_meant(words, wanted, runs);
+  if (meant.records.empty()) return meant.base;
+  if (meant.records.size() > 1 && !meant.latest) throw several(words, meant.base, meant.records);
+  return meant.records.back();
+}
+
+std::vector<fs::path> find_records(const std::vector<std::string>& words, const fs::path& runs) {
+  std::vector<fs::path> out;
+  for (const std::string& one : words) {
+    if (words.size() > 1 && fs::is_regular_file(one)) continue;
+    const Meant meant = find_meant(one, Wanted::sweep, runs);
+    const bool all = !meant.latest && std::none_of(meant.records.begin(), meant.records.end(), is_sweep);
+    if (all) out.insert(out.end(), meant.records.begin(), meant.records.end());
+    if (!all || meant.records.empty()) out.push_back(find_record(one, Wanted::sweep, runs));
   }
-  const auto fits = [&](const fs::path& one) { return is_sweep(one) == (wanted == Wanted::sweep); };
-  if (wanted != Wanted::any && std::any_of(records.begin(), records.end(), fits))
-    records.erase(std::stable_partition(records.begin(), records.end(), fits), records.end());
-  if (records.size() > 1 && !latest) throw several(words, base, records);
-  return records.back();
+  return out;
 }
 
 }  // namespace palpate

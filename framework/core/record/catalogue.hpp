@@ -3,6 +3,7 @@
 // in it, or a name. Every command that takes a run or a sweep asks here, and so all understand the same words.
 #pragma once
 
+#include "config/tree.hpp"
 #include "record/row.hpp"
 
 #include <filesystem>
@@ -27,7 +28,9 @@ Catalogue read_catalogue(const std::filesystem::path& folder);
 /// and never again. A copy that does not keep times (`cp -r`, git) was begun when it was made. "" if nothing tells.
 std::string begun_text(const std::filesystem::path& directory);
 
-/// Every value in the config.yaml of a record, as it is written there, by its dotted path. Throws Error.
+/// Every value of a config, as it is written there, by its dotted path.
+Row settings_of(const Tree& config);
+/// The same of the config.yaml of a record. Throws Error.
 Row read_settings(const std::filesystem::path& directory);
 
 /// The keys at which configs, as of read_settings(), differ: the seed first, as it is what most runs of a name differ
@@ -48,5 +51,12 @@ enum class Wanted { run, sweep, any };
 /// name that nothing has, and where several are meant, with what sets the last of them apart.
 std::filesystem::path find_record(const std::string& words, Wanted wanted = Wanted::any,
                                   const std::filesystem::path& runs = "runs");
+
+/// Returns the directories of all records that several such words mean, for commands that take many as one sweep. A
+/// word means the sweep that find_record() finds; a folder or a name that has no sweep means all its runs. Among
+/// several words files are passed over: a shell's * names the tables beside runs, too. Throws Error as find_record()
+/// does.
+std::vector<std::filesystem::path> find_records(const std::vector<std::string>& words,
+                                                const std::filesystem::path& runs = "runs");
 
 }  // namespace palpate

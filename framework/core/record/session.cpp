@@ -86,6 +86,15 @@ std::map<std::string, std::string> recorded_origins(const fs::path& directory) {
   return out;
 }
 
+std::string recorded_group(const std::map<std::string, std::string>& origins, const std::string& path,
+                           const std::string& kind) {
+  for (auto at = origins.lower_bound(path); at != origins.end() && at->first.compare(0, path.size(), path) == 0; ++at) {
+    const fs::path file = at->second.substr(0, at->second.find(".yaml:"));
+    if (file.parent_path().filename() == kind) return file.filename().string();
+  }
+  return {};
+}
+
 ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
   ResolvedConfig config = resolve_experiment(read_run_config(directory), host);
   const std::string name = fs::absolute(directory).lexically_normal().filename().string();

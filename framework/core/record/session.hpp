@@ -101,6 +101,11 @@ Tree read_run_config(const std::filesystem::path& directory);
 /// values. Empty where there is none that can be read.
 std::map<std::string, std::string> recorded_origins(const std::filesystem::path& directory);
 
+/// Returns the name of the group of this `kind` ("scene") whose file has written the first of the values at paths that
+/// begin with `path`, by their recorded origins; "" for none. A group is known by name from that alone.
+std::string recorded_group(const std::map<std::string, std::string>& origins, const std::string& path,
+                           const std::string& kind);
+
 /// The config of a run directory, as resolved then. Throws Error if it does not resolve to the identity that it had.
 ResolvedConfig load_run(const PluginHost& host, const std::filesystem::path& directory);
 

@@ -37,24 +37,7 @@ std::string in_short(const std::vector<std::string>& names, const char* noun) {
   return out.size() <= kShown ? fmt::format("{}", fmt::join(out, ", ")) : fmt::format("{} {}", out.size(), noun);
 }
 
-/// Where the values of a run's config were written: by that alone groups are known by name.
-class Origins {
- public:
-  explicit Origins(const fs::path& directory) : origins_(recorded_origins(directory)) {}
-
-  /// The group of this kind ("scene") that the value at `path`, or the first below it, comes from; "" for none.
-  std::string group(const std::string& path, const char* kind) const {
-    for (const auto& [key, place] : origins_) {
-      if (key.compare(0, path.size(), path) != 0) continue;
-      const fs::path file = place.substr(0, place.find(".yaml:"));
-      if (file.parent_path().filename() == kind) return file.filename().string();
-    }
-    return {};
-  }
-
- private:
-  std::map<std::string, std::string> origins_;
-};
+using Origins = std::map<std::string, std::string>;
 
 std::string first_of(const std::vector<std::string>& names) {
   const auto found = std::find_if(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
@@ -81,11 +64,12 @@ std::string swept_at(const Sweep& sweep, const char* key) {
 
 std::string strategy_of(const Origins& origins, const Row& config) {
   const char* const chosen = "acquisition.type";
-  return first_of({origins.group(chosen, "strategy"), origins.group(chosen, "acquisition"), config.text(chosen)});
+  return first_of({recorded_group(origins, chosen, "strategy"), recorded_group(origins, chosen, "acquisition"),
+                   config.text(chosen)});
 }
 
 std::string scene_of(const Origins& origins, const Row& config) {
-  return first_of({origins.group("scene.", "scene"), shapes_in(config)});
+  return first_of({recorded_group(origins, "scene.", "scene"), shapes_in(config)});
 }
 
 /// "seed (30), acquisition (2)": the swept keys, each with how many values it has.
@@ -110,7 +94,7 @@ bool by_callers_scores(const fs::path& directory, const Row& config) {
 Scalar text_or_null(const std::string& text) { return text.empty() ? Scalar() : Scalar(text); }
 
 void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
-  const Origins origins(directory);
+  const Origins origins = recorded_origins(directory);
   Row& row = out.row;
   row.add("name", text_or_null(config.text("name")));
   row.add("begun", text_or_null(begun_text(directory)));
@@ -134,7 +118,7 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
   row.add("begun", text_or_null(begun_text(directory)));
   // What is not swept is in all jobs as in the first.
   const fs::path first = job_directory(sweep, sweep.jobs.front());
-  const Origins origins(first);
+  const Origins origins = recorded_origins(first);
   const Row job = is_there(first / "config.yaml") ? read_settings(first) : config;
   row.add(
       "strategy",

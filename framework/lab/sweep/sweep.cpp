@@ -87,9 +87,12 @@ std::vector<std::size_t> all_jobs(const Sweep& sweep) {
   return jobs;
 }
 
-fs::path job_directory(const Sweep& sweep, const Job& job) { return sweep.directory / "jobs" / job.id; }
+fs::path job_directory(const Sweep& sweep, const Job& job) {
+  return job.directory.empty() ? sweep.directory / "jobs" / job.id : job.directory;
+}
 
 std::string sweep_name(const Sweep& sweep) {
+  if (!sweep.name.empty()) return sweep.name;
   const auto key = std::find(sweep.keys.begin(), sweep.keys.end(), "name");
   const auto at = static_cast<std::size_t>(key - sweep.keys.begin());
   const auto same = [&](const Job& job) { return job.values[at] == sweep.jobs.front().values[at]; };

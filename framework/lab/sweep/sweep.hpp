@@ -19,6 +19,7 @@ struct Job {
   int index = 0;
   std::string id;
   std::vector<std::string> values;       ///< one for each swept key; "" where the job's plugins have no such option
+  std::filesystem::path directory = {};  ///< of a job in a PooledSweep; of others empty: see job_directory()
 };
 
 /// A line of manifest.jsonl.
@@ -34,6 +35,7 @@ struct Sweep {
   std::filesystem::path directory;
   std::vector<std::string> keys;
   std::vector<Job> jobs;
+  std::string name = {};  ///< of a PooledSweep; of others empty: see sweep_name()
 };
 
 /// The name of a sweep's directory: a hash of its resolved config, as written, and of its keys and jobs.
@@ -53,7 +55,7 @@ std::string sweep_name(const Sweep& sweep);
 /// All of a sweep, as indices into Sweep::jobs.
 std::vector<std::size_t> all_jobs(const Sweep& sweep);
 
-/// jobs/<id>
+/// jobs/<id>, or where the job of a PooledSweep was recorded.
 std::filesystem::path job_directory(const Sweep& sweep, const Job& job);
 
 /// The summary of each job, none for those that have not ended; see read_outcome().
