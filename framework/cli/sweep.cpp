@@ -13,6 +13,7 @@
 #include "launch/job.hpp"
 #include "launch/mounts.hpp"
 #include "launch/slurm_launcher.hpp"
+#include "record/callers_run.hpp"
 #include "record/files.hpp"
 #include "report/words/words.hpp"
 #include "scene/sizes.hpp"
@@ -238,6 +239,13 @@ std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) 
   return {jobs.begin(), jobs.end()};
 }
 
+/// Throws Error for a job whose taps a program of Python makes.
+void check_who_taps(const ResolvedConfig& config, const std::string& place) {
+  if (config.options.backend.type != kCaller) return;
+  throw Error(place, "the taps of this sweep are made by a program of somebody's own, not by palpate",
+              "palpate.begin_sweep() in Python makes it, and experiments() of it carries it on");
+}
+
 }  // namespace
 
 std::size_t jobs_of_sweep(Program& program, const std::string& config) {
@@ -253,6 +261,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   if (!arguments.list) draft.emplace(arguments.runs);
   const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
                                     [&](const Job& job, const ResolvedConfig& config) {
+                                      if (draft) check_who_taps(config, "backend");
                                       if (draft) draft->add(job, config);
                                       if (job.index == 0) left_out = half_said_sizes(config.tree, config.notes);
                                       one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
@@ -294,7 +303,9 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
       refuse("--jobs and --junit do not go together: what is expected is judged of the whole sweep", hint);
   }
   Standing begun = standing_of(sweep, jobs_of(campaign));
-  check_builds(campaign, undone(begun));
+  const std::vector<std::size_t> left = undone(begun);
+  if (!left.empty()) check_who_taps(config_of(left.front()), arguments.directory);
+  check_builds(campaign, left);
   return run_campaign(campaign, std::move(begun));
 }
 

@@ -81,6 +81,7 @@ class Asked {
   }
 
   const std::string& directory() const { return directory_; }
+  const std::string& label() const { return label_; }
   const Eigen::VectorXd& xs() const { return xs_; }
   const Eigen::VectorXd& ys() const { return ys_; }
 
@@ -88,6 +89,7 @@ class Asked {
   /// What stays as it is.
   void describe() {
     directory_ = run_->directory().string();
+    if (const Tree* label = run_->config().tree.find_path("backend.label")) label_ = label->text;
     xs_ = run_->experiment().candidates().xs;
     ys_ = run_->experiment().candidates().ys;
   }
@@ -114,6 +116,7 @@ class Asked {
   Shop shop_;
   std::unique_ptr<CallersRun> run_;
   std::string directory_;
+  std::string label_;
   Eigen::VectorXd xs_;
   Eigen::VectorXd ys_;
 };

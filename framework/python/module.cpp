@@ -88,9 +88,16 @@ std::string begin_sweep(const std::string& config, const std::vector<std::string
   return plan.sweep.directory.string();
 }
 
-std::string found(const std::string& words, bool sweep, const std::string& runs) {
+std::string found(const std::string& words, const std::string& runs) {
   const Unlocked others_go_on;
-  return find_record(words, sweep ? Wanted::sweep : Wanted::run, runs).string();
+  return find_record(words, Wanted::run, runs).string();
+}
+
+std::vector<std::string> found_sweep(const std::vector<std::string>& words, const std::string& runs) {
+  const Unlocked others_go_on;
+  std::vector<std::string> out;
+  for (const std::filesystem::path& one : find_records(words, runs)) out.push_back(one.string());
+  return out;
 }
 
 std::vector<std::tuple<std::string, std::string, std::string>> tap_fields() {
@@ -153,15 +160,16 @@ PYBIND11_MODULE(_palpate, module) {
         return std::pair(line(xs), line(ys));
       });
   py::class_<SweepRecord>(module, "SweepRecord")
-      .def(py::init([](const std::string& directory) {
+      .def(py::init([](const std::vector<std::string>& directories) {
         const Unlocked others_go_on;
-        return std::make_unique<SweepRecord>(directory);
+        return std::make_unique<SweepRecord>(directories);
       }))
       .def("directory", &SweepRecord::directory)
       .def("keys", &SweepRecord::keys)
       .def("size", &SweepRecord::size)
       .def("job", &SweepRecord::job)
-      .def("table", &SweepRecord::table);
+      .def("table", &SweepRecord::table)
+      .def("write_table", &SweepRecord::write_table);
   py::class_<TapRecord>(module, "Tap")
       .def_readonly("number", &TapRecord::number)
       .def_property_readonly("x", [](const TapRecord& tap) { return tap.target.x; })
@@ -189,6 +197,7 @@ PYBIND11_MODULE(_palpate, module) {
       .def("close", &Asked::close)
       .def("finished", &Asked::finished)
       .def("directory", &Asked::directory)
+      .def("label", &Asked::label)
       .def("taps", &Asked::taps)
       .def("xs", [](Asked& self) { return line(self.xs()); })
       .def("ys", [](Asked& self) { return line(self.ys()); })
@@ -200,6 +209,7 @@ PYBIND11_MODULE(_palpate, module) {
   module.def("run", &run);
   module.def("begin_sweep", &begin_sweep);
   module.def("found", &found);
+  module.def("found_sweep", &found_sweep);
   module.def("tap_fields", &tap_fields);
   module.def("end_calls", [] { Calls::all().end(); });
   module.attr("version") = kVersion;

@@ -8,6 +8,7 @@
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
 #include "shop.hpp"
+#include "sweep/pooled_sweep.hpp"
 #include "sweep/sweep.hpp"
 #include "threads.hpp"
 #include "values.hpp"
@@ -106,15 +107,22 @@ class Record {
   std::unique_ptr<Playback> playback_;
 };
 
-/// The directory of a sweep, as it stood when it was opened.
+/// A sweep, or several sweeps and runs as one (see read_pooled()), as it stood when it was opened.
 class SweepRecord {
  public:
-  explicit SweepRecord(const std::string& directory) : sweep_(read_sweep(directory)) {}
+  explicit SweepRecord(const std::vector<std::string>& directories)
+      : sweep_(read_pooled({directories.begin(), directories.end()}, {}).sweep) {}
 
   std::string directory() const { return sweep_.directory.string(); }
   std::size_t size() const { return sweep_.jobs.size(); }
   const std::vector<std::string>& keys() const { return sweep_.keys; }
   std::string job(std::size_t index) const { return job_directory(sweep_, sweep_.jobs.at(index)).string(); }
+
+  /// Makes results.csv anew from the jobs.
+  void write_table() const {
+    const Unlocked others_go_on;
+    write_results(sweep_);
+  }
 
   /// A row a job, of those that have not ended the swept keys alone.
   std::vector<Column> table() const {

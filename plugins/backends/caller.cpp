@@ -6,6 +6,8 @@
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
 
+#include <string>
+
 namespace palpate::backends {
 
 /// The defaults are those of the tapping motion.
@@ -13,6 +15,7 @@ struct CallerOptions : Options {
   double hover = 0.135;
   double overrun = 0.03;
   bool scene_is_truth = false;
+  std::string label;
 
   void list(Fields& fields) override {
     fields.real(hover,
@@ -31,6 +34,9 @@ struct CallerOptions : Options {
                                       "the caller taps the objects of `scene`, as in a simulation of his own: so the "
                                       "errors of each tap are known")
                                     .neutral(false));
+    fields.text(
+        label,
+        Field("label", "name of the caller's strategy: runs with different labels are different runs").neutral(""));
   }
 };
 

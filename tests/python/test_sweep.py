@@ -69,6 +69,78 @@ class Sweeps(InFolder):
         self.assertEqual(int(last["n"][0]), 5)
         self.refuses("curves", "does not vary 'acqisition'", "", lambda: done.curves(by="acqisition"))
 
+    def told(self, seeds, **more):
+        return palpate.begin_sweep(DEFAULT, "candidates.count=12", "backend.scene_is_truth=true", taps=4, name="told",
+                                   labels=["default", "left"], seed=seeds, runs=self.folder, **more)
+
+    def tap(self, experiment, taps=4):
+        strategies = {"default": lambda belief: None, "left": lambda belief: 1.0 + 0 * belief.uncertainty - belief.x}
+        truth = self.truth.flat
+        for _ in range(taps):
+            tap = experiment.ask(strategies[experiment.label](experiment.belief))
+            experiment.tell(truth[tap.candidate])
+
+    def test_two_strategies_of_the_caller_on_three_seeds_are_one_sweep_for_all_commands(self):
+        self.truth = palpate.run(DEFAULT, "candidates.count=12", taps=1, runs=self.folder / "other").truth
+        sweep = self.told(range(3))
+        self.assertEqual(len(sweep), 6)
+        for number, experiment in enumerate(sweep.experiments()):
+            if number == 1:
+                self.tap(experiment, 2)
+                experiment.close()  # broken off in the middle
+                break
+            with experiment:
+                self.tap(experiment)
+        self.assertEqual(list(sweep.table["status"]), ["done"] + [None] * 5)
+        self.assertIn("made by a program of somebody's own", program("resume", sweep.directory, code=2))
+        again = self.told(range(3))
+        self.assertEqual(again.directory, sweep.directory)
+        carried_on = []
+        for experiment in again.experiments():
+            carried_on.append(len(experiment))
+            with experiment:
+                self.tap(experiment, 4 - len(experiment))
+                self.assertIsNone(experiment.ask())
+        self.assertEqual(carried_on, [2, 0, 0, 0, 0])
+        self.assertEqual(list(again.experiments()), [])
+
+        loaded = palpate.load_sweep("told", runs=self.folder)
+        table = loaded.table
+        self.assertEqual(list(table["status"]), ["done"] * 6)
+        errors = {label: table["rmse_m"][table["backend.label"] == label] for label in ("default", "left")}
+        by_run = [run.summary["rmse_m"] for run in loaded]
+        self.assertEqual(sorted(map(float, table["rmse_m"])), sorted(by_run))
+        compared = program("compare", sweep.directory, "--by", "backend.label", "--metric", "rmse_m", "--format", "csv")
+        pair = [line.split(",") for line in compared.splitlines()]
+        mean = float(pair[-1][pair[0].index("mean")])
+        self.assertAlmostEqual(mean, float(np.mean(errors["left"] - errors["default"])), delta=1e-12)
+        program("curves", sweep.directory, "-o", self.folder / "told.png")
+        self.assertTrue((self.folder / "told.png").exists())
+        self.assertEqual(sorted(set(loaded.curves()["backend.label"])), ["default", "left"])
+        self.assertEqual(len(cells(pathlib.Path(sweep.directory) / "results.csv")), 6)
+        listed = program("list", self.folder / "told")
+        self.assertIn("default, left", listed)
+        self.assertIn("6 of 6 jobs done", listed)
+        program("report", sweep.directory)
+        self.assertTrue((pathlib.Path(sweep.directory) / "report.html").exists())
+
+    def test_runs_of_a_loop_and_several_sweeps_are_loaded_as_one_sweep(self):
+        for label in ("a", "b"):
+            for seed in (1, 2):
+                with self.begun("candidates.count=12", f"backend.label={label}", "backend.scene_is_truth=true", taps=2,
+                                name="loop", seed=seed) as experiment:
+                    self.assertEqual(experiment.label, label)
+                    while experiment.ask():
+                        experiment.tell(0.0)
+        loop = palpate.load_sweep("loop", runs=self.folder)
+        self.assertEqual(loop.keys, ["backend.label", "seed"])
+        self.assertEqual(sorted(zip(loop.table["backend.label"], loop.table["seed"])), [("a", 1), ("a", 2), ("b", 1), ("b", 2)])
+        self.assertEqual(len(loop.curves("rmse_m", by="backend.label")), 4)
+        other = palpate.sweep(DEFAULT, "candidates.count=12", taps=2, name="other", seed=[1, 2], runs=self.folder)
+        both = palpate.load_sweep(["loop", other.directory], runs=self.folder)
+        self.assertEqual(len(both), 6)
+        self.assertEqual([run.id for run in both][-2:], list(other.table["id"]))
+
     def test_jobs_that_have_not_ended_are_in_the_table_without_numbers_and_carried_on(self):
         def interrupt(done, jobs):
             if done >= 1:

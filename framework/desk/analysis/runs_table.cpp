@@ -99,7 +99,7 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   row.add("name", text_or_null(config.text("name")));
   row.add("begun", text_or_null(begun_text(directory)));
   const std::string by_caller = by_callers_scores(directory, config) ? "scores of the caller" : "";
-  row.add("strategy", text_or_null(first_of({by_caller, strategy_of(origins, config)})));
+  row.add("strategy", text_or_null(first_of({config.text("backend.label"), by_caller, strategy_of(origins, config)})));
   row.add("scene", text_or_null(scene_of(origins, config)));
   const std::optional<Row> summary = read_summary(directory);
   // Only the taps of what has not ended are counted: of the rest the summary tells their number.
@@ -120,9 +120,8 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
   const fs::path first = job_directory(sweep, sweep.jobs.front());
   const Origins origins = recorded_origins(first);
   const Row job = is_there(first / "config.yaml") ? read_settings(first) : config;
-  row.add(
-      "strategy",
-      text_or_null(first_of({swept_at(sweep, "strategy"), swept_at(sweep, "acquisition"), strategy_of(origins, job)})));
+  row.add("strategy", text_or_null(first_of({swept_at(sweep, "backend.label"), swept_at(sweep, "strategy"),
+                                             swept_at(sweep, "acquisition"), strategy_of(origins, job)})));
   row.add("scene", text_or_null(first_of({swept_at(sweep, "scene"), scene_of(origins, job)})));
   out.swept = swept_words(sweep);
   Standing now = standing_of(sweep, all_jobs(sweep), Also::running);

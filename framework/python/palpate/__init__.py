@@ -30,7 +30,7 @@ import numpy as _np
 from . import _palpate, _program, _show
 from ._palpate import Error, InputError, Tap
 
-__all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep", "Tap", "describe", "load", "load_sweep", "run", "sweep"]
+__all__ = ["Belief", "Error", "Experiment", "InputError", "Maps", "Run", "Sweep", "Tap", "begin_sweep", "describe", "load", "load_sweep", "run", "sweep"]
 __version__ = _palpate.version
 
 _atexit.register(_palpate.end_calls)  # other threads may be computing
@@ -179,16 +179,18 @@ class Run:
 class Sweep:
     """A recorded sweep: load_sweep() opens one. sweep[3] is the run of its job 3, opened when it is asked for.
 
-    It iterates over the runs of the jobs that are done.
+    It iterates over the runs of the jobs that are done. Several directories, of sweeps and runs, are one sweep, whose
+    `directory` is the folder that has them all.
     """
 
-    def __init__(self, directory):
-        self._record = _palpate.SweepRecord(_os.fspath(directory))
+    def __init__(self, *directories):
+        self._directories = [_os.fspath(one) for one in directories]
+        self._record = _palpate.SweepRecord(self._directories)
         self.directory = self._record.directory()
         self.keys = self._record.keys()
 
     def __reduce__(self):
-        return Sweep, (_os.path.abspath(self.directory),)
+        return Sweep, tuple(map(_os.path.abspath, self._directories))
 
     def __repr__(self):
         return f"<palpate.Sweep {self.directory}: {len(self)} jobs>"
@@ -228,6 +230,16 @@ class Sweep:
         for job in table["job"][table["status"] == "done"]:
             yield self[job]
 
+    def experiments(self, retry_failed=False):
+        """Of a sweep of begin_sweep(): the Experiment of each job that has not ended, one after the other. Close each, as
+        `with` does, before the next. `retry_failed` carries on failed jobs, too."""
+        try:
+            for job, status in enumerate(self.table["status"].tolist()):
+                if status is None or retry_failed and status == "failed":
+                    yield Experiment.resume(self._record.job(job), retry_failed)
+        finally:
+            self._record.write_table()
+
     @property
     def table(self) -> _np.ndarray:
         """A structured array of a row a job, which `pandas.DataFrame` takes: `job`, `id`, the swept keys, the fields of
@@ -249,7 +261,7 @@ class Sweep:
         keys = [by] if isinstance(by, str) else by
         with _tempfile.TemporaryDirectory() as folder:
             file = _os.path.join(folder, "curves.csv")
-            command = [_palpate.program, "curves", self.directory, "--metric", metric, "--against", against, "-o", file]
+            command = [_palpate.program, "curves", *self._directories, "--metric", metric, "--against", against, "-o", file]
             command += ["--by", ",".join(keys)] if keys else []
             command += ["--where", where] if where is not None else []
             command += ["-j", str(_operator.index(workers))] if workers is not None else []
@@ -262,12 +274,14 @@ class Sweep:
 
 def load(directory, runs="runs") -> Run:
     """The run in a directory, or in `runs` by its name: "NAME", "NAME@latest". Raises Error for what is none, or damaged."""
-    return Run(_palpate.found(_os.fspath(directory), False, _os.fspath(runs)))
+    return Run(_palpate.found(_os.fspath(directory), _os.fspath(runs)))
 
 
 def load_sweep(directory, runs="runs") -> Sweep:
-    """The sweep in a directory, or in `runs` by its name. Raises Error for what is none, or damaged."""
-    return Sweep(_palpate.found(_os.fspath(directory), True, _os.fspath(runs)))
+    """The sweep in a directory, or in `runs` by its name. A list of them, of sweeps and runs, is one sweep, and so are all
+    runs of a name that has no sweep. Raises Error for what is none, or damaged."""
+    words = [directory] if isinstance(directory, (str, _os.PathLike)) else directory
+    return Sweep(*_palpate.found_sweep([_os.fspath(one) for one in words], _os.fspath(runs)))
 
 
 def describe() -> dict[str, tuple[str, str]]:
@@ -307,6 +321,17 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     if status not in (0, 1) or status == 1 and None in made.table["status"].tolist():
         raise _error(directory, f"the sweep ended with status {status}: {said}", "the same call carries it on", Error)
     return made
+
+
+def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:
+    """Makes a sweep whose taps the caller makes, and runs nothing: its experiments() ask for them, job by job.
+
+    `axes` and `settings` as in sweep(), and the backend as in Experiment. `labels`: names of the caller's own strategies,
+    which are swept, too, as `backend.label`; `experiment.label` has that of a job. A sweep that exists is carried on.
+    """
+    words = [*axes, *(f"{key}={_program.values_text(value)}" for key, value in settings.items()), "backend.type=caller"]
+    words += [f"backend.label={_program.values_text(list(labels))}"] if labels is not None else []
+    return Sweep(_palpate.begin_sweep(_os.fspath(config), words, _os.fspath(runs)))
 
 
 class Belief:
@@ -395,6 +420,11 @@ class Experiment:
 
     def __exit__(self, kind, *_):
         self._asked.close(kind is None)
+
+    @property
+    def label(self) -> str:
+        """`backend.label`, the name of the caller's strategy; "" where the config has none."""
+        return self._asked.label()
 
     @property
     def belief(self) -> Belief:
