@@ -56,14 +56,14 @@ int curves(Program& program, const CurvesArguments& arguments) {
   // What cannot be asked is found out before anything is computed.
   check_group_keys(sweep, by);
   if (!results.empty()) find_metric(sweep, arguments.metric, columns_of(results));
-  const TapSummaries before(sweep);
-  const bool all = compute_jobs(program, before.missing(), arguments.workers,
-                                [&](std::size_t job) { before.compute(program, job); });
+  std::vector<TapValues> values(sweep.jobs.size());
+  const TapSummaries summaries(sweep, keep_values(values, {arguments.metric, arguments.against}));
+  const bool all = compute_jobs(program, summaries.missing(), arguments.workers,
+                                [&](std::size_t job) { summaries.compute(program, job); });
   if (!all) return kInterrupted;
-  const TapSummaries summaries(sweep);
+  summaries.read_missing();
   const GroupCurves made =
-      make_group_curves(sweep, results, tap_values(sweep, summaries, {arguments.metric, arguments.against}),
-                        {by, arguments.metric, arguments.against, where ? &*where : nullptr});
+      make_group_curves(sweep, results, values, {by, arguments.metric, arguments.against, where ? &*where : nullptr});
   print_text(curves_table(made));
   for (const fs::path& file : files) {
     if (file.extension() == ".csv") {

@@ -97,20 +97,16 @@ void check_points(const GroupCurves& made, const Sweep& sweep) {
 
 }  // namespace
 
-std::vector<TapValues> tap_values(const Sweep& sweep, const TapSummaries& summaries,
-                                  const std::vector<std::string>& columns) {
-  std::vector<TapValues> out(sweep.jobs.size());
-  for (std::size_t job = 0; job < out.size(); ++job) {
-    const std::optional<std::vector<Row>> rows = summaries.of(job);
-    if (!rows) continue;
+TapSummaries::Use keep_values(std::vector<TapValues>& values, std::vector<std::string> columns) {
+  return [&values, columns = std::move(columns)](std::size_t job, const std::vector<Row>& rows) {
     for (const std::string& column : columns) {
-      std::vector<double>& values = out[job][column];
+      std::vector<double>& of_job = values[job][column];
+      of_job.clear();
       std::size_t near = 0;
-      for (const Row& row : *rows)
-        values.push_back(number_of(row.find(column, near)).value.value_or(std::numeric_limits<double>::quiet_NaN()));
+      for (const Row& row : rows)
+        of_job.push_back(number_of(row.find(column, near)).value.value_or(std::numeric_limits<double>::quiet_NaN()));
     }
-  }
-  return out;
+  };
 }
 
 std::string GroupCurve::name() const {

@@ -23,9 +23,9 @@ inline constexpr const char* kAgainstTime = "robot_seconds";
 /// The values of some columns in one job after 1, 2, ... taps; NaN where there is none.
 using TapValues = std::map<std::string, std::vector<double>>;
 
-/// Returns them for each job of the sweep, in its order; empty for a job that TapSummaries::of() has nothing of.
-std::vector<TapValues> tap_values(const Sweep& sweep, const TapSummaries& summaries,
-                                  const std::vector<std::string>& columns);
+/// Returns what puts them into `values`, which has a place for each job: empty for a job without kept summaries.
+/// `values` must outlive it.
+TapSummaries::Use keep_values(std::vector<TapValues>& values, std::vector<std::string> columns);
 
 struct CurvesQuery {
   std::vector<std::string> by;  ///< swept keys; jobs that have the same values of them, and of the scene, are a group

@@ -43,9 +43,10 @@ Row numbers_of(const Row& summary) {
 
 }  // namespace
 
-TapSummaries::TapSummaries(const Sweep& sweep) : sweep_(sweep), summaries_(sweep_summaries(sweep)) {
+TapSummaries::TapSummaries(const Sweep& sweep, Use use)
+    : sweep_(sweep), use_(std::move(use)), summaries_(sweep_summaries(sweep)) {
   for (std::size_t job = 0; job < sweep_.jobs.size(); ++job) {
-    if (has_ended_well(summaries_[job]) && !kept(job)) missing_.push_back(job);
+    if (has_ended_well(summaries_[job]) && !hand_over(job)) missing_.push_back(job);
   }
 }
 
@@ -93,11 +94,16 @@ void TapSummaries::compute(const Workshop& workshop, std::size_t job) const {
   write_file(directory / kSummariesFile, lines);
 }
 
-std::optional<std::vector<Row>> TapSummaries::of(std::size_t job) const {
-  if (!has_ended_well(summaries_[job])) return std::nullopt;
+bool TapSummaries::hand_over(std::size_t job) const {
   std::optional<std::vector<Row>> rows = kept(job);
-  if (rows) rows->push_back(*summaries_[job]);
-  return rows;
+  if (!rows) return false;
+  rows->push_back(*summaries_[job]);
+  use_(job, *rows);
+  return true;
+}
+
+void TapSummaries::read_missing() const {
+  for (const std::size_t job : missing_) hand_over(job);
 }
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include "sweep/sweep.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -15,9 +16,12 @@ namespace palpate {
 
 class TapSummaries {
  public:
-  /// Reads the summaries of all jobs, and which of them have something kept. Throws Error for a damaged sweep. `sweep`
-  /// must outlive the object.
-  explicit TapSummaries(const Sweep& sweep);
+  /// Takes the rows of a job: numbers and flags of the summary after 1, 2, ... taps; the last row is its whole summary.
+  using Use = std::function<void(std::size_t job, const std::vector<Row>& rows)>;
+
+  /// Reads the summaries of all jobs, and hands `use` the rows of each job that ended well and has all of them kept.
+  /// Each file is read once, and no rows are held. Throws Error for a damaged sweep. `sweep` must outlive the object.
+  TapSummaries(const Sweep& sweep, Use use);
 
   /// Returns whether some job of the sweep has something kept; much cheaper than an object.
   static bool any_kept(const Sweep& sweep);
@@ -28,14 +32,16 @@ class TapSummaries {
   /// Computes one of them and keeps it. Throws Error.
   void compute(const Workshop& workshop, std::size_t job) const;
 
-  /// Returns a row per tap: numbers and flags of the summary after 1, 2, ... taps; the last row is the whole summary of
-  /// the job. None for a job that failed or has not ended, and for one of missing().
-  std::optional<std::vector<Row>> of(std::size_t job) const;
+  /// Hands over the rows of those of missing() that compute() has kept since, by whichever process.
+  void read_missing() const;
 
  private:
   std::optional<std::vector<Row>> kept(std::size_t job) const;
+  /// Returns whether the rows of a job were there to hand over.
+  bool hand_over(std::size_t job) const;
 
   const Sweep& sweep_;
+  Use use_;
   std::vector<std::optional<Row>> summaries_;
   std::vector<std::size_t> missing_;
 };

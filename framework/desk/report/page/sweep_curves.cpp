@@ -71,8 +71,6 @@ Json json_of_curve(const GroupCurve& curve) {
 
 Json json_of_curves(const Sweep& sweep) {
   if (sweep.jobs.size() > kMostJobsOnAPage || !TapSummaries::any_kept(sweep)) return {};
-  const TapSummaries summaries(sweep);
-  if (!summaries.missing().empty()) return {};
   const std::vector<Row> results = sweep_results(sweep);
   const std::vector<std::vector<std::string>> keys = choices_of_keys(sweep);
   if (keys.empty()) return {};
@@ -84,7 +82,9 @@ Json json_of_curves(const Sweep& sweep) {
   }
   std::vector<std::string> read = columns;
   read.emplace_back(kAgainstTime);
-  const std::vector<TapValues> values = tap_values(sweep, summaries, read);
+  std::vector<TapValues> values(sweep.jobs.size());
+  const TapSummaries summaries(sweep, keep_values(values, read));
+  if (!summaries.missing().empty()) return {};
   const std::vector<std::string> metrics = metrics_of(values, columns);
   if (metrics.empty()) return {};
   const bool takes_time = std::any_of(values.begin(), values.end(), [](const TapValues& job) {
