@@ -92,6 +92,18 @@ TEST_F(CurvesOfGroups, AreDrawnAsPngPdfAndSvgWithABandForEachGroup) {
   EXPECT_TRUE(fs::exists(directory / "curves_acquisition_rmse_m_taps.csv"));
 }
 
+TEST_F(CurvesOfGroups, AreAFigureOfTheSweepsReportOnceTheyAreComputed) {
+  const fs::path directory = defaults();
+  const fs::path figure = directory / "figures/curves.png";
+  EXPECT_EQ(palpate({"report", directory, "--figures"}).status, 0);
+  EXPECT_FALSE(fs::exists(figure)) << "report computes none";
+  curves(directory, "-o alone.png");
+  const Ended ended = palpate({"report", directory, "--figures"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("/figures/curves.png\n"));
+  EXPECT_EQ(text_of(figure), text_of(here() / "alone.png"));
+}
+
 TEST_F(CurvesOfGroups, RefuseInOneLineWhatCannotBeDrawn) {
   const Words curves{"curves", swept("acquisition=weighted,random taps=4 candidates.count=16 seed=range(0,2)")};
   EXPECT_EQ(refused(curves + "-o a.jpg"),

@@ -25,7 +25,8 @@ struct Figures {
 Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history,
                           const std::filesystem::path& folder);
 
-/// Of a sweep: `distributions` and, where two keys but the seed are swept, `heat_map`. Throws Error as above, and where
+/// Of a sweep: `distributions`, `heat_map` where two keys but the seed are swept, and `curves` of the groups where
+/// their values after each tap are kept, as `palpate curves` leaves them. Throws Error as above, and where
 /// no job ended well.
 Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& folder);
 

@@ -248,6 +248,21 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   return Figure{"heat_map", std::move(sheet)};
 }
 
+/// The error over the taps, by all keys that vary: none unless its values after each tap are kept.
+std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row>& results) {
+  if (!TapSummaries::any_kept(sweep)) return std::nullopt;
+  std::vector<TapValues> values(sweep.jobs.size());
+  const TapSummaries summaries(sweep, keep_values(values, {main_error(), kAgainstTaps}));
+  const auto has_error = [](const TapValues& job) {
+    const auto error = job.find(main_error());
+    return error != job.end() &&
+           std::any_of(error->second.begin(), error->second.end(), [](double one) { return std::isfinite(one); });
+  };
+  const bool drawn = summaries.missing().empty() && std::any_of(values.begin(), values.end(), has_error);
+  if (!drawn) return std::nullopt;
+  return make_group_curves(sweep, results, values, {curve_keys(sweep), main_error(), kAgainstTaps, nullptr});
+}
+
 }  // namespace
 
 Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& folder) {
@@ -256,7 +271,14 @@ Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& fol
     throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
   std::vector<Figure> figures{distributions_figure(sweep, results)};
   if (auto map = heat_map(sweep, results)) figures.push_back(std::move(*map));
-  return {write_gallery(folder, figures), {}};
+  Figures out{write_gallery(folder, figures), {}};
+  if (const auto curves = kept_curves(sweep, results)) {
+    const std::filesystem::path file = folder / "curves.png";
+    std::string note = write_curves_figure(*curves, sweep_name(sweep), file);
+    out.pictures.push_back(file);
+    if (!note.empty()) out.notes.push_back(std::move(note));
+  }
+  return out;
 }
 
 }  // namespace palpate
