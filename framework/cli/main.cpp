@@ -463,7 +463,8 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
                             rest.front()),
                 "where a * stands for several, name one of them");
   }
-  throw Error("", trouble.what(), "see palpate --help");
+  const std::vector<CLI::App*> named = app.get_subcommands();
+  throw Error("", trouble.what(), fmt::format("see palpate {}--help", named.empty() ? "" : named[0]->get_name() + " "));
 }
 
 /// What is known of an option by itself.

@@ -72,6 +72,14 @@ TEST_F(HelpOf, EveryCommandHasTwoExamplesThatTheProgramItselfUnderstands) {
   }
 }
 
+TEST_F(HelpOf, EachCommandIsNamedWhereOneOfItsOptionsIsUnknown) {
+  for (const std::string& command : commands()) {
+    const Ended ended = palpate(Words(command) + "--title");
+    EXPECT_EQ(ended.status, 2) << command;
+    EXPECT_THAT(ended.err, testing::EndsWith("see palpate " + (command.empty() ? "" : command + " ") + "--help\n"));
+  }
+}
+
 TEST_F(HelpOf, TheProgramIsShownWhereNoCommandIsGiven) {
   const Ended ended = palpate(Words{});
   EXPECT_EQ(ended.status, 2);
