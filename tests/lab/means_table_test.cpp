@@ -66,9 +66,25 @@ TEST(LatexTable, HasMeansWithTheirIntervalsAndNBetweenTheRulesOfBooktabs) {
             "% mean [95 % interval of the mean] and number of jobs; units of the intervals: 3 to 4 seeds\n"
             "% rmse_m: mean over the runs that have one (else no truth is known).\n"
             "\\begin{tabular}{lrrr}\n\\toprule\nstrategy & taps & rmse\\_m [mm] & $n$ \\\\\n\\midrule\n"
-            "out\\_line & 17 & $26\\ [24, 28]$ & 4 \\\\\n"
-            "{[a, b]} & 17 & $41$ & 3 \\\\\n"
+            "out\\_line & 17 & $26.1\\ [24.2, 28.1]$ & 4 \\\\\n"
+            "{[a, b]} & 17 & $41.2$ & 3 \\\\\n"
             "\\bottomrule\n\\end{tabular}\n");
+}
+
+TEST(LatexTable, HasTheDigitsOfEachIntervalTwoOfItsHalfWidthAndAsManyDecimalsOfMeanAndBounds) {
+  const auto cell = [](double mean, double low, double high, Unit unit = Unit::metre) {
+    Comparison one = comparison("rmse_m", unit, {}, {group("x", 4, mean), group("other", 4, 2 * mean)});
+    one.groups[0].mean.interval = {low, high};
+    const std::string table = latex_table({one});
+    const auto begin = table.find("x & ", table.find("midrule")) + 4;
+    return table.substr(begin, table.find(" &", begin) - begin);
+  };
+  EXPECT_EQ(cell(0.013405, 0.012913, 0.013857), "$13.40\\ [12.91, 13.86]$") << "0.47 to either side";
+  EXPECT_EQ(cell(0.0134, 0.0100, 0.0168), "$13.4\\ [10.0, 16.8]$") << "3.4";
+  EXPECT_EQ(cell(0.1341, 0.1, 0.168), "$134\\ [100, 168]$") << "34";
+  EXPECT_EQ(cell(1234.5, 1000.0, 1469.0, Unit::none), "$1234\\ [1000, 1469]$") << "234: whole numbers";
+  EXPECT_EQ(cell(0.7, 0.6988, 0.7012, Unit::none), "$0.7000\\ [0.6988, 0.7012]$") << "0.0012";
+  EXPECT_EQ(cell(-0.00004, -0.011, 0.011, Unit::none), "$0.000\\ [-0.011, 0.011]$") << "no minus of a zero";
 }
 
 TEST(LatexTable, HasNForEachMetricWhereTheyDifferAndNoCommandOfAName) {
@@ -78,7 +94,7 @@ TEST(LatexTable, HasNForEachMetricWhereTheyDifferAndNoCommandOfAName) {
   EXPECT_NE(table.find("{lrrrr}"), std::string::npos) << table;
   EXPECT_NE(
       table.find(
-          "\na\\&b\\textbackslash{}c\\%\\textasciitilde{}\\textasciicircum{}\\{\\}\\$\\# & $26$ & 4 & -- & 0 \\\\\n"),
+          "\na\\&b\\textbackslash{}c\\%\\textasciitilde{}\\textasciicircum{}\\{\\}\\$\\# & $26.1$ & 4 & -- & 0 \\\\\n"),
       std::string::npos)
       << table;
 }

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -16,18 +17,21 @@
 namespace palpate {
 namespace {
 
-/// Two digits of the least: means of tens and hundreds then have no decimals that nobody reads.
+/// Means alone have two digits of the least: tens and hundreds then have no decimals that nobody reads.
 constexpr int kDigits = 2;
+
+/// Means beside their intervals: those that have none, as in the tables of text.
+constexpr int kDigitsBesideIntervals = 3;
 
 /// Of a metric in all rows, so that a column has one unit: `first` is its first comparison, the next ones are `step`
 /// behind each other.
-Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step) {
+Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step, int digits) {
   std::vector<double> means;
   for (std::size_t i = first; i < comparisons.size(); i += step) {
     const std::vector<double> more = comparisons[i].means();
     means.insert(means.end(), more.begin(), more.end());
   }
-  return readable_scale(comparisons[first].metric.unit, means, kDigits);
+  return readable_scale(comparisons[first].metric.unit, means, digits);
 }
 
 /// A '|' in a name would end its cell.
@@ -59,12 +63,24 @@ std::string latex_line(const std::vector<std::string>& cells) {
   return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
 }
 
-/// "$3.21\ [3.02, 3.40]$": as mathematics, so that a minus is one.
+/// The decimals by which half the width of an interval has two significant digits, 0 to 9.
+int decimals_of(const MeanInterval& ends, double factor) {
+  const double half = 0.5 * (ends.high - ends.low) / factor;
+  return half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9) : 0;
+}
+
+/// "$3.21\ [3.02, 3.40]$": as mathematics, so that a minus is one. The digits follow from the interval, and mean and
+/// bounds have as many decimals.
 std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
   if (mean.count == 0) return "--";
-  const auto& ends = mean.interval;
-  return fmt::format("${}{}$", scale.number(mean.mean),
-                     ends ? fmt::format("\\ [{}, {}]", scale.number(ends->low), scale.number(ends->high)) : "");
+  if (!mean.interval || scale.scientific || !(mean.interval->high > mean.interval->low))
+    return fmt::format("${}$", scale.number(mean.mean));
+  const int decimals = decimals_of(*mean.interval, scale.factor);
+  const auto number = [&](double value) {
+    const std::string text = fmt::format("{:.{}f}", value / scale.factor, decimals);
+    return text.find_first_of("123456789") == std::string::npos && text[0] == '-' ? text.substr(1) : text;
+  };
+  return fmt::format("${}\\ [{}, {}]$", number(mean.mean), number(mean.interval->low), number(mean.interval->high));
 }
 
 bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps(); }
@@ -75,14 +91,14 @@ struct MeansLayout {
   std::vector<Scale> scales;  ///< of each metric
 };
 
-MeansLayout layout_of(const std::vector<Comparison>& comparisons) {
+MeansLayout layout_of(const std::vector<Comparison>& comparisons, int digits) {
   MeansLayout out;
   out.metrics =
       static_cast<std::size_t>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& one) {
         return one.occasion == comparisons.front().occasion;
       }));
   for (std::size_t metric = 0; metric < out.metrics; ++metric)
-    out.scales.push_back(scale_of(comparisons, metric, out.metrics));
+    out.scales.push_back(scale_of(comparisons, metric, out.metrics, digits));
   return out;
 }
 
@@ -144,7 +160,7 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
 }  // namespace
 
 std::string means_table(const std::vector<Comparison>& comparisons) {
-  const MeansLayout layout = layout_of(comparisons);
+  const MeansLayout layout = layout_of(comparisons, kDigits);
   std::vector<std::string> titles = name_titles(comparisons.front());
   std::vector<std::string> sides(comparisons.front().by.size(), "---");
   for (std::size_t i = 0; i < layout.metrics; ++i) titles.push_back(layout.scales[i].title(comparisons[i].metric.name));
@@ -165,7 +181,7 @@ std::string means_table(const std::vector<Comparison>& comparisons) {
 
 std::string latex_table(const std::vector<Comparison>& comparisons) {
   const Comparison& first = comparisons.front();
-  const MeansLayout layout = layout_of(comparisons);
+  const MeansLayout layout = layout_of(comparisons, kDigitsBesideIntervals);
   // One column with n where it is the same for all metrics.
   bool same = true;
   std::size_t least = SIZE_MAX;
