@@ -156,6 +156,7 @@ struct CurvesArguments {
   std::optional<std::string> where;
   std::vector<std::string> outputs;  ///< files; none: a picture and a table beside results.csv
   std::optional<int> workers;
+  std::optional<std::string> width;  ///< of pictures, with its unit
 };
 int curves(Program& program, const CurvesArguments& arguments);
 

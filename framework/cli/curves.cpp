@@ -4,7 +4,9 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
+#include "config/quantity.hpp"
 #include "config/trouble.hpp"
+#include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "report/figures/figures.hpp"
 #include "sweep/tap_summaries.hpp"
@@ -17,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <set>
 
 namespace palpate::cli {
 namespace {
@@ -44,12 +47,29 @@ std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arg
   return {sweep.directory / (name + ".csv"), sweep.directory / (name + ".png")};
 }
 
+/// The width of pictures, metres.
+double width_of(const CurvesArguments& arguments) {
+  if (!arguments.width) return kFigureWidth;
+  constexpr double kLeast = 0.05;
+  constexpr double kMost = 1.0;
+  const double width = read_quantity(parse_value(*arguments.width, "command line"), "--width", Unit::metre);
+  if (width < kLeast || width > kMost)
+    throw Error("command line", fmt::format("--width: {} is not between 5 cm and 1 m", *arguments.width),
+                "a column of a paper has 8.8 cm");
+  return width;
+}
+
 }  // namespace
 
 int curves(Program& program, const CurvesArguments& arguments) {
   const Sweep sweep = read_records(arguments.records, arguments.by);
   const std::vector<std::string> by = arguments.by.empty() ? curve_keys(sweep) : arguments.by;
   const std::vector<fs::path> files = curve_files(sweep, arguments, by);
+  const double width = width_of(arguments);
+  if (arguments.metric.find(',') != std::string::npos)
+    throw Error("command line",
+                fmt::format("--metric: '{}' names several columns, and a figure has one", arguments.metric),
+                "draw a figure for each");
   std::optional<Condition> where;
   if (arguments.where) where = Condition::of_command_line(*arguments.where);
   const std::vector<Row> results = sweep_results(sweep);
@@ -65,6 +85,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
   const GroupCurves made =
       make_group_curves(sweep, results, values, {by, arguments.metric, arguments.against, where ? &*where : nullptr});
   print_text(curves_table(made));
+  std::set<fs::path> scripts;
   for (const fs::path& file : files) {
     if (file.extension() == ".csv") {
       write_file(file, to_csv(curves_rows(made)));
@@ -74,7 +95,8 @@ int curves(Program& program, const CurvesArguments& arguments) {
     std::string title = sweep_name(sweep);
     if (arguments.where) title += ", where " + *arguments.where;
     std::string note;
-    const auto trouble = trouble_in([&] { note = write_curves_figure(made, title, file); });
+    const auto trouble = trouble_in([&] { note = write_curves_figure(made, title, width, file); });
+    scripts.insert(fs::path(file).replace_extension(".gnuplot"));
     // Asked for by name it is all that was asked for; else the table is there.
     if (trouble && !arguments.outputs.empty()) throw *trouble;
     if (trouble) {
@@ -84,6 +106,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
     if (!note.empty()) mention(note + "\n");
     mention(fmt::format("picture: {}\n", file.string()));
   }
+  for (const fs::path& script : scripts) mention(fmt::format("script: {}\n", script.string()));
   return kDone;
 }
 

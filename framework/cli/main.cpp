@@ -54,7 +54,7 @@ struct CommandLine {
   ResumeArguments resume;
   ParetoArguments pareto;
   CompareArguments compare;
-  CurvesArguments curves{{}, {}, main_error(), "taps", {}, {}, {}};
+  CurvesArguments curves{{}, {}, main_error(), "taps", {}, {}, {}, {}};
   ReportArguments report;
   WatchArguments watch;
   ListArguments list;
@@ -367,11 +367,17 @@ void add_curves(CommandLine& line) {
          "a PNG and a CSV beside results.csv")
       ->type_name("FILE")
       ->allow_extra_args(false);
+  sub->add_option(
+         "--width", line.curves.width,
+         "of pictures in print, with its unit: 8.8cm for a column; panels that do not fit side by side go into "
+         "rows; if not given 17.8 cm, the text of a page with two columns")
+      ->type_name("LENGTH");
   sub->add_option("-j", line.curves.workers,
                   "jobs at a time whose taps are replayed; if not given, the number of cores; done once, and kept")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
-  show(sub, {"palpate curves runs/many/*", "palpate curves runs/many/* --by acquisition -o curves.pdf -o curves.csv",
+  show(sub, {"palpate curves runs/many/*",
+             "palpate curves runs/many/* --by acquisition --width 8.8cm -o curves.pdf -o curves.csv",
              "palpate curves runs/many/* --metric footprint_iou --against robot_seconds -o iou.svg"});
 }
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `palpate curves` as a user calls it: errors over the taps of groups, as table, CSV and figures.
+#include "system/figure_blocks.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
 
 namespace palpate {
 namespace {
@@ -104,6 +108,154 @@ TEST_F(CurvesOfGroups, AreAFigureOfTheSweepsReportOnceTheyAreComputed) {
   EXPECT_EQ(text_of(figure), text_of(here() / "alone.png"));
 }
 
+/// All numbers that `pattern` finds in a text as its first group.
+std::vector<double> numbers_in(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::vector<double> out;
+  for (std::sregex_iterator at(text.begin(), text.end(), regex), end; at != end; ++at)
+    out.push_back(std::stod((*at)[1]));
+  return out;
+}
+
+/// A figure of a sweep on three scenes.
+class FigureOfCurves : public CurvesOfGroups {
+ protected:
+  fs::path three_scenes() const {
+    return swept("acquisition=weighted,random scene=object_i,ring,block taps=3 candidates.count=16 seed=range(0,5)",
+                 config("default.yaml"));
+  }
+};
+
+TEST_F(FigureOfCurves, FitsTheTextOfAPaperWithLettersOfEightPoints) {
+  const fs::path directory = three_scenes();
+  constexpr double kCentimetresPerInch = 2.54;
+  for (const double width : {17.8, 8.8}) {
+    const Words words = width < 10 ? Words("--width 8.8cm") : Words();
+    curves(directory, words + "-o a.pdf -o a.svg -o a.png");
+    const std::vector<double> points = numbers_in(text_of(here() / "a.pdf"), R"(MediaBox \[ 0 0 ([\d.]+))");
+    ASSERT_EQ(points.size(), 1U);
+    EXPECT_LE(points[0] / 72 * kCentimetresPerInch, width);
+    EXPECT_GT(points[0] / 72 * kCentimetresPerInch, width - 0.1) << "a point is 0.35 mm";
+    const std::string svg = text_of(here() / "a.svg");
+    const double pixels = numbers_in(svg, "<svg[^>]*width=\"([\\d.]+)").at(0);
+    EXPECT_NEAR(pixels / 96 * kCentimetresPerInch, width, 0.1);
+    const std::vector<double> letters = numbers_in(svg, "font-size=\"([\\d.]+)");
+    ASSERT_GT(letters.size(), 10U);
+    for (const double one : letters) EXPECT_NEAR(one / 96 * 72, 8.0, 0.01);
+    const std::string png = text_of(here() / "a.png");
+    const auto byte = [&](std::size_t at) { return static_cast<double>(static_cast<unsigned char>(png.at(at))); };
+    EXPECT_GE((256 * byte(18) + byte(19)) / (width / kCentimetresPerInch), 200.0) << "pixels per inch";
+    // The lower edges of the panels: rows.
+    std::set<double> rows;
+    for (const double one : numbers_in(text_of(here() / "a.gnuplot"), R"(set bmargin at screen ([\d.]+))"))
+      rows.insert(one);
+    EXPECT_EQ(rows.size(), width < 10 ? 3U : 2U) << "one of them is the legend's";
+  }
+}
+
+TEST_F(FigureOfCurves, HasOneRangeForAllPanelsThatTheDataFill) {
+  const fs::path directory = three_scenes();
+  for (const std::string metric : {"rmse_m", "footprint_iou"}) {
+    curves(directory, Words{"-o", "a.svg", "--metric", metric});
+    const std::string script = text_of(here() / "a.gnuplot");
+    double least = 1e9;
+    double most = -1e9;
+    for (const auto& [name, lines] : blocks_of(here() / "a.gnuplot")) {
+      for (const auto& line : lines) {
+        least = std::min(least, line[1]);
+        most = std::max(most, line[1]);
+      }
+    }
+    std::vector<double> low = numbers_in(script, R"(set yrange \[(?!-1:1\])([-\d.e]+):)");
+    const std::vector<double> high = numbers_in(script, R"(set yrange \[(?!-1:1\])[-\d.e]+:([-\d.e]+)\])");
+    ASSERT_EQ(low.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(low[i], low[0]);
+      EXPECT_EQ(high[i], high[0]);
+    }
+    EXPECT_LE(low[0], least);
+    EXPECT_GE(high[0], most);
+    EXPECT_GT(most - least, 0.4 * (high[0] - low[0])) << "with bands of five seeds";
+    if (metric == "rmse_m") {
+      EXPECT_GT(least, 0.3 * (most - least)) << "else 0 is near";
+    }
+    EXPECT_EQ(low[0] == 0.0, metric == "footprint_iou");
+  }
+}
+
+TEST_F(FigureOfCurves, BeginsABandInAPointWhereAllSeedsAreEqual) {
+  curves(three_scenes(), "-o a.svg -o a.csv");
+  const std::map<std::string, Lines> blocks = blocks_of(here() / "a.gnuplot");
+  ASSERT_EQ(blocks.size(), 6U) << "three scenes, two groups";
+  int equal = 0;
+  std::size_t row = 0;
+  const std::vector<Cells> rows = csv_rows(text_of(here() / "a.csv"));
+  for (const auto& [name, lines] : blocks) {
+    for (const auto& line : lines) {
+      const Cells& cells = rows.at(row++);
+      EXPECT_NEAR(line[1], 1e3 * std::stod(cells.at("mean")), 1e-3) << name;
+      for (const auto& [column, cell] : {std::pair{2, "low_95"}, std::pair{3, "high_95"}}) {
+        const std::string& text = cells.at(cell);
+        const double drawn = line[static_cast<std::size_t>(column)];
+        EXPECT_NEAR(drawn, text.empty() ? line[1] : 1e3 * std::stod(text), 1e-3) << name;
+        equal += text.empty() ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(equal, 0) << "the first tap on the ring";
+}
+
+TEST_F(FigureOfCurves, TellsGroupsApartWithoutColourAndTheirLongNamesHaveRoom) {
+  const std::string one = "{type: rational_quadratic, alpha: 1.5, length_scale: 20 mm}";
+  const std::string other = "{type: rational_quadratic, alpha: 1.5, length_scale: 31 mm}";
+  // DejaVu Sans is so wide at eight points, by pdftotext -bbox.
+  constexpr double kNameWidth = 250.0;
+  const fs::path directory =
+      swept(Words{"kernel=" + one + "," + other + ",rbf,matern32"} + "taps=3 candidates.count=16 seed=range(0,5)");
+  for (const std::string width : {"17.8 cm", "30 cm", "8.8 cm"}) {
+    curves(directory, Words{"-o", "a.svg", "--width", width});
+    const std::string script = text_of(here() / "a.gnuplot");
+    const double points = std::stod(width) / 2.54 * 72;
+    const std::vector<double> samples = numbers_in(script, "set arrow from screen ([\\d.]+)");
+    const std::vector<double> rows = numbers_in(script, "set arrow from screen [\\d.]+, screen ([\\d.]+)");
+    const std::vector<double> names = numbers_in(script, "set label '\\{type: rat[^']*' at screen ([\\d.]+)");
+    ASSERT_EQ(samples.size(), 4U);
+    ASSERT_EQ(names.size(), 2U);
+    for (std::size_t i = 0; i < 2 && width != "8.8 cm"; ++i) {
+      const double end = names[i] * points + kNameWidth;
+      EXPECT_LE(end, rows[i + 1] == rows[i] ? samples[i + 1] * points : points) << width << " " << i;
+    }
+    std::set<std::string> dashes;
+    std::set<std::string> marks;
+    const std::regex style("with linespoints lw 1 dt (\\S+) lc rgb '[^']*' (pt \\d+)");
+    for (std::sregex_iterator at(script.begin(), script.end(), style), end; at != end; ++at) {
+      dashes.insert((*at)[1]);
+      marks.insert((*at)[2]);
+    }
+    EXPECT_EQ(dashes.size(), 4U);
+    EXPECT_EQ(marks.size(), 4U);
+  }
+}
+
+TEST_F(FigureOfCurves, HasWordsOnItsAxesNoTitleAndItsScriptBesideIt) {
+  const fs::path directory = three_scenes();
+  const Ended ended = curves(directory, "-o a.svg --against robot_seconds");
+  EXPECT_EQ(ended.err.substr(ended.err.find("picture: ")), "picture: a.svg\nscript: a.gnuplot\n");
+  const std::string svg = text_of(here() / "a.svg");
+  EXPECT_THAT(svg, AllOf(HasSubstr(">RMSE over the scene [mm]<"), HasSubstr(">robot time [s]<")));
+  const std::string name = directory.parent_path().filename();
+  EXPECT_THAT(svg, AllOf(Not(HasSubstr(">" + name)), Not(HasSubstr("rmse_m")), Not(HasSubstr("interval"))));
+  EXPECT_THAT(text_of(here() / "a.gnuplot"),
+              AllOf(HasSubstr("# " + name), HasSubstr("over 5 seeds. Bands: their 95 %")));
+  // As it stands it draws the picture again, and with another label another one.
+  fs::remove(here() / "a.svg");
+  ASSERT_EQ(test::run_program({"/usr/bin/gnuplot", "a.gnuplot"}, here()).status, 0);
+  EXPECT_EQ(text_of(here() / "a.svg"), svg);
+  replace(here() / "a.gnuplot", "RMSE over the scene [mm]", "error in mm");
+  ASSERT_EQ(test::run_program({"/usr/bin/gnuplot", "a.gnuplot"}, here()).status, 0);
+  EXPECT_THAT(text_of(here() / "a.svg"), HasSubstr(">error in mm<"));
+}
+
 TEST_F(CurvesOfGroups, RefuseInOneLineWhatCannotBeDrawn) {
   const Words curves{"curves", swept("acquisition=weighted,random taps=4 candidates.count=16 seed=range(0,2)")};
   EXPECT_EQ(refused(curves + "-o a.jpg"),
@@ -113,6 +265,12 @@ TEST_F(CurvesOfGroups, RefuseInOneLineWhatCannotBeDrawn) {
   EXPECT_THAT(refused(curves + "--metric rsme_m"), HasSubstr("did you mean 'rmse_m'?"));
   EXPECT_THAT(refused(curves + "--metric seed"), HasSubstr("is swept"));
   EXPECT_THAT(refused(curves + "--against wall_seconds"), StartsWith("--against: "));
+  EXPECT_EQ(refused(curves + "--metric rmse_m,footprint_iou"),
+            "command line: --metric: 'rmse_m,footprint_iou' names several columns, and a figure has one, draw a figure "
+            "for each\n");
+  EXPECT_THAT(refused(curves + "--width 8.8"), HasSubstr("unit"));
+  EXPECT_EQ(refused(curves + "--width 2cm"),
+            "command line: --width: 2cm is not between 5 cm and 1 m, a column of a paper has 8.8 cm\n");
 }
 
 }  // namespace

@@ -410,15 +410,19 @@ FieldList<Summary> make_summary_list() {
            "are read again after every tap",
            &Summary::on_surface_taps)
       .more()
+      .called("taps on an object")
       .headline();
-  list.add("off_surface_taps", "contacts with the desk", &Summary::off_surface_taps).less();
+  list.add("off_surface_taps", "contacts with the desk", &Summary::off_surface_taps).less().called("taps on the desk");
   list.add_where(is_from_any_side, "missed_taps", "from any side: taps that met nothing, all of whose way is free",
                  &Summary::missed_taps);
   list.add("failed_taps", "taps without a contact; missed ones are none of them", &Summary::failed_taps).less();
   list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)
       .less()
-      .absent("the object was not found");
-  list.add("found", "whether there was one", [](const Summary& s) { return s.on_surface_taps > 0; }).more();
+      .absent("the object was not found")
+      .called("first tap on an object");
+  list.add("found", "whether there was one", [](const Summary& s) { return s.on_surface_taps > 0; })
+      .more()
+      .called("share of runs that found an object");
   list.add_where(
       is_read_again, "relabelled",
       "the contacts that these counts take otherwise than `on_surface` of their taps does, each by the number "
@@ -441,6 +445,7 @@ FieldList<Summary> make_summary_list() {
            [](const Summary& s) { return s.calibration.nlpd; })
       .less()
       .absent(no_cell)
+      .called("negative log predictive density")
       .headline();
   list.add("coverage_95", "share of those cells whose true height lies in the central 95 % interval: best at 0.95",
            [](const Summary& s) { return s.calibration.coverage_95; })
@@ -451,9 +456,12 @@ FieldList<Summary> make_summary_list() {
   const auto seconds = [&](const std::string& name, const std::string& meaning, auto get) -> RecordField& {
     return list.add(name, meaning, get).in(Unit::second).less();
   };
-  seconds("robot_seconds", "robot time", &Summary::robot_seconds).headline();
+  seconds("robot_seconds", "robot time", &Summary::robot_seconds).called("robot time").headline();
   seconds("wall_seconds", "of the process that ended the run", &Summary::wall_seconds).measured();
-  seconds("compute_seconds", "CPU time of that process", &Summary::compute_seconds).measured().headline();
+  seconds("compute_seconds", "CPU time of that process", &Summary::compute_seconds)
+      .measured()
+      .called("CPU time")
+      .headline();
   for (std::size_t i = 0; i < kPhases; ++i) {
     seconds(std::string("compute.") + kPhaseNames[i], std::string("wall time, all taps: ") + kPhaseMeanings[i],
             [i](const Summary& s) { return s.phases ? std::optional((*s.phases)[i]) : std::nullopt; })

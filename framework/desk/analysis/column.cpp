@@ -16,6 +16,14 @@
 
 namespace palpate {
 
+std::string Column::words() const {
+  const RecordField* field = find_summary_field(name);
+  if (field == nullptr || field->label.empty()) return name;
+  // Those of lengths stand below a heading on pages: "over the scene".
+  if (unit != Unit::metre) return field->label;
+  return (name.find("rmse") != std::string::npos ? "RMSE " : "distance ") + field->label;
+}
+
 std::string Column::better_words() const {
   if (better == RecordField::Better::neither) return {};
   return better == RecordField::Better::more ? "more is better" : "less is better";

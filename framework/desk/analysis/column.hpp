@@ -21,6 +21,7 @@ struct Column {
   Unit unit = Unit::none;
   RecordField::Better better = RecordField::Better::neither;  ///< `neither` of what is no field of the summary
 
+  std::string words() const;         ///< "RMSE over the scene", for axes; the name where the field has no words
   std::string better_words() const;  ///< "less is better", "more is better" or ""
 };
 

@@ -16,6 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kPointsPerInch = 72.0;
+constexpr double kSvgDpi = 96.0;
+
 /// gnuplot points at the place with lines of blanks and a caret; its words come behind them.
 std::string first_words(const std::string& text) {
   std::istringstream lines(text);
@@ -36,26 +39,38 @@ std::string gnuplot_text(const std::string& text) {
   return out + "'";
 }
 
-std::string picture_header(int width, int height, const fs::path& file, const std::string& output) {
-  constexpr double kPointsPerInch = 72.0;
+std::string picture_header(int width, int height, const fs::path& file, const std::string& output, PictureUnit unit) {
   const std::string extension = file.extension().string();
-  const std::string terminal =
-      extension == ".pdf"
-          ? fmt::format("pdfcairo noenhanced fontscale 0.8 size {:.3f}in,{:.3f}in font 'DejaVu Sans,12'",
-                        width / kPointsPerInch, height / kPointsPerInch)
-      : extension == ".svg"
-          ? fmt::format("svg noenhanced size {},{} font 'DejaVu Sans,12' background rgb 'white'", width, height)
-          : fmt::format("pngcairo noenhanced size {},{} font 'DejaVu Sans,12'", width, height);
-  return fmt::format("set terminal {}\nset output {}\n", terminal, gnuplot_text(output));
+  const bool is_print = unit == PictureUnit::point;
+  std::string terminal;
+  double mark = 0.4;
+  if (extension == ".pdf") {
+    // gnuplot's points of letters are 4/3 of those of a PDF, and its lines half a point wide.
+    terminal = fmt::format("pdfcairo noenhanced fontscale {} size {:.3f}in,{:.3f}in",
+                           is_print ? "0.75 linewidth 2" : "0.8", width / kPointsPerInch, height / kPointsPerInch);
+  } else {
+    const bool is_svg = extension == ".svg";
+    const double pixels = !is_print ? 1.0 : (is_svg ? kSvgDpi : kPrintDpi) / kPointsPerInch;
+    terminal =
+        fmt::format("{} noenhanced size {:.0f},{:.0f}", is_svg ? "svg" : "pngcairo", width * pixels, height * pixels);
+    // A point of a letter is one pixel of an SVG and 4/3 of a PNG, a line one pixel wide.
+    if (is_print)
+      terminal += fmt::format(" fontscale {:.4g} linewidth {:.4g}", is_svg ? pixels : 0.75 * pixels, pixels);
+    mark = is_svg ? 0.65 : 0.95;  // as large as in a PDF
+  }
+  terminal += fmt::format(" font 'DejaVu Sans,{}'", is_print ? 8 : 12);
+  if (extension == ".svg") terminal += " background rgb 'white'";
+  return fmt::format("set terminal {}\nset output {}\n{}", terminal, gnuplot_text(output),
+                     is_print ? fmt::format("mark_size = {}\n", mark) : "");
 }
 
-std::string draw_picture(const std::string& script, int width, int height, const fs::path& file) {
+std::string draw_picture(const std::string& script, int width, int height, const fs::path& file, PictureUnit unit) {
   TemporaryFile picture(file);
   Program program{{"gnuplot", "--default-settings"}};  // a user's own settings would give another picture
   program.own_group = false;                           // whoever presses Ctrl-C wants no picture either
   const std::string output = fs::absolute(picture.path()).string();
   const std::unique_ptr<ChildProcess> gnuplot =
-      ChildProcess::start(program, picture_header(width, height, file, output) + script);
+      ChildProcess::start(program, picture_header(width, height, file, output, unit) + script);
   if (!gnuplot && errno == ENOENT) return "gnuplot is not installed, the package gnuplot-nox has it";
   if (!gnuplot) return fmt::format("gnuplot cannot be started: {}", std::strerror(errno));
   gnuplot->wait();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include "analysis/bootstrap.hpp"
 #include "analysis/gnuplot.hpp"
 #include "analysis/group_curves_report.hpp"
+#include "record/files.hpp"
 #include "report/figures/figures.hpp"
 #include "report/figures/sheet.hpp"
 
@@ -13,26 +15,48 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <sstream>
+#include <string_view>
 #include <utility>
 
 namespace palpate {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kMostScenes = 12;
 constexpr std::size_t kMostCurves = 16;  ///< of a panel
-constexpr std::size_t kMostAcross = 3;   ///< panels side by side
 
-/// Colours that people who see two colours alike tell apart (Okabe and Ito 2008, Color universal design). From the
-/// ninth curve on they return as dashed lines.
-constexpr std::array<const char*, 8> kCurveColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                   "#56b4e9", "#e69f00", "#000000", "#8c6d46"};
+// Lengths are points in print.
+constexpr double kLineHeight = 11;
+constexpr double kAxisRoom = 40;  ///< of the first panel: numbers and title of its axis
+constexpr double kPanelGap = 14;  ///< between panels, of which only the first has numbers
+constexpr double kEndRoom = 9;
+constexpr double kNumbersRoom = 14;      ///< numbers below a panel
+constexpr double kLeastPanelWidth = 85;  ///< else panels go into one more row
+constexpr double kSampleLength = 22;     ///< length of the line before a name
 
-std::string line_style(std::size_t curve) {
-  return fmt::format("lw 2 dt {} lc rgb '{}'", curve < kCurveColours.size() ? 1 : 2,
-                     kCurveColours[curve % kCurveColours.size()]);
+/// How a group is drawn. Colours: people who see two colours alike tell them apart (Okabe and Ito 2008, Color universal
+/// design); dashes and marks tell groups apart in grey.
+struct LineStyle {
+  std::string colour;
+  std::string line;   ///< with its colour
+  std::string point;  ///< its mark
+};
+
+LineStyle line_style(std::size_t curve) {
+  constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                "#56b4e9", "#e69f00", "#000000", "#8c6d46"};
+  constexpr std::array<const char*, 4> kDashes{"solid", "(7,2.5)", "(2,2)", "(8,2,2,2)"};
+  constexpr std::array<int, 8> kMarks{7, 9, 5, 13, 6, 8, 4, 12};  // disc, triangle, square, diamond; then open ones
+  const std::string colour = kColours[curve % kColours.size()];
+  // From the ninth group on a colour returns with another dash.
+  return {colour,
+          fmt::format("lw 1 dt {} lc rgb '{}'", kDashes[(curve + curve / kColours.size()) % kDashes.size()], colour),
+          fmt::format("pt {} ps mark_size", kMarks[curve % kMarks.size()])};
 }
 
-/// The names of the groups, in the order of the sweep: a group has one colour in all panels.
+/// The names of the groups, in the order of the sweep: a group has one style in all panels.
 std::vector<std::string> group_names(const GroupCurves& curves) {
   std::vector<std::string> out;
   for (const GroupCurve& curve : curves.curves) {
@@ -42,27 +66,55 @@ std::vector<std::string> group_names(const GroupCurves& curves) {
   return out;
 }
 
-/// The axis of the values. From 0 where none is below it, as errors and shares are; it keeps near the means, for the
-/// intervals of the first taps may be wider than all else.
-std::string value_range(const std::vector<const GroupCurve*>& panel, double factor) {
+/// The interval that is drawn at a point. Values that are all equal have none; the band then closes to the mean.
+std::optional<MeanInterval> drawn_interval(const MeanEstimate& mean) {
+  if (mean.interval || mean.count == 0 || mean.clusters < kLeastForInterval) return mean.interval;
+  return MeanInterval{mean.mean, mean.mean};
+}
+
+/// An axis from `low` to `high`: from 0 where that is near, for then nothing else has to be read off it.
+struct AxisRange {
   double low = 0.0;
   double high = 0.0;
-  double end = 0.0;
-  bool begun = false;
-  for (const GroupCurve* curve : panel) {
-    for (const auto& point : curve->points) {
+
+  AxisRange(double least, double most) {
+    constexpr double kNear = 0.25;  // of the range
+    constexpr double kRoom = 0.04;
+    const double room = std::max(most - least, std::max(1e-9, 1e-3 * std::abs(most)));
+    low = least >= 0.0 && least <= kNear * room ? 0.0 : least - kRoom * room;
+    high = most + kRoom * room;
+  }
+
+  /// gnuplot's commands for axis `name`, which is so many points long.
+  std::string settings(char name, double length, bool whole) const {
+    constexpr double kPerTic = 18;
+    double step = tic_step(high - low, std::max(2.0, length / kPerTic));
+    if (whole) step = std::max(1.0, step);
+    return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics {3:.6g} nomirror out scale 0.5 format '%g'\n", name,
+                       low, high, step);
+  }
+};
+
+/// The axis of the values of all curves, so that panels can be compared. It keeps near the means, for the intervals of
+/// the first taps may be wider than all else, and to positive values where all means are: errors and shares are.
+AxisRange value_range(const std::vector<const GroupCurve*>& curves, double factor) {
+  std::vector<double> means;
+  std::vector<double> ends;
+  for (const GroupCurve* curve : curves) {
+    for (const CurvePoint& point : curve->points) {
       if (point.mean.count == 0) continue;
-      const double mean = point.mean.mean / factor;
-      low = begun ? std::min(low, mean) : mean;
-      high = begun ? std::max(high, mean) : mean;
-      const double top = point.mean.interval ? point.mean.interval->high / factor : mean;
-      end = begun ? std::max(end, top) : top;
-      begun = true;
+      means.push_back(point.mean.mean / factor);
+      const auto interval = drawn_interval(point.mean);
+      ends.push_back(interval ? interval->low / factor : means.back());
+      ends.push_back(interval ? interval->high / factor : means.back());
     }
   }
-  const double room = std::max(high - low, 1e-9);
-  const double top = std::min(end, high + 0.5 * room) + 0.04 * room;
-  return fmt::format("set yrange [{:.6g}:{:.6g}]\n", low >= 0.0 ? 0.0 : low - 0.3 * room, top);
+  if (means.empty()) return {0.0, 1.0};
+  const auto [low, high] = std::minmax_element(means.begin(), means.end());
+  const auto [least, most] = std::minmax_element(ends.begin(), ends.end());
+  const double room = 0.5 * (*high - *low);
+  const double below = std::max(*least, *low - room);
+  return {*low >= 0.0 ? std::max(below, 0.0) : below, std::min(*most, *high + room)};
 }
 
 /// "at mean low high" of each point, in the units of the axes; NaN where there is none.
@@ -70,124 +122,278 @@ std::string block_of(const GroupCurve& curve, double axis, double factor) {
   std::string out;
   const auto number = [&](double value) { return fmt::format("{:.6g}", value / factor); };
   for (const CurvePoint& point : curve.points) {
-    const auto& ends = point.mean.interval;
+    const auto ends = drawn_interval(point.mean);
     out += fmt::format("{:.6g} {} {} {}\n", point.at / axis, point.mean.count > 0 ? number(point.mean.mean) : "NaN",
                        ends ? number(ends->low) : "NaN", ends ? number(ends->high) : "NaN");
   }
   return out;
 }
 
-constexpr double kNameRow = 20;
-constexpr double kNameLeft = 24;
-constexpr double kNameSample = 28;  ///< length of the line before a name
-
-/// Where the names of the groups begin, in as many rows as they need: (x, row).
-std::vector<std::pair<double, int>> place_names(const std::vector<std::string>& names, double width) {
-  std::vector<std::pair<double, int>> out;
-  double x = kNameLeft;
-  int row = 0;
-  for (const std::string& name : names) {
-    const double room = kNameSample + 30 + 7.6 * static_cast<double>(name.size());
-    if (x > kNameLeft && x + room > width) {
-      x = kNameLeft;
-      ++row;
-    }
-    out.emplace_back(x, row);
-    x += room;
+/// The width of a line, in points. Advances of DejaVu Sans, of each class of letters the widest: no line is wider.
+double width_of_line(const std::string& text) {
+  constexpr double kFont = 8;
+  double out = 0.0;
+  for (const char c : text) {
+    const auto is_in = [c](const char* letters) { return std::string_view(letters).find(c) != std::string_view::npos; };
+    out += kFont * (is_in("fijlrtI .,:;'|!()[]/-")      ? 0.42
+                    : is_in("mMWO@%")                   ? 1.0
+                    : is_in("wGQ+=<>~ABCDHKNPRSTUVXYZ") ? 0.84
+                                                        : 0.65);
   }
   return out;
 }
 
-/// Lines and names of the groups, from `top` on.
-void draw_names(Sheet& sheet, const std::vector<std::string>& names, double top) {
+/// The text in lines of at most this width, broken behind blanks where that can be.
+std::vector<std::string> lines_within(const std::string& text, double width) {
+  std::vector<std::string> out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = begin + 1;
+    while (end < text.size() && width_of_line(text.substr(begin, end + 1 - begin)) <= width) ++end;
+    const std::size_t blank = text.rfind(' ', end);
+    if (end < text.size() && blank != std::string::npos && blank > begin) end = blank + 1;
+    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) ++end;  // within a letter
+    out.push_back(text.substr(begin, end - begin));
+    begin = end;
+  }
+  return out;
+}
+
+/// Where the name of a group stands in the legend, as many lines as it takes.
+struct LegendEntry {
+  double x = 0.0;
+  std::size_t row = 0;
+  std::vector<std::string> lines;
+};
+
+/// Names side by side; one that is longer than the figure is wide has rows of its own.
+std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width) {
+  constexpr double kBetween = 16;
+  std::vector<LegendEntry> out;
+  double x = left;
+  std::size_t row = 0;
+  for (const std::string& name : names) {
+    std::vector<std::string> lines = lines_within(name, width - left - kSampleLength - 5 - kEndRoom);
+    const double length = kSampleLength + 5 + width_of_line(lines.front());
+    if (x > left && (lines.size() > 1 || x + length > width - kEndRoom)) {
+      x = left;
+      ++row;
+    }
+    out.push_back({x, row, lines});
+    x += length + kBetween;
+    if (lines.size() > 1) {
+      x = left;
+      row += lines.size();
+    }
+  }
+  return out;
+}
+
+/// A place of the figure, points from its upper left corner, as gnuplot has it.
+std::string on_sheet(const Sheet& sheet, double x, double y) {
+  return fmt::format("screen {:.5f}, screen {:.5f}", x / sheet.width(), 1.0 - y / sheet.height());
+}
+
+/// Bands, lines, marks and names of the groups.
+void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
   std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
-  const auto places = place_names(names, sheet.width());
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& [x, row] = places[i];
-    const double height = 1.0 - (top + kNameRow * (row + 0.5)) / sheet.height();
-    settings += fmt::format("set arrow from screen {:.5f}, screen {:.5f} to screen {:.5f}, screen {:.5f} nohead {}\n",
-                            x / sheet.width(), height, (x + kNameSample) / sheet.width(), height, line_style(i));
-    settings += fmt::format("set label {} at screen {:.5f}, screen {:.5f} left font ',11'\n", gnuplot_text(names[i]),
-                            (x + kNameSample + 7) / sheet.width(), height);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const LegendEntry& entry = entries[i];
+    const LineStyle style = line_style(i);
+    const double y = 4 + kLineHeight * (static_cast<double>(entry.row) + 0.5);
+    settings +=
+        fmt::format("set object rectangle from {} to {} fc rgb '{}' fs transparent solid 0.18 noborder\n",
+                    on_sheet(sheet, entry.x, y - 3.5), on_sheet(sheet, entry.x + kSampleLength, y + 3.5), style.colour);
+    settings += fmt::format("set arrow from {} to {} nohead {}\n", on_sheet(sheet, entry.x, y),
+                            on_sheet(sheet, entry.x + kSampleLength, y), style.line);
+    settings += fmt::format("set label '' at {} point {} lc rgb '{}' front\n",
+                            on_sheet(sheet, entry.x + 0.5 * kSampleLength, y), style.point, style.colour);
+    for (std::size_t line = 0; line < entry.lines.size(); ++line)
+      settings +=
+          fmt::format("set label {} at {} left\n", gnuplot_text(entry.lines[line]),
+                      on_sheet(sheet, entry.x + kSampleLength + 5, y + kLineHeight * static_cast<double>(line)));
   }
   sheet.plot({0, 0, 10, 10}, settings, "plot NaN");
 }
 
+/// The panel's name: "scene: ring", without the keys where there is no room for them, in as many lines as it takes.
+std::vector<std::string> panel_title(const GroupCurves& curves, const std::string& scene, double width) {
+  if (scene.empty()) return {};
+  const std::string whole = fmt::format("{}: {}", fmt::join(curves.scenes, ", "), scene);
+  return lines_within(width_of_line(whole) <= width ? whole : scene, width);
+}
+
+/// What the figure does not say and its caption has to, as comments of the script.
+std::string caption_of(const GroupCurves& curves, const std::string& title) {
+  const std::string better = curves.metric.better_words();
+  return fmt::format(
+      "# {}\n# {} against {}{}.\n# Lines: means over {}. Bands: their 95 % intervals.\n"
+      "# Change what you like in a copy: 'palpate curves' writes this file again.\n",
+      one_line(title), curves.metric.words(), curves.against.words(), better.empty() ? "" : "; " + better,
+      curve_units_words(curves));
+}
+
+/// The header for `file`, and for the other formats as comments.
+std::string headers_of(const Sheet& sheet, const fs::path& file) {
+  const auto header = [&](const fs::path& one) {
+    const fs::path name = one.filename();
+    return picture_header(sheet.width(), sheet.height(), name, name.string(), PictureUnit::point);
+  };
+  std::string out = header(file);
+  for (const char* const other : {".pdf", ".png", ".svg"}) {
+    if (file.extension() == other) continue;
+    std::istringstream lines(header(fs::path(file).replace_extension(other)));
+    for (std::string line; std::getline(lines, line);) out += "# " + line + "\n";
+  }
+  return out;
+}
+
+/// Which curves are drawn, and where everything stands.
+struct CurvesLayout {
+  std::vector<std::string> names;   ///< of the groups that are drawn
+  std::vector<std::string> scenes;  ///< whose panels are drawn
+  std::string left_out;             ///< what is not, in words
+  std::vector<LegendEntry> legend;
+  std::vector<std::string> y_title;
+  double left = 0.0;       ///< of the first panel
+  std::size_t across = 1;  ///< panels side by side
+  double top = 0.0;        ///< of the first panel, with its name
+  double head = 0.0;       ///< a panel's name
+  double panel_width = 0.0;
+  double panel_height = 0.0;
+  double pitch = 0.0;  ///< from row to row
+  double width = 0.0;
+  double height = 0.0;
+
+  Box box(std::size_t panel) const {
+    return {left + static_cast<double>(panel % across) * (panel_width + kPanelGap),
+            top + head + static_cast<double>(panel / across) * pitch, panel_width, panel_height};
+  }
+};
+
+CurvesLayout layout_of(const GroupCurves& curves, const std::string& y_title, double width) {
+  CurvesLayout out;
+  out.width = width;
+  out.names = group_names(curves);
+  out.scenes = curves.scene_names();
+  const std::size_t more_groups = out.names.size() - std::min(out.names.size(), kMostCurves);
+  const std::size_t more_scenes = out.scenes.size() - std::min(out.scenes.size(), kMostScenes);
+  out.names.resize(out.names.size() - more_groups);
+  out.scenes.resize(out.scenes.size() - more_scenes);
+  if (more_groups > 0) out.left_out += fmt::format("{} more groups", more_groups);
+  if (more_scenes > 0) out.left_out += fmt::format("{}{} more scenes", more_groups > 0 ? " and " : "", more_scenes);
+  if (!out.left_out.empty()) out.left_out += " are not drawn: the CSV has them";
+
+  // Rows of about as many panels each. The title of the axis stands beside all rows, in lines where they are short.
+  const double pairs = width - kAxisRoom - kEndRoom + kPanelGap;  // panels with the gap behind each
+  const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(pairs / (kLeastPanelWidth + kPanelGap)));
+  const std::size_t down = (out.scenes.size() + most - 1) / most;
+  out.across = (out.scenes.size() + down - 1) / down;
+  out.panel_height = std::clamp(0.72 * (pairs / static_cast<double>(out.across) - kPanelGap), 80.0, 170.0);
+  out.pitch = out.panel_height + kNumbersRoom + 4;
+  constexpr double kLegendAndTitle = 30;
+  out.y_title = lines_within(y_title, static_cast<double>(down) * out.pitch + kLegendAndTitle);
+  if (out.y_title.size() > 1) out.y_title = lines_within(y_title, 0.6 * width_of_line(y_title));
+  out.left = kAxisRoom + kLineHeight * static_cast<double>(out.y_title.size() - 1);
+  out.panel_width = (pairs + kAxisRoom - out.left) / static_cast<double>(out.across) - kPanelGap;
+  std::size_t lines = 0;
+  for (const std::string& scene : out.scenes)
+    lines = std::max(lines, panel_title(curves, scene, out.panel_width).size());
+  out.head = kLineHeight * static_cast<double>(lines) + 3;
+  out.pitch += out.head;
+  out.legend = place_names(out.names, out.left, width);
+  out.top = 8 + kLineHeight * static_cast<double>(out.legend.back().row + out.legend.back().lines.size());
+  out.height = std::ceil(out.top + static_cast<double>(down) * out.pitch + kLineHeight);
+  return out;
+}
+
+/// Clauses of a plot with the band and the line of a curve.
+struct CurveClauses {
+  std::vector<std::string> bands;
+  std::vector<std::string> lines;
+
+  void add(const std::string& block, const LineStyle& style, std::size_t points) {
+    constexpr std::size_t kMarksOfALine = 8;
+    bands.push_back(fmt::format("${} using 1:3:4 with filledcurves fs transparent solid 0.18 noborder lc rgb '{}'",
+                                block, style.colour));
+    lines.push_back(fmt::format("${} using 1:2 with linespoints {} {} pi {}", block, style.line, style.point,
+                                (points + kMarksOfALine - 1) / kMarksOfALine));
+  }
+
+  /// All bands, then all lines.
+  std::string plot() const {
+    if (bands.empty()) return "plot NaN";
+    return fmt::format("plot {}, \\\n  {}", fmt::join(bands, ", \\\n  "), fmt::join(lines, ", \\\n  "));
+  }
+};
+
 }  // namespace
 
-std::string write_curves_figure(const GroupCurves& curves, const std::string& title,
-                                const std::filesystem::path& file) {
-  constexpr double kPanelLeft = 78;
-  constexpr double kPanelGap = 62;
-  constexpr double kPanelsHead = 68;
-  std::vector<std::string> names = group_names(curves);
-  std::vector<std::string> scenes = curves.scene_names();
-  const std::size_t more_groups = names.size() - std::min(names.size(), kMostCurves);
-  const std::size_t more_scenes = scenes.size() - std::min(scenes.size(), kMostScenes);
-  names.resize(names.size() - more_groups);
-  scenes.resize(scenes.size() - more_scenes);
-  const bool single = scenes.size() == 1;
-  const std::size_t across = std::min(scenes.size(), kMostAcross);
-  const std::size_t down = (scenes.size() + across - 1) / across;
-  const double width = single ? 560 : 320;
-  const double height = single ? 340 : 230;
-  const double pitch = height + (single ? 0 : 92);
-  const double whole = kPanelLeft + static_cast<double>(across) * (width + kPanelGap);
-  const double top =
-      kPanelsHead + kNameRow * (place_names(names, whole).back().second + 1) + (scenes.front().empty() ? 14 : 40);
-  Sheet sheet(static_cast<int>(whole), static_cast<int>(top + static_cast<double>(down - 1) * pitch + height + 58));
+std::string write_curves_figure(const GroupCurves& curves, const std::string& title, double width,
+                                const fs::path& file) {
+  constexpr double kPointsPerMetre = 72.0 / 0.0254;
   const Scale scale = metric_scale(curves);
-  std::vector<double> ends;
+  const CurvesLayout layout =
+      layout_of(curves, scale.title(curves.metric.words()), std::floor(width * kPointsPerMetre));
+  const auto place_in = [](const std::vector<std::string>& all, const std::string& one) {
+    return static_cast<std::size_t>(std::find(all.begin(), all.end(), one) - all.begin());
+  };
+  std::vector<const GroupCurve*> drawn;
+  std::vector<double> places;
   for (const GroupCurve& curve : curves.curves) {
-    if (!curve.points.empty()) ends.push_back(curve.points.back().at);
+    if (place_in(layout.names, curve.name()) == layout.names.size() ||
+        place_in(layout.scenes, curve.scene_name()) == layout.scenes.size())
+      continue;
+    drawn.push_back(&curve);
+    for (const CurvePoint& point : curve.points) places.push_back(point.at);
   }
-  const Scale axis = readable_scale(curves.against.unit, ends);
-  const std::string better = curves.metric.better_words();
-  sheet.text(title, 24, 14, 15);
-  sheet.text(fmt::format("{}{}; lines: means over {}; bands: their 95 % intervals", curves.metric.name,
-                         better.empty() ? "" : ", " + better, curve_units_words(curves)),
-             24, 42, 10);
-  draw_names(sheet, names, kPanelsHead);
-  for (std::size_t s = 0; s < scenes.size(); ++s) {
-    std::vector<const GroupCurve*> panel;
-    std::vector<std::string> bands;
-    std::vector<std::string> lines;
-    double last = 0.0;
-    for (const GroupCurve& curve : curves.curves) {
-      const auto place = std::find(names.begin(), names.end(), curve.name());
-      if (curve.scene_name() != scenes[s] || curve.points.empty() || place == names.end()) continue;
-      const auto colour = static_cast<std::size_t>(place - names.begin());
-      const std::string block = fmt::format("curve_{}_{}", s + 1, colour + 1);
-      sheet.data(block, block_of(curve, axis.factor, scale.factor));
-      bands.push_back(fmt::format("${} using 1:3:4 with filledcurves fs transparent solid 0.18 noborder lc rgb '{}'",
-                                  block, kCurveColours[colour % kCurveColours.size()]));
-      lines.push_back(fmt::format("${} using 1:2 with lines {}", block, line_style(colour)));
-      panel.push_back(&curve);
-      last = std::max(last, curve.points.back().at / axis.factor);
+  const Scale axis = readable_scale(curves.against.unit, places);
+  const auto [first, last] = std::minmax_element(places.begin(), places.end());
+  const AxisRange x_range(*first / axis.factor, *last / axis.factor);
+  const AxisRange y_range = value_range(drawn, scale.factor);
+
+  Sheet sheet(static_cast<int>(layout.width), static_cast<int>(layout.height));
+  const auto label = [&](const std::string& text, double x, double y, const char* style) {
+    return fmt::format("set label {} at {} {}\n", gnuplot_text(text), on_sheet(sheet, x, y), style);
+  };
+  draw_legend(sheet, layout.legend);
+  for (std::size_t s = 0; s < layout.scenes.size(); ++s) {
+    const Box box = layout.box(s);
+    CurveClauses clauses;
+    for (const GroupCurve* curve : drawn) {
+      if (curve->scene_name() != layout.scenes[s] || curve->points.empty()) continue;
+      const std::size_t group = place_in(layout.names, curve->name());
+      const std::string block = fmt::format("curve_{}_{}", s + 1, group + 1);
+      sheet.data(block, block_of(*curve, axis.factor, scale.factor));
+      clauses.add(block, line_style(group), curve->points.size());
     }
-    if (panel.empty()) continue;
-    const Box box{kPanelLeft + static_cast<double>(s % across) * (width + kPanelGap),
-                  top + static_cast<double>(s / across) * pitch, width, height};
-    if (!scenes[s].empty())
-      sheet.text(fmt::format("{}: {}", fmt::join(curves.scenes, ", "), scenes[s]), box.left, box.top - 24, 11);
-    std::string settings = "set border 3 lc rgb '#555555'\nset xtics nomirror out scale 0.5 font ',10'\n";
-    settings += "set ytics nomirror out scale 0.5 font ',10'\nset grid y lc rgb '#e4e4e4' lt 1\n";
-    settings += fmt::format("set xrange [0:{:.6g}]\n", last) + value_range(panel, scale.factor);
-    settings += fmt::format("set xlabel {} font ',11' offset 0,0.3\n", gnuplot_text(axis.title(curves.against.name)));
-    if (s % across == 0)
-      settings += fmt::format("set ylabel {} font ',11' offset 0.5,0\n", gnuplot_text(scale.title(curves.metric.name)));
-    std::vector<std::string> clauses = std::move(bands);
-    clauses.insert(clauses.end(), lines.begin(), lines.end());
-    sheet.plot(box, settings, fmt::format("plot {}", fmt::join(clauses, ", \\\n  ")));
+    std::string settings = "set border 3 lc rgb '#555555' lw 0.5\nset grid y lc rgb '#e4e4e4' lt 1 lw 0.5\n";
+    double y = box.top - layout.head + 0.5 * kLineHeight;
+    for (const std::string& line : panel_title(curves, layout.scenes[s], box.width)) {
+      settings += label(line, box.left, y, "left");
+      y += kLineHeight;
+    }
+    settings += x_range.settings('x', box.width, curves.against.name == kAgainstTaps);
+    settings += y_range.settings('y', box.height, false);
+    if (s % layout.across > 0) settings += "set ytics format ''\n";
+    if (s + layout.across >= layout.scenes.size())
+      settings += label(axis.title(curves.against.words()), box.left + 0.5 * box.width,
+                        box.top + box.height + kNumbersRoom + 0.6 * kLineHeight, "center");
+    if (s == 0) {
+      const Box below = layout.box(layout.scenes.size() - 1);
+      for (std::size_t line = 0; line < layout.y_title.size(); ++line)
+        settings += label(layout.y_title[line], 7 + kLineHeight * static_cast<double>(line),
+                          0.5 * (box.top + below.top + below.height), "center rotate by 90");
+    }
+    sheet.plot(box, settings, clauses.plot());
   }
-  const std::string trouble = draw_picture(sheet.script(), sheet.width(), sheet.height(), file);
+  const std::string script = sheet.script();
+  write_file(fs::path(file).replace_extension(".gnuplot"),
+             caption_of(curves, title) + headers_of(sheet, file) + script);
+  const std::string trouble = draw_picture(script, sheet.width(), sheet.height(), file, PictureUnit::point);
   if (!trouble.empty())
     throw Error(file.string(), "was not drawn: " + trouble, "a CSV, '-o NAME.csv', takes no other program",
                 Error::Kind::run);
-  std::string out;
-  if (more_groups > 0) out += fmt::format("{} more groups", more_groups);
-  if (more_scenes > 0) out += fmt::format("{}{} more scenes", out.empty() ? "" : " and ", more_scenes);
-  return out.empty() ? out : out + " are not drawn: the CSV has them";
+  return layout.left_out;
 }
 
 }  // namespace palpate

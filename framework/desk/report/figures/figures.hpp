@@ -30,10 +30,16 @@ Figures write_run_figures(const Workshop& workshop, const Recording& recording, 
 /// no job ended well.
 Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& folder);
 
-/// Draws curves of groups into `file`, a .png, .pdf or .svg: a panel per scene, in each a line with its band per group.
-/// Returns in words what is left out of very many panels or groups, "" for nothing. Throws Error of kind `run` if
-/// gnuplot draws nothing.
-std::string write_curves_figure(const GroupCurves& curves, const std::string& title, const std::filesystem::path& file);
+/// The width of curves where nobody gives one, metres: the text of a page with two columns.
+inline constexpr double kFigureWidth = 0.178;
+
+/// Draws curves of groups into `file`, a .png, .pdf or .svg of this width in metres, with letters of 8 points in print:
+/// a panel per scene, all with the same axes, in each a line with its band per group. Leaves the script, which has all
+/// data, beside it as NAME.gnuplot; it begins with `title` and what a caption should say. Returns in words what is left
+/// out of very many panels or groups, "" for nothing. Throws Error of kind `run`, with the script left, if gnuplot
+/// draws nothing.
+std::string write_curves_figure(const GroupCurves& curves, const std::string& title, double width,
+                                const std::filesystem::path& file);
 
 /// Of a run: `paper_progress`, in the layout of the paper's figure 2. Throws Error as above.
 Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder);

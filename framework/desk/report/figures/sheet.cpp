@@ -105,6 +105,12 @@ Colours deviation_colours(double least, double most) {
   return {Palette::cividis, logarithmic ? 100.0 * least : 0.0, 100.0 * most, "standard deviation [cm]", logarithmic};
 }
 
+double tic_step(double spread, double most) {
+  const double power = std::pow(10.0, std::floor(std::log10(spread / most)));
+  const double coarse = spread / most / power;
+  return power * (coarse > 5.0 ? 10.0 : coarse > 2.0 ? 5.0 : coarse > 1.0 ? 2.0 : 1.0);
+}
+
 std::string centimetres(double value) { return fmt::format("{:.10g}", 100.0 * value); }
 
 Box map_box(const Area& area, double left, double top, double side) {
@@ -310,8 +316,9 @@ void Sheet::legend(double x, double y, bool failed, bool next) {
 std::string Sheet::script() const {
   std::string bar;
   for (int i = 0; i < kBarSteps; ++i) bar += fmt::format("{0} {0}\n", i);
-  return "set encoding utf8\n" + fmt::format("$bar << END\n{}END\n", bar) + data_ + "set multiplot\n" + panels_ +
-         "unset multiplot\nset output\n";
+  const bool has_bar = panels_.find("$bar ") != std::string::npos;
+  return "set encoding utf8\n" + (has_bar ? fmt::format("$bar << END\n{}END\n", bar) : "") + data_ + "set multiplot\n" +
+         panels_ + "unset multiplot\nset output\n";
 }
 
 std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Figure>& figures) {

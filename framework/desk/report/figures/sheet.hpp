@@ -130,6 +130,9 @@ class Sheet {
   std::string panels_;
 };
 
+/// The step of 1, 2, 5, 10, ... by which a range of width `spread` has at most `most` tics and one more.
+double tic_step(double spread, double most);
+
 /// `value` metres as centimetres, as it stands in a block.
 std::string centimetres(double value);
 

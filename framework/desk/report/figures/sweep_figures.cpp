@@ -50,10 +50,7 @@ std::string value_axis(const std::vector<double>& values, double factor) {
   double low = *least / factor - 0.05 * spread;
   const double high = *most / factor + 0.05 * spread;
   if (*least >= 0.0) low = std::max(low, -0.02 * spread);
-  const double power = std::pow(10.0, std::floor(std::log10(spread / 5.0)));
-  const double coarse = spread / 5.0 / power;
-  const double step = power * (coarse > 5.0 ? 10.0 : coarse > 2.0 ? 5.0 : coarse > 1.0 ? 2.0 : 1.0);
-  return fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low, high, step);
+  return fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low, high, tic_step(spread, 5.0));
 }
 
 /// A panel of lying boxes, a group a line, the first on top.
@@ -274,7 +271,7 @@ Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& fol
   Figures out{write_gallery(folder, figures), {}};
   if (const auto curves = kept_curves(sweep, results)) {
     const std::filesystem::path file = folder / "curves.png";
-    std::string note = write_curves_figure(*curves, sweep_name(sweep), file);
+    std::string note = write_curves_figure(*curves, sweep_name(sweep), kFigureWidth, file);
     out.pictures.push_back(file);
     if (!note.empty()) out.notes.push_back(std::move(note));
   }
