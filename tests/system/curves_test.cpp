@@ -209,7 +209,7 @@ TEST_F(FigureOfCurves, TellsGroupsApartWithoutColourAndTheirLongNamesHaveRoom) {
   const std::string one = "{type: rational_quadratic, alpha: 1.5, length_scale: 20 mm}";
   const std::string other = "{type: rational_quadratic, alpha: 1.5, length_scale: 31 mm}";
   // DejaVu Sans is so wide at eight points, by pdftotext -bbox.
-  constexpr double kNameWidth = 250.0;
+  constexpr double kNameWidth = 239.7;
   const fs::path directory =
       swept(Words{"kernel=" + one + "," + other + ",rbf,matern32"} + "taps=3 candidates.count=16 seed=range(0,5)");
   for (const std::string width : {"17.8 cm", "30 cm", "8.8 cm"}) {
