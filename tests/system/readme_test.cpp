@@ -12,7 +12,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <regex>
+#include <set>
 #include <sstream>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -89,20 +92,24 @@ TEST_P(Pages, ShowCommandsThatRunAndWhatTheyPrintAndDraw) {
   if (wished("PALPATE_KEEP")) page.write();
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Pages,
-                         ::testing::Values(Page{"README.md", 0}, Page{"framework/docs/runs.md", 4},
-                                           Page{"framework/docs/results.md", 8}, Page{"framework/docs/sweeps.md", 0},
-                                           Page{"framework/docs/comparing.md", 6}, Page{"framework/docs/scenes.md", 3},
-                                           Page{"framework/docs/robots.md", 0}, Page{"framework/docs/gates.md", 0},
-                                           Page{"framework/docs/exactness.md", 7}, Page{"framework/docs/desks.md", 5},
-                                           Page{"framework/docs/any_side.md", 4},
-                                           Page{"framework/docs/strategies.md", 0},
-                                           Page{"runs/reference/README.md", 9}),
-                         [](const auto& one) {
-                           return one.param.name == std::string("runs/reference/README.md")
-                                      ? "pictures"
-                                      : fs::path(one.param.name).stem().string();
-                         });
+const std::vector<Page> kPages{{"README.md", 0},
+                               {"framework/docs/runs.md", 4},
+                               {"framework/docs/results.md", 8},
+                               {"framework/docs/sweeps.md", 0},
+                               {"framework/docs/comparing.md", 6},
+                               {"framework/docs/scenes.md", 3},
+                               {"framework/docs/robots.md", 0},
+                               {"framework/docs/gates.md", 0},
+                               {"framework/docs/exactness.md", 7},
+                               {"framework/docs/desks.md", 5},
+                               {"framework/docs/any_side.md", 4},
+                               {"framework/docs/strategies.md", 0},
+                               {"runs/reference/README.md", 9}};
+
+INSTANTIATE_TEST_SUITE_P(Every, Pages, ::testing::ValuesIn(kPages), [](const auto& one) {
+  return one.param.name == std::string("runs/reference/README.md") ? "pictures"
+                                                                   : fs::path(one.param.name).stem().string();
+});
 
 TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
   const std::string readme = text_of(test::source_folder() / "README.md");
@@ -116,6 +123,71 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
   }
   // The examples of python.md run in tests/python.
   EXPECT_EQ(pages, 12) << "a new page needs its test above";
+}
+
+/// Appends to `text` the scripts of the project that it names, and those that they name.
+void append_scripts(std::string& text) {
+  static const std::regex script(R"((tests|plugins)/[\w/]+\.(py|sh))");
+  std::set<std::string> known;
+  for (std::smatch found; std::regex_search(text.cbegin(), text.cend(), found, script);) {
+    const std::string name = found[0];
+    text.erase(static_cast<std::size_t>(found.position()), name.size());
+    if (known.insert(name).second)
+      text += (name.back() == 'y' ? " python3\n" : "\n") + text_of(test::source_folder() / name);
+  }
+}
+
+/// Returns the names of the packages that a page gives in its prose.
+std::string packages_of(const std::string& page) {
+  static const std::regex install(R"(`(?:sudo )?apt install ([^`]*)`)");
+  const std::string prose = std::regex_replace(page, std::regex("\n"), " ");
+  std::string out;
+  for (std::sregex_iterator at(prose.begin(), prose.end(), install), end; at != end; ++at) out += " " + (*at)[1].str();
+  return out;
+}
+
+// tests/in_debian.sh runs the commands themselves on a machine which has nothing else.
+TEST(Documents, NameThePackagesThatTheirCommandsNeedBesideThoseOfCore) {
+  // What a command, the config of its run or a script that it calls contains, and the packages of which one is named.
+  const std::vector<std::pair<std::regex, std::regex>> needs = [] {
+    std::vector<std::pair<std::regex, std::regex>> out;
+    for (const auto& [word, package] : std::vector<std::pair<const char*, const char*>>{
+             {R"((^|[ /])python3\b)", R"(\bpython3\b)"},
+             {R"((import|from) numpy)", R"(\bpython3-(numpy|sklearn)\b)"},
+             {R"((import|from) (sklearn|threadpoolctl))", R"(\bpython3-sklearn\b)"},
+             {R"((import|from) selenium)", R"(\bpython3-selenium\b)"},
+             {R"(\bchromedriver\b)", R"(\bchromium-driver\b)"},
+             {R"(\bbuild/release/tests/)", R"(\blibgtest-dev\b)"},
+             {R"(\bjq\b)", R"(\bjq\b)"},
+             {R"(\b(sbatch|squeue)\b)", R"(\bslurm-client\b)"},
+             {R"(\bpdflatex\b)", R"(\btexlive-)"}})
+      out.emplace_back(word, package);
+    return out;
+  }();
+  const TemporaryFolder folder;
+  imitate_checkout(folder.path());
+  int needed = 0;
+  for (const Page& one : kPages) {
+    const test::Document page(test::source_folder() / one.name);
+    const std::string packages = packages_of(text_of(test::source_folder() / one.name));
+    for (const test::Document::Part& part : page.parts()) {
+      if (part.kind != test::Document::Part::Kind::command) continue;
+      std::string text = part.text;
+      // The program of a backend or an acquisition stands in a group of the config.
+      if (text.rfind("./palpate run configs/", 0) == 0 && text.find('|') == std::string::npos)
+        text += "\n" + test::run_program({"sh", "-c", text + " --print-config"}, folder.path()).out;
+      append_scripts(text);
+      for (const auto& [word, package] : needs) {
+        std::smatch found;
+        if (!std::regex_search(text, found, word)) continue;
+        ++needed;
+        if (!std::regex_search(packages, package))
+          ADD_FAILURE() << one.name << ":" << part.line + 1 << ": '" << found[0]
+                        << "' needs a package of which the page says no `apt install`: " << part.text;
+      }
+    }
+  }
+  EXPECT_GE(needed, 10);
 }
 
 TEST(Documents, LinkToFilesThatAreThere) {
