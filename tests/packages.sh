@@ -176,6 +176,7 @@ debs=$share/debs
 cp -r \$debs /debs
 $image
 palpate --help >/dev/null
+apt-get update -q
 su - stranger -c 'sh $share/run'
 \$get \$debs/palpate-dev_*.deb g++ ninja-build
 su - stranger -c 'sh $share/plugin'
