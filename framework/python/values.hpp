@@ -46,12 +46,12 @@ inline py::object python_of(const Tree& tree) {
     case Tree::Kind::list: {
       py::list out;
       for (const Tree& item : tree.items) out.append(python_of(item));
-      return std::move(out);
+      return out;
     }
     case Tree::Kind::map: {
       py::dict out;
       for (const Tree::Entry& entry : tree.entries) out[py::str(entry.key)] = python_of(entry.value);
-      return std::move(out);
+      return out;
     }
     case Tree::Kind::scalar:
       break;
