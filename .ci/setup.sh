@@ -192,9 +192,9 @@ build() {
   shift
   log=$root/build/$preset.log
   known=$root/build/$preset/packages # that were installed when it was configured
+  first=no
+  [ -f "$known" ] || first=yes
   if [ ! -f "$root/build/$preset/build.ninja" ] || [ ! -f "$known" ] || [ "$(cat "$known")" != "$installed" ]; then
-    again=no
-    [ ! -f "$root/build/$preset/build.ninja" ] || again=yes
     warnings=
     [ "${CI:-}" != true ] || warnings=-DPALPATE_WERROR=ON
     if ! told "configuring preset $preset" "$log" cmake --preset "$preset" -S "$root" $warnings; then
@@ -203,9 +203,8 @@ build() {
       exit 1
     fi
     printf '%s\n' "$installed" >"$known"
-    if [ $again = yes ]; then
-      announce "$preset" "$@"
-    else
+  fi
+  if [ $first = yes ]; then
     # Minutes of one core, and room, that everything takes, what ./check builds, and what the first ./palpate run asks
     # for with the plugins of configs/default.yaml.
     case "$preset $*" in
@@ -215,7 +214,6 @@ build() {
       *) whole=8 disk='200 MB' ;;
     esac
     say "building preset $preset: about $((1 + whole / $(nproc 2>/dev/null || echo 2))) minutes the first time, $disk of disk"
-    fi
   else
     announce "$preset" "$@"
   fi
