@@ -131,10 +131,9 @@ cat >"$scratch/page" <<'END'
 # PAGE NAME: runs what is in /commands, lines of the page and commands; before them what is in /set_up.
 page=$1 name=$2 failed=0
 try() {
-  echo "cd ~/palpate && { $2
-}" >/command
+  printf 'cd ~/palpate && { %s\n}\n' "$2" >/command
   su - "$name" -c "sh /command" >/printed 2>&1 </dev/null && return 0
-  echo "in_debian: $page:$1: status $?: $2"
+  printf 'in_debian: %s:%s: status %s: %s\n' "$page" "$1" $? "$2"
   tail -n 5 /printed | sed 's/^/  /'
   failed=1
 }
