@@ -131,6 +131,28 @@ TEST(Compare, WithABaselineComparesEveryGroupWithItAlone) {
             "command line: --baseline: there is no group 'A', did you mean 'a'?");
 }
 
+TEST(Compare, ComparesGroupsOfOneSceneWithEachOtherAlone) {
+  MadeSweep sweep(two_by_two(5));
+  sweep.sweep.keys[1] = "scene";
+  const auto names = [](const Comparison& made) {
+    std::vector<std::string> out;
+    for (const ComparedPair& pair : made.pairs)
+      out.push_back(made.groups[pair.first].name + " - " + made.groups[pair.second].name);
+    return out;
+  };
+  const Comparison made = sweep.by({"acquisition", "scene"});
+  EXPECT_THAT(names(made), testing::ElementsAre("b, rbf - a, rbf", "b, matern - a, matern"));
+  const std::vector<double> adjusted = holm_adjusted({*made.pairs[0].test.p, *made.pairs[1].test.p});
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(*made.pairs[i].p_holm, adjusted[i]) << "for the pairs that there are";
+  EXPECT_THAT(compare_tables(made), HasSubstr("4 groups: each is compared with those of its scene\n"));
+  EXPECT_THAT(names(sweep.by({"acquisition", "scene"}, "rmse_m", "b")),
+              testing::ElementsAre("a, rbf - b, rbf", "a, matern - b, matern"));
+  EXPECT_THAT(names(sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf")), testing::ElementsAre("a, rbf - b, rbf"));
+  EXPECT_EQ(sweep.refusal({"acquisition", "scene"}, "rmse_m", "bb"),
+            "command line: --baseline: there is no group 'bb', did you mean 'b'?");
+  EXPECT_THAT(names(sweep.by({"scene"})), testing::ElementsAre("matern - rbf")) << "nothing else makes the groups";
+}
+
 TEST(Compare, ManyGroupsAreComparedWithTheFirstAloneAndItSaysSo) {
   std::vector<MadeJob> jobs;
   for (int group = 0; group < 9; ++group) {

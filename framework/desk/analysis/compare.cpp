@@ -161,15 +161,67 @@ std::string without_blanks(std::string name) {
   return name;
 }
 
-std::size_t find_baseline(const std::vector<ComparedGroup>& groups, const std::string& name) {
+/// Groups that are compared with each other. Results on one scene say nothing about another, so these are the groups of
+/// one scene, unless nothing but the scene makes the groups.
+struct ComparedBlock {
+  std::vector<std::size_t> groups;
+  std::size_t baseline = 0;
+};
+
+/// Whether the value at each place of a group's values is one of the scene, and others are not.
+std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
+  const Values scenes = scene_keys(sweep);
+  std::vector<bool> out;
+  for (const std::string& key : by) out.push_back(contains(scenes, key));
+  if (std::all_of(out.begin(), out.end(), [](bool one) { return one; })) out.assign(by.size(), false);
+  return out;
+}
+
+/// The values of a group at the places that are `wanted`.
+std::string values_at(const Values& values, const std::vector<bool>& places, bool wanted) {
+  Values out;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (places[i] == wanted) out.push_back(values[i]);
+  }
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+/// `kept`: indices of the groups that have jobs. The baseline of a block is its first group.
+std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, const std::vector<std::size_t>& kept,
+                                     const std::vector<bool>& scenes) {
+  std::vector<ComparedBlock> out;
+  std::map<std::string, std::size_t> known;
+  for (const std::size_t i : kept) {
+    const auto [at, is_new] = known.emplace(values_at(groups[i].values, scenes, true), out.size());
+    if (is_new) out.push_back({{}, i});
+    out[at->second].groups.push_back(i);
+  }
+  return out;
+}
+
+/// Sets the baselines to what --baseline names: a group, or the group of each scene with these other values. Blocks
+/// without such a group go.
+void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<ComparedGroup>& groups,
+                      const std::vector<bool>& scenes, const std::string& name) {
+  const std::string wanted = without_blanks(name);
+  const auto is_named = [&](const ComparedGroup& one) {
+    return without_blanks(one.name) == wanted || without_blanks(values_at(one.values, scenes, false)) == wanted;
+  };
+  std::vector<ComparedBlock> out;
+  for (const ComparedBlock& block : blocks) {
+    for (const std::size_t i : block.groups) {
+      if (is_named(groups[i])) out.push_back({block.groups, i});
+    }
+  }
+  blocks = std::move(out);
+  if (!blocks.empty()) return;
   Values names;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (without_blanks(groups[i].name) == without_blanks(name)) {
-      if (!groups[i].counts.all_are(Fate::left_out)) return i;
+  for (const ComparedGroup& one : groups) {
+    if (is_named(one))
       throw Error("command line", fmt::format("--baseline: --where leaves out all of '{}'", name),
                   "name another group");
-    }
-    names.push_back(groups[i].name);
+    names.push_back(one.name);
+    if (const std::string rest = values_at(one.values, scenes, false); !contains(names, rest)) names.push_back(rest);
   }
   throw Error("command line", fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
 }
@@ -240,15 +292,21 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (!out.groups[i].counts.all_are(Fate::left_out)) kept.push_back(i);
   }
-  const std::size_t baseline = query.baseline ? find_baseline(out.groups, *query.baseline) : kept.front();
+  const std::vector<bool> scenes = scene_places(sweep, query.by);
+  std::vector<ComparedBlock> blocks = blocks_of(out.groups, kept, scenes);
+  if (query.baseline) choose_baselines(blocks, out.groups, scenes, *query.baseline);
   out.compared = kept.size();
   out.ratios = query.ratios;
   if (query.extent != CompareExtent::pairs) return out;
-  out.one_baseline = query.baseline || kept.size() > kMostGroupsInPairs;
-  for (auto second = kept.begin(); second != kept.end(); ++second) {
-    if (out.one_baseline && *second != baseline) continue;
-    for (auto first = out.one_baseline ? kept.begin() : second + 1; first != kept.end(); ++first) {
-      if (first != second) out.pairs.push_back(compare_pair(groups, *first, *second, query.ratios));
+  out.scenes_apart = blocks.size() > 1;
+  for (const ComparedBlock& block : blocks) {
+    const bool one_baseline = query.baseline || block.groups.size() > kMostGroupsInPairs;
+    out.one_baseline = out.one_baseline || one_baseline;
+    for (auto second = block.groups.begin(); second != block.groups.end(); ++second) {
+      if (one_baseline && *second != block.baseline) continue;
+      for (auto first = one_baseline ? block.groups.begin() : second + 1; first != block.groups.end(); ++first) {
+        if (first != second) out.pairs.push_back(compare_pair(groups, *first, *second, query.ratios));
+      }
     }
   }
   adjust(out.pairs);

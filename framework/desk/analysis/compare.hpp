@@ -28,7 +28,8 @@ struct CompareQuery {
   std::vector<std::string> by;          ///< swept keys; jobs that have the same values of them are a group
   std::string metric;                   ///< a column of results.csv
   const Condition* where = nullptr;     ///< on the columns of results.csv: other jobs are left out; null for none
-  std::optional<std::string> baseline;  ///< the group that all others are compared with: "weighted, rbf"
+  std::optional<std::string> baseline;  ///< the group that all others are compared with: "weighted, rbf", or, where the
+                                        ///< scene is a key, too, "weighted": that of each scene
   bool ratios = false;                  ///< of the means of each pair, too
   CompareExtent extent = CompareExtent::pairs;
 };
@@ -72,13 +73,14 @@ struct Comparison {
 
   std::size_t compared = 0;  ///< groups; those that the condition leaves out whole are in no pair
   bool one_baseline = false;
+  bool scenes_apart = false;         ///< the scene is one of the keys: groups of two scenes are in no pair
   bool ratios = false;               ///< asked for
   std::optional<Occasion> occasion;  ///< at which the jobs are looked at; none: as they ended
   int jobs = 0;                      ///< of the sweep
   FateCounts left_out;               ///< of them, by the condition: what else became of those
 };
 
-/// Of more groups only those pairs are compared that have the first one in them, unless a baseline is named.
+/// With more groups, of one scene each, only pairs with the first group are compared, unless a baseline is named.
 inline constexpr std::size_t kMostGroupsInPairs = 8;
 
 /// Compares the jobs of `sweep`, whose rows of results.csv are `results`. Throws Error, of the command line, for keys

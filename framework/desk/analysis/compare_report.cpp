@@ -205,7 +205,10 @@ std::string remarks(const Comparison& comparison) {
   }
   out += few_note(comparison) + units_note(comparison);
   if (groups < 2) out += "one group: there is nothing to compare it with\n";
-  if (comparison.pairs.size() < groups * (groups - 1) / 2) {
+  if (comparison.scenes_apart) {
+    out += fmt::format("{} groups: each is compared {} of its scene\n", groups,
+                       comparison.one_baseline ? "with one" : "with those");
+  } else if (comparison.pairs.size() < groups * (groups - 1) / 2) {
     out += fmt::format("{} groups: each is compared with {} alone\n", groups,
                        comparison.groups[comparison.pairs.front().second].name);
   }
