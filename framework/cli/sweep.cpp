@@ -304,7 +304,9 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
   }
   Standing begun = standing_of(sweep, jobs_of(campaign));
   const std::vector<std::size_t> left = undone(begun);
-  if (!left.empty()) check_who_taps(config_of(left.front()), arguments.directory);
+  std::optional<ResolvedConfig> next;
+  if (!left.empty()) trouble_in([&] { next = config_of(left.front()); });  // a damaged job fails alone
+  if (next) check_who_taps(*next, arguments.directory);
   check_builds(campaign, left);
   return run_campaign(campaign, std::move(begun));
 }

@@ -301,7 +301,7 @@ class Module(InFolder):
             done = subprocess.run([sys.executable, "-c", example], cwd=self.folder, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
         printed = ""
-        for line in re.search(r"^```sh\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1].splitlines():
+        for line in re.search(r"^```sh\n(\./palpate .*?)^```", page, re.MULTILINE | re.DOTALL)[1].splitlines():
             words = line.replace("./palpate", str(BUILD / "palpate")).split()
             done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -144,8 +144,6 @@ TEST_F(CommandLine, SeveralDirectoriesWhereACommandTakesOneAreOneLineWithARemedy
                              " takes one (DIR|RUN), and 'runs/a/2' stands beside it, where a \\* stands for several, "
                              "name one of them\n"));
   }
-  for (const char* command : {"compare", "pareto"})
-    EXPECT_THAT(refused({command, "runs/a/1", "runs/a/2"}), HasSubstr(" takes one DIR, and 'runs/a/2' stands"));
   EXPECT_THAT(refused("explain runs/a/1 runs/a/2 3"), HasSubstr(" takes one RUN and one TAP, and "));
   EXPECT_THAT(refused("report runs/a/1 --fig"), Not(HasSubstr("takes one DIR"))) << "an option is no directory";
 }
