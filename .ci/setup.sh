@@ -51,14 +51,14 @@ told() {
   : >"$output"
   follow "$what" "$output" 8>&- 9>&- &
   follower=$!
-  # A shell that waits for a command hears no signal; one that waits for its child does.
-  "$@" >"$output" 2>&1 <&0 &
-  worker=$!
+  # A shell that waits for a command hears no signal; one that waits for its child does. The traps come before the
+  # child: a signal between the two would end this script alone.
   trap 'end_worker 129' HUP
   trap 'end_worker 130' INT
   trap 'end_worker 143' TERM
+  "$@" >"$output" 2>&1 <&0 &
   status=0
-  wait $worker || status=$?
+  wait $! || status=$?
   trap - HUP INT TERM
   end_follower
   return $status
@@ -70,12 +70,12 @@ end_follower() {
   [ ! -t 2 ] || printf '\r\033[K' >&2
 }
 
-# end_worker STATUS: ends the command under way, waits until it has gone, and ends this script.
+# end_worker STATUS: ends the command under way, which began last, waits until it has gone, and ends this script.
 end_worker() {
   trap '' HUP INT TERM
   # What root runs, only root may end.
-  kill -TERM $worker 2>/dev/null || ${as_root:-false} kill -TERM $worker 2>/dev/null || true
-  wait $worker 2>/dev/null || true
+  kill -TERM $! 2>/dev/null || ${as_root:-false} kill -TERM $! 2>/dev/null || true
+  wait $! 2>/dev/null || true
   end_follower
   exit "$1"
 }
