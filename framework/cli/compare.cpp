@@ -50,7 +50,7 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, 
 /// Those that are asked for, each once, in the order given.
 std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
   std::vector<Occasion> out;
-  if (arguments.until) out.push_back(Occasion::once(*arguments.until));
+  if (arguments.until) out.push_back(Occasion::once(field_name(*arguments.until)));
   for (const int count : arguments.at) {
     const Occasion one = Occasion::after(count);
     if (std::find(out.begin(), out.end(), one) == out.end()) out.push_back(one);

@@ -76,14 +76,15 @@ int curves(Program& program, const CurvesArguments& arguments) {
   // What cannot be asked is found out before anything is computed.
   check_group_keys(sweep, by);
   if (!results.empty()) find_metric(sweep, arguments.metric, columns_of(results));
+  const std::string metric = field_name(arguments.metric);
   std::vector<TapValues> values(sweep.jobs.size());
-  const TapSummaries summaries(sweep, keep_values(values, {arguments.metric, arguments.against}));
+  const TapSummaries summaries(sweep, keep_values(values, {metric, arguments.against}));
   const bool all = compute_jobs(program, summaries.missing(), arguments.workers,
                                 [&](std::size_t job) { summaries.compute(program, job); });
   if (!all) return kInterrupted;
   summaries.read_missing();
   const GroupCurves made =
-      make_group_curves(sweep, results, values, {by, arguments.metric, arguments.against, where ? &*where : nullptr});
+      make_group_curves(sweep, results, values, {by, metric, arguments.against, where ? &*where : nullptr});
   print_text(curves_table(made));
   std::set<fs::path> scripts;
   for (const fs::path& file : files) {
@@ -96,7 +97,8 @@ int curves(Program& program, const CurvesArguments& arguments) {
     if (arguments.where) title += ", where " + *arguments.where;
     std::string note;
     const auto trouble = trouble_in([&] { note = write_curves_figure(made, title, width, file); });
-    scripts.insert(fs::path(file).replace_extension(".gnuplot"));
+    const fs::path script = fs::path(file).replace_extension(".gnuplot");
+    if (std::error_code none; fs::is_regular_file(script, none)) scripts.insert(script);
     // Asked for by name it is all that was asked for; else the table is there.
     if (trouble && !arguments.outputs.empty()) throw *trouble;
     if (trouble) {

@@ -62,7 +62,7 @@ constexpr const char* kCommon =
     ".TP\n.B 0\ndone\n"
     ".TP\n.B 1\nthe run failed, or an expectation of its config did\n"
     ".TP\n.B 2\nwrong usage or config: one line on stderr has place, reason and remedy\n"
-    ".TP\n.B 75\nanother process holds that run\n"
+    ".TP\n.B 75\nnot now: another process holds that run or its arm, or its program is not as it was\n"
     ".TP\n.B 130\ninterrupted\n"
     ".SH ENVIRONMENT\n"
     ".TP\n.B PALPATE_PLUGIN_PATH\nfolders of plugins beside the shipped ones, separated by colons\n";

@@ -166,6 +166,7 @@ PYBIND11_MODULE(_palpate, module) {
       }))
       .def("directory", &SweepRecord::directory)
       .def("keys", &SweepRecord::keys)
+      .def("notes", &SweepRecord::notes)
       .def("size", &SweepRecord::size)
       .def("job", &SweepRecord::job)
       .def("table", &SweepRecord::table)

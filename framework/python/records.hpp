@@ -111,9 +111,11 @@ class Record {
 class SweepRecord {
  public:
   explicit SweepRecord(const std::vector<std::string>& directories)
-      : sweep_(read_pooled({directories.begin(), directories.end()}, {}).sweep) {}
+      : SweepRecord(read_pooled({directories.begin(), directories.end()}, {})) {}
 
   std::string directory() const { return sweep_.directory.string(); }
+  /// What whoever reads the numbers of several records should know, a line each.
+  const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return sweep_.jobs.size(); }
   const std::vector<std::string>& keys() const { return sweep_.keys; }
   std::string job(std::size_t index) const { return job_directory(sweep_, sweep_.jobs.at(index)).string(); }
@@ -137,7 +139,10 @@ class SweepRecord {
   }
 
  private:
+  explicit SweepRecord(PooledSweep pooled) : sweep_(std::move(pooled.sweep)), notes_(std::move(pooled.notes)) {}
+
   Sweep sweep_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace palpate

@@ -33,7 +33,12 @@ struct Home {
   PluginHost host{PluginHost::search_path(installation.plugins)};
 };
 inline Home& home() {
-  static Home* const one = new Home;
+  static Home* const one = [] {
+    auto* const made = new Home;
+    made->host.set_group_names(
+        [made](const std::string& kind) { return Composer(made->installation.configs, config_keys()).names_of(kind); });
+    return made;
+  }();
   return *one;
 }
 

@@ -123,10 +123,10 @@ Content content_of(const std::vector<std::string>& words, const std::string& fol
   return out;
 }
 
-void check_content(const std::string& command, const std::vector<std::string>& words, const std::string& folder,
-                   const std::string& checksum) {
+std::string find_checked(const std::string& command, const std::vector<std::string>& words, const std::string& folder,
+                         const std::string& checksum) {
   const std::string found = content_of(words, folder).checksum;
-  if (checksum == found) return;
+  if (checksum == found) return find_program(words.front(), folder);
   throw Error("checksum", "is not that of " + shown(command) + " with its program, which has " + found,
               "put the program back that the run began with, or begin another run", Error::Kind::busy);
 }

@@ -37,9 +37,10 @@ struct Content {
 /// no content: a program may write the files that they name. Relative paths begin in `folder`.
 Content content_of(const std::vector<std::string>& words, const std::string& folder = {});
 
-/// Throws Error, its `where` "checksum", unless the content of `command`, which has such words, has this checksum.
-void check_content(const std::string& command, const std::vector<std::string>& words, const std::string& folder,
-                   const std::string& checksum);
+/// Returns find_program() of the first word. Before that, throws Error of kind `busy`, its `where` "checksum", unless
+/// the content of `command`, which has such words, has this checksum: a program that is gone or changed may come back.
+std::string find_checked(const std::string& command, const std::vector<std::string>& words, const std::string& folder,
+                         const std::string& checksum);
 
 /// A piece of foreign text, quoted to stand within one line: cut where it is long, '?' for all but printable ASCII.
 std::string shown(const std::string& text);

@@ -148,6 +148,13 @@ TEST(Compare, ComparesGroupsOfOneSceneWithEachOtherAlone) {
   EXPECT_THAT(names(sweep.by({"acquisition", "scene"}, "rmse_m", "b")),
               testing::ElementsAre("a, rbf - b, rbf", "a, matern - b, matern"));
   EXPECT_THAT(names(sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf")), testing::ElementsAre("a, rbf - b, rbf"));
+  const Comparison of_rbf = sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf");
+  EXPECT_THAT(compare_tables(of_rbf),
+              HasSubstr("4 groups: each is compared with one of its scene\n2 of them in no pair: "));
+  const Comparison alone =
+      sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf", "scene == matern or acquisition == b");
+  EXPECT_THAT(alone.pairs, testing::IsEmpty());
+  EXPECT_THAT(compare_tables(alone), HasSubstr("3 of them in no pair: "));
   EXPECT_EQ(sweep.refusal({"acquisition", "scene"}, "rmse_m", "bb"),
             "command line: --baseline: there is no group 'bb', did you mean 'b'?");
   EXPECT_THAT(names(sweep.by({"scene"})), testing::ElementsAre("matern - rbf")) << "nothing else makes the groups";

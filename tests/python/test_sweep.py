@@ -124,6 +124,18 @@ class Sweeps(InFolder):
         program("report", sweep.directory)
         self.assertTrue((pathlib.Path(sweep.directory) / "report.html").exists())
 
+    def test_labels_are_texts_whatever_stands_in_them(self):
+        names = ["it's", 'q"u', "seed", "range(0,3)", "[z]", "a,b"]
+        sweep = palpate.begin_sweep(DEFAULT, labels=names, runs=self.folder)
+        labels = []
+        for experiment in sweep.experiments():
+            with experiment:
+                labels.append(experiment.label)
+        self.assertEqual(labels, names)
+        for wrong in ("", [], ["", "b"], [3]):
+            with self.assertRaisesRegex(palpate.InputError, "labels"):
+                palpate.begin_sweep(DEFAULT, labels=wrong, runs=self.folder)
+
     def test_runs_of_a_loop_and_several_sweeps_are_loaded_as_one_sweep(self):
         for label in ("a", "b"):
             for seed in (1, 2):

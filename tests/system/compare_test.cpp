@@ -207,7 +207,7 @@ TEST_F(Compare, RefusesInOneLineWhatCannotBeCompared) {
   EXPECT_THAT(refused(where + Words{"taps > 100"}), StartsWith("command line: --where: leaves none of the 24 jobs"));
   fs::create_directory(here() / "empty");
   EXPECT_THAT(refused(Words{"compare", here() / "empty"} + "--by acquisition --metric rmse_m"),
-              EndsWith("is not the directory of a sweep, it has no manifest.jsonl\n"));
+              EndsWith("is neither a run nor a sweep, it has no record of one\n"));
 }
 
 }  // namespace

@@ -160,6 +160,18 @@ TEST_F(ProgramRun, ASweepWhoseProgramIsChangedStopsAndNoJobFailsByIt) {
   EXPECT_THAT(status_of(sweep).out, HasSubstr("4 jobs, 4 done"));
 }
 
+TEST_F(ProgramRun, AProgramThatIsGoneFailsNoJobEither) {
+  echo("uncertainty");
+  write("echo.sh", "#!/bin/sh\n" + text_of(here() / "echo.sh"));
+  fs::permissions(here() / "echo.sh", fs::perms::owner_all);
+  const fs::path run = ran(few("acquisition={type: program, command: ./echo.sh}"));
+  cut_taps(run);
+  fs::rename(here() / "echo.sh", here() / "away");
+  EXPECT_THAT(refused({"resume", run, "--quiet"}, 75), HasSubstr("put the program back that the run began with"));
+  fs::rename(here() / "away", here() / "echo.sh");
+  EXPECT_EQ(resume(run).status, 0);
+}
+
 TEST_F(ProgramRun, AProgramThatDiesFailsTheRunInOneLineAndTheRunIsCarriedOn) {
   const std::string acquisition = echo("uncertainty", "[ -e well ] || { echo 'out of memory' >&2; exit 3; }");
   const std::string told = refused(Words{"run", paper(), "--quiet"} + few(acquisition), 1);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `palpate compare`, `curves` and `pareto` over several sweeps and runs of different plans.
+#include "support/lasting.hpp"
+#include "support/programs.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
@@ -138,14 +140,50 @@ TEST_F(SeveralSweeps, ANameStandsForAllItsRunsWhereItHasNoSweep) {
   EXPECT_THAT(refused(Words{"compare", "loop", here() / "runs/loop/nothing"} + words), HasSubstr("nothing"));
 }
 
+TEST_F(SeveralSweeps, AreNamedByWordsThatNoFileInTheWorkingFolderHides) {
+  named("earlier", "acquisition=random");
+  named("later", "acquisition=uncertainty");
+  const Words by = "--by acquisition --metric rmse_m";
+  const std::string both = palpate(Words("compare earlier later") + by).out;
+  write("later", "a file of that name");
+  EXPECT_EQ(palpate(Words("compare earlier later") + by).out, both);
+  EXPECT_THAT(both, AllOf(HasSubstr("\nrandom "), HasSubstr("\nuncertainty ")));
+  write("tables/one.csv", "");
+  write("tables/two.csv", "");
+  EXPECT_THAT(refused(Words("compare tables/one.csv tables/two.csv") + by), HasSubstr("no sweep and no run is named"));
+}
+
+TEST_F(SeveralSweeps, MayBeOneRunAndAreNotMergedWhereTheSameRunMeasuredSomethingElse) {
+  const fs::path run = ran("taps=6 candidates.count=16 name=alone");
+  const Words by = "--by name --metric rmse_m";
+  EXPECT_THAT(palpate(Words{"compare", run} + by).out, HasSubstr("\nalone "));
+  const fs::path copy = here() / "elsewhere" / run.filename();
+  fs::create_directories(copy.parent_path());
+  fs::copy(run, copy);
+  const Words both{"compare", run, copy, "--by", "acquisition", "--metric", "rmse_m"};
+  EXPECT_THAT(palpate(both).err, HasSubstr("note: 1 of 2 jobs stand in an earlier record, too"));
+  replace(copy / "taps.csv", "initial", "IniTial");
+  EXPECT_THAT(refused(both, 1),
+              AllOf(HasSubstr("has the id of "), HasSubstr(" and other taps, give such runs a seed")));
+}
+
+TEST_F(SeveralSweeps, ByNameHaveEachItsOwnJobsThoughAnotherHasTheSame) {
+  named("earlier", "acquisition=random,uncertainty");
+  named("later", "acquisition=random");
+  for (const char* records : {"compare earlier later", "compare later earlier"}) {
+    const std::string out = palpate(Words(records) + "--by name --metric rmse_m").out;
+    EXPECT_THAT(out, testing::ContainsRegex("\nearlier +10 +10 "));
+    EXPECT_THAT(out, testing::ContainsRegex("\nlater +5 +5 "));
+  }
+}
+
 TEST_F(SeveralSweeps, MergeByCopyingTheFoldersOfTheirJobs) {
   const fs::path earlier = named("earlier", "acquisition=random,grid");
   const fs::path later = named("later", "acquisition=uncertainty seed=range(0,4)");
   // The whole plan, broken off at once.
   const Words plan = set_by(Words{"sweep", paper(), "name=whole"} + kPlan, "acquisition=random,grid,uncertainty");
   const auto begun = begin(plan + "-j 1");
-  while (!fs::exists(here() / "runs/whole")) {
-  }
+  EXPECT_TRUE(test::eventually([&] { return !test::run_in(here() / "runs/whole").empty(); }));
   begun->signal(SIGINT);
   begun->wait();
   const fs::path whole = fs::directory_iterator(here() / "runs/whole")->path();

@@ -214,12 +214,15 @@ fs::path find_record(const std::string& words, Wanted wanted, const fs::path& ru
 std::vector<fs::path> find_records(const std::vector<std::string>& words, const fs::path& runs) {
   std::vector<fs::path> out;
   for (const std::string& one : words) {
-    if (words.size() > 1 && fs::is_regular_file(one)) continue;
+    // A pattern such as runs/NAME/* takes tables and pictures beside the records along.
+    std::error_code none;
+    if (words.size() > 1 && one.find('/') != std::string::npos && fs::is_regular_file(one, none)) continue;
     const Meant meant = find_meant(one, Wanted::sweep, runs);
     const bool all = !meant.latest && std::none_of(meant.records.begin(), meant.records.end(), is_sweep);
     if (all) out.insert(out.end(), meant.records.begin(), meant.records.end());
     if (!all || meant.records.empty()) out.push_back(find_record(one, Wanted::sweep, runs));
   }
+  if (out.empty()) throw Error("command line", "no sweep and no run is named", "'palpate list' shows what there is");
   return out;
 }
 

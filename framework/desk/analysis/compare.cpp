@@ -294,11 +294,11 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   }
   const std::vector<bool> scenes = scene_places(sweep, query.by);
   std::vector<ComparedBlock> blocks = blocks_of(out.groups, kept, scenes);
+  out.scenes_apart = blocks.size() > 1;
   if (query.baseline) choose_baselines(blocks, out.groups, scenes, *query.baseline);
   out.compared = kept.size();
   out.ratios = query.ratios;
   if (query.extent != CompareExtent::pairs) return out;
-  out.scenes_apart = blocks.size() > 1;
   for (const ComparedBlock& block : blocks) {
     const bool one_baseline = query.baseline || block.groups.size() > kMostGroupsInPairs;
     out.one_baseline = out.one_baseline || one_baseline;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace palpate {
 namespace {
@@ -195,6 +196,13 @@ std::string apart_note(const Comparison& comparison) {
                            one_line(fmt::format("{}", fmt::join(keys, ","))));
 }
 
+/// How many groups with jobs are in no pair.
+std::size_t groups_without_pair(const Comparison& comparison) {
+  std::set<std::size_t> paired;
+  for (const ComparedPair& one : comparison.pairs) paired.insert({one.first, one.second});
+  return comparison.compared - paired.size();
+}
+
 std::string remarks(const Comparison& comparison) {
   std::string out;
   const std::size_t groups = comparison.compared;
@@ -208,7 +216,9 @@ std::string remarks(const Comparison& comparison) {
   if (comparison.scenes_apart) {
     out += fmt::format("{} groups: each is compared {} of its scene\n", groups,
                        comparison.one_baseline ? "with one" : "with those");
-  } else if (comparison.pairs.size() < groups * (groups - 1) / 2) {
+    if (const std::size_t alone = groups_without_pair(comparison); alone > 0)
+      out += fmt::format("{} of them in no pair: no other group of the scene, or no baseline there\n", alone);
+  } else if (!comparison.pairs.empty() && comparison.pairs.size() < groups * (groups - 1) / 2) {
     out += fmt::format("{} groups: each is compared with {} alone\n", groups,
                        comparison.groups[comparison.pairs.front().second].name);
   }

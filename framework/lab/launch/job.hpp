@@ -22,7 +22,7 @@ enum class JobEnd {
   done = 0,           ///< now or before
   failed = 1,         ///< now or before; the record has the reason
   unrecorded = 2,     ///< not even that could be recorded
-  blocked = 3,        ///< another process has its arm in hand, and the child has said kBlocked; the job stays open
+  blocked = 3,        ///< its arm or its program cannot be had now, and the child has said kBlocked; the job stays open
   busy = 75,          ///< another process has it in hand; nothing was done
   interrupted = 130,  ///< by the user's wish; it can be carried on
 };
@@ -33,7 +33,7 @@ inline constexpr const char* kBlocked = "blocked";
 /// Runs the job in `directory`, whose name is its id, unless it is done, or has failed and is not to be tried again.
 /// `config_of` reads its config. What goes wrong becomes the reason of its failure; but a config that was deleted is
 /// none, as `palpate sweep` puts it back. Throws Error where nothing is recorded, and where a file of a job that is
-/// done cannot be written; of kind `busy` where another process has the arm in hand that the job would move.
+/// done cannot be written; of kind `busy` where another process has the arm in hand, or the program is not as it was.
 JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of,
                const std::filesystem::path& directory, const ResumeOptions& options);
 

@@ -15,7 +15,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -148,24 +150,42 @@ class Pool {
 
  private:
   void collect_members() {
-    std::map<std::string, std::size_t> known;
+    std::map<std::pair<std::string, std::string>, std::size_t> known;  // by record, if these are groups, and id
     int repeated = 0;
     for (std::size_t source = 0; source < sources_.size(); ++source) {
       for (const Job& job : sources_[source].sweep.jobs) {
-        const auto [at, is_new] = known.emplace(job.id, members_.size());
+        const std::string record = contains(by_, kName) ? sources_[source].name : "";
+        const auto [at, is_new] = known.emplace(std::pair(record, job.id), members_.size());
         if (is_new) {
           members_.push_back({&job, source, setting_of(source, job)});
           continue;
         }
         ++repeated;
         PoolMember& first = members_[at->second];
-        if (!has_ended(first.source, *first.job) && has_ended(source, job))
-          first = {&job, source, setting_of(source, job)};
+        if (!has_ended(first.source, *first.job)) {
+          if (has_ended(source, job)) first = {&job, source, setting_of(source, job)};
+        } else if (has_ended(source, job)) {
+          check_same_taps(job_directory(sources_[first.source].sweep, *first.job),
+                          job_directory(sources_[source].sweep, job));
+        }
       }
     }
     if (repeated > 0)
       out_.notes.push_back(fmt::format("{} of {} jobs stand in an earlier record, too, and count once", repeated,
                                        members_.size() + static_cast<std::size_t>(repeated)));
+  }
+
+  /// Throws Error for two runs with the same id that measured something else: neither stands for the other.
+  static void check_same_taps(const fs::path& first, const fs::path& second) {
+    const auto taps = [](const fs::path& directory) {
+      std::ifstream in(directory / kTapsTable, std::ios::binary);
+      return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    const std::string one = taps(first);
+    const std::string other = taps(second);
+    if (one.empty() || other.empty() || one == other) return;
+    throw Error(second.string(), fmt::format("has the id of {} and other taps", first.string()),
+                "give such runs a seed or a backend.label of their own, or leave one out", Error::Kind::run);
   }
 
   bool has_ended(std::size_t source, const Job& job) const {
@@ -394,7 +414,8 @@ class Pool {
 }  // namespace
 
 PooledSweep read_pooled(const std::vector<fs::path>& records, const PoolTexts& by) {
-  if (records.size() == 1) return {read_sweep(records.front()), {}};
+  if (records.empty()) throw Error("", "no sweep and no run is named", "name at least one");
+  if (records.size() == 1 && is_sweep(records.front())) return {read_sweep(records.front()), {}};
   return Pool(records, by).take();
 }
 

@@ -28,8 +28,9 @@ struct PooledSweep {
 /// first sweep that sweeps them has them, and a value of the same name that is another has the name of its record
 /// behind it. `strategy`, which no recorded config has, is the name of the record there.
 ///
-/// A run that stands in several records is one job, the first of them that has ended. The directory is the folder that
-/// has all records. Throws Error for what is neither a run nor a sweep, or damaged.
+/// A run that stands in several records is one job, the first of them that has ended; where `by` has `name`, one job of
+/// each record. The directory is the folder that has all records. Throws Error for no record, for what is neither a run
+/// nor a sweep, or damaged, and for runs with the same id and other taps.
 PooledSweep read_pooled(const std::vector<std::filesystem::path>& records, const std::vector<std::string>& by);
 
 /// Returns the folder that has all of these directories.

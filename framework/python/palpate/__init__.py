@@ -24,6 +24,7 @@ import json as _json
 import operator as _operator
 import os as _os
 import tempfile as _tempfile
+import warnings as _warnings
 
 import numpy as _np
 
@@ -188,6 +189,8 @@ class Sweep:
         self._record = _palpate.SweepRecord(self._directories)
         self.directory = self._record.directory()
         self.keys = self._record.keys()
+        for note in self._record.notes():
+            _warnings.warn(note, stacklevel=3)
 
     def __reduce__(self):
         return Sweep, tuple(map(_os.path.abspath, self._directories))
@@ -233,6 +236,8 @@ class Sweep:
     def experiments(self, retry_failed=False):
         """Of a sweep of begin_sweep(): the Experiment of each job that has not ended, one after the other. Close each, as
         `with` does, before the next. `retry_failed` carries on failed jobs, too."""
+        if len(self._directories) > 1:
+            raise _error("experiments", "several sweeps are read as one", "ask each sweep for its own")
         try:
             for job, status in enumerate(self.table["status"].tolist()):
                 if status is None or retry_failed and status == "failed":
@@ -330,7 +335,12 @@ def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:
     which are swept, too, as `backend.label`; `experiment.label` has that of a job. A sweep that exists is carried on.
     """
     words = [*axes, *(f"{key}={_program.values_text(value)}" for key, value in settings.items()), "backend.type=caller"]
-    words += [f"backend.label={_program.values_text(list(labels))}"] if labels is not None else []
+    if labels is not None:
+        names = [labels] if isinstance(labels, str) else list(labels)
+        if not names or not all(isinstance(one, str) and one for one in names):
+            raise _error("labels", "has something that is no name", "give texts that are not empty")
+        # As YAML in quotes, in which nothing has a meaning of its own.
+        words += ["backend.label=" + ",".join(_json.dumps(one, ensure_ascii=False) for one in names)]
     return Sweep(_palpate.begin_sweep(_os.fspath(config), words, _os.fspath(runs)))
 
 

@@ -21,7 +21,7 @@ import numpy
 PROTOCOL = 1
 SERVED = "PALPATE_PROGRAM" in os.environ  # palpate has started this program
 
-if SERVED:  # stdout is for scores alone: what anybody prints goes to the run's acquisition.stderr.txt
+if SERVED:  # stdout is for scores alone: what anybody prints goes to a file of the run
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
 

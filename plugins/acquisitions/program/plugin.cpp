@@ -160,8 +160,7 @@ class ProgramAcquisition final : public Acquisition {
     }
     if (context.directory.empty()) return;
     words_ = programs::split_command(options.command).value();
-    file_ = programs::find_program(words_.front(), options.folder);
-    programs::check_content(options.command, words_, options.folder, options.checksum);
+    file_ = programs::find_checked(options.command, words_, options.folder, options.checksum);
   }
 
   Quantities reads() const override {
@@ -220,6 +219,7 @@ class ProgramAcquisition final : public Acquisition {
       Program program{words_, file_};
       program.folder = options_.folder;
       program.environment.insert(program.environment.begin(), python_path());
+      programs::find_checked(options_.command, words_, options_.folder, options_.checksum);
       keep_program();
       child_ = std::make_unique<Child>(std::move(program), in_record(".stderr.txt"), Descriptor());
     }

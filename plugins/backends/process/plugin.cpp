@@ -70,9 +70,7 @@ class Process final : public Backend {
       : options_(options),
         context_(context),
         words_(programs::split_command(options.command).value()),
-        file_(programs::find_program(words_.front())) {
-    programs::check_content(options.command, words_, {}, options.checksum);
-  }
+        file_(programs::find_checked(options.command, words_, {}, options.checksum)) {}
 
   Contact tap(const TapRequest& request) override {
     const auto begin = Clock::now();
