@@ -38,6 +38,7 @@ for word in "$@"; do
     *) refuse "unknown argument '$word', it takes 12 or 13, run, check or pages, sudo, root or user, and ci" ;;
   esac
 done
+[ "$what $who" = "pages sudo" ] || [ "$what" != pages ] || refuse "the commands of pages are tried by a user who has sudo"
 [ -n "$suite" ] || refuse "say which Debian, 12 or 13"
 [ "$(id -u)" = 0 ] || refuse "only root can make a root of another system"
 command -v mmdebstrap >/dev/null || refuse "the package mmdebstrap is missing"
@@ -126,7 +127,13 @@ commands() {
   [ -z "$(commands "$page")" ] || pages="$pages $page"
 done
 built=${PALPATE_ROOT:-$scratch/root}
-[ -d "$built" ] || bare "$built"
+head=$(git -C "$root" rev-parse HEAD)
+if [ -d "$built" ]; then
+  [ "$(cat "$built/built_of" 2>/dev/null)" = "$head" ] || refuse "$built has not been built of this commit, remove it"
+else
+  bare "$built"
+  echo "$head" >"$built/built_of"
+fi
 cat >"$scratch/page" <<'END'
 # PAGE NAME: runs what is in /commands, lines of the page and commands; before them what is in /set_up.
 page=$1 name=$2 failed=0

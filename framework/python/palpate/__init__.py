@@ -339,8 +339,9 @@ def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:
         names = [labels] if isinstance(labels, str) else list(labels)
         if not names or not all(isinstance(one, str) and one for one in names):
             raise _error("labels", "has something that is no name", "give texts that are not empty")
-        # As YAML in quotes, in which nothing has a meaning of its own.
-        words += ["backend.label=" + ",".join(_json.dumps(one, ensure_ascii=False) for one in names)]
+        # A list of texts in YAML's single quotes, within which nothing has a meaning of its own.
+        texts = ("'" + one.replace("'", "''") + "'" for one in names)
+        words += [f"backend.label=[{', '.join(texts)}]"]
     return Sweep(_palpate.begin_sweep(_os.fspath(config), words, _os.fspath(runs)))
 
 
