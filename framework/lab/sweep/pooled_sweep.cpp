@@ -2,6 +2,7 @@
 #include "sweep/pooled_sweep.hpp"
 
 #include "experiment/experiment_options.hpp"
+#include "reading/reading.hpp"
 #include "record/catalogue.hpp"
 #include "record/record_reader.hpp"
 #include "record/resolved.hpp"
@@ -15,9 +16,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -178,8 +177,7 @@ class Pool {
   /// Throws Error for two runs with the same id that measured something else: neither stands for the other.
   static void check_same_taps(const fs::path& first, const fs::path& second) {
     const auto taps = [](const fs::path& directory) {
-      std::ifstream in(directory / kTapsTable, std::ios::binary);
-      return std::string(std::istreambuf_iterator<char>(in), {});
+      return read_bounded(directory / kTapsTable, kMostLogBytes, Origin::record).text;
     };
     const std::string one = taps(first);
     const std::string other = taps(second);
@@ -263,7 +261,7 @@ class Pool {
   static std::string enclosing_choice(const std::string& path, const PoolTexts& differing) {
     std::string group;
     for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
-      const std::string part = path.substr(0, dot);
+      std::string part = path.substr(0, dot);
       if (config_keys().is_group(part)) group = part;
       if (group == part && contains(differing, part + ".type")) return part;
       if (std::isdigit(static_cast<unsigned char>(path[dot + 1])) != 0) return group.empty() ? part : group;
