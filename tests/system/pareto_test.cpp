@@ -176,7 +176,7 @@ TEST_F(Pareto, RefusesWhatCannotBeComparedInOneLine) {
             "command line: --within: '5' lacks its unit, write a length like '1.7 cm'\n");
   fs::create_directory(here() / "empty");
   EXPECT_THAT(refused(words(here() / "empty", "robot_seconds", "rmse_m")),
-              EndsWith("is not the directory of a sweep, it has no manifest.jsonl\n"));
+              EndsWith("is neither a run nor a sweep, it has no record of one\n"));
 }
 
 }  // namespace
