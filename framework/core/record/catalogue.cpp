@@ -204,11 +204,19 @@ Row settings_of(const Tree& config) {
 
 Row read_settings(const fs::path& directory) { return settings_of(read_run_config(directory)); }
 
-fs::path find_record(const std::string& words, Wanted wanted, const fs::path& runs) {
-  const Meant meant = find_meant(words, wanted, runs);
+namespace {
+
+/// The only one, or the last where that is wanted. Throws Error for several.
+fs::path only_one(const std::string& words, const Meant& meant) {
   if (meant.records.empty()) return meant.base;
   if (meant.records.size() > 1 && !meant.latest) throw several(words, meant.base, meant.records);
   return meant.records.back();
+}
+
+}  // namespace
+
+fs::path find_record(const std::string& words, Wanted wanted, const fs::path& runs) {
+  return only_one(words, find_meant(words, wanted, runs));
 }
 
 std::vector<fs::path> find_records(const std::vector<std::string>& words, const fs::path& runs) {
@@ -220,7 +228,7 @@ std::vector<fs::path> find_records(const std::vector<std::string>& words, const 
     const Meant meant = find_meant(one, Wanted::sweep, runs);
     const bool all = !meant.latest && std::none_of(meant.records.begin(), meant.records.end(), is_sweep);
     if (all) out.insert(out.end(), meant.records.begin(), meant.records.end());
-    if (!all || meant.records.empty()) out.push_back(find_record(one, Wanted::sweep, runs));
+    if (!all || meant.records.empty()) out.push_back(only_one(one, meant));
   }
   if (out.empty()) throw Error("command line", "no sweep and no run is named", "'palpate list' shows what there is");
   return out;
