@@ -45,6 +45,7 @@ bench=$build/tests/palpate_bench
 paper="$root/configs/paper/object_i.yaml instruction_set=baseline log.sync=none"
 default="$root/configs/default.yaml instruction_set=baseline log.sync=none"
 export PALPATE_PLUGIN_PATH='' HOME="$work"
+# Nothing else of the environment is there, which every program reads through when it starts.
 export GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX512VL,-AVX512BW,-AVX2,-AVX,-FMA,-FMA4,-BMI1,-BMI2,-MOVBE,-LZCNT,-ERMS,-FSRM,-RTM,-SSE4_1,-SSE4_2,-SSSE3
 
 # A run of the paper that ended after ten taps, as a kill leaves it.
@@ -80,7 +81,8 @@ command_of() {
 count() {
   words=$(command_of "$1")
   rm -f "$work"/out.*
-  (cd "$work" && valgrind --tool=callgrind --zero-before='palpate::run_job*' \
+  (cd "$work" && env -i PATH="$PATH" HOME="$HOME" PALPATE_PLUGIN_PATH= GLIBC_TUNABLES="$GLIBC_TUNABLES" \
+    valgrind --tool=callgrind --zero-before='palpate::run_job*' \
     --callgrind-out-file="$work/out.%p" $words) >"$work/said" 2>&1 ||
     { cat "$work/said" >&2; echo "instructions: $1 failed: $words" >&2; exit 1; }
   awk '/^totals:/ {sum += $2} END {printf "%.0f\n", sum}' "$work"/out.*

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <utility>
 
 namespace palpate {
 
@@ -123,10 +124,11 @@ const Tree* Tree::find_path(std::string_view path) const {
   return child == nullptr || rest.empty() ? child : child->find_path(rest);
 }
 
-Tree& Tree::at_path(std::string_view path, const Place& asker) {
+Tree::Slot Tree::slot(std::string_view path, const Place& asker) {
+  Tree* holder = nullptr;
   Tree* tree = this;
   for (std::string_view rest = path; !rest.empty();) {
-    if (Tree* whole = tree->find(rest)) return *whole;
+    if (Tree* whole = tree->find(rest)) return {tree, *whole};
     const auto [head, tail] = split_path(rest);
     if (tree->kind == Kind::list && find_item(*tree, head) == nullptr) {
       throw Error(asker.text(), fmt::format("'{}': the list has no item '{}'", path, head),
@@ -142,20 +144,22 @@ Tree& Tree::at_path(std::string_view path, const Place& asker) {
       tree->entries.back().place = asker;
       child->place = asker;
     }
-    tree = child;
+    holder = std::exchange(tree, child);
     rest = tail;
   }
-  return *tree;
+  return {holder, *tree};
 }
 
+Tree& Tree::at_path(std::string_view path, const Place& asker) { return slot(path, asker).value; }
+
 void Tree::put(std::string_view path, Tree value) {
-  Tree& slot = at_path(path, value.place);
-  for_all(*this, [&](Tree& one) {
-    for (Entry& entry : one.entries) {
-      if (&entry.value == &slot) entry.place = value.place;
+  const Slot found = slot(path, value.place);
+  if (found.holder != nullptr) {
+    for (Entry& entry : found.holder->entries) {
+      if (&entry.value == &found.value) entry.place = value.place;
     }
-  });
-  slot = std::move(value);
+  }
+  found.value = std::move(value);
 }
 
 Place Tree::place_of(std::string_view path) const {

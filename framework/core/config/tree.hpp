@@ -88,6 +88,15 @@ struct Tree {
   std::string canonical() const;
   /// The same, behind what `out` holds already.
   void append_canonical(std::string& out) const;
+
+ private:
+  /// A value and what holds it; no holder where it is the whole tree.
+  struct Slot {
+    Tree* holder;
+    Tree& value;
+  };
+  /// What at_path() returns, with its holder.
+  Slot slot(std::string_view path, const Place& asker);
 };
 
 struct Tree::Entry {
