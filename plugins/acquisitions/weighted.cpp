@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The paper's exploration function: e(x) = u(x) w(x) (Sun and Min 2021, section III), with w as it comes from the
-// weight process. Its prior mean and its clipping are options of that process: `weight: {prior_mean, clip}`.
+// label GP. Its prior mean and its clipping are options of that process: `label: {prior_mean, clip}`.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 #include <palpate/simd.hpp>

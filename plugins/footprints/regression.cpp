@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's weight process taken for a probability (Sun and Min 2021, section III): the regression on the labels 0
+// The paper's label GP taken for a probability (Sun and Min 2021, section III): the regression on the labels 0
 // and 1 that the framework keeps for the weight w, clipped to [0, 1].
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
@@ -16,6 +16,6 @@ class Regression final : public Footprint {
   void probability(const PointsView&, VectorOut out) override { out.setZero(); }
 };
 
-PALPATE_PLUGIN(Footprint, Regression, "regression", "the weight process, the paper's")
+PALPATE_PLUGIN(Footprint, Regression, "regression", "the label GP, the paper's")
 
 }  // namespace palpate::footprints

@@ -95,7 +95,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Replays taps on a posterior engine: height and weight process, choice of the best u w after every tap");
+  CLI::App app("Replays taps on a posterior engine: height and label GP, choice of the best u w after every tap");
   Arguments arguments;
   using Kind = PosteriorSettings::Kind;
   const std::map<std::string, Kind> engines{

@@ -56,7 +56,7 @@ Outcome run(std::vector<std::string> overrides, const std::string& engine, const
   out.seconds = timer.seconds;
   out.taps.assign(timer.taps.begin(), timer.taps.end());
   const RunResult result = experiment.result();
-  out.error_bound = result.height_process->error_bound;
+  out.error_bound = result.height_gp->error_bound;
   out.rmse = result.errors.rmse.value();
   return out;
 }

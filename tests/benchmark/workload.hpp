@@ -34,7 +34,7 @@ struct Replay {
 
 constexpr int kInitialTaps = 3;
 
-/// Brings the taps one by one to a height and a weight process of unit variance and noise variance 1e-4, and chooses
+/// Brings the taps one by one to a height and a label GP of unit variance and noise variance 1e-4, and chooses
 /// the best of u w after each, the initial ones apart.
 Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
               const PosteriorSettings& settings, std::unique_ptr<test::Process>* last = nullptr);

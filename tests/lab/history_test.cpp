@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"paper/object_i.yaml", "acquisition=uncertainty", "seed=4"},
                       std::vector<std::string>{"paper/object_i.yaml", "surface=two_part", "fitting=ceres",
                                                "fitting.every=4", "seed=4"},
-                      std::vector<std::string>{"paper/object_i.yaml", "acquisition=random", "weight.clip=true",
+                      std::vector<std::string>{"paper/object_i.yaml", "acquisition=random", "label.clip=true",
                                                "posterior=dense"},
                       std::vector<std::string>{"paper/object_i.yaml", "backend=continuous",
                                                "scene.effects={missed_contacts: {probability: 0.3}}"},
@@ -140,7 +140,7 @@ TEST(History, HasTheProbabilityOfTheFootprintInPlaceOfTheWeight) {
   const TapBelief& belief = last.from_above().belief();
   EXPECT_EQ(history.maps.at(3).frames.back(), Eigen::VectorXf(belief.probability().cast<float>()));
   EXPECT_FALSE(history.moments.back().least_weight.has_value());
-  EXPECT_EQ(belief.weight_process().process, nullptr) << "nobody has asked for it";
+  EXPECT_EQ(belief.label_gp().process, nullptr) << "nobody has asked for it";
 }
 
 TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {
@@ -237,7 +237,7 @@ TEST(RunPage, SaysOneThingOfARunThatEndsOrGoesOnWhileItIsMade) {
 TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
   const std::vector<std::string> said = warnings("paper/object_i.yaml", {});
   EXPECT_THAT(said, Contains(HasSubstr("5 of 17 taps were chosen by the fallback")));
-  EXPECT_THAT(said, Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("weight.clip=true"))));
+  EXPECT_THAT(said, Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("label.clip=true"))));
   EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("elsewhere"))));
 }
 
@@ -263,7 +263,7 @@ TEST(Warnings, OfARunFromAnySideSpeakOfApproachesAndTakeAFreeWayForNoFailure) {
 }
 
 TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {
-  const Recorded run("paper/object_i.yaml", {"repeat=allow", "fallback=none", "height.noise=0 mm", "weight.noise=0",
+  const Recorded run("paper/object_i.yaml", {"repeat=allow", "fallback=none", "height.noise=0 mm", "label.noise=0",
                                              "seed=1", "scene.effects={missed_contacts: {probability: 0.3}}"});
   const RunResult last = run.history().moments.back().result;
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());

@@ -219,13 +219,12 @@ TEST_P(Looks, WhatNeverChangesIsALineAndNoPanel) {
   const auto words = seen.values.at(0).at(1).get<std::string>();
   EXPECT_THAT(titles, Contains("Error of the surface (rms)"));
   EXPECT_THAT(titles, Not(Contains(HasSubstr("Hyperparameters"))));
-  EXPECT_THAT(words, HasSubstr("Hyperparameters of the height process: signal 1, noise 0.0001, length_scale 0.017 SI"));
+  EXPECT_THAT(words, HasSubstr("Hyperparameters of the height GP: signal 1, noise 0.0001, length_scale 0.017 SI"));
 
   fs::remove_all(folder_.path() / "runs");
   const fs::path fitted = run_with_page({"seed=4", "taps=8", "candidates.count=16", "fitting=ceres"});
   const Browsed moving = browse(fitted, {drawn(8), kPanels});
-  EXPECT_THAT(moving.values.at(0).at(0).get<std::vector<std::string>>(),
-              Contains("Hyperparameters of the height process"));
+  EXPECT_THAT(moving.values.at(0).at(0).get<std::vector<std::string>>(), Contains("Hyperparameters of the height GP"));
 }
 
 TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {

@@ -81,7 +81,7 @@ TEST_P(SweepTrouble, OffersWhatParetoTakesAndShowsFailedAndMissingJobs) {
     return test::palpate({"pareto", directory.string(), "--cost", cost, "--error", error}, folder_.path()).status == 0;
   };
   const auto offered = [&](std::size_t at) { return seen.values.at(at).get<std::set<std::string>>(); };
-  for (const char* name : {"coverage_95", "footprint_iou", "height_process.jitter"}) {
+  for (const char* name : {"coverage_95", "footprint_iou", "height_gp.jitter"}) {
     EXPECT_EQ(takes("robot_seconds", name), offered(7).count(name) == 1) << name;
   }
   for (const char* name : {"footprint_iou", "on_surface_taps", "taps"}) {

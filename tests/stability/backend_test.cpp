@@ -85,7 +85,7 @@ TEST(ExtremeBackend, HeightsOfAnySizeGiveFiniteModels) {
 }
 
 TEST(ExtremeBackend, RepeatedTapsWithoutNoiseAreMetWithAReportedJitter) {
-  const auto outside = run({}, {"fallback=none", "repeat=allow", "height.noise=0 m", "weight.noise=0"});
+  const auto outside = run({}, {"fallback=none", "repeat=allow", "height.noise=0 m", "label.noise=0"});
   EXPECT_EQ(outside->experiment.result().taps, 17);
   EXPECT_GT(outside->experiment.result().interventions.at("jitter"), 0);
   EXPECT_EQ(outside->experiment.result().interventions.at("pivoted"), 0);

@@ -72,11 +72,11 @@ std::vector<Case> cases() {
       line("TypoInANestedKey", "initial: {desing: grid}", "10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
            "10:1: unknown option 'colour', known: complete, name, seed, taps, initial, candidates, kernel, height, "
-           "weight, "
+           "label, "
            "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
            "tie_tolerance, "
            "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
-      line("DottedKeyInAFile", "weight.clip: yes", "10:1: unknown option 'weight.clip', write weight: {clip: yes}"),
+      line("DottedKeyInAFile", "label.clip: yes", "10:1: unknown option 'label.clip', write label: {clip: yes}"),
       line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",
            "10:1: unknown option 'height.kernel.length_scale', write height: {kernel: {length_scale: 2 cm}}"),
       whole("DottedKeyWhereItsGroupIsNeeded", without("  - backend") + "backend.type: simulator\n",
@@ -91,13 +91,13 @@ std::vector<Case> cases() {
             "9:1: unknown option 'backnd', did you mean 'backend'?"),
       whole("KeysUnderAHeadingOfTheirOwn", "experiment:\n  kernel: rbf\n" + kGood,
             "1:1: unknown option 'experiment', known: complete, name, seed, taps, initial, candidates, kernel, height, "
-            "weight, "
+            "label, "
             "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
             "tie_tolerance, "
             "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
       whole("GroupUnderAnotherName", without("  - scene") + "world: {area: {width: 23 cm, depth: 23 cm}}\n",
             "9:1: unknown option 'world', known: complete, name, seed, taps, initial, candidates, kernel, height, "
-            "weight, "
+            "label, "
             "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
             "tie_tolerance, "
             "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
@@ -116,8 +116,8 @@ std::vector<Case> cases() {
       line("WrongUnit", "kernel: {length_scale: 3 s}",
            "10:24: kernel.length_scale: '3 s' is a time, not a length, write a length like '1.7 cm'"),
       line("UnknownUnit", "height: {noise: 1 nmm}", "10:17: height.noise: unknown unit 'nmm', did you mean 'mm'?"),
-      line("UnitWhereNoneBelongs", "weight: {noise: 1 mm}",
-           "10:17: weight.noise: '1 mm' is not a plain number, this one has no unit"),
+      line("UnitWhereNoneBelongs", "label: {noise: 1 mm}",
+           "10:17: label.noise: '1 mm' is not a plain number, this one has no unit"),
       line("DecimalComma", "kernel:\n  length_scale: 1,7 cm",
            "11:17: kernel.length_scale: '1,7 cm' has a decimal comma, write a point"),
       line("NegativeLength", "kernel: {length_scale: -1.7 cm}",
@@ -132,7 +132,7 @@ std::vector<Case> cases() {
            "10:7: seed: '010' has a leading zero, octal numbers are not read: write it without the zero"),
       line("NegativeSeed", "seed: -1", "10:7: seed: -1 is out of range, it must be at least 0"),
       line("SeedThatIsNotWhole", "seed: 1.5", "10:7: seed: '1.5' is not a whole number, write digits alone"),
-      line("YesForTrue", "weight: {clip: yes}", "10:16: weight.clip: 'yes' is not a truth value, write true or false"),
+      line("YesForTrue", "label: {clip: yes}", "10:16: label.clip: 'yes' is not a truth value, write true or false"),
 
       // Shapes
       line("ListWhereAValueBelongs", "seed: [1, 2]",
@@ -245,18 +245,18 @@ std::vector<Case> cases() {
            "10:27: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, raise it or "
            "lower the object"),
 
-      line("LabelsOfTheirOwnKernelThatShare", "weight: {hyperparameters: shared, kernel: {type: rbf}}",
-           "10:43: weight.kernel: the labels have the heights' kernel when hyperparameters are shared; take it away, "
+      line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",
+           "10:43: label.kernel: the labels have the heights' kernel when hyperparameters are shared; take it away, "
            "or choose own"),
-      line("LabelsOfTheirOwnFittingThatShare", "weight: {hyperparameters: shared, fitting: {type: fixed}}",
-           "10:44: weight.fitting: the labels are fitted with the heights when hyperparameters are shared; take it "
+      line("LabelsOfTheirOwnFittingThatShare", "label: {hyperparameters: shared, fitting: {type: fixed}}",
+           "10:44: label.fitting: the labels are fitted with the heights when hyperparameters are shared; take it "
            "away, or choose own"),
 
       // Plugins inside plugins, and how the surface is made
       line("UnknownSurface", "surface: two_parts",
            "10:10: surface: unknown value 'two_parts', did you mean 'two_part'?"),
-      line("UnknownHyperparameters", "weight: {hyperparameters: both}",
-           "10:27: weight.hyperparameters: unknown value 'both', known: own, shared"),
+      line("UnknownHyperparameters", "label: {hyperparameters: both}",
+           "10:27: label.hyperparameters: unknown value 'both', known: own, shared"),
       line("NoKernelInASum", "kernel: {type: sum, kernels: []}", "10:30: kernel.kernels: needs at least one kernel"),
       line("SumWithoutKernels", "kernel: {type: sum}",
            "10:16: 'kernel.kernels' is missing, the parts, each {type: ..., ...}"),

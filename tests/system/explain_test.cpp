@@ -99,7 +99,7 @@ class Explain : public Shell {
           text.find("(the probability that an object is there, by footprint/" + footprint + ")") != std::string::npos,
           has("p"));
       EXPECT_EQ(text.find("Footprint: " + footprint) != std::string::npos, has("p"));
-      EXPECT_THAT(text, Not(HasSubstr("Weight process")));
+      EXPECT_THAT(text, Not(HasSubstr("Label GP")));
     }
     for (const char* name : {"u", "w", "e", "p"}) {
       const std::string begin = *name == 'e' ? "e = u w = " : name + std::string(" = ");
@@ -145,12 +145,12 @@ INSTANTIATE_TEST_SUITE_P(With, ExplainEveryTap,
                              "seed=3", "acquisition=uncertainty seed=3", "acquisition=random seed=3",
                              "acquisition=grid seed=3",
                              "fitting=ceres height.signal=5cm surface=two_part fitting.every=3",
-                             "fitting=ceres height.signal=5cm weight.hyperparameters=shared kernel=matern52",
-                             "kernel=swell_and_texture weight.clip=true initial.design=sobol",
+                             "fitting=ceres height.signal=5cm label.hyperparameters=shared kernel=matern52",
+                             "kernel=swell_and_texture label.clip=true initial.design=sobol",
                              // A rule that stalls or may repeat itself.
                              "fallback=none repeat=allow", "fallback=none initial.design=grid",
                              "fallback=none initial.design=search scene.placement=random",
-                             "repeat=allow height.noise=0mm weight.noise=0 candidates.count=6 taps=40",
+                             "repeat=allow height.noise=0mm label.noise=0 candidates.count=6 taps=40",
                              // Failed taps, some and all, and predictions.
                              Words{"scene.effects={missed_contacts: {probability: 0.3}, reach: {}}", "seed=2"},
                              Words{"scene.effects.missed_contacts={probability: 1}", "surface=two_part", "taps=6"},
@@ -235,7 +235,7 @@ TEST_F(Explain, SaysThatAStalledRuleTapsTheSamePlaceForEver) {
 
 TEST_F(Explain, SaysThatTheFallbackDidNotStepInWhereScoresAreAsGoodAsZeroButPositive) {
   // Where an object may be, all is tapped, and u there is the noise, 1e-12; elsewhere w, and so the score, is below 0.
-  const fs::path directory = ran("repeat=allow height.noise=0.001mm weight.noise=1e-6 candidates.count=6 taps=40");
+  const fs::path directory = ran("repeat=allow height.noise=0.001mm label.noise=1e-6 candidates.count=6 taps=40");
   int found = 0;
   for (const json& tap : taps_of(directory)) {
     if (tap["source"] != "acquisition" || tap["score"] > 1e-9) continue;
@@ -263,13 +263,13 @@ TEST_F(Explain, PrintsWhatItsPageShows) {
 
 TEST_F(Explain, SaysWhatJitterAndAWeightBeyondItsBoundsMean) {
   // The same candidate again and again without noise: the matrix is singular.
-  const fs::path directory = ran("fallback=none repeat=allow height.noise=0mm weight.noise=0");
-  ASSERT_GT(taps_of(directory)[16]["height_process"]["jitter"], 0.0);
+  const fs::path directory = ran("fallback=none repeat=allow height.noise=0mm label.noise=0");
+  ASSERT_GT(taps_of(directory)[16]["height_gp"]["jitter"], 0.0);
   EXPECT_THAT(explain(directory, 17),
               HasSubstr("Its matrix was singular in double precision, so jitter was added to the diagonal"));
-  EXPECT_THAT(explain(ran("weight.clip=true", config("paper/object_i_right.yaml")), 17),
+  EXPECT_THAT(explain(ran("label.clip=true", config("paper/object_i_right.yaml")), 17),
               AllOf(HasSubstr("It leaves [0, 1] because it is a regression on the labels 0 and 1"),
-                    HasSubstr("clipped to [0, 1] (weight.clip: true).")));
+                    HasSubstr("clipped to [0, 1] (label.clip: true).")));
 }
 
 TEST_F(Explain, SaysWhatAFitDidAndWhenNoneWasDue) {
@@ -278,7 +278,7 @@ TEST_F(Explain, SaysWhatAFitDidAndWhenNoneWasDue) {
   const std::vector<json> taps = taps_of(directory);
   int fits = 0;
   for (std::size_t i = 5; i < taps.size(); ++i) {
-    const json& process = taps[i]["height_process"];
+    const json& process = taps[i]["height_gp"];
     const std::string text = explain(directory, static_cast<int>(i) + 1);
     if (process.contains("fit")) {
       ++fits;

@@ -87,7 +87,7 @@ TEST_F(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThemAndCurvesThatEndWithItsSumma
   EXPECT_NEAR(curves.at("curve_3_1").back()[1], field("on_surface_taps") / 17, 1e-9);
   EXPECT_NEAR(curves.at("curve_6_1").back()[1], field("robot_seconds"), 1e-6);
   EXPECT_THAT(text_of(directory / "figures/curves.gnuplot"),
-              HasSubstr("Hyperparameters of the height process: signal 1, noise 0.0001, length_scale 0.017"))
+              HasSubstr("Hyperparameters of the height GP: signal 1, noise 0.0001, length_scale 0.017"))
       << "what never changes is told, not drawn";
 }
 
@@ -121,7 +121,7 @@ TEST_F(Figures, AreDrawnOfTheSmallestRunsAndOfStrategiesWithoutModels) {
   for (const Words& words :
        {Words("taps=1 initial.count=1"), Words{"candidates={count: 1}", "taps=1", "initial.count=1"},
         Words{"candidates={count: 2}", "taps=4", "fallback=none"}, Words("acquisition=random taps=5"),
-        Words("surface=two_part taps=4 weight.clip=true")}) {
+        Words("surface=two_part taps=4 label.clip=true")}) {
     const Ended paper = report(drawn_run(words), "--paper");
     EXPECT_EQ(paper.status, 0) << words.front() << ": " << paper.err;
   }

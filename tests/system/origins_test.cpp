@@ -50,7 +50,7 @@ TEST_F(Origins, EndEachLineOfTheConfigOfARunAndStandOnItsPageAndInTheListOfRuns)
 
 TEST_F(Origins, EndEachLineOfTheConfigOfEachJobHoweverManySettingsASweepHas) {
   ASSERT_EQ(palpate(Words{"sweep", config("paper/object_i.yaml")} +
-                    "weight.prior_mean=range(0,66) taps=3 initial.count=3 --quiet")
+                    "label.prior_mean=range(0,66) taps=3 initial.count=3 --quiet")
                 .status,
             0);
   for (const int job : {0, 65}) {

@@ -75,13 +75,13 @@ TEST_F(OtherBuild, DiffersByOneDigitOfOneCellOrByATapLess) {
 TEST_F(OtherBuild, MayCallColumnsAndKeysByOtherNamesThatATableHas) {
   pretend("here", kTaps);
   pretend("other",
-          "tap,reason,x,height_process.noise,height_process.signal,old\n"
+          "tap,reason,x,height_gp.noise,height_gp.signal,old\n"
           "1,\"far, \"\"too\"\" far\",0.5,1,2,7\n2,,0.25,3,4,7\n");
   const Ended lost = compare("");
   EXPECT_EQ(lost.status, 1);
-  EXPECT_THAT(lost.out, HasSubstr("column height_process.noise of the other program has no partner here"));
-  EXPECT_EQ(compare("column,height_process,gp\n").status, 1) << "old has no partner";
-  EXPECT_EQ(compare("column,height_process,gp\ncolumn,old,\n").status, 0);
+  EXPECT_THAT(lost.out, HasSubstr("column height_gp.noise of the other program has no partner here"));
+  EXPECT_EQ(compare("column,height_gp,gp\n").status, 1) << "old has no partner";
+  EXPECT_EQ(compare("column,height_gp,gp\ncolumn,old,\n").status, 0);
   pretend("other", "tap,reason,x\n1,\"far, \"\"too\"\" far\",0.5\n2,,0.25\n");
   EXPECT_THAT(compare("").out, HasSubstr("column gp.noise has no partner in the other program"));
   EXPECT_EQ(compare("column,,gp\n").status, 0);

@@ -26,7 +26,7 @@ class Replay : public Shell {
 TEST_F(Replay, FindsEveryNumberEqualAndFollowsEveryFit) {
   for (const char* acquisition : {"weighted", "uncertainty", "random"})
     replayed(std::string("acquisition=") + acquisition);
-  for (const char* extra : {"surface=two_part", "weight.hyperparameters=shared", "fitting.every=5"})
+  for (const char* extra : {"surface=two_part", "label.hyperparameters=shared", "fitting.every=5"})
     replayed(Words("fitting=ceres height.signal=5cm") + extra);
 }
 
@@ -72,7 +72,7 @@ TEST_F(Replay, KnowsWhatABackendReadWhoeverChoseTheSecondTap) {
   for (const char* initial : {"initial.count=1", "initial.count=3"}) {
     const fs::path run = replayed(Words("backend.type=cannot_go_on taps=4 acquisition=random") + initial);
     const std::string taps = part_of(run, "tap");
-    EXPECT_THAT(taps.substr(taps.find('\n')), HasSubstr("\"height_process\": {\"kernel\"")) << "it is recorded";
+    EXPECT_THAT(taps.substr(taps.find('\n')), HasSubstr("\"height_gp\": {\"kernel\"")) << "it is recorded";
   }
 }
 
@@ -84,8 +84,8 @@ TEST_F(Replay, KnowsWhatWasReadByARunThatStoppedAtItsFirstLook) {
 
 TEST_F(Replay, AgreesWhereAForecastReadsNothingBeforeTheFirstHit) {
   const std::string taps = part_of(replayed("surface=two_part stop.expected_rmse=1mm"), "tap");
-  EXPECT_THAT(taps.substr(0, taps.find("{\"tap\": 7")), Not(HasSubstr("surface_process"))) << "the first hit is tap 8";
-  EXPECT_THAT(taps, HasSubstr("surface_process"));
+  EXPECT_THAT(taps.substr(0, taps.find("{\"tap\": 7")), Not(HasSubstr("surface_gp"))) << "the first hit is tap 8";
+  EXPECT_THAT(taps, HasSubstr("surface_gp"));
 }
 
 using Earlier = Shell;

@@ -97,17 +97,17 @@ TEST_F(ARun, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
   };
   EXPECT_EQ(models({}),
             "# models that taps are chosen from, and who reads them:\n"
-            "#   height process: acquisition weighted, fallback uncertainty, from its first use on\n"
-            "#   weight process: acquisition weighted\n");
+            "#   height GP: acquisition weighted, fallback uncertainty, from its first use on\n"
+            "#   label GP: acquisition weighted\n");
   EXPECT_EQ(models("acquisition=random fallback=none"), "");
   EXPECT_EQ(models("acquisition=random fallback=none backend=adaptive"),
-            "# models that taps are chosen from, and who reads them:\n#   height process: backend simulator\n");
+            "# models that taps are chosen from, and who reads them:\n#   height GP: backend simulator\n");
   EXPECT_THAT(run("kernel.length_scale=1e-300m scene.objects.0.at=[30cm,5cm] --print-config").out,
               HasSubstr("# this config cannot be run: "));
 
   EXPECT_EQ(part_of(ran(), "setup"),
-            "{\"setup\": 1, \"announces\": false, \"models\": {\"height process\": [\"acquisition weighted\", "
-            "\"fallback uncertainty, from its first use on\"], \"weight process\": [\"acquisition weighted\"]}}\n");
+            "{\"setup\": 1, \"announces\": false, \"models\": {\"height GP\": [\"acquisition weighted\", "
+            "\"fallback uncertainty, from its first use on\"], \"label GP\": [\"acquisition weighted\"]}}\n");
 }
 
 TEST_F(ARun, PrintingAConfigConnectsToNothing) {
@@ -148,7 +148,7 @@ TEST_F(ARun, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
 TEST_F(ARun, SwapsEveryStrategyFromTheCommandLine) {
   for (const char* choice :
        {"kernel=rbf", "kernel=matern32", "kernel=matern52", "acquisition=uncertainty", "acquisition=weighted",
-        "acquisition=random", "acquisition=grid", "fitting=fixed", "scene=object_ii", "weight.clip=true",
+        "acquisition=random", "acquisition=grid", "fitting=fixed", "scene=object_ii", "label.clip=true",
         "height.kernel=matern32", "initial.design=sobol", "candidates={spacing: 1 cm}"}) {
     const Ended ended = run({choice, "--json", "--force"});
     EXPECT_EQ(ended.status, 0) << choice << ": " << ended.err;

@@ -190,8 +190,8 @@ TEST_F(Compose, LetsAProcessInheritWhatItDoesNotSayOfTheSharedKernel) {
 
 TEST_F(Compose, ReadsAGroupForOneProcessAndGivesItNoKernelOfItsOwnUnasked) {
   EXPECT_EQ(value("defaults:\n  - kernel: rbf\nheight: {signal: 1 m}\n", "height.kernel"), "-");
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nweight:\n  kernel: rough\n", "weight.kernel.type"), "matern");
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n", "weight.kernel.nu", {"weight.kernel=rough"}), "1.5");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nweight:\n  kernel: rough\n", "label.kernel.type"), "matern");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n", "label.kernel.nu", {"label.kernel=rough"}), "1.5");
 }
 
 TEST_F(Compose, LeavesTheNamesOfASweepAlone) {

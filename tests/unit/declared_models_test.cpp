@@ -19,21 +19,20 @@ TEST(Experiment, UncertaintyBuildsNoWeightProcessBeforeTheLastTap) {
   int weight_seen = 0;
   int height_seen = 0;
   prepared.journal.recording = [&](const TapRecord&) {
-    weight_seen += belief.weight_process() ? 1 : 0;
-    height_seen += belief.height_process() ? 1 : 0;
+    weight_seen += belief.label_gp() ? 1 : 0;
+    height_seen += belief.height_gp() ? 1 : 0;
   };
   prepared.run();
   EXPECT_EQ(weight_seen, 0);
-  EXPECT_EQ(height_seen, 14) << "of 17 taps, the 14 chosen by score need the height process";
+  EXPECT_EQ(height_seen, 14) << "of 17 taps, the 14 chosen by score need the height GP";
   prepared.experiment.result();
-  EXPECT_NE(belief.weight_process().process, nullptr)
-      << "the truth-based metrics want the outline, once, after the last tap";
+  EXPECT_NE(belief.label_gp().process, nullptr) << "the truth-based metrics want the outline, once, after the last tap";
 }
 
 TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
   const Finished run("paper/object_i.yaml", {"acquisition=random"});
-  EXPECT_EQ(run.experiment.belief().height_process().process, nullptr);
-  EXPECT_EQ(run.experiment.belief().weight_process().process, nullptr);
+  EXPECT_EQ(run.experiment.belief().height_gp().process, nullptr);
+  EXPECT_EQ(run.experiment.belief().label_gp().process, nullptr);
   EXPECT_FALSE(run.taps.back().max_standard_deviation.has_value());
   EXPECT_FALSE(run.taps.back().errors.rmse.has_value());
 }
@@ -44,24 +43,24 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
     const Prepared prepared("paper/object_i.yaml", words);
     for (const ModelReader& one : prepared.experiment.readers()) out.push_back(one.model + ": " + one.who);
     const TapBelief& belief = prepared.experiment.belief();
-    EXPECT_FALSE(belief.height_process() || belief.weight_process());
+    EXPECT_FALSE(belief.height_gp() || belief.label_gp());
     return out;
   };
   using testing::ElementsAre;
-  EXPECT_THAT(readers({}), ElementsAre("height process: acquisition weighted", "weight process: acquisition weighted",
-                                       "height process: fallback uncertainty, from its first use on"));
+  EXPECT_THAT(readers({}), ElementsAre("height GP: acquisition weighted", "label GP: acquisition weighted",
+                                       "height GP: fallback uncertainty, from its first use on"));
   EXPECT_THAT(readers({"acquisition=random", "fallback=none"}), ElementsAre());
   EXPECT_THAT(readers({"acquisition=outline", "fallback=none"}),
-              ElementsAre("height process: acquisition outline", "weight process: acquisition outline"))
+              ElementsAre("height GP: acquisition outline", "label GP: acquisition outline"))
       << "two outputs of one process";
-  EXPECT_THAT(readers({"acquisition=outline", "fallback=none", "weight.noise=1e-3"}),
-              ElementsAre("weight process: acquisition outline"));
+  EXPECT_THAT(readers({"acquisition=outline", "fallback=none", "label.noise=1e-3"}),
+              ElementsAre("label GP: acquisition outline"));
   EXPECT_THAT(readers({"acquisition=outline", "footprint=shape", "fallback=none", "surface=two_part",
                        "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
-              ElementsAre("footprint shape: acquisition outline", "height process: stop.max_standard_deviation",
-                          "surface process: stop.expected_rmse", "footprint shape: stop.expected_rmse"));
+              ElementsAre("footprint shape: acquisition outline", "height GP: stop.max_standard_deviation",
+                          "surface GP: stop.expected_rmse", "footprint shape: stop.expected_rmse"));
   EXPECT_THAT(readers({"acquisition=random", "fallback=none", "backend.motion.adaptive_hover={clearance: 2cm}"}),
-              ElementsAre("height process: backend simulator"));
+              ElementsAre("height GP: backend simulator"));
 }
 
 TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
@@ -69,7 +68,7 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
        std::vector<Words>{{},
                           {"acquisition=random"},
                           {"acquisition=outline"},
-                          {"acquisition=outline", "weight.noise=1e-3"},
+                          {"acquisition=outline", "label.noise=1e-3"},
                           {"acquisition=uncertainty", "surface=two_part"},
                           {"acquisition=inside", "footprint=shape", "surface=two_part"},
                           {"acquisition=random", "surface=two_part", "stop.expected_rmse=1mm"},
@@ -82,9 +81,9 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
     prepared.run();
     const TapRecord& last = prepared.taps.back();
     std::set<std::string> recorded;
-    if (last.height_process) recorded.insert("height process");
-    if (last.weight_process) recorded.insert("weight process");
-    if (last.surface_process) recorded.insert("surface process");
+    if (last.height_gp) recorded.insert("height GP");
+    if (last.label_gp) recorded.insert("label GP");
+    if (last.surface_gp) recorded.insert("surface GP");
     if (last.footprint) recorded.insert("footprint shape");
     EXPECT_EQ(recorded, named) << (words.empty() ? "weighted" : words.front());
   }
@@ -135,9 +134,9 @@ TEST(Experiment, APreviewTellsWhatTheModelsExpectAndBuildsNone) {
   std::vector<bool> built;
   double mean = 0.0;
   prepared.journal.permitting = [&](const TapRecord& tap) {
-    built.push_back(static_cast<bool>(belief.height_process()));
+    built.push_back(static_cast<bool>(belief.height_gp()));
     previews.push_back(prepared.experiment.preview(tap));
-    EXPECT_EQ(static_cast<bool>(belief.height_process()), built.back());
+    EXPECT_EQ(static_cast<bool>(belief.height_gp()), built.back());
     if (built.back()) mean = belief.height_mean()(tap.candidate);
     return true;
   };

@@ -198,7 +198,7 @@ TEST(ExpectedRmse, NeedsNoTruthAndNoModelThatTheRunHasNot) {
                  scripted({contact_at(0.1), contact_at(0.1)}));
   EXPECT_FALSE(blind.experiment.expected_rmse());
   EXPECT_FALSE(blind.experiment.result().expected_rmse);
-  EXPECT_FALSE(blind.experiment.belief().surface_process()) << "no model was started for it";
+  EXPECT_FALSE(blind.experiment.belief().surface_gp()) << "no model was started for it";
 
   Finished unfound("default.yaml", {"taps=3"}, scripted());
   EXPECT_FALSE(unfound.experiment.result().expected_rmse) << "there is nothing yet to go by";

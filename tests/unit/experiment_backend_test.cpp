@@ -96,13 +96,13 @@ TEST(ShownBelief, ThatNobodyReadsBuildsNoModel) {
   const auto backend = scripted();
   backend->reading = [](const Belief& belief) { EXPECT_GT(belief.taps(), 0); };
   const Finished run("paper/object_i.yaml", {"acquisition=random"}, backend);
-  EXPECT_EQ(run.experiment.belief().height_process().process, nullptr);
-  EXPECT_EQ(run.experiment.belief().weight_process().process, nullptr);
+  EXPECT_EQ(run.experiment.belief().height_gp().process, nullptr);
+  EXPECT_EQ(run.experiment.belief().label_gp().process, nullptr);
 }
 
 TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
   for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=weighted"}) {
-    for (const char* models : {"surface=single", "surface=two_part", "weight.hyperparameters=shared"}) {
+    for (const char* models : {"surface=single", "surface=two_part", "label.hyperparameters=shared"}) {
       const std::vector<std::string> words{acquisition, models, "fitting=ceres", "height.signal=5 cm",
                                            "candidates.count=12"};
       const Finished quiet("paper/object_i.yaml", words, four_taps());
@@ -114,8 +114,7 @@ TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
       };
       const Finished read("paper/object_i.yaml", words, backend);
       ASSERT_EQ(read.taps.size(), quiet.taps.size());
-      EXPECT_TRUE(read.taps[1].height_process && !quiet.taps[1].height_process)
-          << "what is read is recorded from then on";
+      EXPECT_TRUE(read.taps[1].height_gp && !quiet.taps[1].height_gp) << "what is read is recorded from then on";
       for (std::size_t i = 0; i < quiet.taps.size(); ++i) {
         const Row with = tap_row(read.taps[i]);
         for (const auto& [field, value] : tap_row(quiet.taps[i]).fields) {

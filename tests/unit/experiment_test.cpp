@@ -65,7 +65,7 @@ TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
   EXPECT_EQ(result.off_surface_taps, 1);
   EXPECT_EQ(result.failed_taps, 4);
   run.experiment.ask(Quantity::height);
-  EXPECT_EQ(run.experiment.belief().height_process().process->size(), 2);
+  EXPECT_EQ(run.experiment.belief().height_gp().process->size(), 2);
   std::set<int> places;
   for (const TapRecord& tap : run.taps) places.insert(tap.candidate);
   EXPECT_EQ(places.size(), 6U) << "a place that failed is not tried again, even where repeats are allowed";

@@ -57,7 +57,7 @@ class Fit : public testing::Test {
 };
 
 TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
-  const auto shared = run({"weight.hyperparameters=shared", "weight.signal=3"});
+  const auto shared = run({"label.hyperparameters=shared", "label.signal=3"});
   shared->experiment.result();
   ASSERT_EQ(fitting_->calls.size(), 3U) << "at 5, 10 and 15 of 17 contacts";
   for (std::size_t i = 0; i < 3; ++i) {
@@ -74,16 +74,16 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
       EXPECT_EQ(call.targets[1](tap), *record.on_surface ? 1.0 : 0.0);
     }
   }
-  const auto& height = *shared->experiment.belief().height_process().process;
-  const TapBelief::Output label = shared->experiment.belief().weight_process();
+  const auto& height = *shared->experiment.belief().height_gp().process;
+  const TapBelief::Output label = shared->experiment.belief().label_gp();
   const ProcessSettings& weight = label.process->settings(label.output);
   EXPECT_EQ(&height, label.process) << "two outputs of one process";
   EXPECT_EQ(height.settings().signal, 0.25);
   EXPECT_EQ(height.settings().mean, 0.125);
   EXPECT_EQ(height.settings().noise, 0.25 * 2e-3);
-  EXPECT_EQ(weight.signal, 0.5) << "signals stay apart";
+  EXPECT_EQ(label.signal, 0.5) << "signals stay apart";
   EXPECT_EQ(weight.mean, 0.25);
-  EXPECT_EQ(weight.noise, 0.5 * 2e-3) << "the ratio of noise to signal is shared";
+  EXPECT_EQ(label.noise, 0.5 * 2e-3) << "the ratio of noise to signal is shared";
 }
 
 TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
@@ -101,12 +101,12 @@ TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
   EXPECT_GT(of_surface, 0);
   EXPECT_EQ(fitting_->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
   const TapBelief& belief = own->experiment.belief();
-  EXPECT_NE(&belief.height_process().process->kernel(), &belief.weight_process().process->kernel());
-  EXPECT_NE(&belief.height_process().process->kernel(), &belief.surface_process().process->kernel());
+  EXPECT_NE(&belief.height_gp().process->kernel(), &belief.label_gp().process->kernel());
+  EXPECT_NE(&belief.height_gp().process->kernel(), &belief.surface_gp().process->kernel());
 }
 
 TEST_F(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {
-  run({"surface=two_part", "weight.hyperparameters=shared"})->experiment.result();
+  run({"surface=two_part", "label.hyperparameters=shared"})->experiment.result();
   for (const Call& call : fitting_->calls) EXPECT_EQ(call.targets.size(), call.mean_ratio > 0.0 ? 1U : 2U);
 }
 
@@ -115,13 +115,13 @@ TEST_F(Fit, IsInTheRecordOfTheTapAfterIt) {
   for (const TapRecord& tap : own->taps) {
     const bool after_fit = tap.number == 6 || tap.number == 11 || tap.number == 16;
     const Row row = tap_row(tap);
-    EXPECT_EQ(row.find("height_process.fit.reason") != nullptr, after_fit) << tap.number;
-    EXPECT_EQ(row.find("weight_process.fit.reason") != nullptr, after_fit) << tap.number;
+    EXPECT_EQ(row.find("height_gp.fit.reason") != nullptr, after_fit) << tap.number;
+    EXPECT_EQ(row.find("label_gp.fit.reason") != nullptr, after_fit) << tap.number;
     if (!after_fit) continue;
-    EXPECT_EQ(*row.find("height_process.fit.changed"), Scalar{true});
-    EXPECT_EQ(*row.find("height_process.fit.objective"), Scalar{-1.5});
-    EXPECT_EQ(*row.find("height_process.fit.evaluations"), Scalar{std::int64_t{4}});
-    EXPECT_EQ(*row.find("height_process.fit.reason"), Scalar{std::string("stretched")});
+    EXPECT_EQ(*row.find("height_gp.fit.changed"), Scalar{true});
+    EXPECT_EQ(*row.find("height_gp.fit.objective"), Scalar{-1.5});
+    EXPECT_EQ(*row.find("height_gp.fit.evaluations"), Scalar{std::int64_t{4}});
+    EXPECT_EQ(*row.find("height_gp.fit.reason"), Scalar{std::string("stretched")});
   }
 }
 
@@ -145,12 +145,12 @@ TEST_F(Fit, ThatFailsIsCountedAndChangesNothing) {
 
 TEST_F(Fit, ThatFailsForHeightsAndLabelsTogetherIsOneFailure) {
   fitting_->fails = true;
-  EXPECT_EQ(run({"weight.hyperparameters=shared"})->experiment.result().interventions.at("fit_failed"), 3);
+  EXPECT_EQ(run({"label.hyperparameters=shared"})->experiment.result().interventions.at("fit_failed"), 3);
 }
 
 TEST_F(Fit, OfAResumedRunIsThatOfTheUnbrokenOne) {
   for (const std::string how : {"own", "shared"}) {
-    const std::vector<std::string> words{"surface=two_part", "weight.hyperparameters=" + how, "seed=3"};
+    const std::vector<std::string> words{"surface=two_part", "label.hyperparameters=" + how, "seed=3"};
     Finished unbroken(kConfig, words, nullptr, plugins_);
     for (const std::size_t cut : {4U, 5U, 12U}) {
       Prepared rest(kConfig, words, nullptr, plugins_);
@@ -185,7 +185,7 @@ TEST_F(Fit, OfLabelsThatShareConcernsTheKernelOfTheHeightsAlone) {
   const Instead<Fitting> choosy(std::make_shared<Choosy>());
   std::vector<std::string> words{"kernel=rational_quadratic", "height.kernel=matern32"};
   EXPECT_THROW(Prepared(kConfig, words, nullptr, choosy), Error);
-  words.emplace_back("weight.hyperparameters=shared");
+  words.emplace_back("label.hyperparameters=shared");
   EXPECT_NO_THROW(Prepared(kConfig, words, nullptr, choosy));
 }
 

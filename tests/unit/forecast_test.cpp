@@ -166,7 +166,7 @@ TEST(Forecast, NeverCutsTheInitialTapsShort) {
 
 TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
   Finished run("default.yaml", {"taps=12", "height.lies=none", "backend=gentle"});
-  for (const TapRecord& tap : run.taps) EXPECT_FALSE(tap.forecast || tap.surface_process);
+  for (const TapRecord& tap : run.taps) EXPECT_FALSE(tap.forecast || tap.surface_gp);
   EXPECT_FALSE(run.experiment.result().forecast.has_value());
 }
 

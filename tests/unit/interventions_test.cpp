@@ -19,14 +19,14 @@ TEST(Interventions, CountATapThatSeveralModelsSetAsideOnce) {
 TEST(Interventions, CountAProcessOfHeightsAndLabelsOnce) {
   const std::vector<Contact> answers(6, contact_at(0.05));
   Finished run("default.yaml",
-               {"weight.hyperparameters=shared", "surface=single", "height.lies=none", "footprint=regression",
+               {"label.hyperparameters=shared", "surface=single", "height.lies=none", "footprint=regression",
                 "height.noise=0mm", "candidates.count=1", "repeat=allow", "taps=6"},
                scripted(answers));
   run.experiment.ask(Quantity::weight | Quantity::height);
   const RunResult result = run.experiment.result();
-  const Process* const process = run.experiment.belief().height_process().process;
+  const Process* const process = run.experiment.belief().height_gp().process;
   ASSERT_NE(process, nullptr);
-  ASSERT_EQ(run.experiment.belief().weight_process().process, process);
+  ASSERT_EQ(run.experiment.belief().label_gp().process, process);
   ASSERT_GT(process->jitter_raised(), 0);
   EXPECT_EQ(result.interventions.at("jitter"), process->jitter_raised());
 }

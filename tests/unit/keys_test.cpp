@@ -53,8 +53,8 @@ TEST(ConfigKeys, KnowAPluginsGroupWhereverItStandsAndAnyOtherInItsPlaceAlone) {
 }
 
 TEST(ConfigKeys, TellWhereAValueIsTakenOver) {
-  EXPECT_THAT(config_keys().heirs_of("kernel.nu"), ElementsAre("height.kernel.nu", "weight.kernel.nu"));
-  EXPECT_THAT(config_keys().heirs_of("fitting"), ElementsAre("height.fitting", "weight.fitting"));
+  EXPECT_THAT(config_keys().heirs_of("kernel.nu"), ElementsAre("height.kernel.nu", "label.kernel.nu"));
+  EXPECT_THAT(config_keys().heirs_of("fitting"), ElementsAre("height.fitting", "label.fitting"));
   EXPECT_THAT(config_keys().heirs_of("kernels"), IsEmpty());
   EXPECT_THAT(config_keys().heirs_of("height.kernel"), IsEmpty());
 }

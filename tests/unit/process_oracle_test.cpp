@@ -56,7 +56,7 @@ class Comparison final : public Journal {
     worst.mean = std::max(
         {worst.mean, apart(oracle_.mean(0), belief.height_mean()), apart(oracle_.mean(1), belief.weight_mean())});
     Eigen::VectorXd of_weights(variance.size());
-    belief.weight_process().process->read_variance(0, of_weights);
+    belief.label_gp().process->read_variance(0, of_weights);
     worst.variance = std::max({worst.variance, apart(variance, belief.height_variance()), apart(variance, of_weights)});
     // An upper bound of the condition number: trace (n + noise) over the smallest eigenvalue, which is at least the
     // noise variance; the smallest pivot squared bounds it closer where that is larger, up to the factor n.

@@ -30,7 +30,7 @@ TEST(ResolvedConfig, HasTheSameIdHoweverALengthIsWritten) {
 TEST(ResolvedConfig, HasAnIdOfTwelveHexadecimalDigits) { EXPECT_THAT(id_of(), testing::MatchesRegex("[0-9a-f]{12}")); }
 
 TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
-  EXPECT_EQ(id_of({"repeat=forbid", "weight.prior_mean=0", "backend.motion.hover=13.5cm"}), id_of());
+  EXPECT_EQ(id_of({"repeat=forbid", "label.prior_mean=0", "backend.motion.hover=13.5cm"}), id_of());
 }
 
 TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
@@ -40,10 +40,10 @@ TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
 TEST(ResolvedConfig, PutsAllElseIntoTheId) {
   const std::string id = id_of();
   for (const char* text :
-       {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "height.noise=0.2mm", "weight.clip=true",
+       {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "height.noise=0.2mm", "label.clip=true",
         "posterior=dense", "acquisition=uncertainty", "fallback=none", "repeat=allow", "tie_tolerance=0",
         "stop.robot_time=9min", "scene.desk=1cm", "backend.motion.pause=0s", "kernel=matern32",
-        "kernel=swell_and_texture", "surface=two_part", "weight.hyperparameters=shared"}) {
+        "kernel=swell_and_texture", "surface=two_part", "label.hyperparameters=shared"}) {
     EXPECT_NE(id_of({text}), id) << text;
   }
 }
@@ -52,7 +52,7 @@ TEST(ResolvedConfig, ReadsBackAsTheSameConfig) {
   for (const char* file :
        {"paper/object_i.yaml", "paper/object_i_right.yaml", "paper/object_ii.yaml", "paper/comparison.yaml"}) {
     const ResolvedConfig config =
-        shipped_config(file, {"height.kernel=matern52", "weight.kernel=swell_and_texture", "surface=two_part",
+        shipped_config(file, {"height.kernel=matern52", "label.kernel=swell_and_texture", "surface=two_part",
                               "candidates.spacing=5mm", "candidates.count=none"});
     const ResolvedConfig again = resolve_experiment(parse_yaml(to_yaml(config.tree), "again.yaml"), shared_host());
     EXPECT_EQ(again.id, config.id) << file;
@@ -103,8 +103,8 @@ TEST(ResolvedConfig, ThatIsCompleteTakesNeutralValuesForWhatItLacksAndIsRefusedW
     return resolve_experiment(tree, shared_host());
   };
   EXPECT_EQ(read_without("scene", "touch").identity, config.identity);
-  EXPECT_THAT(error_of([&] { read_without("weight", "clip"); }),
-              testing::HasSubstr("'weight.clip' is missing, what is complete gives every option"));
+  EXPECT_THAT(error_of([&] { read_without("label", "clip"); }),
+              testing::HasSubstr("'label.clip' is missing, what is complete gives every option"));
 }
 
 TEST(ResolvedConfig, FollowsTheContentOfMeshesViewsAndProgramsAndNotTheirPaths) {

@@ -38,7 +38,7 @@ TEST(TwoPart, IsTheObjectFromAWeightOfOneHalfOnAndTheDeskBelow) {
   // Far from the only tap, at this length scale, the weight is its prior mean and the height the level of the object.
   const auto with = [](const std::string& prior_mean) {
     return std::vector<std::string>{"surface=two_part", "kernel.length_scale=0.1mm", "scene.desk=-30cm",
-                                    "weight.prior_mean=" + prior_mean};
+                                    "label.prior_mean=" + prior_mean};
   };
   Alone object(with("0.5"));
   Alone desk(with("0.49999999"));
@@ -56,8 +56,8 @@ TEST(TwoPart, IsADeskWhileNothingWasHit) {
   one.touch(3, 0.0);
   one.touch(50, 0.0);
   EXPECT_TRUE((reconstruction(one.belief).array() == 0.0).all());
-  EXPECT_EQ(one.belief.surface_process().process->size(), 0);
-  EXPECT_EQ(one.belief.weight_process().process->size(), 2);
+  EXPECT_EQ(one.belief.surface_gp().process->size(), 0);
+  EXPECT_EQ(one.belief.label_gp().process->size(), 2);
 }
 
 TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
@@ -79,7 +79,7 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
   EXPECT_LT(apart(one.belief.height_mean(), book.mean()), 1e-10);
   EXPECT_LT(apart(one.belief.height_variance(), book.variance()), 1e-5);
   one.belief.ask(Quantity::uncertainty);
-  EXPECT_EQ(one.belief.height_process().process->size(), 6) << "u comes from all taps";
+  EXPECT_EQ(one.belief.height_gp().process->size(), 6) << "u comes from all taps";
 }
 
 TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
@@ -102,11 +102,11 @@ TEST(TwoPart, IsNotBuiltForTheRecordOfATapNorForItsMaps) {
   prepared.journal.announcing = [&](const TapRecord&) { maps = maps_csv(prepared.experiment); };
   prepared.run();
   for (const TapRecord& tap : prepared.taps) {
-    EXPECT_FALSE(tap.surface_process || tap.errors.rmse || tap.errors.rmse_on_surface || tap.errors.rmse_height);
-    EXPECT_EQ(tap.max_standard_deviation.has_value(), tap.height_process.has_value());
-    EXPECT_EQ(tap.errors.footprint_iou.has_value(), tap.weight_process.has_value());
+    EXPECT_FALSE(tap.surface_gp || tap.errors.rmse || tap.errors.rmse_on_surface || tap.errors.rmse_height);
+    EXPECT_EQ(tap.max_standard_deviation.has_value(), tap.height_gp.has_value());
+    EXPECT_EQ(tap.errors.footprint_iou.has_value(), tap.label_gp.has_value());
   }
-  EXPECT_TRUE(prepared.taps.back().height_process && prepared.taps.back().weight_process);
+  EXPECT_TRUE(prepared.taps.back().height_gp && prepared.taps.back().label_gp);
   EXPECT_EQ(maps.substr(0, maps.find('\n')), "x,y,u,w");
 }
 
@@ -115,8 +115,8 @@ TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyAsksForIt) {
   prepared.experiment.ask(Quantity::height);
   prepared.run();
   const TapRecord& tap = prepared.taps.back();
-  ASSERT_TRUE(tap.surface_process && tap.errors.rmse && tap.errors.rmse_height);
-  EXPECT_EQ(tap.surface_process->settings.mean_ratio, 1000.0);
+  ASSERT_TRUE(tap.surface_gp && tap.errors.rmse && tap.errors.rmse_height);
+  EXPECT_EQ(tap.surface_gp->settings.mean_ratio, 1000.0);
   EXPECT_EQ(maps_csv(prepared.experiment).substr(0, 31), "x,y,height_mean,height_variance");
 }
 

@@ -38,7 +38,7 @@ class ConfigKeys {
 
   /// Pairs of paths: what the first does not say, the second says.
   const std::vector<std::pair<std::string, std::string>>& heirs() const { return heirs_; }
-  /// Where else the value at a dotted path is taken over: that of kernel.nu at height.kernel.nu and weight.kernel.nu.
+  /// Where else the value at a dotted path is taken over: that of kernel.nu at height.kernel.nu and label.kernel.nu.
   std::vector<std::string> heirs_of(const std::string& path) const;
 
  private:

@@ -22,7 +22,7 @@ bool is_below_one_of(const std::string& key, const std::vector<std::string>& kno
   return dot != std::string::npos && std::find(known.begin(), known.end(), key.substr(0, dot)) != known.end();
 }
 
-/// What a dotted key stands for, as a file has it: `weight: {clip: yes}`.
+/// What a dotted key stands for, as a file has it: `label: {clip: yes}`.
 std::string nested(const Tree::Entry& entry) {
   const auto groups = std::count(entry.key.begin(), entry.key.end(), '.');
   constexpr std::size_t kShort = 40;

@@ -29,13 +29,13 @@ void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields)
   only("height.fitting", !options.height.fitting);
   only("height.lies", !options.height.lies);
   only("height.systematic", !options.height.systematic);
-  only("weight.signal", options.weight.signal == usual.weight.signal);
-  only("weight.noise", options.weight.noise == usual.weight.noise);
-  only("weight.prior_mean", options.weight.prior_mean == usual.weight.prior_mean);
-  only("weight.clip", options.weight.clip == usual.weight.clip);
-  only("weight.hyperparameters", options.weight.hyperparameters == usual.weight.hyperparameters);
-  only("weight.kernel", !options.weight.kernel);
-  only("weight.fitting", !options.weight.fitting);
+  only("label.signal", options.label.signal == usual.label.signal);
+  only("label.noise", options.label.noise == usual.label.noise);
+  only("label.prior_mean", options.label.prior_mean == usual.label.prior_mean);
+  only("label.clip", options.label.clip == usual.label.clip);
+  only("label.hyperparameters", options.label.hyperparameters == usual.label.hyperparameters);
+  only("label.kernel", !options.label.kernel);
+  only("label.fitting", !options.label.fitting);
   only("posterior", options.posterior == usual.posterior);
   only("lowrank.tolerance", options.lowrank.tolerance == usual.lowrank.tolerance);
   only("fitting.type", options.fitting.type == usual.fitting.type);
@@ -114,7 +114,7 @@ void HeightOptions::list(Fields& fields) {
   list_plugins(fields);
 }
 
-void WeightOptions::list(Fields& fields) {
+void LabelOptions::list(Fields& fields) {
   fields.real(signal,
               Field("signal", "prior standard deviation of the label").at_least(kLeastSignal).at_most(kMostSignal));
   fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0).at_most(kMostSignal));
@@ -176,12 +176,11 @@ void SpaceOptions::list(Fields& fields) {
 }
 
 void StopOptions::list(Fields& fields) {
-  fields.real(
-      max_standard_deviation,
-      Field("max_standard_deviation",
-            "stop when no candidate's height is less certain than this, all taps seen; builds the height process")
-          .in(Unit::metre)
-          .above(0));
+  fields.real(max_standard_deviation,
+              Field("max_standard_deviation",
+                    "stop when no candidate's height is less certain than this, all taps seen; builds the height GP")
+                  .in(Unit::metre)
+                  .above(0));
   fields.real(
       expected_rmse,
       Field("expected_rmse",
@@ -228,14 +227,17 @@ void ExperimentOptions::list(Fields& fields) {
                  Field("initial", "the first taps, drawn from the candidates without replacement").of_strategy());
   fields.section(candidates,
                  Field("candidates", "the places among which the next tap is chosen: cell centres of a grid").of_run());
-  fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both processes").of_strategy().group());
-  fields.section(height, Field("height", "the process of the heights above the desk").of_strategy());
-  fields.section(weight, Field("weight", "the process of the labels: 1 on an object, 0 on the desk").of_strategy());
+  fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both GPs").of_strategy().group());
+  fields.section(height, Field("height", "the GP of the heights above the desk").of_strategy());
+  fields.section(
+      label,
+      Field("label", "the GP of the labels: 1 on an object, 0 on the desk; its mean is the weight w of the paper")
+          .of_strategy());
   fields.section(prior, Field("prior", "what a camera saw before the first tap; not given, nothing").of_run());
   fields.choice(
       surface,
       Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it").of_strategy(),
-      {{"single", "one process for the heights of object and desk, as the paper has it", {}},
+      {{"single", "one GP for the heights of object and desk, as in the paper", {}},
        {"two_part", "heights from the taps on an object alone, where the footprint is at least 1/2; else desk", {}},
        {"implicit", "closed surfaces in space; for `scene.touch: any`, and only for that", {}}});
   if (surface == Surface::implicit && !space) space.emplace();
@@ -247,8 +249,7 @@ void ExperimentOptions::list(Fields& fields) {
                  {"lowrank", "time grows with candidates alone, not with taps; needs a separable kernel", {}}});
   fields.section(lowrank, Field("lowrank", "the posterior engine of that name").of_strategy());
   fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate").of_strategy().group());
-  fields.plugin(fitting,
-                Field("fitting", "how hyperparameters are chosen, shared by both processes").of_strategy().group());
+  fields.plugin(fitting, Field("fitting", "how hyperparameters are chosen, shared by both GPs").of_strategy().group());
   fields.plugin(footprint,
                 Field("footprint", "where the objects are, as a probability at every place").of_strategy().group());
   fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive").of_strategy(),

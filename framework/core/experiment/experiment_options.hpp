@@ -56,7 +56,7 @@ struct HeightOptions : ProcessOptions {
   void list(Fields& fields) override;
 };
 
-struct WeightOptions : ProcessOptions {
+struct LabelOptions : ProcessOptions {
   enum class Hyperparameters { own, shared };
   double prior_mean = 0.0;
   bool clip = false;
@@ -119,7 +119,7 @@ struct ExperimentOptions : Options {
   CandidateOptions candidates;
   PluginChoice kernel{"kernel", {}, nullptr};
   HeightOptions height;
-  WeightOptions weight;
+  LabelOptions label;
   std::optional<PriorOptions> prior;  ///< absent: nothing was seen before the first tap
   Surface surface = Surface::single;
   std::optional<SpaceOptions> space;  ///< of `surface: implicit`, always

@@ -36,7 +36,7 @@ Forecast Forecaster::forecast(const TapBelief& belief) const {
   Forecast out;
   if (hits_ == 0) return out;
   Eigen::VectorXd variance = belief.height_variance();
-  variance *= variance_ratio(*belief.surface_process().process, squares_ / hits_);
+  variance *= variance_ratio(*belief.surface_gp().process, squares_ / hits_);
   const double square =
       belief.two_part() ? expected_square(belief.probability(), belief.height_mean().array() - belief.desk(), variance)
                         : variance.mean();

@@ -76,27 +76,27 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       clock_(clock),
       posterior_(posterior_settings(options)),
       desk_(context.scene.desk()),
-      clip_(options.weight.clip),
+      clip_(options.label.clip),
       two_part_(options.surface == ExperimentOptions::Surface::two_part),
       sights_(sights_of(options.prior, context.scene)),
       lies_(two_part_ ? options.height.lies : std::nullopt),
       doubted_(candidates) {
   posterior_.taps += static_cast<int>(sights_.size());
   const HeightOptions& height = options.height;
-  const WeightOptions& weight = options.weight;
+  const LabelOptions& label = options.label;
   const PluginChoice height_kernel = height.kernel.value_or(options.kernel);
   const PluginChoice height_fitting = height.fitting.value_or(options.fitting);
-  const PluginChoice weight_kernel = weight.kernel.value_or(options.kernel);
-  const bool shared = weight.hyperparameters == WeightOptions::Hyperparameters::shared;
+  const PluginChoice label_kernel = label.kernel.value_or(options.kernel);
+  const bool shared = label.hyperparameters == LabelOptions::Hyperparameters::shared;
   heights_ = make_model("fitting/height", height_kernel, height_fitting, {height.signal, height.noise, 0.0});
-  ProcessSettings label{weight.signal, weight.noise, weight.prior_mean};
-  if (!shared) labels_ = make_model("fitting/weight", weight_kernel, weight.fitting.value_or(options.fitting), label);
+  ProcessSettings settings{label.signal, label.noise, label.prior_mean};
+  if (!shared) labels_ = make_model("fitting/weight", label_kernel, label.fitting.value_or(options.fitting), settings);
   labels_.of_labels = true;
-  joined_ = shared || (same(height_kernel, weight_kernel) && equal_for_good(options));
+  joined_ = shared || (same(height_kernel, label_kernel) && equal_for_good(options));
   if (joined_) {
     // By the ratio of noise to signal, the labels' noise is that of the heights.
-    label.noise = height.noise / height.signal * label.signal;
-    heights_.outputs.push_back(label);
+    settings.noise = height.noise / height.signal * settings.signal;
+    heights_.outputs.push_back(settings);
   }
   if (height.systematic)
     systematic_.emplace(height.systematic->offset, height.systematic->drift, height.systematic->noise);
@@ -122,8 +122,8 @@ const Touch& TapBelief::datum(const Model& model, int number) const {
 
 bool TapBelief::equal_for_good(const ExperimentOptions& options) const {
   const HeightOptions& height = options.height;
-  const WeightOptions& weight = options.weight;
-  if (height.noise / height.signal != weight.noise / weight.signal) return false;
+  const LabelOptions& label = options.label;
+  if (height.noise / height.signal != label.noise / label.signal) return false;
   for (int taps = 1; taps <= options.taps; ++taps) {
     if (heights_.fitting->due(taps) || labels_.fitting->due(taps)) return false;
   }
@@ -210,9 +210,9 @@ Quantities TapBelief::known(Quantities asked) const {
 std::vector<std::string> TapBelief::models_of(Quantities quantities) const {
   const Quantities all = known(quantities);
   std::vector<std::string> out;
-  if (all.has(Quantity::uncertainty)) out.emplace_back("height process");
-  if ((all.has(Quantity::height) || all.has(Quantity::doubt)) && two_part_) out.emplace_back("surface process");
-  if (all.has(Quantity::weight)) out.emplace_back("weight process");
+  if (all.has(Quantity::uncertainty)) out.emplace_back("height GP");
+  if ((all.has(Quantity::height) || all.has(Quantity::doubt)) && two_part_) out.emplace_back("surface GP");
+  if (all.has(Quantity::weight)) out.emplace_back("label GP");
   if (quantities.has(Quantity::probability) && footprint_) out.push_back("footprint " + footprint_choice_.type);
   return out;
 }
@@ -251,8 +251,8 @@ void TapBelief::build(Quantities wanted) {
 bool TapBelief::has_models_of(Quantities quantities) const {
   const Quantities all = known(quantities);
   const bool of_hits = two_part_ && (all.has(Quantity::height) || all.has(Quantity::doubt));
-  return (height_process() || !all.has(Quantity::uncertainty)) && (weight_process() || !all.has(Quantity::weight)) &&
-         (surface_process() || !of_hits) && (footprint_asked_ || !footprint_ || !all.has(Quantity::probability));
+  return (height_gp() || !all.has(Quantity::uncertainty)) && (label_gp() || !all.has(Quantity::weight)) &&
+         (surface_gp() || !of_hits) && (footprint_asked_ || !footprint_ || !all.has(Quantity::probability));
 }
 
 void TapBelief::show(Model& model, int output) {
@@ -330,7 +330,7 @@ void TapBelief::map_heights() {
   process.update_maps();
   process.read_relative_variance(uncertainty_);
   process.read_variance(0, variance_);
-  require_finite(variance_, "the variance of the height process", taps());  // and with it u
+  require_finite(variance_, "the variance of the height GP", taps());  // and with it u
   if (!two_part_) map_surface(process);
   if (joined_ && process.shown() > label_output()) map_labels();
   heights_.stale = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the taps so far say: the height process and the weight process over the candidates, the footprint, and of
+// What the taps so far say: the height GP and the label GP over the candidates, the footprint, and of
 // `surface: two_part` the process of the heights on an object; each built when it is asked for and never before. Where
 // heights and labels have the same kernel and the same ratio of noise to signal they are two outputs of one process,
 // with one factorisation.
@@ -81,7 +81,7 @@ class TapBelief final : public Belief {
   /// Has the models take in the taps noted since, one by one, fits included, and their maps follow.
   void update();
 
-  /// The models behind some quantities, by their names: "height process", "footprint shape".
+  /// The models behind some quantities, by their names: "height GP", "footprint shape".
   std::vector<std::string> models_of(Quantities quantities) const;
 
   /// The quantities that belong to the record: those that were asked for, and what comes from the same models.
@@ -104,11 +104,11 @@ class TapBelief final : public Belief {
   const Eigen::VectorXd& height_mean() const override { return kept(height_mean_); }
   const Eigen::VectorXd& height_variance() const override { return kept(two_part_ ? object_variance_ : variance_); }
 
-  /// Variance of the height process, all taps seen, square metres: height_variance() unless the surface is two_part.
+  /// Variance of the height GP, all taps seen, square metres: height_variance() unless the surface is two_part.
   /// There where the uncertainty is.
   const Eigen::VectorXd& all_taps_variance() const { return kept(variance_); }
 
-  /// The mean of the weight process as it comes, whatever `weight.clip` says.
+  /// The mean of the label GP as it comes, whatever `label.clip` says.
   const Eigen::VectorXd& weight_mean() const { return kept(weight_mean_); }
 
   /// One output of a process.
@@ -118,12 +118,12 @@ class TapBelief final : public Belief {
     const FitSummary* last_fit = nullptr;  ///< the fit after the latest tap; null if none was due then
     explicit operator bool() const { return process != nullptr; }
   };
-  /// The processes as far as they were built, null if nothing has asked for them. u comes from the height process,
-  /// height_mean() and height_variance() from the surface process: the same one for `surface: single`, that of the taps
+  /// The processes as far as they were built, null if nothing has asked for them. u comes from the height GP,
+  /// height_mean() and height_variance() from the surface GP: the same one for `surface: single`, that of the taps
   /// on an object for `two_part`.
-  Output height_process() const { return output(heights_, 0); }
-  Output weight_process() const { return output(labels(), label_output()); }
-  Output surface_process() const { return output(surface(), 0); }
+  Output height_gp() const { return output(heights_, 0); }
+  Output label_gp() const { return output(labels(), label_output()); }
+  Output surface_gp() const { return output(surface(), 0); }
   bool two_part() const { return two_part_; }
   /// Whether the probability is the weight, clipped: then what is shown of the outline is w, else p.
   bool footprint_is_weight() const { return !footprint_; }
@@ -258,7 +258,7 @@ class TapBelief final : public Belief {
   bool uneven_ = false;                 ///< some less than others
   std::vector<Touch> hits_;             ///< those on an object
   std::optional<double> lies_;          ///< of contacts, where some are not believed
-  DoubtedSurface doubted_;              ///< the surface process, then
+  DoubtedSurface doubted_;              ///< the surface GP, then
   Eigen::VectorXd doubt_, by_label_;    ///< a value a contact
   PluginChoice footprint_choice_;
   std::shared_ptr<Footprint> footprint_;  ///< null where it is the weight

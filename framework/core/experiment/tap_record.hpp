@@ -49,8 +49,8 @@ struct FootprintState {
 
 /// All models as they stood, as far as the loop had built them, and how good they were.
 struct ModelState {
-  std::optional<ProcessState> height_process, weight_process;
-  std::optional<ProcessState> surface_process;  ///< of `surface: two_part`
+  std::optional<ProcessState> height_gp, label_gp;
+  std::optional<ProcessState> surface_gp;  ///< of `surface: two_part`
   std::optional<FootprintState> footprint;
   std::optional<Forecast> forecast;                        ///< where a stop rule asks for it
   std::optional<double> expected_rmse;                     ///< metres; of a tap for observers alone: see Watch
@@ -166,7 +166,7 @@ struct Preview {
   std::vector<std::string> motion;     ///< what the backend says that it would do, in lines
 };
 
-/// A model and who reads it: "weight process" and "acquisition weighted".
+/// A model and who reads it: "label GP" and "acquisition weighted".
 struct ModelReader {
   std::string model;
   std::string who;

@@ -97,14 +97,14 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
     const Eigen::VectorXd& variance = belief.all_taps_variance();
     tap.max_standard_deviation = std::sqrt(largest_value(variance));
     tap.mean_standard_deviation = variance.cwiseSqrt().mean();
-    tap.height_process = state_of(belief.height_process());
+    tap.height_gp = state_of(belief.height_gp());
   }
-  if (belief.two_part() && known.has(Quantity::height)) tap.surface_process = state_of(belief.surface_process());
+  if (belief.two_part() && known.has(Quantity::height)) tap.surface_gp = state_of(belief.surface_gp());
   if (known.has(Quantity::weight)) {
     tap.weight = belief.weight()(tap.candidate);
     tap.min_weight = belief.weight_mean().minCoeff();
     tap.max_weight = belief.weight_mean().maxCoeff();
-    tap.weight_process = state_of(belief.weight_process());
+    tap.label_gp = state_of(belief.label_gp());
   }
   if (known.has(Quantity::probability) && !belief.footprint_is_weight()) {
     tap.probability = belief.probability()(tap.candidate);
@@ -166,7 +166,7 @@ RunResult Watch::result(TapBelief& belief) {
     for (const ObjectErrors& errors : object_errors(maps, *real, candidates_))
       out.objects->push_back({errors, touches_[out.objects->size()]});
     out.calibration = calibration(belief, *real, touched_);
-  } else if (belief.surface_process()) {
+  } else if (belief.surface_gp()) {
     belief.build(Quantity::height);  // what is told of a process is of its maps, too
   }
   std::vector<const Process*> counted;  // one process may have several outputs
@@ -183,12 +183,12 @@ RunResult Watch::result(TapBelief& belief) {
     }
     out.count(factors);
   };
-  take(belief.height_process(), out.height_process);
-  take(belief.weight_process(), out.weight_process);
-  if (belief.two_part()) take(belief.surface_process(), out.surface_process);
+  take(belief.height_gp(), out.height_gp);
+  take(belief.label_gp(), out.label_gp);
+  if (belief.two_part()) take(belief.surface_gp(), out.surface_gp);
   if (options_.height.lies) {
     out.doubted = belief.doubted();
-    if (belief.surface_process()) {
+    if (belief.surface_gp()) {
       out.count(belief.factors_of_outliers());
       out.interventions["variance_clamped"] += belief.variances_clamped();
     }

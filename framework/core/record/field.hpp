@@ -40,7 +40,7 @@ struct RecordField {
   /// Worth a first look where there is no room for all; in the order of the list.
   RecordField& headline() { return first_look = true, *this; }
 
-  std::string name;     ///< dotted where nested: "compute.infer"; of a family "height_process.*"
+  std::string name;     ///< dotted where nested: "compute.infer"; of a family "height_gp.*"
   std::string meaning;  ///< a sentence without its full stop, in Markdown
   Type type = Type::number;
   Unit unit = Unit::none;

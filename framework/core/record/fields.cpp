@@ -147,26 +147,26 @@ void list_models(FieldList<Record>& list, bool reasons) {
   const auto process = [&](const char* name, const char* meaning, std::optional<ProcessState> ModelState::*state) {
     list.add_family(std::string(name) + ".*", meaning, [=](Row& row, const Record& record) {
       const std::optional<ProcessState>& of = record.*state;
-      if (!of && state == &ModelState::surface_process) return;
+      if (!of && state == &ModelState::surface_gp) return;
       add_process(row, name, of);
       if (reasons) row.add(std::string(name) + ".engine_reason", of ? std::optional(of->engine_reason) : std::nullopt);
     });
   };
   process(
-      "height_process",
-      "of the process over heights: hyperparameters by the names of the options (`kernel.kernels.0.length_scale`), "
+      "height_gp",
+      "of the GP over heights: hyperparameters by the names of the options (`kernel.kernels.0.length_scale`), "
       "`log_marginal_likelihood`, `jitter` (a variance), `condition` (an incremental estimate: a lower bound, most "
       "often within a factor of 3), `engine` of the posterior and its `error_bound`: of what it adds to the rounding "
       "of `dense`, to means in signals or to variances in signals squared, whichever is more. `fit.*` of the fit "
       "after the latest tap, if one was due: `changed` (false: the old hyperparameters stay), `objective` (the fit's "
       "own measure, larger is better), `evaluations`, `reason` (why it ended)",
-      &ModelState::height_process);
-  process("weight_process", "the same of the process over labels", &ModelState::weight_process);
+      &ModelState::height_gp);
+  process("label_gp", "the same of the GP over labels", &ModelState::label_gp);
   process(
-      "surface_process",
+      "surface_gp",
       "the same for the heights of the taps on an object; only with `surface: two_part`, and only where a strategy, "
       "a rule that ends the run or the backend reads the height itself",
-      &ModelState::surface_process);
+      &ModelState::surface_gp);
   list.add_family("footprint.*",
                   "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
                   "how it came to them; only where `footprint` is not `regression`",
@@ -261,7 +261,7 @@ FieldList<TapRecord> make_tap_list() {
       .in(Unit::metre);
   list.add("runner_up.y", "the same", [](const Tap& t) { return part(t.runner_up, &Target::y); }).in(Unit::metre);
   list.add("runner_up.score", "its score", &Tap::runner_up_score);
-  list.add("max_standard_deviation", "of the height over the candidates, before the tap; of the height process",
+  list.add("max_standard_deviation", "of the height over the candidates, before the tap; of the height GP",
            &Tap::max_standard_deviation)
       .in(Unit::metre);
   list.add("mean_standard_deviation", "the same", &Tap::mean_standard_deviation).in(Unit::metre);

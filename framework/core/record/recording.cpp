@@ -167,9 +167,9 @@ std::shared_ptr<Backend> no_backend(bool truth_known) { return std::make_shared<
 Quantities recorded_quantities(const Row& row) {
   const auto has = [&](const char* field) { return row.number(field).has_value(); };
   Quantities out;
-  if (has("height_process.signal")) out = out | Quantity::uncertainty;
-  if (has("weight_process.signal")) out = out | Quantity::weight;
-  if (has("surface_process.signal")) out = out | Quantity::height;
+  if (has("height_gp.signal")) out = out | Quantity::uncertainty;
+  if (has("label_gp.signal")) out = out | Quantity::weight;
+  if (has("surface_gp.signal")) out = out | Quantity::height;
   // A summary has no p.
   if (has("p") || row.find("footprint.remark") != nullptr) out = out | Quantity::probability;
   return out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Named scalars in an order: one line of a table, one JSON object. Names are dotted ("height_process.jitter"): JSON
+// Named scalars in an order: one line of a table, one JSON object. Names are dotted ("height_gp.jitter"): JSON
 // nests by the dots, CSV keeps them.
 #pragma once
 

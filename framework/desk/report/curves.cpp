@@ -40,9 +40,8 @@ struct NamedState {
   const char* name;
   std::optional<ProcessState> RunResult::*state;
 };
-constexpr std::array<NamedState, 3> kStates{{{"height process", &RunResult::height_process},
-                                             {"weight process", &RunResult::weight_process},
-                                             {"surface process", &RunResult::surface_process}}};
+constexpr std::array<NamedState, 3> kStates{
+    {{"height GP", &RunResult::height_gp}, {"label GP", &RunResult::label_gp}, {"surface GP", &RunResult::surface_gp}}};
 
 Row likelihoods_of(const Moment& moment) {
   Row out;

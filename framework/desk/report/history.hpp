@@ -33,7 +33,7 @@ struct Moment {
   bool is_next_known = true;         ///< false where a program chooses, which is not started for a record
   std::optional<double> next_along;  ///< of it, from any side: how far it would come by the most probable composition
   double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres; from any side of the surface
-  /// Of the candidates, as the weight process has it; absent where the footprint is not the weight.
+  /// Of the candidates, as the label GP has it; absent where the footprint is not the weight.
   std::optional<double> least_weight, most_weight;
 };
 
@@ -69,7 +69,7 @@ struct History {
   std::vector<Moment> moments;  ///< before the first tap, and after each
   std::vector<int> shown;       ///< the moments of which there are maps, ascending
   /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres, at most
-  /// the largest that the height process has at any moment: that of an object's level before it is touched means
+  /// the largest that the height GP has at any moment: that of an object's level before it is touched means
   /// nothing), "u", "w" or, where the footprint is not the weight, "p", and "score" where the acquisition's is none of
   /// these nor u w: a frame for each moment that is shown.
   /// Last, where truth is known, "truth" in one frame, metres.
@@ -122,7 +122,7 @@ class HistoryGrower {
   int stride_ = 1;         ///< shown is every so-many-th column and row
   bool own_scores_ = false;
   std::optional<Eigen::VectorXf> truth_;  ///< as of now: what is pushed moves it
-  double largest_ = 0.0;                  ///< standard deviation of the height process, of all moments
+  double largest_ = 0.0;                  ///< standard deviation of the height GP, of all moments
   History grown_;                         ///< maps as they are: finished() has the last word on them
 };
 

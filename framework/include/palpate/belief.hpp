@@ -66,9 +66,9 @@ class Belief {
     return targets().empty() ? std::nullopt : std::optional<Target>(targets().back());
   }
 
-  /// u: variance of the height process relative to its prior, noise excluded; M values in [0, 1].
+  /// u: variance of the height GP relative to its prior, noise excluded; M values in [0, 1].
   virtual const Eigen::VectorXd& uncertainty() const = 0;
-  /// w: mean of the weight process, or that mean clipped to [0, 1] if the config says `weight: {clip: true}`.
+  /// w: mean of the label GP, or that mean clipped to [0, 1] if the config says `label: {clip: true}`.
   /// Unclipped it leaves [0, 1] in nearly every run.
   virtual const Eigen::VectorXd& weight() const = 0;
   /// p: the probability that a candidate is on an object, by the config's footprint; M values in [0, 1].
@@ -76,9 +76,9 @@ class Belief {
   /// Outlines that p is the mean of, some of them: what p alone does not tell, that places are on an object together.
   /// Empty where the footprint has none.
   virtual const OutlineSample& outlines() const = 0;
-  /// Mean of the height process, metres.
+  /// Mean of the height GP, metres.
   virtual const Eigen::VectorXd& height_mean() const = 0;
-  /// Variance of the height process, noise excluded, square metres.
+  /// Variance of the height GP, noise excluded, square metres.
   virtual const Eigen::VectorXd& height_variance() const = 0;
 };
 

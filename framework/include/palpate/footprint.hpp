@@ -32,7 +32,7 @@ class Footprint {
 
   virtual ~Footprint() = default;
 
-  /// Whether the probability is the mean of the weight process, clipped to [0, 1], which the framework has already:
+  /// Whether the probability is the mean of the label GP, clipped to [0, 1], which the framework has already:
   /// then none of the methods below is called.
   virtual bool is_weight() const { return false; }
 

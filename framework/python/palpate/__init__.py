@@ -374,7 +374,7 @@ class Belief:
 
     @property
     def weight(self) -> _np.ndarray:
-        """w: mean of the weight process."""
+        """w: mean of the label GP."""
         return self._asked.weight()
 
     @property

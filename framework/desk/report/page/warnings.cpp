@@ -101,8 +101,8 @@ void warn_of_weights(const Recording& recording, const History& history, std::ve
       fmt::format("The weight leaves [0, 1]: from {:.2g} after tap {} to {:.2g} after tap {}. It is a regression on "
                   "labels, no probability; {}.",
                   *least->least_weight, least->taps, *most->most_weight, most->taps,
-                  recording.config.options.weight.clip ? "the strategy sees it clipped (weight.clip)"
-                                                       : "weight.clip=true would clip it for the strategy"));
+                  recording.config.options.label.clip ? "the strategy sees it clipped (label.clip)"
+                                                      : "label.clip=true would clip it for the strategy"));
 }
 
 void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {

@@ -227,7 +227,7 @@ class FromAboveExplained final : public Explanation {
     const double height = belief.height_mean()(candidate);
     page_.say(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
                           length_words(height), length_words(std::sqrt(belief.height_variance()(candidate))),
-                          two_part ? ", if an object is there (the surface process)" : ""));
+                          two_part ? ", if an object is there (the surface GP)" : ""));
     if (!two_part || on_surface()) expected_ = height;
   }
 

@@ -123,8 +123,8 @@ void explain_range_of_weight(Page& page, const Row& row, bool clipped) {
     out += fmt::format(
         ". It leaves [0, 1] because it is a regression on the labels 0 and 1, not a probability: between near taps "
         "with different labels it overshoots. {}",
-        clipped ? "The score takes it clipped to [0, 1] (weight.clip: true)."
-                : "The score takes it as it comes (weight.clip: false).");
+        clipped ? "The score takes it clipped to [0, 1] (label.clip: true)."
+                : "The score takes it as it comes (label.clip: false).");
     return page.say(out);
   }
   page.say(out + (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
@@ -147,23 +147,21 @@ void explain_footprint(Page& page, const Row& row, const std::string& type) {
 
 void explain_models(Page& page, const Row& row, const ExperimentOptions& options, const TapRecord& now) {
   const HeightOptions& height = options.height;
-  const WeightOptions& weight = options.weight;
-  const bool shared = weight.hyperparameters == WeightOptions::Hyperparameters::shared;
+  const LabelOptions& label = options.label;
+  const bool shared = label.hyperparameters == LabelOptions::Hyperparameters::shared;
   const PluginChoice& height_kernel = height.kernel ? *height.kernel : options.kernel;
   const PluginChoice& height_fitting = height.fitting ? *height.fitting : options.fitting;
-  const PluginChoice& weight_kernel = shared ? height_kernel : weight.kernel ? *weight.kernel : options.kernel;
-  const PluginChoice& weight_fitting = shared ? height_fitting : weight.fitting ? *weight.fitting : options.fitting;
-  explain_process(page,
-                  {"Height process", "height_process.", true, height_kernel, height_fitting, now.height_process, row});
+  const PluginChoice& label_kernel = shared ? height_kernel : label.kernel ? *label.kernel : options.kernel;
+  const PluginChoice& label_fitting = shared ? height_fitting : label.fitting ? *label.fitting : options.fitting;
+  explain_process(page, {"Height GP", "height_gp.", true, height_kernel, height_fitting, now.height_gp, row});
   if (const std::string mean = number_words(row, "mean_standard_deviation", length_words); !mean.empty())
     page.say(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
                          number_words(row, "max_standard_deviation", length_words)));
-  explain_process(page,
-                  {"Weight process", "weight_process.", false, weight_kernel, weight_fitting, now.weight_process, row});
-  explain_range_of_weight(page, row, weight.clip);
+  explain_process(page, {"Label GP", "label_gp.", false, label_kernel, label_fitting, now.label_gp, row});
+  explain_range_of_weight(page, row, label.clip);
   if (row.number("p")) explain_footprint(page, row, options.footprint.type);
-  explain_process(page, {"Surface process (of the taps on an object alone, whose level is free)", "surface_process.",
-                         true, height_kernel, height_fitting, now.surface_process, row});
+  explain_process(page, {"Surface GP (of the taps on an object alone, whose level is free)", "surface_gp.", true,
+                         height_kernel, height_fitting, now.surface_gp, row});
 }
 
 }  // namespace palpate
