@@ -24,7 +24,7 @@ LENGTHS = [0.001, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 20.0]
 MORE_THAN_THE_OTHER = 2.0
 AND_METRES = 0.001
 AND_OVERLAP = 0.05
-METRES = ["rmse_m", "rmse_on_surface_m", "rmse_height_m", "object_rmse_height_m", "nearest_m"]
+METRES = ["rmse_m", "rmse_object_m", "rmse_height_m", "object_rmse_height_m", "surface_distance_m"]
 OVERLAPS = ["footprint_iou", "object_iou", "volume_iou", "f_score"]
 
 

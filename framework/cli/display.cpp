@@ -31,8 +31,7 @@ std::string error_line(const Row& summary) {
   if (!errors.rmse) return fmt::format("expected error: {} over the scene\n", error_words(*expected));
   return fmt::format("error: {} over the scene{}, {} on the object; footprint IoU {}\n", error_words(*errors.rmse),
                      expected ? fmt::format(" (expected {})", error_words(*expected)) : "",
-                     errors.rmse_on_surface ? error_words(*errors.rmse_on_surface) : "-",
-                     share_text(errors.footprint_iou));
+                     errors.rmse_object ? error_words(*errors.rmse_object) : "-", share_text(errors.footprint_iou));
 }
 
 /// What had to be done about rounding, in one line; empty when nothing was.
@@ -83,7 +82,7 @@ void TapTable::announce(const TapRecord& tap) {
 void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) {
   clear_live_line();
   const bool touched = tap.contact.outcome == Outcome::contact;
-  const std::string contact = !touched ? outcome_name(tap.contact.outcome) : *tap.on_surface ? "object" : "desk";
+  const std::string contact = !touched ? outcome_name(tap.contact.outcome) : *tap.on_object ? "object" : "desk";
   const std::string line = fmt::format(
       "{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}{}\n", tap.number, source_name(tap.source),
       place_text(tap.target.x), place_text(tap.target.y), touched ? place_text(tap.contact.height) : std::string("-"),
@@ -120,9 +119,9 @@ void print_summary(const RunReport& report) {
                       row.cell("taps"), seconds ? usual_scale(Unit::second).quantity(*seconds) : "-");
   const std::string hit = row.cell("first_hit_tap");
   const std::string missed =
-      row.find("missed_taps") != nullptr ? fmt::format(" {} that met nothing,", row.cell("missed_taps")) : "";
-  text += fmt::format("taps: {} on the object, {} on the desk,{} {} failed; {}\n", row.cell("on_surface_taps"),
-                      row.cell("off_surface_taps"), missed, row.cell("failed_taps"),
+      row.find("no_contact_taps") != nullptr ? fmt::format(" {} that met nothing,", row.cell("no_contact_taps")) : "";
+  text += fmt::format("taps: {} on the object, {} on the desk,{} {} failed; {}\n", row.cell("object_taps"),
+                      row.cell("desk_taps"), missed, row.cell("failed_taps"),
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
   text += relabelled_line(row);
   text += error_line(row);

@@ -311,8 +311,7 @@ void add_compare(CommandLine& line) {
   };
   list("--by", line.compare.by, "KEYS", "the swept keys that make the groups: acquisition or acquisition,kernel")
       ->required();
-  list("--metric", line.compare.metrics, "COLUMNS",
-       "the columns of results.csv to compare: on_surface_taps,footprint_iou")
+  list("--metric", line.compare.metrics, "COLUMNS", "the columns of results.csv to compare: object_taps,footprint_iou")
       ->required();
   sub->add_option("--where", line.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"")
       ->type_name("CONDITION");
@@ -338,7 +337,7 @@ void add_compare(CommandLine& line) {
   sub->add_option("-j", line.compare.workers, "with --at or --until, jobs at a time; if not given, the number of cores")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
-  show(sub, {"palpate compare runs/many/* --by acquisition --metric on_surface_taps",
+  show(sub, {"palpate compare runs/many/* --by acquisition --metric object_taps",
              "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --format latex"});
 }
 

@@ -124,7 +124,7 @@ TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffectsAndIsRepla
   EXPECT_NEAR(on_robot, in_simulator, 0.005);
 
   const std::optional<Row> summary = parse_json_row(text_of(run / "summary.json"));
-  for (const char* name : {"rmse_m", "rmse_on_surface_m", "rmse_height_m", "footprint_iou", "nlpd", "coverage_95"}) {
+  for (const char* name : {"rmse_m", "rmse_object_m", "rmse_height_m", "footprint_iou", "nlpd", "coverage_95"}) {
     EXPECT_EQ(field(*summary, name), "") << name << ": a robot knows no truth";
   }
   EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop")) << "the program has signed off";

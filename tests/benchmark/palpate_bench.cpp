@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
   using Kind = PosteriorSettings::Kind;
   const std::map<std::string, Kind> engines{
       {"auto", Kind::automatic}, {"dense", Kind::dense}, {"grid", Kind::grid}, {"lowrank", Kind::lowrank}};
-  app.add_option("--taps", arguments.taps, "x,y,height,on_surface; the first three are the initial taps")->required();
+  app.add_option("--taps", arguments.taps, "x,y,height,on_object; the first three are the initial taps")->required();
   app.add_option("--grid", arguments.grid, "candidates a side of the 23 cm square")->check(CLI::Range(2, 2000));
   app.add_option("--engine", arguments.engine, "auto, dense, grid or lowrank")
       ->transform(CLI::CheckedTransformer(engines).description(""));

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Turns a table of `palpate compare --by ROW,COLUMN --format markdown` with one metric and one number of taps, on stdin, into one
 # with a row per value of ROW and a column per value of COLUMN.
-#   ./palpate compare SWEEP --by acquisition,scene --at 40 --metric nearest_m --format markdown | sh tests/benchmark/pivot.sh
+#   ./palpate compare SWEEP --by acquisition,scene --at 40 --metric surface_distance_m --format markdown | sh tests/benchmark/pivot.sh
 awk -F' *[|] *' '
   NF != 6 { next }  # not of the table
   $2 ~ /^-/ { next }

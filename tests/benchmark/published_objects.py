@@ -158,7 +158,7 @@ def main():
         return sweep.returncode
     made = max((runs / "published_objects").iterdir(), key=lambda one: one.stat().st_mtime)
     return subprocess.run([program, "compare", str(made), "--by", "acquisition,scene", "--metric",
-                           "nearest_m,f_score,volume_iou", "--format", "markdown"], check=False).returncode
+                           "surface_distance_m,f_score,volume_iou", "--format", "markdown"], check=False).returncode
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ Taps read_taps(const std::filesystem::path& file) {
   std::vector<double> numbers;
   std::string line;
   std::getline(in, line);
-  if (line != "x,y,height,on_surface") throw Error(file.string(), "does not begin with x,y,height,on_surface");
+  if (line != "x,y,height,on_object") throw Error(file.string(), "does not begin with x,y,height,on_object");
   while (std::getline(in, line)) {
     std::istringstream cells(line);
     std::string cell;

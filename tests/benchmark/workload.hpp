@@ -15,7 +15,7 @@ struct Taps {
   Eigen::MatrixXd answers;  ///< height and label, a tap a row
 };
 
-/// Columns x, y, height, on_surface under a header. Throws Error.
+/// Columns x, y, height, on_object under a header. Throws Error.
 Taps read_taps(const std::filesystem::path& file);
 
 /// A square of 23 cm with `count` candidates a side, corners included.

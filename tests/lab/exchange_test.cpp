@@ -40,7 +40,7 @@ TEST(SurfacePly, DeclaresWhatItHoldsAndHoldsWhatItDeclares) {
                           "comment lengths in metres; quality: standard deviation of the height", "element vertex 4",
                           "property double x", "property double y", "property double z", "property double nx",
                           "property double ny", "property double nz", "property float quality",
-                          "property float on_surface_probability", "property float true_height", "element face 2",
+                          "property float object_probability", "property float true_height", "element face 2",
                           "property list uchar int vertex_indices", "end_header"));
   std::istringstream second(lines[18]);
   double x, y, z, nx, ny, nz, quality, probability, truth;

@@ -184,7 +184,7 @@ TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
     if (taps == 9) continue;
     EXPECT_EQ(moment.next->approach->line.origin, recording.taps[static_cast<std::size_t>(taps)].approach->line.origin);
   }
-  EXPECT_EQ(history.moments.back().result.errors.nearest, recording.summary->number("nearest_m"));
+  EXPECT_EQ(history.moments.back().result.errors.surface_distance, recording.summary->number("surface_distance_m"));
 
   // A page that has all moments is told of the end without any surface, and keeps its plots.
   HistoryGrower grower(run.workshop, recording);
@@ -255,7 +255,7 @@ TEST(Warnings, TellOfARuleThatStalls) {
 TEST(Warnings, OfARunFromAnySideSpeakOfApproachesAndTakeAFreeWayForNoFailure) {
   const Recorded run("any_side.yaml", {"scene=object_i", "scene.touch=any", "acquisition=uncertainty", "taps=12",
                                        "space.approaches=1", "space.moves=20"});
-  ASSERT_GT(run.history().moments.back().result.missed_taps, 0);
+  ASSERT_GT(run.history().moments.back().result.no_contact_taps, 0);
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   EXPECT_THAT(said, Contains(HasSubstr("although no approach had a positive score")));
   for (const char* const other : {"fallback", "did not reach the models", "maps"})
@@ -284,7 +284,7 @@ TEST(Warnings, TellOfTheFirstTapThatThisBuildWouldHaveMadeElsewhere) {
 TEST(Warnings, AreNoneOfARunWithoutTrouble) {
   // One tap, on the object: w is 1 there and falls to 0 around it.
   const Recorded run("paper/object_i.yaml", {"taps=1", "initial.count=1", "initial.design=grid"});
-  ASSERT_EQ(run.history().moments.back().result.on_surface_taps, 1);
+  ASSERT_EQ(run.history().moments.back().result.object_taps, 1);
   EXPECT_THAT(warnings_of(run.recording(), run.history()), ::testing::IsEmpty());
 }
 

@@ -30,7 +30,7 @@ std::string table_of(const std::vector<std::string>& keys, const std::vector<std
     for (std::size_t i = 0; i < keys.size(); ++i) row.add(keys[i], values[i]);
     row.add("status", "done");
     row.add("first_hit_tap", 2);
-    row.add("on_surface_taps", 7);
+    row.add("object_taps", 7);
     row.add("rmse_m", errors.empty() ? 0.021 : errors.at(static_cast<std::size_t>(index)));
     row.add("footprint_iou", 0.8);
     results.push_back(std::move(row));
@@ -110,7 +110,7 @@ TEST(SweepTable, HasNoDeadStartsWhereNoConfigTellsWhichTapsWereInitial) {
 
 TEST(SweepTable, LeavesOutWhatIsNoNumber) {
   Row fields;
-  for (const char* name : {"first_hit_tap", "on_surface_taps", "rmse_m", "footprint_iou"}) fields.add(name, "x");
+  for (const char* name : {"first_hit_tap", "object_taps", "rmse_m", "footprint_iou"}) fields.add(name, "x");
   EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall jobs     2       100.0%   0.0%  "));
 }
 

@@ -107,7 +107,7 @@ class Module(InFolder):
                 experiment.ask()
                 experiment.tell(row["height"], row["force"], row["robot_seconds"])
         told = palpate.load(experiment.directory)
-        for error in ("rmse_m", "rmse_on_surface_m", "footprint_iou", "coverage_95", "object_iou"):
+        for error in ("rmse_m", "rmse_object_m", "footprint_iou", "coverage_95", "object_iou"):
             self.assertIsNotNone(felt.summary[error], error)
             self.assertEqual(told.summary[error], felt.summary[error], error)
         np.testing.assert_array_equal(told.truth, felt.truth)

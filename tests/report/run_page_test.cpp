@@ -93,7 +93,7 @@ TEST_F(ReportedRun, MarksTapsAsTheyAreReadAtTheMomentThatIsShown) {
   ASSERT_EQ(seen.trouble, "");
   const json summary = json::parse(text_of(directory / "summary.json"));
   ASSERT_EQ(summary.at("relabelled"), "1 object");
-  EXPECT_EQ(seen.values.at(0), json({summary.at("on_surface_taps"), summary.at("off_surface_taps")}));
+  EXPECT_EQ(seen.values.at(0), json({summary.at("object_taps"), summary.at("desk_taps")}));
   EXPECT_THAT(seen.values.at(1).get<std::string>(), HasSubstr("Tap 1 is read as on the object by now"));
   EXPECT_EQ(seen.values.at(3), json({0, 1}));
 }
@@ -147,7 +147,7 @@ TEST_F(ReportedRun, ShowsMarksAboveTheSurfaceAndTheNextTap) {
   EXPECT_NEAR(shown.at("y").at(0).get<double>(), 100 * std::stod(taps.at(16).at("y")), 1e-6);
   std::size_t on = 0;
   for (std::size_t i = 0; i < 16; ++i) {
-    if (taps[i].at("on_surface") != "true") continue;
+    if (taps[i].at("on_object") != "true") continue;
     EXPECT_GT(shown.at("on").at(on).get<double>(), 100 * std::stod(taps[i].at("height")) + 0.3) << "on a pin";
     ++on;
   }
@@ -179,7 +179,7 @@ TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
     const json& marks = seen.values.at(2 * (17 - made));
     std::vector<json> expected(3, json::array());
     for (std::size_t i = 0; i < made; ++i) {
-      const std::string& on = taps[i].at("on_surface");
+      const std::string& on = taps[i].at("on_object");
       expected[on == "true"    ? 0
                : on == "false" ? 1
                                : 2]
@@ -199,8 +199,8 @@ TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
   EXPECT_GT(failed_taps, 0);
   const json summary = json::parse(text_of(directory / "summary.json"));
   EXPECT_EQ(summary.at("failed_taps"), failed_taps);
-  EXPECT_EQ(seen.values.at(0).at(0).size(), summary.at("on_surface_taps"));
-  EXPECT_EQ(seen.values.at(0).at(1).size(), summary.at("off_surface_taps"));
+  EXPECT_EQ(seen.values.at(0).at(0).size(), summary.at("object_taps"));
+  EXPECT_EQ(seen.values.at(0).at(1).size(), summary.at("desk_taps"));
 
   // Maps are rounded to 1 / 131070 of their range.
   int maps = 0;

@@ -113,7 +113,7 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
               drawn(2),
               choose("across", "kernel.length_scale"),
               drawn(3),
-              choose("metric", "on_surface_taps"),
+              choose("metric", "object_taps"),
               drawn(4),
               kCells,
               choose("group", "acquisition"),
@@ -169,22 +169,22 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   const json& changed = seen.values.at(7);
   EXPECT_EQ(changed.at("x"), json({"10 mm", "1.7 cm", "2.5cm"}));
   EXPECT_EQ(changed.at("y"), json({"8", "12"}));
-  EXPECT_EQ(changed.at("title"), "on_surface_taps, more is better");
-  expect_cells(changed, rows, "kernel.length_scale", "taps", "on_surface_taps", 1.0);
+  EXPECT_EQ(changed.at("title"), "object_taps, more is better");
+  expect_cells(changed, rows, "kernel.length_scale", "taps", "object_taps", 1.0);
   ASSERT_EQ(seen.values.at(10).size(), 4U);
   for (const json& box : seen.values.at(10)) {
     const auto wanted = [&](const Cells& row) {
       return fmt::format("acquisition={}, taps={}", row.at("acquisition"), row.at("taps")) == box.at(0);
     };
     EXPECT_EQ(box.at(1).size(), 12U);
-    expect_near(sorted(box.at(1)), column(rows, "on_surface_taps", 1.0, wanted));
+    expect_near(sorted(box.at(1)), column(rows, "object_taps", 1.0, wanted));
   }
   const json& points = seen.values.at(12);
   EXPECT_EQ(points.at(0), "scatter");
   EXPECT_THAT(points.at(4).get<std::string>(),
               MatchesRegex("Mean over [a-z, ]+ of the jobs that are done; bars: standard deviation\\."));
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::vector<double> values = column(rows, "on_surface_taps", 1.0, [&](const Cells& row) {
+    const std::vector<double> values = column(rows, "object_taps", 1.0, [&](const Cells& row) {
       return row.at("kernel.length_scale") == points.at(3).at(i);
     });
     EXPECT_NEAR(points.at(1).at(i).get<double>(), mean_of(values), 1e-12);
@@ -199,7 +199,7 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
     EXPECT_EQ(jobs.at(i).at(0), std::to_string(i));
     EXPECT_EQ(jobs.at(i).at(1), "done");
     EXPECT_EQ(jobs.at(i).at(2), rows[i].at("acquisition"));
-    EXPECT_EQ(jobs.at(i).at(7), rows[i].at("on_surface_taps"));
+    EXPECT_EQ(jobs.at(i).at(7), rows[i].at("object_taps"));
   }
   std::vector<Cells> by_time = rows;
   std::stable_sort(by_time.begin(), by_time.end(), [](const Cells& a, const Cells& b) {

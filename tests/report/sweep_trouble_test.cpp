@@ -84,7 +84,7 @@ TEST_P(SweepTrouble, OffersWhatParetoTakesAndShowsFailedAndMissingJobs) {
   for (const char* name : {"coverage_95", "footprint_iou", "height_gp.jitter"}) {
     EXPECT_EQ(takes("robot_seconds", name), offered(7).count(name) == 1) << name;
   }
-  for (const char* name : {"footprint_iou", "on_surface_taps", "taps"}) {
+  for (const char* name : {"footprint_iou", "object_taps", "taps"}) {
     EXPECT_EQ(takes(name, "rmse_m"), offered(8).count(name) == 1) << name;
   }
 

@@ -50,13 +50,13 @@ TEST_F(AnySide, ARunTellsOfEachTapWhereItBeganInWhichDirectionAndHowFarItWent) {
     EXPECT_LE(number("along"), number("length"));
     if (row.text("outcome") != "contact") continue;
     EXPECT_NEAR(number("height"), number("z") + number("along") * direction.z(), 1e-12);
-    on += row.flag("on_surface").value() ? 1 : 0;
-    EXPECT_EQ(row.flag("on_surface"), row.flag("true_on_surface"));
+    on += row.flag("on_object").value() ? 1 : 0;
+    EXPECT_EQ(row.flag("on_object"), row.flag("true_on_object"));
   }
   EXPECT_GT(on, 4);
   const Row summary = parse_json_row(text_of(run / "summary.json")).value();
-  EXPECT_LT(summary.number("nearest_m").value(), 0.05);
-  EXPECT_GE(summary.number("rmse_m").value(), summary.number("nearest_m").value());
+  EXPECT_LT(summary.number("surface_distance_m").value(), 0.05);
+  EXPECT_GE(summary.number("rmse_m").value(), summary.number("surface_distance_m").value());
   EXPECT_GT(summary.number("f_score").value(), 0.0);
   EXPECT_GT(summary.number("volume_iou").value(), 0.0);
   EXPECT_LE(summary.number("volume_iou").value(), 1.0);
@@ -96,7 +96,7 @@ TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
     EXPECT_NEAR(x + along * nx, row.number("x").value(), 1e-12);
     EXPECT_NEAR(z, row.number("height").value(), 1e-12);
     EXPECT_EQ(tap, row.number("tap"));
-    EXPECT_EQ(on == 1, row.flag("on_surface"));
+    EXPECT_EQ(on == 1, row.flag("on_object"));
     ++contacts;
   }
   EXPECT_GT(contacts, 5);
@@ -190,15 +190,15 @@ TEST_F(AnySide, OnAHighDeskAndOverAnAreaThatIsNoSquareEverythingIsWhereItIs) {
   ASSERT_EQ(high.size(), low.size());
   for (std::size_t i = 0; i < high.size(); ++i) {
     EXPECT_EQ(high[i].text("outcome"), low[i].text("outcome")) << i;
-    EXPECT_EQ(high[i].flag("on_surface"), low[i].flag("on_surface"));
-    EXPECT_EQ(high[i].flag("true_on_surface"), low[i].flag("true_on_surface"));
+    EXPECT_EQ(high[i].flag("on_object"), low[i].flag("on_object"));
+    EXPECT_EQ(high[i].flag("true_on_object"), low[i].flag("true_on_object"));
     // Rounding at 70 cm, and what the belief makes of it.
     EXPECT_NEAR(high[i].number("z").value(), low[i].number("z").value() + 0.7, 1e-6);
     EXPECT_EQ(high[i].number("height").has_value(), low[i].number("height").has_value());
     EXPECT_NEAR(high[i].number("height").value_or(0.7), low[i].number("height").value_or(0.0) + 0.7, 1e-6);
   }
   const auto nearest = [&](const fs::path& one) {
-    return parse_json_row(text_of(one / "summary.json")).value().number("nearest_m").value();
+    return parse_json_row(text_of(one / "summary.json")).value().number("surface_distance_m").value();
   };
   EXPECT_NEAR(nearest(run), nearest(flat), 1e-6);
   EXPECT_THAT(palpate({"replay", run}).out, testing::HasSubstr("all equal"));
@@ -207,8 +207,8 @@ TEST_F(AnySide, OnAHighDeskAndOverAnAreaThatIsNoSquareEverythingIsWhereItIs) {
   int on = 0;
   for (const Row& row : rows_of(wide, "tap")) {
     if (row.text("outcome") != "contact") continue;
-    EXPECT_EQ(row.flag("on_surface"), row.flag("true_on_surface"));
-    on += *row.flag("on_surface") ? 1 : 0;
+    EXPECT_EQ(row.flag("on_object"), row.flag("true_on_object"));
+    on += *row.flag("on_object") ? 1 : 0;
   }
   EXPECT_GT(on, 2);
   EXPECT_LT(nearest(wide), 0.05);
@@ -218,9 +218,9 @@ TEST_F(AnySide, ARunThatMetNothingLeavesNoSurfaceAndEveryPageAndFileOfIt) {
   const fs::path run = touched("taps=5 scene.objects=[]");
   const Row summary = parse_json_row(text_of(run / "summary.json")).value();
   EXPECT_EQ(summary.number("taps"), 5);
-  EXPECT_EQ(summary.number("on_surface_taps"), 0);
+  EXPECT_EQ(summary.number("object_taps"), 0);
   EXPECT_EQ(summary.number("failed_taps"), 0);
-  EXPECT_EQ(*summary.number("off_surface_taps") + *summary.number("missed_taps"), 5);
+  EXPECT_EQ(*summary.number("desk_taps") + *summary.number("no_contact_taps"), 5);
   EXPECT_THAT(text_of(run / "surface.ply"), testing::HasSubstr("element vertex 0\n"));
   EXPECT_EQ(status_of(run).status, 0);
   for (const char* const command : {"replay", "report", "export"}) {
@@ -310,8 +310,8 @@ TEST_F(AnySide, EachRuleTakesApproachesOfItsOwnAfterTheSameFirstOnes) {
 TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
   const fs::path sweep = swept(
       {"acquisition=random,discovery", "scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=8"}, config());
-  const Ended ended =
-      palpate({"compare", sweep, "--by", "acquisition", "--metric", "nearest_m", "--at", "5", "--format", "markdown"});
+  const Ended ended = palpate(
+      {"compare", sweep, "--by", "acquisition", "--metric", "surface_distance_m", "--at", "5", "--format", "markdown"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const fs::path alone =
       ran({"scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=5", "acquisition=random"}, config());
@@ -319,7 +319,7 @@ TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
   int compared = 0;
   for (const Cells& row : csv_rows(text_of(sweep / "results_at_5.csv"))) {
     if (row.at("acquisition") != "random") continue;
-    for (const char* const name : {"nearest_m", "f_score", "volume_iou", "surface_coverage_95"})
+    for (const char* const name : {"surface_distance_m", "f_score", "volume_iou", "surface_coverage_95"})
       EXPECT_EQ(row.at(name), whole.cell(name)) << name;
     ++compared;
   }
@@ -446,7 +446,7 @@ TEST_F(AnySide, ASoftWorldAndAnArmThatErrsLeaveASurfaceNearlyAsGoodAsAPerfectOne
   double sum = 0.0;
   for (const std::string scene : {"scene=any_mug", "scene=any_bowl"}) {
     const fs::path run = ran({scene, "taps=40", "seed=16100", effects}, config());
-    sum += parse_json_row(text_of(run / "summary.json")).value().number("nearest_m").value();
+    sum += parse_json_row(text_of(run / "summary.json")).value().number("surface_distance_m").value();
   }
   // Without effects 1 mm; without a correction 11 mm.
   EXPECT_LT(sum / 2, 0.004);

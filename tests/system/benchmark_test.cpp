@@ -111,8 +111,7 @@ TEST_F(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
     for (const char* same : {"job", "id", "strategy", "scene", "scene.effects", "seed", "status"})
       EXPECT_EQ(earlier[i].at(same), whole[i].at(same)) << same;
     int taps = 0;
-    for (const char* kind : {"on_surface_taps", "off_surface_taps", "failed_taps"})
-      taps += std::stoi(earlier[i].at(kind));
+    for (const char* kind : {"object_taps", "desk_taps", "failed_taps"}) taps += std::stoi(earlier[i].at(kind));
     EXPECT_EQ(taps, 8);
     EXPECT_LT(std::stod(earlier[i].at("robot_seconds")), std::stod(whole[i].at("robot_seconds")));
   }
@@ -127,7 +126,7 @@ TEST_F(Benchmark, AfterFewerTapsIsWhatASweepWithThatBudgetComesTo) {
   const Words two_blocks = "scene=two_blocks strategy=weighted_two_part,default";
   const fs::path directory = narrowed(two_blocks);
   const fs::path there = narrowed(two_blocks, 8);
-  const Words words = "--by strategy --metric rmse_m,on_surface_taps,robot_seconds";
+  const Words words = "--by strategy --metric rmse_m,object_taps,robot_seconds";
   EXPECT_EQ(compare(directory, words + "--at 8").status, 0);
   EXPECT_EQ(compare(there, words).status, 0);
   const std::vector<Cells> earlier = csv_rows(text_of(directory / "results_at_8.csv"));
@@ -141,7 +140,7 @@ TEST_F(Benchmark, AfterFewerTapsIsWhatASweepWithThatBudgetComesTo) {
       EXPECT_EQ(earlier[i].at(column), value) << column;
     }
   }
-  for (const char* metric : {"rmse_m", "on_surface_taps", "robot_seconds"}) {
+  for (const char* metric : {"rmse_m", "object_taps", "robot_seconds"}) {
     const std::string stem = std::string("compare_strategy_") + metric;
     const std::vector<Cells> here = csv_rows(text_of(directory / (stem + "_at_8.csv")));
     const std::vector<Cells> other = csv_rows(text_of(there / (stem + ".csv")));
@@ -171,7 +170,7 @@ TEST_F(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
 TEST_F(Benchmark, TakesANumberOfTapsOnceAndAConditionAsItHeldThen) {
   const fs::path directory = cubes(8);
   const Words words =
-      Words("--by strategy --metric rmse_m,found --format markdown --where") + Words{"off_surface_taps <= 3", "--at"};
+      Words("--by strategy --metric rmse_m,found --format markdown --where") + Words{"desk_taps <= 3", "--at"};
   const Ended once = compare(directory, words + "3");
   EXPECT_EQ(once.status, 0) << once.err;
   EXPECT_EQ(lines(once.out), 4) << once.out;

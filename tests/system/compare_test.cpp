@@ -27,8 +27,8 @@ class Compare : public Shell {
 
 TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   const fs::path directory = strategies();
-  const Ended ended = compare(directory, "--by acquisition --metric on_surface_taps");
-  EXPECT_THAT(ended.out, StartsWith("on_surface_taps by acquisition; more is better\nacquisition  jobs "));
+  const Ended ended = compare(directory, "--by acquisition --metric object_taps");
+  EXPECT_THAT(ended.out, StartsWith("object_taps by acquisition; more is better\nacquisition  jobs "));
   EXPECT_THAT(ended.out, HasSubstr("\nweighted - uncertainty     12 "));
   EXPECT_THAT(ended.out, HasSubstr("\nThe seed is the unit: all jobs of a seed are drawn together, "
                                    "and count as one.\npair: two jobs that are equal in taps, seed.\n"));
@@ -39,7 +39,7 @@ TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   // The same from results.csv, job by job and seed by seed.
   std::map<std::string, std::map<std::string, double>> taps;
   for (const Cells& job : csv_rows(text_of(directory / "results.csv")))
-    taps[job.at("acquisition")][job.at("taps") + "/" + job.at("seed")] = std::stod(job.at("on_surface_taps"));
+    taps[job.at("acquisition")][job.at("taps") + "/" + job.at("seed")] = std::stod(job.at("object_taps"));
   std::map<std::string, double> of_seed;
   double sum = 0.0;
   int more = 0;

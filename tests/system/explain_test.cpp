@@ -87,7 +87,7 @@ class Explain : public Shell {
       return;
     }
     EXPECT_THAT(text, HasSubstr("Found: contact at "));
-    EXPECT_THAT(text, HasSubstr(tap["on_surface"] == true ? ", on an object" : ", on the desk"));
+    EXPECT_THAT(text, HasSubstr(tap["on_object"] == true ? ", on an object" : ", on the desk"));
   }
 
   /// u, w and e of the record, or u and p where a footprint is named, are said as they are, what the record has not
@@ -206,7 +206,7 @@ TEST_F(Explain, ExpectsOfTheSurfaceOfAnObjectNothingBeforeOneIsTouchedNorOfTheDe
     SCOPED_TRACE(text);
     EXPECT_EQ(text.find("Expected: nothing, no tap has been on an object yet.") != std::string::npos, !hit);
     EXPECT_EQ(text.find("Expected, by the taps before: a height of ") != std::string::npos, hit);
-    const bool on = tap["on_surface"];
+    const bool on = tap["on_object"];
     if (!on || !hit) {
       EXPECT_THAT(text, Not(HasSubstr("than expected")));
     }

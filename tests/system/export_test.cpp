@@ -34,7 +34,7 @@ class Export : public Shell {
       const auto of = [&](const char* column) { return std::stod(recorded[i].at(column)); };
       ASSERT_TRUE(x == of("x") && y == of("y") && z == of("reconstructed_height")) << "candidate " << i;
       ASSERT_EQ(deviation, static_cast<float>(of("height_standard_deviation"))) << "candidate " << i;
-      ASSERT_EQ(probability, static_cast<float>(of("on_surface_probability"))) << "candidate " << i;
+      ASSERT_EQ(probability, static_cast<float>(of("object_probability"))) << "candidate " << i;
       ASSERT_EQ(truth, static_cast<float>(of("true_height"))) << "candidate " << i;
     }
   }
@@ -109,7 +109,7 @@ TEST_F(Export, WritesContactsAsPointsAndNoFailedTaps) {
   std::string points;
   for (const Cells& tap : contacts) {
     points += tap.at("x") + " " + tap.at("y") + " " + tap.at("height") + " " + tap.at("tap") + " " +
-              (tap.at("on_surface") == "true" ? "1" : "0") + "\n";
+              (tap.at("on_object") == "true" ? "1" : "0") + "\n";
   }
   EXPECT_EQ(below_header(file), points);
   Assimp::Importer importer;

@@ -46,11 +46,11 @@ struct Recorded {
 
   int count() const { return static_cast<int>(taps.size()); }
   double at(int tap, const char* field) const { return std::stod(taps[static_cast<std::size_t>(tap - 1)].at(field)); }
-  /// Of the taps up to `last` those whose on_surface is `on`: as a script has them.
+  /// Of the taps up to `last` those whose on_object is `on`: as a script has them.
   Lines marks(int last, const std::string& on) const {
     Lines out;
     for (int tap = 1; tap <= last; ++tap) {
-      if (taps[static_cast<std::size_t>(tap - 1)].at("on_surface") == on)
+      if (taps[static_cast<std::size_t>(tap - 1)].at("on_object") == on)
         out.push_back({100 * at(tap, "x"), 100 * at(tap, "y"), 100 * at(tap, "height"), static_cast<double>(tap)});
     }
     return out;

@@ -84,7 +84,7 @@ TEST_F(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThemAndCurvesThatEndWithItsSumma
   EXPECT_THAT(errors.at(3), ElementsAre(3, DoubleNear(1000 * run.at(4, "rmse_m"), 1e-6)))
       << "what tap 4 was chosen from";
   EXPECT_NEAR(curves.at("curve_2_1").back()[1], field("footprint_iou"), 1e-9);
-  EXPECT_NEAR(curves.at("curve_3_1").back()[1], field("on_surface_taps") / 17, 1e-9);
+  EXPECT_NEAR(curves.at("curve_3_1").back()[1], field("object_taps") / 17, 1e-9);
   EXPECT_NEAR(curves.at("curve_6_1").back()[1], field("robot_seconds"), 1e-6);
   EXPECT_THAT(text_of(directory / "figures/curves.gnuplot"),
               HasSubstr("Hyperparameters of the height GP: signal 1, noise 0.0001, length_scale 0.017"))
@@ -99,7 +99,7 @@ TEST_F(Figures, OfAFootprintHaveItsProbabilityAndTheScoreInPlaceOfTheWeight) {
   EXPECT_THAT(text_of(directory / "figures/maps.gnuplot"), HasSubstr("by footprint/shape"));
   for (const Cells& cell : csv_rows(text_of(directory / "surface.csv"))) {
     EXPECT_NEAR(value_at(maps.at("p"), 100 * std::stod(cell.at("x")), 100 * std::stod(cell.at("y"))),
-                std::stod(cell.at("on_surface_probability")), 1e-5);
+                std::stod(cell.at("object_probability")), 1e-5);
   }
 }
 
@@ -164,7 +164,7 @@ TEST_F(Figures, OfASweepShowWhatResultsCsvHas) {
   for (const Cells& row : csv_rows(text_of(directory / "results.csv"))) {
     const std::pair<std::string, std::string> key{row.at("acquisition"), row.at("kernel.length_scale")};
     groups[key].push_back(1000 * std::stod(row.at("rmse_m")));
-    counts[key].push_back(std::stod(row.at("on_surface_taps")));
+    counts[key].push_back(std::stod(row.at("object_taps")));
   }
   const Lines heat = blocks_of(directory / "figures/heat_map.gnuplot").at("mean_rmse_m");
   const auto distributions = blocks_of(directory / "figures/distributions.gnuplot");

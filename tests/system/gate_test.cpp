@@ -47,7 +47,7 @@ class Expect : public Shell {
 };
 
 TEST_F(Expect, WhatIsFulfilledIsCountedAndEndsWith0) {
-  gate("expect:\n  found: true\n  rmse_m: <= 9 cm\n  mean(on_surface_taps): '>= 1'\n");
+  gate("expect:\n  found: true\n  rmse_m: <= 9 cm\n  mean(object_taps): '>= 1'\n");
   const Ended ended = run_gate({});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");

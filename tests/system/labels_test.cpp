@@ -63,8 +63,8 @@ class LabelsReadAgain : public Shell {
     EXPECT_EQ(table.at(changed), when_made);
     const Labels end = corrected(table, ended.out);
     EXPECT_NE(end.at(changed), when_made) << ended.out;
-    EXPECT_EQ(count(end, "object"), summary.number("on_surface_taps").value());
-    EXPECT_EQ(count(end, "desk"), summary.number("off_surface_taps").value());
+    EXPECT_EQ(count(end, "object"), summary.number("object_taps").value());
+    EXPECT_EQ(count(end, "desk"), summary.number("desk_taps").value());
     EXPECT_NE(count(table, "object"), count(end, "object")) << "the seed shows nothing";
 
     // The record: taps.csv has labels as they were made, the summary names the others.
@@ -72,12 +72,12 @@ class LabelsReadAgain : public Shell {
     Labels recorded;
     for (const Cells& tap : csv_rows(text_of(directory / "taps.csv"))) {
       const int number = std::stoi(tap.at("tap"));
-      if (tap.at("outcome") == "contact") recorded[number] = tap.at("on_surface") == "true" ? "object" : "desk";
+      if (tap.at("outcome") == "contact") recorded[number] = tap.at("on_object") == "true" ? "object" : "desk";
       if (table.at(number) != "object" && table.at(number) != "desk") continue;
       EXPECT_EQ(recorded[number], table.at(number));
     }
     for (const Relabelled& one : relabelled) recorded[one.tap] = one.on_object ? "object" : "desk";
-    EXPECT_EQ(count(recorded, "object"), summary.number("on_surface_taps").value());
+    EXPECT_EQ(count(recorded, "object"), summary.number("object_taps").value());
     EXPECT_EQ(palpate({"replay", directory}).status, 0);
 
     const Ended done = palpate(Words{"run", (test::source_folder() / file).string()} + words);
@@ -106,8 +106,8 @@ TEST_F(LabelsReadAgain, OfTapsFromAboveAreNamedAndCountedAlikeByTableSummaryReco
   const Row summary = read_summary(directory).value();
   ASSERT_EQ(palpate({"report", directory, "--figures"}).status, 0);
   const auto blocks = blocks_of(directory / "figures/maps.gnuplot");
-  EXPECT_EQ(block_or_none(blocks, "on_last").size(), summary.number("on_surface_taps").value());
-  EXPECT_EQ(block_or_none(blocks, "off_last").size(), summary.number("off_surface_taps").value());
+  EXPECT_EQ(block_or_none(blocks, "on_last").size(), summary.number("object_taps").value());
+  EXPECT_EQ(block_or_none(blocks, "off_last").size(), summary.number("desk_taps").value());
 }
 
 TEST_F(LabelsReadAgain, OfTapsFromAnySideAreNamedAndCountedAlike) {

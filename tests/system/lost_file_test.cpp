@@ -182,7 +182,7 @@ class LostMesh : public Shell {
   std::string own_config() const {
     return write("own.yaml",
                  "strategy: weighted\nbackend: simulator\nscene:\n  area: {width: 23 cm, depth: 23 cm}\n"
-                 "  on_surface_above: 1 cm\n"
+                 "  min_object_height: 1 cm\n"
                  "  objects: [{type: mesh, file: a.stl, unit: 1 mm, at: [11.5 cm, 11.5 cm]}]\n")
         .string();
   }

@@ -16,7 +16,7 @@ const char* const kAbove =
     "kernel: {type: rbf, length_scale: 3 cm}\nacquisition: {type: outline}\nfitting: {type: fixed}\n"
     "surface: two_part\nheight: {noise: 6 mm, lies: 0.03}\n"
     "backend: {type: simulator}\ntaps: 20\ncandidates: {count: 15}\n"
-    "scene: {area: {width: 23 cm, depth: 23 cm}, on_surface_above: 1 cm, objects: [{type: wave, at: [12 cm, 12 "
+    "scene: {area: {width: 23 cm, depth: 23 cm}, min_object_height: 1 cm, objects: [{type: wave, at: [12 cm, 12 "
     "cm]}]}\n";
 
 const char* const kAnySide =

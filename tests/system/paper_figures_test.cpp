@@ -70,8 +70,8 @@ class PaperFigures : public ::testing::Test {
     } else {
       expect_equal(next, {next_after_all(run)}, what);
       const std::string summary = text_of(run.directory / "summary.json");
-      EXPECT_THAT(summary, HasSubstr("\"on_surface_taps\": " + std::to_string(on.size()) + ","));
-      EXPECT_THAT(summary, HasSubstr("\"off_surface_taps\": " + std::to_string(off.size()) + ","));
+      EXPECT_THAT(summary, HasSubstr("\"object_taps\": " + std::to_string(on.size()) + ","));
+      EXPECT_THAT(summary, HasSubstr("\"desk_taps\": " + std::to_string(off.size()) + ","));
     }
   }
 

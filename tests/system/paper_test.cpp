@@ -50,9 +50,9 @@ TEST_F(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertaint
   for (const Cells& row : results("paper/comparison.yaml", count, "acquisition=uncertainty,weighted")) {
     ++runs[row.at("acquisition")];
     if (is_live(row)) {
-      live[row.at("acquisition")].push_back(std::stod(row.at("on_surface_taps")));
+      live[row.at("acquisition")].push_back(std::stod(row.at("object_taps")));
     } else if (row.at("acquisition") == "weighted") {
-      EXPECT_EQ(row.at("on_surface_taps"), "0") << "without a fallback a dead start never recovers";
+      EXPECT_EQ(row.at("object_taps"), "0") << "without a fallback a dead start never recovers";
     }
   }
   for (const char* acquisition : {"uncertainty", "weighted"}) {
@@ -128,7 +128,7 @@ void expect_found(const std::vector<std::string>& overrides) {
     bool hit = false;
     for (const TapRecord& tap : collector.taps) {
       places.insert(tap.candidate);
-      hit = hit || *tap.on_surface;
+      hit = hit || *tap.on_object;
     }
     stalled += places.size() < collector.taps.size() ? 1 : 0;
     found += hit ? 1 : 0;

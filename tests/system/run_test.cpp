@@ -46,14 +46,14 @@ TEST_F(ARun, TheSummaryHoldsEveryFieldOfTheContractAndAddsUp) {
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.out, text_of(directory() / "summary.json"));
   for (const std::string& name :
-       Words("name id seed status stop_reason taps on_surface_taps off_surface_taps failed_taps first_hit_tap found "
-             "rmse_m rmse_on_surface_m rmse_height_m footprint_iou nlpd coverage_95 robot_seconds wall_seconds "
+       Words("name id seed status stop_reason taps object_taps desk_taps failed_taps first_hit_tap found "
+             "rmse_m rmse_object_m rmse_height_m footprint_iou nlpd coverage_95 robot_seconds wall_seconds "
              "compute_seconds compute.infer jitter_max interventions.jitter peak_rss_bytes")) {
     value(ended.out, name);
   }
   const auto whole = [&](const char* name) { return std::get<std::int64_t>(value(ended.out, name)); };
   EXPECT_EQ(whole("taps"), 17);
-  EXPECT_EQ(whole("on_surface_taps") + whole("off_surface_taps") + whole("failed_taps"), 17);
+  EXPECT_EQ(whole("object_taps") + whole("desk_taps") + whole("failed_taps"), 17);
   EXPECT_EQ(value(ended.out, "stop_reason"), Scalar{std::string("tap budget")});
 }
 

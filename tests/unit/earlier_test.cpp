@@ -79,7 +79,7 @@ TEST_P(Earlier, IsGoodEnoughFromTheFirstTapOnAfterWhichAShorterRunWouldHaveBeen)
   while (number(after[static_cast<std::size_t>(first - 1)], "rmse_m") > goal) ++first;
   const auto reached = summaries_at(workshop_, recording,
                                     {Occasion::once(fmt::format("rmse_m={} m", goal)), Occasion::once("rmse_m=1e-9 m"),
-                                     Occasion::once("on_surface_taps=0")});
+                                     Occasion::once("object_taps=0")});
   ASSERT_TRUE(reached[0]);
   EXPECT_EQ(cell(*reached[0], "rmse_m"), cell(after[static_cast<std::size_t>(first - 1)], "rmse_m"));
   EXPECT_EQ(cell(*reached[0], "robot_seconds"), cell(after[static_cast<std::size_t>(first - 1)], "robot_seconds"));

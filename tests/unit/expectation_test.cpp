@@ -89,7 +89,7 @@ TEST(Expectation, RefusesWhatItDoesNotUnderstandInOneLine) {
       {"{median(rmse): <= 2 cm}", "c.yaml:1:10: expect: the summary has no field 'rmse', did you mean 'rmse_m'?"},
       {"{median(rmse_m: <= 2 cm}",
        "c.yaml:1:10: expect: 'median(rmse_m' is not a field or STATISTIC(field), write it like "
-       "median(on_surface_taps)"},
+       "median(object_taps)"},
       {"{mean(status): done}", "c.yaml:1:10: expect: 'status' has no statistics, write status alone"},
       {"{mean(failed_runs): == 0}", "c.yaml:1:10: expect: 'failed_runs' has no statistics, write failed_runs alone"},
       {"{rmse_m: <= 2}", "c.yaml:1:18: expect.rmse_m: '2' lacks its unit, write a length like '1.7 cm'"},
@@ -117,7 +117,7 @@ TEST(Expectation, RefusesWhatItDoesNotUnderstandInOneLine) {
        "c.yaml:2:9: expect.taps: has no value (one that begins with > needs quotes), write "
        "a comparison like '>= 9', with >=, <=, >, < or =="},
       {"[taps]",
-       "c.yaml:1:9: expect: is not a map of expectations, write expect: {on_surface_taps: \">= 9\", rmse_m: \"<= 2 "
+       "c.yaml:1:9: expect: is not a map of expectations, write expect: {object_taps: \">= 9\", rmse_m: \"<= 2 "
        "cm\"}"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(refused(text), message) << text;

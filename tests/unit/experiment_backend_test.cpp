@@ -35,7 +35,7 @@ TEST(LastTap, ThatTouchedSomethingCountsAsAContact) {
   const std::string reason = "the arm stands in a collision";
   Prepared prepared("paper/object_i.yaml", {}, scripted({contact_at(0.0), last_contact(0.09, reason)}));
   EXPECT_EQ(failure_of(prepared), "backend/simulator: " + reason);
-  EXPECT_EQ(prepared.experiment.counts().on_surface_taps, 1);
+  EXPECT_EQ(prepared.experiment.counts().object_taps, 1);
   EXPECT_EQ(prepared.experiment.belief().taps(), 2);
 }
 

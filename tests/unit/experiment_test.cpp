@@ -61,8 +61,8 @@ TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
                          failure(Outcome::no_contact), failure(Outcome::aborted), contact_at(0.0)}));
   const RunResult result = run.experiment.result();
   EXPECT_EQ(result.taps, 6);
-  EXPECT_EQ(result.on_surface_taps, 1);
-  EXPECT_EQ(result.off_surface_taps, 1);
+  EXPECT_EQ(result.object_taps, 1);
+  EXPECT_EQ(result.desk_taps, 1);
   EXPECT_EQ(result.failed_taps, 4);
   run.experiment.ask(Quantity::height);
   EXPECT_EQ(run.experiment.belief().height_gp().process->size(), 2);
@@ -220,7 +220,7 @@ TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore)
   const std::vector<std::string> words{"scene=large_block",      "taps=150",        "seed=4",
                                        "scene.effects=standard", "height.lies=0.1", "acquisition={type: inside}"};
   const Finished unbroken("default.yaml", words);
-  ASSERT_GT(unbroken.experiment.counts().on_surface_taps, 105);
+  ASSERT_GT(unbroken.experiment.counts().object_taps, 105);
   ASSERT_FALSE(unbroken.taps.back().doubted->empty());
   for (const std::size_t cut : {100U, 149U}) {
     Prepared rest("default.yaml", words);
@@ -242,7 +242,7 @@ TEST(Experiment, SendsWhoeverTapsByHandWhereTheRunWent) {
     ASSERT_TRUE(chosen.has_value());
     EXPECT_EQ(by_hand.experiment.choose_next()->candidate, chosen->candidate) << "it is only asked again";
     chosen->contact = made.contact;
-    chosen->on_surface = made.on_surface;
+    chosen->on_object = made.on_object;
     EXPECT_EQ(to_json_line(tap_row(*chosen)), to_json_line(tap_row(made)));
     by_hand.experiment.observe({chosen->target, made.contact, chosen->source});
   }

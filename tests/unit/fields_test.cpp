@@ -62,7 +62,7 @@ TEST(Fields, OfAnErrorAreFoundAgainInTheirRow) {
   EXPECT_EQ(row.number(main_error()), 1.0);
   const Errors back = errors_in(row);
   EXPECT_EQ(back.rmse, 1.0);
-  EXPECT_EQ(back.rmse_on_surface, 2.0);
+  EXPECT_EQ(back.rmse_object, 2.0);
   EXPECT_FALSE(back.rmse_height);
   EXPECT_EQ(back.footprint_iou, 0.5);
   Row any_side;

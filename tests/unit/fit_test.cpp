@@ -71,7 +71,7 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
     for (Eigen::Index tap = 0; tap < taps; ++tap) {
       const TapRecord& record = shared->taps[static_cast<std::size_t>(tap)];
       EXPECT_EQ(call.targets[0](tap), record.contact.height);
-      EXPECT_EQ(call.targets[1](tap), *record.on_surface ? 1.0 : 0.0);
+      EXPECT_EQ(call.targets[1](tap), *record.on_object ? 1.0 : 0.0);
     }
   }
   const auto& height = *shared->experiment.belief().height_gp().process;
@@ -97,7 +97,7 @@ TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
     EXPECT_EQ(call.mean_ratio, 1000.0) << "the level of the object is free";
     EXPECT_GT(call.targets[0].minCoeff(), 0.0) << "no tap on the desk";
   }
-  EXPECT_EQ(of_surface, result.on_surface_taps / 5);
+  EXPECT_EQ(of_surface, result.object_taps / 5);
   EXPECT_GT(of_surface, 0);
   EXPECT_EQ(fitting_->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
   const TapBelief& belief = own->experiment.belief();

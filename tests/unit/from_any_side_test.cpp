@@ -57,7 +57,7 @@ Contact met_nothing(std::optional<double> along = std::nullopt) {
 TEST(FromAnySide, AnArmWhoseToolMeetsNothingIsWellAndOneThatStopsMidwayIsNot) {
   Touching missing({"taps=6", "stop.failed_in_a_row=3"}, [](const TapRequest&) { return met_nothing(); });
   EXPECT_NO_THROW(missing.experiment.run(missing.journal));
-  EXPECT_EQ(missing.experiment.counts().missed_taps, 6);
+  EXPECT_EQ(missing.experiment.counts().no_contact_taps, 6);
   EXPECT_EQ(missing.experiment.counts().failed_taps, 0);
 
   // Two that fail, one that tells something, and three that fail.
@@ -66,7 +66,7 @@ TEST(FromAnySide, AnArmWhoseToolMeetsNothingIsWellAndOneThatStopsMidwayIsNot) {
   });
   EXPECT_THROW(failing.experiment.run(failing.journal), Error);
   EXPECT_EQ(failing.experiment.counts().taps, 6);
-  EXPECT_EQ(failing.experiment.counts().missed_taps, 1);
+  EXPECT_EQ(failing.experiment.counts().no_contact_taps, 1);
   EXPECT_EQ(failing.experiment.counts().failed_taps, 5);
 }
 
@@ -97,7 +97,7 @@ TEST(FromAnySide, AnEndThatIsNotOnTheWayOfTheToolIsRefusedAndCounted) {
   }
   EXPECT_EQ(run.experiment.counts().interventions.at("height_refused"), 6);
   EXPECT_EQ(run.experiment.counts().failed_taps, 6);
-  EXPECT_EQ(run.experiment.counts().missed_taps, 2);
+  EXPECT_EQ(run.experiment.counts().no_contact_taps, 2);
 }
 
 TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissing) {
@@ -106,7 +106,7 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
   EXPECT_FALSE(run.experiment.knows_object());
   const Errors errors = run.experiment.result().errors;
   constexpr double kRounding = 1e-12;  // of a mean of thousands of equal numbers
-  for (const std::optional<double>& one : {errors.nearest, errors.rmse, errors.rmse_on_surface})
+  for (const std::optional<double>& one : {errors.surface_distance, errors.rmse, errors.rmse_object})
     EXPECT_NEAR(one.value(), 0.1, kRounding);
   EXPECT_EQ(errors.f_score, 0.0);
   EXPECT_EQ(errors.volume_iou, 0.0);
@@ -132,7 +132,7 @@ TEST(FromAnySide, AnObjectAtTheEndOfALongAreaIsLookedForAndCompared) {
 TEST(FromAnySide, OfWhatIsThinnerThanACubeNoVolumesAreCompared) {
   Touching run({"taps=5",
                 "scene.objects=[{type: block, length: 6 cm, width: 6 cm, height: 1.5 mm, at: [12 cm, 12 cm]}]",
-                "scene.on_surface_above=1 mm"});
+                "scene.min_object_height=1 mm"});
   EXPECT_FALSE(run.experiment.truth().cloud.empty());
   EXPECT_EQ(run.experiment.errors().volume_iou, std::nullopt);
 }
@@ -157,8 +157,8 @@ TEST(FromAnySide, TheTruthIsTheSceneAsItStandsAfterWhatWasPushed) {
   int on = 0;
   for (const TapRecord& tap : run.journal.taps) {
     if (tap.contact.outcome != Outcome::contact) continue;
-    EXPECT_EQ(tap.on_surface, tap.true_on_surface) << tap.number;
-    on += *tap.on_surface ? 1 : 0;
+    EXPECT_EQ(tap.on_object, tap.true_on_object) << tap.number;
+    on += *tap.on_object ? 1 : 0;
   }
   EXPECT_GT(on, 1);
 }

@@ -11,7 +11,7 @@ namespace {
 RunOutcome run(int job, std::optional<int> taps, std::optional<double> rmse, bool found = true) {
   Row row;
   row.add("status", "done");
-  row.add("on_surface_taps", taps);
+  row.add("object_taps", taps);
   row.add("rmse_m", rmse);
   row.add("found", found);
   row.add("wall_seconds", 0.5);
@@ -41,16 +41,16 @@ using Texts = std::vector<std::string>;
 
 TEST(Judge, ComparesASingleRunField) {
   const RunOutcome one = run(0, 11, 0.02);
-  EXPECT_EQ(judged("{on_surface_taps: '>= 11', rmse_m: <= 2 cm, found: true}", {one}),
+  EXPECT_EQ(judged("{object_taps: '>= 11', rmse_m: <= 2 cm, found: true}", {one}),
             (Texts{"yes 11", "yes 2 cm", "yes true"}));
-  EXPECT_EQ(judged("{on_surface_taps: '> 11', rmse_m: < 20 mm, found: false, status: failed}", {one}),
+  EXPECT_EQ(judged("{object_taps: '> 11', rmse_m: < 20 mm, found: false, status: failed}", {one}),
             (Texts{"no 11", "no 20 mm", "no true", "no done"}));
 }
 
 TEST(Judge, TakesAStatisticOfASingleRunForItsValue) {
   const RunOutcome one = run(0, 11, 0.02);
   for (const char* name : {"mean", "median", "min", "max", "p10", "p95"})
-    EXPECT_EQ(judged("{" + std::string(name) + "(on_surface_taps): == 11}", {one}), (Texts{"yes 11"})) << name;
+    EXPECT_EQ(judged("{" + std::string(name) + "(object_taps): == 11}", {one}), (Texts{"yes 11"})) << name;
   EXPECT_EQ(judged("{mean(found): == 1}", {one}), (Texts{"yes 1"}));
 }
 
@@ -91,20 +91,20 @@ TEST(Judge, ARunWhoseValueIsNotFiniteCountsAsTheWorst) {
 TEST(Judge, SaysOverHowManySeedsAStatisticIs) {
   std::vector<RunOutcome> runs{run(0, 2, 0.01), run(1, 4, 0.02), run(2, 9, 0.03), run(3, 9, 0.03)};
   for (std::size_t i = 0; i < 4; ++i) runs[i].seed = i % 2 == 0 ? "7" : "8";
-  EXPECT_EQ(judged("{mean(on_surface_taps): '>= 7'}", runs), (Texts{"no 6 over 2 seeds"}));
+  EXPECT_EQ(judged("{mean(object_taps): '>= 7'}", runs), (Texts{"no 6 over 2 seeds"}));
 }
 
 TEST(Judge, AFieldAloneHasToHoldInEveryRun) {
   const std::vector<RunOutcome> runs{run(0, 11, 0.01), run(1, 3, 0.01), run(2, 5, 0.01), failed(3)};
-  EXPECT_EQ(judged("{on_surface_taps: '>= 3'}", {runs[0], runs[1]}), (Texts{"yes "}));
-  EXPECT_EQ(judged("{on_surface_taps: '>= 5'}", {runs[0], runs[1], runs[2]}), (Texts{"no 3 in job 1"}));
-  EXPECT_EQ(judged("{on_surface_taps: '>= 10'}", runs), (Texts{"no 3 in job 1, and 3 of 4 runs miss it"}));
+  EXPECT_EQ(judged("{object_taps: '>= 3'}", {runs[0], runs[1]}), (Texts{"yes "}));
+  EXPECT_EQ(judged("{object_taps: '>= 5'}", {runs[0], runs[1], runs[2]}), (Texts{"no 3 in job 1"}));
+  EXPECT_EQ(judged("{object_taps: '>= 10'}", runs), (Texts{"no 3 in job 1, and 3 of 4 runs miss it"}));
   EXPECT_EQ(judged("{rmse_m: <= 2 cm}", runs), (Texts{"no no value: the run failed in job 3"}));
 }
 
 TEST(Judge, TakesStatisticsOverAllRuns) {
   const std::vector<RunOutcome> runs{run(0, 2, 0.01), run(1, 4, 0.02), run(2, 9, 0.03)};
-  EXPECT_EQ(judged("{median(on_surface_taps): '>= 4', mean(on_surface_taps): == 5, max(on_surface_taps): < 9}", runs),
+  EXPECT_EQ(judged("{median(object_taps): '>= 4', mean(object_taps): == 5, max(object_taps): < 9}", runs),
             (Texts{"yes 4", "yes 5", "no 9"}));
   EXPECT_EQ(judged("{p25(rmse_m): <= 15 mm}", runs), (Texts{"yes 15 mm"}));
 }
@@ -112,18 +112,18 @@ TEST(Judge, TakesStatisticsOverAllRuns) {
 TEST(Judge, ARunThatFailedTakesTheWorstValueWhicheverWayItIs) {
   const std::vector<RunOutcome> runs{run(0, 2, 0.01), run(1, 4, 0.02), run(2, 9, 0.03), failed(3), failed(4)};
   const std::string why = ": 2 of 5 runs have none and count as the worst (job 3: the run failed)";
-  EXPECT_EQ(judged("{median(on_surface_taps): '>= 3', median(rmse_m): <= 2 cm}", runs),
+  EXPECT_EQ(judged("{median(object_taps): '>= 3', median(rmse_m): <= 2 cm}", runs),
             (Texts{"no 2" + why, "no 3 cm" + why}));
-  EXPECT_EQ(judged("{mean(on_surface_taps): '>= 0', max(rmse_m): <= 1 m, p90(rmse_m): < 1 m}", runs),
+  EXPECT_EQ(judged("{mean(object_taps): '>= 0', max(rmse_m): <= 1 m, p90(rmse_m): < 1 m}", runs),
             (Texts{"no no value" + why, "no no value" + why, "no no value" + why}));
-  EXPECT_EQ(judged("{median(on_surface_taps): '>= 2', min(rmse_m): <= 1 cm}", runs), (Texts{"yes 2", "yes 1 cm"}));
+  EXPECT_EQ(judged("{median(object_taps): '>= 2', min(rmse_m): <= 1 cm}", runs), (Texts{"yes 2", "yes 1 cm"}));
 }
 
 TEST(Judge, AnEqualityHoldsWhereRunsThatFailedDoNotMatter) {
   const std::vector<RunOutcome> runs{run(0, 4, 0.01), run(1, 4, 0.02), run(2, 4, 0.03), failed(3)};
-  EXPECT_EQ(judged("{median(on_surface_taps): == 4}", runs), (Texts{"yes 4"}));
-  EXPECT_EQ(judged("{min(on_surface_taps): == 4}", runs)[0].substr(0, 2), "no");
-  EXPECT_EQ(judged("{max(on_surface_taps): == 4}", runs)[0].substr(0, 2), "no");
+  EXPECT_EQ(judged("{median(object_taps): == 4}", runs), (Texts{"yes 4"}));
+  EXPECT_EQ(judged("{min(object_taps): == 4}", runs)[0].substr(0, 2), "no");
+  EXPECT_EQ(judged("{max(object_taps): == 4}", runs)[0].substr(0, 2), "no");
 }
 
 TEST(Judge, CountsRunsThatFailed) {
@@ -133,8 +133,8 @@ TEST(Judge, CountsRunsThatFailed) {
 }
 
 TEST(VerdictLine, NamesPlaceKeyBoundAndWhatCame) {
-  EXPECT_EQ(verdict_line(verdicts("\n  median(on_surface_taps): '>= 12'", {run(0, 11, 0.1)}).at(0)),
-            "c.yaml:2:3: expected median(on_surface_taps) >= 12, got 11");
+  EXPECT_EQ(verdict_line(verdicts("\n  median(object_taps): '>= 12'", {run(0, 11, 0.1)}).at(0)),
+            "c.yaml:2:3: expected median(object_taps) >= 12, got 11");
 }
 
 TEST(TestCases, AreOneARunAndOneAnExpectation) {

@@ -70,13 +70,13 @@ void expect_errors_by_definition(bool gated) {
     ++untapped;
   }
   EXPECT_NEAR(*result.errors.rmse, std::sqrt(all / run.experiment.candidates().size()), 1e-12);
-  EXPECT_NEAR(*result.errors.rmse_on_surface, std::sqrt(on / cells_on), 1e-12);
+  EXPECT_NEAR(*result.errors.rmse_object, std::sqrt(on / cells_on), 1e-12);
   EXPECT_NEAR(*result.errors.rmse_height, std::sqrt(bare / cells_on), 1e-12);
   EXPECT_NEAR(*result.calibration.nlpd, density / untapped, 1e-9);
   EXPECT_NEAR(*result.calibration.coverage_95, static_cast<double>(covered) / untapped, 1e-12);
   EXPECT_GT(seen, 0);
   EXPECT_EQ(seen < run.experiment.candidates().size(), gated);
-  EXPECT_EQ(*result.errors.rmse_height != *result.errors.rmse_on_surface, gated);
+  EXPECT_EQ(*result.errors.rmse_height != *result.errors.rmse_object, gated);
 }
 
 TEST(Errors, OfARunAgreeWithTheirDefinitionsOverTheSurfaceItself) { expect_errors_by_definition(false); }
@@ -87,7 +87,7 @@ TEST(Errors, AreUnknownWhereTheSceneIsNotTheTruth) {
   Finished run("paper/object_i.yaml", {}, scripted());
   const RunResult result = run.experiment.result();
   EXPECT_FALSE(result.errors.rmse || result.errors.footprint_iou || result.calibration.nlpd);
-  EXPECT_FALSE(run.taps.front().true_on_surface.has_value());
+  EXPECT_FALSE(run.taps.front().true_on_object.has_value());
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(Overtravel, KnowsByHowMuchContactsErrAndTakesThemForTheDesksSoFarAboveIt) {
   EXPECT_TRUE(overtravel.read(told(0.002, 1.0, 0.008), 20.0).desk);
   EXPECT_FALSE(overtravel.read(told(0.005, 1.0, 0.008), 20.0).desk);
   Overtravel strict(0.0, 0.001);
-  EXPECT_FALSE(strict.read(told(0.0012, 1.0, 0.0), 20.0).desk) << "higher than scene.on_surface_above";
+  EXPECT_FALSE(strict.read(told(0.0012, 1.0, 0.0), 20.0).desk) << "higher than scene.min_object_height";
 }
 
 TEST(Overtravel, TakesARoundTipOnTheBareDeskForOneAtWhateverSlopeItComes) {

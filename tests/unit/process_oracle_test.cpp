@@ -44,8 +44,8 @@ class Comparison final : public Journal {
     if (worst.hits + misses_ > 0) compare();
   }
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override {
-    oracle_.add(tap.target, {Real(tap.contact.height), Real(*tap.on_surface ? 1 : 0)});
-    ++(*tap.on_surface ? worst.hits : misses_);
+    oracle_.add(tap.target, {Real(tap.contact.height), Real(*tap.on_object ? 1 : 0)});
+    ++(*tap.on_object ? worst.hits : misses_);
   }
 
   /// Once for each tap, the last one after the run.

@@ -25,7 +25,7 @@ Target middle(const Scene& scene) {
   for (int i = 0; i < kSide; ++i) {
     for (int j = 0; j < kSide; ++j) {
       const Eigen::Vector2d at(kDesk.width * (i + 0.5) / kSide, kDesk.depth * (j + 0.5) / kSide);
-      if (!scene.on_surface(scene.height(at(0), at(1)))) continue;
+      if (!scene.on_object(scene.height(at(0), at(1)))) continue;
       sum += at;
       ++on;
     }

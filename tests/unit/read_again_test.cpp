@@ -84,8 +84,8 @@ int flips(const Finished& run) {
   int out = 0;
   std::size_t contact = 0;
   for (const TapRecord& tap : run.taps) {
-    if (!tap.on_surface) continue;
-    out += run.experiment.belief().touches()[contact++].on != *tap.on_surface ? 1 : 0;
+    if (!tap.on_object) continue;
+    out += run.experiment.belief().touches()[contact++].on != *tap.on_object ? 1 : 0;
   }
   return out;
 }
@@ -102,8 +102,8 @@ TEST(ReadAgain, AResumedRunGoesOnAsTheUnbrokenOne) {
   Finished unbroken("default.yaml", words);
   ASSERT_GT(flips(unbroken), 0);
   const RunResult result = unbroken.experiment.result();
-  EXPECT_EQ(result.on_surface_taps, static_cast<int>(unbroken.experiment.belief().hits().size()));
-  EXPECT_EQ(result.on_surface_taps + result.off_surface_taps + result.failed_taps, result.taps);
+  EXPECT_EQ(result.object_taps, static_cast<int>(unbroken.experiment.belief().hits().size()));
+  EXPECT_EQ(result.object_taps + result.desk_taps + result.failed_taps, result.taps);
   for (std::size_t cut = 0; cut < unbroken.taps.size(); cut += brief() ? 13 : 3) {
     Prepared rest("default.yaml", words);
     rest.experiment.resume(unbroken.past(cut));

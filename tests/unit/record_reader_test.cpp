@@ -35,7 +35,7 @@ TapRecord made(int number) {
   out.number = number;
   out.target = {0.1 * number, 0.05};
   out.contact = {Outcome::contact, 0.09, 8.0, 5.5, {}};
-  out.on_surface = true;
+  out.on_object = true;
   return out;
 }
 

@@ -21,7 +21,7 @@ TapRecord tap(int number, double height) {
   out.number = number;
   out.target = {0.1 * number, 0.05};
   out.contact = {Outcome::contact, height, 8.0, 5.5, {}};
-  out.on_surface = height > 0.01;
+  out.on_object = height > 0.01;
   return out;
 }
 

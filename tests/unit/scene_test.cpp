@@ -10,8 +10,8 @@ TEST(Scene, OnSurfaceIsStrictlyAboveTheMargin) {
   SceneOptions options;
   options.desk = 0.2;
   const auto scene = build_scene(options, 1, test::shared_host());
-  EXPECT_FALSE(scene->on_surface(0.21));
-  EXPECT_TRUE(scene->on_surface(0.2101));
+  EXPECT_FALSE(scene->on_object(0.21));
+  EXPECT_TRUE(scene->on_object(0.2101));
   EXPECT_DOUBLE_EQ(scene->height(0.1, 0.1), 0.2);
 }
 

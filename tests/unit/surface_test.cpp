@@ -102,7 +102,7 @@ TEST(TwoPart, IsNotBuiltForTheRecordOfATapNorForItsMaps) {
   prepared.journal.announcing = [&](const TapRecord&) { maps = maps_csv(prepared.experiment); };
   prepared.run();
   for (const TapRecord& tap : prepared.taps) {
-    EXPECT_FALSE(tap.surface_gp || tap.errors.rmse || tap.errors.rmse_on_surface || tap.errors.rmse_height);
+    EXPECT_FALSE(tap.surface_gp || tap.errors.rmse || tap.errors.rmse_object || tap.errors.rmse_height);
     EXPECT_EQ(tap.max_standard_deviation.has_value(), tap.height_gp.has_value());
     EXPECT_EQ(tap.errors.footprint_iou.has_value(), tap.label_gp.has_value());
   }

@@ -147,7 +147,7 @@ TEST(View, TellsHeightsAndLabelsSquareBySquareAndTakesItsOffsetFromTheDesk) {
     const Target& place = one.touch.place;
     const double truth = scene->height(place.x, place.y);
     on += one.touch.on ? 1 : 0;
-    EXPECT_EQ(one.touch.on, scene->on_surface(truth)) << place.x << ", " << place.y;
+    EXPECT_EQ(one.touch.on, scene->on_object(truth)) << place.x << ", " << place.y;
     EXPECT_NEAR(one.touch.height, truth - scene->desk(), 3.0 * one.deviation) << place.x << ", " << place.y;
   }
   EXPECT_GE(on, 10);

@@ -104,7 +104,7 @@ void Experiment::check_backend(const PastTap& tap) {
   if (refused_in_a_row_ == kMostRefused) {
     fail(fmt::format("{} taps in a row failed, the last so: {}", kMostRefused, last.reason), "correct the backend");
   }
-  const bool is_well = last.outcome == Outcome::contact || tap.is_missed();
+  const bool is_well = last.outcome == Outcome::contact || tap.is_without_contact();
   if (is_well) failed_in_a_row_ = 0;
   if (is_well || last.outcome == Outcome::unreachable || stop_wished()) return;
   constexpr std::int64_t kOfARobot = 3;

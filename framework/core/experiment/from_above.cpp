@@ -61,7 +61,7 @@ void FromAbove::observe(const PastTap& tap) {
 
 void FromAbove::read(TapRecord& tap) {
   const TapBelief::Reading reading = belief_.read(tap.contact, tap.motion);
-  tap.on_surface = reading.on;
+  tap.on_object = reading.on;
   if (belief_.systematic()) tap.corrected = reading.height;
 }
 

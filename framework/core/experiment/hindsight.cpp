@@ -31,7 +31,7 @@ void TapBelief::read_again() {
     touch.height = excess_[i] - kStep * std::round(estimate.value / kStep);
     const bool clear =
         systematic_->above(i) || touch.height > Systematic::kClearly * std::sqrt(estimate.variance + noise * noise);
-    const bool on = clear && context_.scene.on_surface(desk_ + touch.height);
+    const bool on = clear && context_.scene.on_object(desk_ + touch.height);
     if (on != touch.on && i + 1 < touches_.size()) flipped_ = true;
     touch.on = on;
     if (on) hits_.push_back(touch);

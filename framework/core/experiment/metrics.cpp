@@ -34,11 +34,11 @@ struct Misses {
     for (Eigen::Index i = 0; i < map.size(); ++i) {
       const double error = map(i) - truth.height(i);
       all.add(error * error);
-      if (truth.on(i)) on_surface.add(error * error);
+      if (truth.on(i)) on_object.add(error * error);
     }
   }
 
-  Sum all, on_surface;
+  Sum all, on_object;
 };
 
 Eigen::VectorXd gated(const SurfaceMaps& maps) {
@@ -55,7 +55,7 @@ Truth truth_at(const Candidates& candidates, const Scene& scene) {
   for (int i = 0; i < candidates.size(); ++i) {
     const Target at = candidates.target(i);
     truth.height(i) = scene.height(at.x, at.y);
-    truth.on(i) = scene.on_surface(truth.height(i));
+    truth.on(i) = scene.on_object(truth.height(i));
     truth.object(i) = truth.on(i) ? scene.object(at.x, at.y) : Scene::kNoObject;
   }
   return truth;
@@ -63,17 +63,17 @@ Truth truth_at(const Candidates& candidates, const Scene& scene) {
 
 void require_finite(const Errors& errors, int taps) {
   for (const std::optional<double>& one :
-       {errors.rmse, errors.rmse_on_surface, errors.rmse_height, errors.footprint_iou, errors.nearest, errors.f_score,
-        errors.coverage, errors.volume_iou}) {
+       {errors.rmse, errors.rmse_object, errors.rmse_height, errors.footprint_iou, errors.surface_distance,
+        errors.f_score, errors.coverage, errors.volume_iou}) {
     if (std::isfinite(one.value_or(0.0))) continue;
     throw Error("maps", fmt::format("their errors are not finite numbers after tap {}", taps),
                 "look for heights that no arm reports, or choose a larger height.noise", Error::Kind::run);
   }
 }
 
-std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_surface) {
+std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_object) {
   const Misses misses(map, truth);
-  return only_on_surface ? misses.on_surface.rms() : misses.all.rms();
+  return only_on_object ? misses.on_object.rms() : misses.all.rms();
 }
 
 double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
@@ -102,14 +102,14 @@ Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   Errors out;
   if (maps.height != nullptr) {
     const Misses of_height(*maps.height, truth);
-    out.rmse_height = of_height.on_surface.rms();
+    out.rmse_height = of_height.on_object.rms();
     if (!maps.two_part) {  // the reconstruction is the height mean
       out.rmse = of_height.all.rms();
-      out.rmse_on_surface = out.rmse_height;
+      out.rmse_object = out.rmse_height;
     } else if (maps.probability != nullptr) {
       const Misses of_surface(gated(maps), truth);
       out.rmse = of_surface.all.rms();
-      out.rmse_on_surface = of_surface.on_surface.rms();
+      out.rmse_object = of_surface.on_object.rms();
     }
   }
   if (maps.probability != nullptr) out.footprint_iou = footprint_iou(*maps.probability, truth);

@@ -23,12 +23,12 @@ Truth truth_at(const Candidates& candidates, const Scene& scene);
 
 /// Errors that need one of the two models; absent where there is no such cell or nobody asked for the model.
 struct Errors {
-  std::optional<double> rmse;             ///< metres, the reconstructed scene, desk included
-  std::optional<double> rmse_on_surface;  ///< metres, the same over the cells on an object
-  std::optional<double> rmse_height;      ///< metres, the height mean itself over the cells on an object
-  std::optional<double> footprint_iou;    ///< predicted against true cells on an object; 1 if both are empty
-  // From any side alone; then rmse is over the points of either surface, rmse_on_surface over those of the true one.
-  std::optional<double> nearest =
+  std::optional<double> rmse;           ///< metres, the reconstructed scene, desk included
+  std::optional<double> rmse_object;    ///< metres, the same over the cells on an object
+  std::optional<double> rmse_height;    ///< metres, the height mean itself over the cells on an object
+  std::optional<double> footprint_iou;  ///< predicted against true cells on an object; 1 if both are empty
+  // From any side alone; then rmse is over the points of either surface, rmse_object over those of the true one.
+  std::optional<double> surface_distance =
       std::nullopt;  ///< metres, mean distance from the points of either surface to the other
   std::optional<double> f_score = std::nullopt;     ///< at 5 mm
   std::optional<double> coverage = std::nullopt;    ///< of the 95 % intervals of the surface from any side
@@ -39,7 +39,7 @@ struct Errors {
 void require_finite(const Errors& errors, int taps);
 
 /// Root mean square of (map - truth.height), over all cells or over those on an object. None if there are none.
-std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_surface);
+std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_object);
 
 /// Intersection over union of the cells where `probability` >= 1/2 with those on an object.
 double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth);

@@ -171,13 +171,13 @@ std::vector<Relabelled> TapBelief::relabelled() const {
 }
 
 TapBelief::Reading TapBelief::read(const Contact& contact, int motion) const {
-  if (!systematic_) return {contact.height, context_.scene.on_surface(contact.height)};
+  if (!systematic_) return {contact.height, context_.scene.on_object(contact.height)};
   // Until the desk is known, what is hardly higher than it may be is more probably the desk than so low an object.
   const Systematic::Estimate estimate = systematic_->at(seconds_, motion);
   const double height = contact.height - estimate.value;
   const double unsure =
       Systematic::kClearly * std::sqrt(estimate.variance + systematic_->noise() * systematic_->noise());
-  return {height, context_.scene.on_surface(height) && height - desk_ > unsure};
+  return {height, context_.scene.on_object(height) && height - desk_ > unsure};
 }
 
 std::vector<TapBelief::Doubted> TapBelief::doubted() const {

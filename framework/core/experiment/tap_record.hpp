@@ -71,7 +71,7 @@ struct PastTap {
       unreached{};  ///< with it, which of the lines that were drawn the backend refused: SpaceBelief::unreached()
 
   /// Whether it came along an approach all of whose way was free, which tells as much as a contact.
-  bool is_missed() const { return approach && contact.outcome == Outcome::no_contact; }
+  bool is_without_contact() const { return approach && contact.outcome == Outcome::no_contact; }
 
   /// Whether scores from outside were asked for, and not the strategy.
   bool of_caller() const {
@@ -95,9 +95,9 @@ struct TapRecord : PastTap, ModelState {
   std::optional<double> max_standard_deviation, mean_standard_deviation, min_weight, max_weight;
 
   // After the tap.
-  std::optional<double> corrected;      ///< height less what is thought to be added to all; absent where none is learnt
-  std::optional<bool> on_surface;       ///< as it is read when it is made; absent unless the outcome is a contact
-  std::optional<bool> true_on_surface;  ///< absent where no truth is known
+  std::optional<double> corrected;     ///< height less what is thought to be added to all; absent where none is learnt
+  std::optional<bool> on_object;       ///< as it is read when it is made; absent unless the outcome is a contact
+  std::optional<bool> true_on_object;  ///< absent where no truth is known
 };
 
 /// The reason to stop of a run whose user wanted it: it has no summary, and can be carried on.
@@ -129,7 +129,7 @@ struct RunResult : ModelState {
     robot_seconds += tap.contact.seconds;
     if (tap.source == Source::fallback) ++interventions["fallback"];
     if (is_refused(tap.contact)) ++interventions["height_refused"];
-    if (tap.contact.outcome != Outcome::contact) ++(tap.is_missed() ? missed_taps : failed_taps);
+    if (tap.contact.outcome != Outcome::contact) ++(tap.is_without_contact() ? no_contact_taps : failed_taps);
   }
 
   /// Adds what rounding made necessary in the factorisations of one model; jitter in the square of its unit. Models are
@@ -145,9 +145,9 @@ struct RunResult : ModelState {
   std::string stop_reason;
   bool interrupted = false;
   int taps = 0;
-  int on_surface_taps = 0;
-  int off_surface_taps = 0;
-  int missed_taps = 0;  ///< from any side: those that met nothing
+  int object_taps = 0;
+  int desk_taps = 0;
+  int no_contact_taps = 0;  ///< from any side: those that met nothing
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
   std::vector<Relabelled> relabelled;  ///< contacts that the counts above take otherwise than their TapRecord does

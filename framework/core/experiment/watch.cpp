@@ -56,8 +56,8 @@ void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, con
   result_.count(tap);
   if (contact.outcome != Outcome::contact) return;
   touched_[static_cast<std::size_t>(candidate)] = true;
-  result_.on_surface_taps = static_cast<int>(belief.hits().size());
-  result_.off_surface_taps = static_cast<int>(belief.touches().size() - belief.hits().size());
+  result_.object_taps = static_cast<int>(belief.hits().size());
+  result_.desk_taps = static_cast<int>(belief.touches().size() - belief.hits().size());
   result_.first_hit_tap = belief.first_hit_tap();
   result_.relabelled = belief.relabelled();
 }
@@ -113,7 +113,7 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
   if (options_.height.lies) tap.doubted = belief.doubted();
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* real = truth()) {
-    tap.true_on_surface = real->on(tap.candidate);
+    tap.true_on_object = real->on(tap.candidate);
     tap.errors = errors_of(maps_of(belief, known), *real);
   }
 }

@@ -71,7 +71,7 @@ std::vector<Clause> lines_of(const Tree& expect) {
   std::vector<Clause> lines;
   if (!expect.is_map() && expect.kind != Tree::Kind::null) {
     throw Error(expect.place.text(), "expect: is not a map of expectations",
-                fmt::format("write expect: {{on_surface_taps: \">= 9\", {}: \"<= 2 cm\"}}", main_error()));
+                fmt::format("write expect: {{object_taps: \">= 9\", {}: \"<= 2 cm\"}}", main_error()));
   }
   collect(expect, "", lines);
   return lines;
@@ -92,7 +92,7 @@ const RecordField& read_key(const Clause& line, Expectation& out) {
   if (open != std::string::npos) {
     if (line.key.back() != ')' || line.key.find('(', open + 1) != std::string::npos) {
       throw Error(line.place.text(), fmt::format("expect: '{}' is not a field or STATISTIC(field)", line.key),
-                  "write it like median(on_surface_taps)");
+                  "write it like median(object_taps)");
     }
     const std::string name = line.key.substr(0, open);
     out.field = line.key.substr(open + 1, line.key.size() - open - 2);

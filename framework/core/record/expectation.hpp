@@ -21,7 +21,7 @@ inline constexpr const char* kFailedRuns = "failed_runs";
 struct Expectation {
   enum class Statistic { each, mean, quantile };  ///< `each`: every single run has to fulfil it
 
-  std::string key;  ///< as written: "found", "median(on_surface_taps)"
+  std::string key;  ///< as written: "found", "median(object_taps)"
   std::string field;
   Statistic statistic = Statistic::each;
   double share = 0.5;                     ///< of a quantile: 0 for min, 0.5 for median, 1 for max

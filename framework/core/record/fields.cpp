@@ -31,20 +31,20 @@ const std::vector<ErrorField>& error_list() {
       {RecordField("rmse_m",
                    "reconstruction against truth over all candidate cells, desk included (root mean square); with "
                    "`surface: two_part` the height of the object where the footprint's probability is >= 1/2, and the "
-                   "desk elsewhere; from any side the root mean square of what `nearest_m` is the mean of")
+                   "desk elsewhere; from any side the root mean square of what `surface_distance_m` is the mean of")
            .in(Unit::metre)
            .less()
            .called("over the scene")
            .headline(),
        &Errors::rmse},
-      {RecordField("rmse_on_surface_m",
+      {RecordField("rmse_object_m",
                    "the same over the cells that truly lie on an object; from any side over the points of the true "
                    "surface")
            .in(Unit::metre)
            .less()
            .called("on the object")
            .headline(),
-       &Errors::rmse_on_surface},
+       &Errors::rmse_object},
       {RecordField("rmse_height_m", "the height mean itself over those cells, whatever the footprint")
            .in(Unit::metre)
            .less()
@@ -57,7 +57,7 @@ const std::vector<ErrorField>& error_list() {
            .called("footprint IoU")
            .headline(),
        &Errors::footprint_iou},
-      {RecordField("nearest_m",
+      {RecordField("surface_distance_m",
                    "from any side: mean distance from the points of the reconstructed surface to the nearest of the "
                    "true one and back, over the points of both, each 10 cm at most, and before an object is known 10 "
                    "cm. The true one is where lines from all sides first meet the scene; the reconstructed one where "
@@ -67,7 +67,7 @@ const std::vector<ErrorField>& error_list() {
            .in(Unit::metre)
            .less()
            .called("to the nearest point"),
-       &Errors::nearest, true},
+       &Errors::surface_distance, true},
       {RecordField("f_score",
                    "from any side: harmonic mean of the share of reconstructed points within 5 mm of the true surface "
                    "and of true points within 5 mm of the reconstructed one")
@@ -226,10 +226,10 @@ FieldList<TapRecord> make_tap_list() {
            [](const Tap& t) { return outcome_name(t.contact.outcome); });
   list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
   list.add(
-      "on_surface",
+      "on_object",
       "whether a contact was one with an object, as it was read when it was made; `relabelled` of the summary names "
       "the taps that are read otherwise at the end",
-      &Tap::on_surface);
+      &Tap::on_object);
   list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
   list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
                  "the same less what motion and arm were thought, when it was made, to add to all heights; only with "
@@ -293,7 +293,7 @@ FieldList<TapRecord> make_tap_list() {
                  "null before the first hit",
                  [](const Tap& t) { return t.forecast->rmse; })
       .in(Unit::metre);
-  list.add("true_on_surface", "whether an object truly is there", &Tap::true_on_surface).absent(kNoTruth);
+  list.add("true_on_object", "whether an object truly is there", &Tap::true_on_object).absent(kNoTruth);
   list.add_shared(error_fields(), [](Row& row, const Tap& t) { add_errors(row, t.errors); });
   return list;
 }
@@ -405,27 +405,27 @@ FieldList<Summary> make_summary_list() {
       "(`backend/baxter: ...` where the backend could go on no more)",
       [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
   list.add("taps", "all of them; the next three, from any side four, add up to it", &Summary::taps).less().headline();
-  list.add("on_surface_taps",
+  list.add("object_taps",
            "contacts with an object, as they are read at the end: with `height.systematic`, and from any side, all "
            "are read again after every tap",
-           &Summary::on_surface_taps)
+           &Summary::object_taps)
       .more()
       .called("taps on an object")
       .headline();
-  list.add("off_surface_taps", "contacts with the desk", &Summary::off_surface_taps).less().called("taps on the desk");
-  list.add_where(is_from_any_side, "missed_taps", "from any side: taps that met nothing, all of whose way is free",
-                 &Summary::missed_taps);
+  list.add("desk_taps", "contacts with the desk", &Summary::desk_taps).less().called("taps on the desk");
+  list.add_where(is_from_any_side, "no_contact_taps", "from any side: taps that met nothing, all of whose way is free",
+                 &Summary::no_contact_taps);
   list.add("failed_taps", "taps without a contact; missed ones are none of them", &Summary::failed_taps).less();
   list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)
       .less()
       .absent("the object was not found")
       .called("first tap on an object");
-  list.add("found", "whether there was one", [](const Summary& s) { return s.on_surface_taps > 0; })
+  list.add("found", "whether there was one", [](const Summary& s) { return s.object_taps > 0; })
       .more()
       .called("share of runs that found an object");
   list.add_where(
       is_read_again, "relabelled",
-      "the contacts that these counts take otherwise than `on_surface` of their taps does, each by the number "
+      "the contacts that these counts take otherwise than `on_object` of their taps does, each by the number "
       "of its tap and the label at the end: `5 object; 9 desk`; null if there is none; only with "
       "`height.systematic` and from any side",
       [](const Summary& s) { return if_any(words(s.relabelled)); });

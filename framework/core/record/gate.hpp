@@ -33,7 +33,7 @@ struct Verdict {
 /// says over how many the statistic is. `failed_runs` counts the runs that failed.
 std::vector<Verdict> judge(const std::vector<Expectation>& expectations, const std::vector<RunOutcome>& runs);
 
-/// "file:line:column: expected median(on_surface_taps) >= 12, got 11"
+/// "file:line:column: expected median(object_taps) >= 12, got 11"
 std::string verdict_line(const Verdict& verdict);
 
 /// One test as JUnit has it, which continuous integration shows.

@@ -175,7 +175,7 @@ Quantities recorded_quantities(const Row& row) {
   return out;
 }
 
-bool Recording::truth_known() const { return rows.front().flag("true_on_surface").has_value(); }
+bool Recording::truth_known() const { return rows.front().flag("true_on_object").has_value(); }
 
 bool Recording::scored_by_program() const { return config.notes.plugins.count({"acquisition", "program"}) != 0; }
 

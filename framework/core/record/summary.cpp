@@ -95,7 +95,7 @@ void surface_csv(FromAbove& experiment, const TextOut& out) {
   grid_csv(experiment.candidates(),
            {{"height_mean", &belief.height_mean()},
             {"height_standard_deviation", &deviation},
-            {"on_surface_probability", &belief.probability()},
+            {"object_probability", &belief.probability()},
             {"reconstructed_height", belief.two_part() ? &gated : &belief.height_mean()},
             {"true_height", truth != nullptr ? &truth->height : nullptr}},
            out);

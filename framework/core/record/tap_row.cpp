@@ -73,14 +73,14 @@ Row tap_row(const TapRecord& tap) { return tap_list().row(tap); }
 Row intent_row(const TapRecord& tap) {
   TapRecord before = tap;
   before.contact = {};
-  before.on_surface.reset();
+  before.on_object.reset();
   Row row = tap_row(before);
   row.fields.front().first = "intent";
   return row;
 }
 
 std::optional<bool> label_now(const Row& row, const RunResult& counts) {
-  const std::optional<bool> then = row.flag("on_surface");
+  const std::optional<bool> then = row.flag("on_object");
   if (!then) return std::nullopt;
   const auto number = static_cast<int>(row.number("tap").value_or(0.0));
   const bool changed = std::any_of(counts.relabelled.begin(), counts.relabelled.end(),

@@ -19,7 +19,7 @@ class Desk final : public Scene {
   Desk(const SceneOptions& options, std::uint64_t seed, const PluginFactory& factory)
       : area_{options.area.width, options.area.depth},
         desk_(options.desk),
-        margin_(options.on_surface_above),
+        margin_(options.min_object_height),
         any_side_(options.touch == SceneOptions::Touch::any),
         effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
@@ -73,7 +73,7 @@ class Desk final : public Scene {
 
   const Effects& effects() const override { return effects_; }
 
-  bool on_surface(double height) const override { return height > desk_ + margin_; }
+  bool on_object(double height) const override { return height > desk_ + margin_; }
 
   int objects() const override { return static_cast<int>(bodies_.size()); }
 

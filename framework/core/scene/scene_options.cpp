@@ -37,8 +37,8 @@ void SceneOptions::list(Fields& fields) {
   fields.section(area, Field("area", "the rectangle of the desk in which taps may fall").needed());
   fields.real(desk, Field("desk", "height of the desk").in(Unit::metre));
   fields.real(
-      on_surface_above,
-      Field("on_surface_above", "a contact higher than the desk plus this is on an object").in(Unit::metre).above(0));
+      min_object_height,
+      Field("min_object_height", "a contact higher than the desk plus this is on an object").in(Unit::metre).above(0));
   fields.choice(touch, Field("touch", "from where the tool comes").neutral("top"),
                 {{"top", "from above, straight down", {}}, {"any", "from any side, along lines of any direction", {}}});
   fields.choice(placement, Field("placement", "where the objects stand"),

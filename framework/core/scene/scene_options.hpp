@@ -40,7 +40,7 @@ struct SceneOptions : Options {
   enum class Touch { top, any };
   AreaOptions area;
   double desk = 0.0;
-  double on_surface_above = 0.01;
+  double min_object_height = 0.01;
   Touch touch = Touch::top;
   Placement placement = Placement::fixed;
   std::vector<ObjectOptions> objects;

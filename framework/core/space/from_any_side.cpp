@@ -98,12 +98,12 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   if (backend_->scene_is_truth()) {
     const Line& line = tap.approach->line;
     const double end = std::min(distance_down_to(scene_->desk(), line), tap.approach->length);
-    tap.true_on_surface = scene_now().first_hit(line) < end;
+    tap.true_on_object = scene_now().first_hit(line) < end;
   }
   return tap;
 }
 
-void FromAnySide::read(TapRecord& tap) { tap.on_surface = belief_.on_object(approach_of(tap), tap.contact); }
+void FromAnySide::read(TapRecord& tap) { tap.on_object = belief_.on_object(approach_of(tap), tap.contact); }
 
 void FromAnySide::observe(const PastTap& tap) {
   belief_.observe(approach_of(tap), tap.contact);
@@ -111,8 +111,8 @@ void FromAnySide::observe(const PastTap& tap) {
   result_.count(tap);
   if (tap.contact.outcome != Outcome::contact) return;
   const SpaceBelief::Hits hits = belief_.hits();  // as all contacts are read now
-  result_.on_surface_taps = hits.count;
-  result_.off_surface_taps = result_.taps - result_.failed_taps - result_.missed_taps - hits.count;
+  result_.object_taps = hits.count;
+  result_.desk_taps = result_.taps - result_.failed_taps - result_.no_contact_taps - hits.count;
   result_.first_hit_tap = hits.first;
   result_.relabelled = belief_.relabelled();
 }
@@ -167,8 +167,8 @@ Errors FromAnySide::errors() {
   const CloudErrors errors = compare_clouds(surface, truth().cloud);
   Errors out;
   out.rmse = errors.rms;
-  out.rmse_on_surface = errors.rms_of_truth;
-  out.nearest = errors.mean;
+  out.rmse_object = errors.rms_of_truth;
+  out.surface_distance = errors.mean;
   out.f_score = errors.f_score;
   out.coverage = coverage(surface);
   const Cubes::Held& cubes = truth().cubes;

@@ -76,7 +76,7 @@ SpaceBelief::SpaceBelief(const ExperimentOptions& options, const Context& contex
             simd::table_of(context.lanes)),
       misfit_(options.space->misfit),
       noise_(options.height.noise),
-      overtravel_(tip_of(context.scene), options.scene.on_surface_above) {
+      overtravel_(tip_of(context.scene), options.scene.min_object_height) {
   draw_approaches();
 }
 

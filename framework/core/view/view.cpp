@@ -145,7 +145,7 @@ std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& optio
     const double unevenness = std::max(0.0, one.variance() - noise * noise);
     const double deviation = std::sqrt(noise * noise + unevenness + offset.variance);
     const double height = mean.z() - offset.mean;
-    const bool on = height > kClearlyAbove * deviation && scene.on_surface(scene.desk() + height);
+    const bool on = height > kClearlyAbove * deviation && scene.on_object(scene.desk() + height);
     if (!on && height > kNotAbove * deviation) continue;
     out.push_back({{{mean.x(), mean.y()}, on ? height : 0.0, on}, on ? deviation : noise});
   }

@@ -52,7 +52,7 @@ PointCloud placed(const PointCloud& points, const PriorOptions& options);
 
 /// What these points say, square by square. All heights may be wrong by one offset, of which `bias` is the standard
 /// deviation; the desk, whose height is known, tells most of it where it is seen. A square counts as an object's where
-/// it is clearly above the desk and `scene.on_surface()`, as the desk's where it is not above it; one that shows
+/// it is clearly above the desk and `scene.on_object()`, as the desk's where it is not above it; one that shows
 /// neither, as at an edge, is left out, and so are points outside the area. Sorted by rows from below. Throws Error
 /// where no point lies in the area.
 std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& options, const Scene& scene);

@@ -59,10 +59,10 @@ SweepTableRow row_of(const JobGroup& group, const std::function<std::optional<in
     const auto add = [&, of = row](std::vector<double>& values, const std::string& field) {
       if (const auto value = of->number(field)) values.push_back(*value);
     };
-    add(out.on_surface_all, "on_surface_taps");
+    add(out.on_surface_all, "object_taps");
     add(out.rmse, main_error());
     add(out.iou, "footprint_iou");
-    if (!is_dead) add(out.on_surface_live, "on_surface_taps");
+    if (!is_dead) add(out.on_surface_live, "object_taps");
   }
   out.is_initial_known = initial.has_value();
   for (std::vector<double>* values : {&out.on_surface_live, &out.on_surface_all, &out.rmse, &out.iou})

@@ -177,7 +177,7 @@ class Calibrated {
       ++sums_.contacts;
       const Target& place = requests[i].target;
       const double there = pair.scene->height(place.x, place.y);
-      sums_.on_desk += pair.scene->on_surface(there) ? 0.0 : 1.0;
+      sums_.on_desk += pair.scene->on_object(there) ? 0.0 : 1.0;
       ++pair.contacts;
       contacts_.push_back({pair.scene.get(), place, requests[i].elapsed, contact.height - made.error[i]});
     }

@@ -167,8 +167,7 @@ Curves curves_of(const Recording& recording, const History& history) {
       }));
   add("Share of the taps on the object", "", CurveAxis::share, one([](const Moment& moment) {
         const RunResult& result = moment.result;
-        return moment.taps > 0 ? std::optional(static_cast<double>(result.on_surface_taps) / moment.taps)
-                               : std::nullopt;
+        return moment.taps > 0 ? std::optional(static_cast<double>(result.object_taps) / moment.taps) : std::nullopt;
       }));
   add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
   for (const NamedState& state : kStates) {

@@ -71,7 +71,7 @@ std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recordin
 }
 
 std::string count_words(const RunResult& result) {
-  std::string out = fmt::format("{} on the object, {} on the desk", result.on_surface_taps, result.off_surface_taps);
+  std::string out = fmt::format("{} on the object, {} on the desk", result.object_taps, result.desk_taps);
   if (result.failed_taps > 0) out += fmt::format(", {} failed", result.failed_taps);
   return out;
 }

@@ -50,8 +50,8 @@ class Scene {
   virtual const Effects& effects() const = 0;
 
   /// The rule that separates object from desk, the same for robot, simulator and truth: strictly higher than the desk
-  /// plus a margin that the config names (`scene.on_surface_above`).
-  virtual bool on_surface(double height) const = 0;
+  /// plus a margin that the config names (`scene.min_object_height`).
+  virtual bool on_object(double height) const = 0;
 
   /// The scene as it stands after so many taps; null where that is this one. Does not outlive it.
   virtual std::unique_ptr<const Scene> after(int taps) const {

@@ -50,7 +50,7 @@ struct Approach {
 struct Touch {
   Target place;
   double height = 0.0;  ///< above the desk, metres
-  bool on = false;      ///< on an object, by the scene's rule (`on_surface_above`)
+  bool on = false;      ///< on an object, by the scene's rule (`min_object_height`)
 };
 
 /// Some outlines, drawn as probably as they are believed in, over M places: of each place, a column, which of them hold

@@ -110,7 +110,7 @@ class Run:
         return f"<palpate.Run {self.directory}: {len(self)} taps>"
 
     def _repr_html_(self):
-        shown = ("status", "stop_reason", "rmse_m", "rmse_on_surface_m", "footprint_iou", "robot_seconds")
+        shown = ("status", "stop_reason", "rmse_m", "rmse_object_m", "footprint_iou", "robot_seconds")
         rows = [("run", self.directory), ("taps", len(self))]
         try:
             end = self.summary or {"status": "unfinished"}
@@ -146,7 +146,7 @@ class Run:
     def taps(self) -> _np.ndarray:
         """A structured array of a row a tap; describe() says what its fields mean. Numbers that a tap lacks are NaN.
 
-        `on_surface` is what a contact was taken for when it was made: `summary["relabelled"]` names those that are read
+        `on_object` is what a contact was taken for when it was made: `summary["relabelled"]` names those that are read
         otherwise at the end.
         """
         return _table(self._record.taps())

@@ -71,7 +71,7 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
       "comment lengths in metres; quality: standard deviation of the height\nelement vertex {}\n"
       "property double x\nproperty double y\nproperty double z\n"
       "property double nx\nproperty double ny\nproperty double nz\n"
-      "property float quality\nproperty float on_surface_probability\n",
+      "property float quality\nproperty float object_probability\n",
       header_text(run), mesh.points.rows());
   if (surface.true_height) out += "property float true_height\n";
   if (!mesh.triangles.empty())  // a list of none is more than some readers expect
@@ -81,7 +81,7 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
     out += fmt::format("{} {} {} {} {} {} {} {}", mesh.points(i, 0), mesh.points(i, 1), mesh.points(i, 2),
                        mesh.normals(i, 0), mesh.normals(i, 1), mesh.normals(i, 2),
                        static_cast<float>(surface.standard_deviation(i)),
-                       static_cast<float>(surface.on_surface_probability(i)));
+                       static_cast<float>(surface.object_probability(i)));
     if (surface.true_height) out += fmt::format(" {}", static_cast<float>((*surface.true_height)(i)));
     out += "\n";
   }
@@ -114,7 +114,7 @@ std::string taps_ply(const Recording& recording, const RunResult& counts, const 
   }
   return fmt::format(
       "ply\nformat ascii 1.0\ncomment palpate, {}\ncomment lengths in metres; contacts only\nelement vertex {}\n"
-      "property double x\nproperty double y\nproperty double z\n{}property int tap\nproperty uchar on_surface\n"
+      "property double x\nproperty double y\nproperty double z\n{}property int tap\nproperty uchar on_object\n"
       "end_header\n{}",
       header_text(run), contacts, any_side ? "property double nx\nproperty double ny\nproperty double nz\n" : "",
       points);

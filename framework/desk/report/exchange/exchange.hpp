@@ -29,8 +29,8 @@ SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights
 /// The surface as reconstructed, with what is known of its error; values a candidate.
 struct ReconstructedSurface {
   SurfaceMesh mesh;
-  Eigen::VectorXd standard_deviation;      ///< of the height, metres
-  Eigen::VectorXd on_surface_probability;  ///< by the config's footprint
+  Eigen::VectorXd standard_deviation;  ///< of the height, metres
+  Eigen::VectorXd object_probability;  ///< by the config's footprint
   std::optional<Eigen::VectorXd> true_height;
 };
 
@@ -38,7 +38,7 @@ struct ReconstructedSurface {
 ReconstructedSurface reconstruct(FromAbove& experiment);
 
 /// PLY 1.0 in ASCII: x, y, z, nx, ny, nz in double precision and, in single precision because MeshLab reads it in no
-/// other, `quality`, the standard deviation; also `on_surface_probability` and, where it is known, `true_height`.
+/// other, `quality`, the standard deviation; also `object_probability` and, where it is known, `true_height`.
 /// ASCII, because positions then read back bit for bit in any program on any machine, people can look into the file,
 /// and a grid of candidates is small. `run` names the run in a comment: what could break a header in it is replaced.
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run);
@@ -47,7 +47,7 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
 std::string surface_ply(FromAnySide& experiment, const std::string& run);
 
 /// The contacts as points: x, y, z, from any side nx, ny and nz, from where the tool came, `tap` (its number),
-/// `on_surface` (1 or 0), as `counts`, those after all taps, read it.
+/// `on_object` (1 or 0), as `counts`, those after all taps, read it.
 std::string taps_ply(const Recording& recording, const RunResult& counts, const std::string& run);
 
 /// Text as a PLY header can hold it: one line of printable ASCII, at most 200 letters, without the word that ends it.

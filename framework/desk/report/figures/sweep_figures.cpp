@@ -105,7 +105,7 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   for (const Group& group : groups) longest = std::max(longest, std::min(group.name.size(), kLongestName));
   std::vector<std::string> metrics;
   for (const std::string& metric :
-       {std::string("on_surface_taps"), main_error(), std::string("footprint_iou"), std::string("robot_seconds")}) {
+       {std::string("object_taps"), main_error(), std::string("footprint_iou"), std::string("robot_seconds")}) {
     const bool present = std::any_of(groups.begin(), groups.end(),
                                      [&](const Group& one) { return !values_of(one.jobs, metric, kOption).empty(); });
     if (present) metrics.emplace_back(metric);

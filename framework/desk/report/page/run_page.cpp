@@ -87,9 +87,9 @@ static void to_json(Json& out, const Moment& moment) {
   add_errors(errors, result.errors);
   out = errors;
   out.update({{"taps", moment.taps},
-              {"on_surface_taps", result.on_surface_taps},
-              {"off_surface_taps", result.off_surface_taps},
-              {"missed_taps", result.missed_taps},
+              {"object_taps", result.object_taps},
+              {"desk_taps", result.desk_taps},
+              {"no_contact_taps", result.no_contact_taps},
               {"failed_taps", result.failed_taps},
               {"relabelled", relabelled(moment)},
               {"surface_drawn", moment.largest_deviation > 0.0},

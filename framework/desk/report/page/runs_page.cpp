@@ -69,7 +69,7 @@ Json json_of_run_beside(const RunBeside& run) {
   Json taps = Json::array();
   for (const Row& row : run.recording.rows) {
     Row mark;
-    for (const char* name : {"tap", "x", "y", "height", "on_surface", "outcome"}) {
+    for (const char* name : {"tap", "x", "y", "height", "on_object", "outcome"}) {
       const Scalar* value = row.find(name);
       mark.add(name, value != nullptr ? *value : Scalar());
     }

@@ -51,9 +51,9 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
     out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
   }
   const bool any_side = is_any_side(recording);
-  if (last.on_surface_taps + last.off_surface_taps == 0) {
+  if (last.object_taps + last.desk_taps == 0) {
     out.push_back(any_side ? "No tap touched anything." : "No tap touched anything: the maps show what was assumed.");
-  } else if (last.on_surface_taps == 0) {
+  } else if (last.object_taps == 0) {
     out.push_back(any_side ? "No tap touched an object." : "No tap touched an object: the maps show where it is not.");
   }
   tell(out, last.failed_taps, "tap", " brought no contact and did not reach the models.");

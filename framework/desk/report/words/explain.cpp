@@ -46,7 +46,7 @@ class FromAboveExplained final : public Explanation {
     page_.heading("Why there");
     explain_choice();
     page_.heading(fmt::format("The models that it was chosen from: {}, {} of them on an object",
-                              counted(hits_before() + before().off_surface_taps, "contact"), hits_before()));
+                              counted(hits_before() + before().desk_taps, "contact"), hits_before()));
     if (recorded_quantities(row_) == Quantities()) page_.say("This choice read no model.");
     explain_models(page_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
     page_.heading("What was expected and what was found");
@@ -61,7 +61,7 @@ class FromAboveExplained final : public Explanation {
   }
 
   const RunResult& before() { return playback_.from_above().counts(); }
-  int hits_before() { return before().on_surface_taps; }
+  int hits_before() { return before().object_taps; }
 
   /// The candidate at which a tap was made.
   int candidate_of(const PastTap& tap) {
@@ -228,7 +228,7 @@ class FromAboveExplained final : public Explanation {
     page_.say(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
                           length_words(height), length_words(std::sqrt(belief.height_variance()(candidate))),
                           two_part ? ", if an object is there (the surface GP)" : ""));
-    if (!two_part || on_surface()) expected_ = height;
+    if (!two_part || on_object()) expected_ = height;
   }
 
   void explain_outcome() {
@@ -240,13 +240,13 @@ class FromAboveExplained final : public Explanation {
                       outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason,
                       seconds_words(contact.seconds)));
     } else {
-      explain_contact(contact, on_surface());
+      explain_contact(contact, on_object());
       explain_label();
     }
     explain_failure();
   }
 
-  bool on_surface() const { return row_.flag("on_surface").value_or(false); }
+  bool on_object() const { return row_.flag("on_object").value_or(false); }
 
   void explain_contact(const Contact& contact, bool on) {
     std::string text =
@@ -258,7 +258,7 @@ class FromAboveExplained final : public Explanation {
       text += fmt::format(", {} {} than expected", length_words(std::abs(more)), more > 0.0 ? "higher" : "lower");
     text += fmt::format("; greatest force {}, {} of the robot.", readable(contact.force, Unit::newton),
                         seconds_words(contact.seconds));
-    if (row_.flag("true_on_surface").value_or(on) != on)
+    if (row_.flag("true_on_object").value_or(on) != on)
       text += fmt::format(" In truth {} is there: the label is wrong.", on ? "the desk" : "an object");
     page_.say(text);
   }

@@ -52,7 +52,7 @@ class ApproachExplained final : public Explanation {
     explain_choice();
     explain_place();
     page_.heading(fmt::format("What was believed after {}, {} of them on an object", counted(number_ - 1, "tap"),
-                              experiment_.counts().on_surface_taps));
+                              experiment_.counts().object_taps));
     explain_belief();
     page_.heading("What was expected and what was found");
     explain_expectation();
@@ -195,14 +195,14 @@ class ApproachExplained final : public Explanation {
       page_.say(fmt::format("Found: nothing, the tap failed: {}{}. {}. No model learns from it.",
                             outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, robot));
     } else {
-      const bool on = row_.flag("on_surface").value_or(false);
+      const bool on = row_.flag("on_object").value_or(false);
       std::string text = fmt::format("Found: contact after {}, at a height of {}, {}", length_words(along),
                                      length_words(contact.height), on ? "on an object" : "on the desk");
       if (on && expected_ && along != *expected_)
         text += fmt::format(", {} {} than expected", length_words(std::abs(along - *expected_)),
                             along > *expected_ ? "further" : "earlier");
       text += fmt::format("; greatest force {}, {}.", readable(contact.force, Unit::newton), robot);
-      if (row_.flag("true_on_surface").value_or(on) != on)
+      if (row_.flag("true_on_object").value_or(on) != on)
         text += fmt::format(" In truth {} is there.", on ? "no object" : "an object");
       page_.say(text);
       explain_label();

@@ -31,9 +31,9 @@ function facts(data) {
   const errors = data.errors.map(([name, label, unit]) => [quantity(name, last[name]), "", unit === "m" ? `error ${label}` : label]);
   const items = [
     [last.taps, ` of ${data.budget}`, "taps"],
-    [last.on_surface_taps, "", "on the object"],
-    [last.off_surface_taps, "", "on the desk"],
-    [last.missed_taps || kNothing, "", "met nothing"],
+    [last.object_taps, "", "on the object"],
+    [last.desk_taps, "", "on the desk"],
+    [last.no_contact_taps || kNothing, "", "met nothing"],
     [last.failed_taps || kNothing, "", "failed"],
     [shown(data.summary?.first_hit_tap), "", "first hit at tap"],
     ...errors,
@@ -73,13 +73,13 @@ function story(data, moment, drawn) {
   if (tap) {
     const reason = tap.reason ? `: ${tap.reason}` : "";
     const touched = `touched ${labelAt(moment, tap) ? "the object" : "the desk"} at ${shown(tap.height * kCentimetres, 4)} cm`;
-    const what = tap.on_surface === null ? `brought no contact (${tap.outcome}${reason})` : touched;
+    const what = tap.on_object === null ? `brought no contact (${tap.outcome}${reason})` : touched;
     const motion = tap.motion === undefined ? "" : `, by motion ${tap.motion}`;
     out.push(`Tap ${tap.tap} ${whereTo(tap)}, chosen by ${kChosenBy[tap.source]}${tap.why ? ` (${tap.why})` : ""}${motion}, ${what}.`);
   } else {
     out.push("Before the first tap.");
   }
-  out.push(`So far ${moment.on_surface_taps} on the object, ${moment.off_surface_taps} on the desk.`);
+  out.push(`So far ${moment.object_taps} on the object, ${moment.desk_taps} on the desk.`);
   for (const number of moment.relabelled) {
     const on = labelAt(moment, data.taps[number - 1]);
     out.push(`Tap ${number} is read as ${on ? "on the object" : "on the desk"} by now, and was not when it was made.`);

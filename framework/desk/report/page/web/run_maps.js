@@ -29,7 +29,7 @@ const scaled = (lines, factor) => lines.map((line) => line.map((value) => value 
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
 /// Whether the contact of a tap is one with an object as it is read at a moment; null of a tap without a contact.
-const labelAt = (moment, tap) => (tap.on_surface === null ? null : tap.on_surface !== moment.relabelled.includes(tap.tap));
+const labelAt = (moment, tap) => (tap.on_object === null ? null : tap.on_object !== moment.relabelled.includes(tap.tap));
 
 /// The first `taps` taps of a run: those on the object, those on the desk, and those that failed, as they are read then.
 const tapsUntil = (run, taps) => [true, false, null].map((touched) => run.taps.slice(0, taps).filter((tap) => labelAt(run.moments[taps], tap) === touched));
@@ -38,7 +38,7 @@ const centimetres = (...metres) => `(${metres.map((value) => shown(value * kCent
 const place = (tap) => centimetres(tap.x, tap.y);
 
 function hover(tap) {
-  const found = tap.on_surface === null ? tap.outcome : `${shown(tap.height * kCentimetres, 3)} cm`;
+  const found = tap.on_object === null ? tap.outcome : `${shown(tap.height * kCentimetres, 3)} cm`;
   return `tap ${tap.tap}: ${plain(found)}`;
 }
 

@@ -146,7 +146,7 @@ class SpaceView {
 
   grow(surfaces) {
     this.surfaces.push(...surfaces);
-    const taps = this.data.taps.filter((tap) => tap.on_surface).map((tap) => along(tap, tap.along).map((value) => value * kCentimetres));
+    const taps = this.data.taps.filter((tap) => tap.on_object).map((tap) => along(tap, tap.along).map((value) => value * kCentimetres));
     const last = this.surfaces[this.surfaces.length - 1];
     const kRoom = 2.5;  // for the arrows
     this.range = kAxes3.map((side, i) => {
@@ -171,7 +171,7 @@ class SpaceView {
   /// The end of the way of a tap, its last few centimetres, or, of one that met nothing, what of it crosses the picture.
   arrow(tap) {
     const shaft = tap.word ? 0.06 : 0.03;  // the next one is to be seen
-    if (tap.on_surface !== null) return [along(tap, Math.max(0, tap.along - shaft)), along(tap, tap.along)];
+    if (tap.on_object !== null) return [along(tap, Math.max(0, tap.along - shaft)), along(tap, tap.along)];
     let [begin, end] = [0, tap.along ?? tap.length];
     const [from, direction] = [along(tap, 0), directionOf(tap)];
     this.range.forEach((range, i) => {
@@ -209,7 +209,7 @@ class SpaceView {
     const title = "standard deviation [mm]";
     const below = { title: { text: title, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
     const colours = { colorscale: kUnknown, cmin: 0, cmax: most, colorbar: colourBar(title, this.spatial && kNarrow.matches ? below : { len: 0.8 }) };
-    const next = nextOf(moment).map((one) => ({ ...one, on_surface: one.along < one.length ? false : null }));
+    const next = nextOf(moment).map((one) => ({ ...one, on_object: one.along < one.length ? false : null }));
     const out = [
       ...this.arrows(on, "on the object", themed("ink")),
       ...this.arrows(off, "on the desk", themed("faint")),

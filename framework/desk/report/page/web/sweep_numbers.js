@@ -215,7 +215,7 @@ function bestPair(sweep) {
 /// What the controls say at first.
 function firstChoices(sweep) {
   const names = [...sweep.columns.keys()];
-  const error = [sweep.first_looks[0], "on_surface_taps"].find((name) => sweep.columns.has(name)) ?? names[0];
+  const error = [sweep.first_looks[0], "object_taps"].find((name) => sweep.columns.has(name)) ?? names[0];
   const [across, up] = bestPair(sweep);
   const fewest = sweep.varying.reduce((a, b) => (b.values.length < a.values.length ? b : a), sweep.varying[0]);
   const costs = ["robot_seconds", "compute_seconds", "taps"].filter((name) => sweep.columns.has(name));
