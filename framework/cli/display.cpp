@@ -38,12 +38,12 @@ std::string error_line(const Row& summary) {
 std::string numerics_line(const Row& row) {
   std::string line;
   const auto add = [&](const char* kind, const char* words) {
-    const std::string count = row.cell(std::string("interventions.") + kind);
+    const std::string count = row.cell(std::string("diagnostics.") + kind);
     if (count != "0" && !count.empty()) line += fmt::format(fmt::runtime(words), line.empty() ? "" : ", ", count);
   };
   add("jitter", "{}jitter was raised {} times");
   add("pivoted", "{}the covariance was pivoted {} times");
-  add("set_aside", "{}{} taps were set aside");
+  add("redundant_taps", "{}{} taps were set aside");
   add("fit_failed", "{}{} fits failed");
   return line.empty() ? line : fmt::format("numerics: {}; runs/README.md says what that means\n", line);
 }

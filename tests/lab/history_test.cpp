@@ -268,7 +268,7 @@ TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {
   const RunResult last = run.history().moments.back().result;
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   ASSERT_GT(last.failed_taps, 0);
-  ASSERT_GT(last.interventions.at("jitter"), 0);
+  ASSERT_GT(last.diagnostics.at("jitter"), 0);
   EXPECT_THAT(said, Contains(HasSubstr(std::to_string(last.failed_taps) + " tap")));
   EXPECT_THAT(said, Contains(HasSubstr("Jitter up to ")));
 }

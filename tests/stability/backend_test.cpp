@@ -30,7 +30,7 @@ TEST(ExtremeBackend, EveryKindOfNoNumberIsRefusedAsAFailedTap) {
   }
   EXPECT_EQ(outside->experiment.result().failed_taps, 4);
   EXPECT_EQ(outside->experiment.result().taps, 8);
-  EXPECT_EQ(outside->experiment.result().interventions.at("height_refused"), 4);
+  EXPECT_EQ(outside->experiment.result().diagnostics.at("heights_rejected"), 4);
 }
 
 TEST(ExtremeBackend, ARunOfNothingButNoNumbersFailsAfterTenOfThem) {
@@ -50,7 +50,7 @@ TEST(ExtremeBackend, ATimeOrAForceThatIsNoNumberIsRefusedAsAFailedTap) {
   answers[2].peak = std::nan("");
   Finished outside("paper/object_i.yaml", {"taps=8"}, scripted(answers));
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(outside.taps[i].contact.reason, kNumberRefused) << i;
-  EXPECT_EQ(outside.experiment.result().interventions.at("height_refused"), 3);
+  EXPECT_EQ(outside.experiment.result().diagnostics.at("heights_rejected"), 3);
   EXPECT_TRUE(std::isfinite(outside.experiment.result().robot_seconds));
 }
 
@@ -87,8 +87,8 @@ TEST(ExtremeBackend, HeightsOfAnySizeGiveFiniteModels) {
 TEST(ExtremeBackend, RepeatedTapsWithoutNoiseAreMetWithAReportedJitter) {
   const auto outside = run({}, {"fallback=none", "repeat=allow", "height.noise=0 m", "label.noise=0"});
   EXPECT_EQ(outside->experiment.result().taps, 17);
-  EXPECT_GT(outside->experiment.result().interventions.at("jitter"), 0);
-  EXPECT_EQ(outside->experiment.result().interventions.at("pivoted"), 0);
+  EXPECT_GT(outside->experiment.result().diagnostics.at("jitter"), 0);
+  EXPECT_EQ(outside->experiment.result().diagnostics.at("pivoted"), 0);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ std::string trouble_of(const Process& process, const Answer& answer, const Case&
                       std::isfinite(process.log_marginal_likelihood()) && std::isfinite(process.condition());
   if (!finite) return "not a number";
   if (!(answer.jitter <= kJitterLimit * one.points * kEps)) return "jitter";
-  if (process.pivoted() > 0 || process.set_aside() > 0) return "a tap was set aside";
+  if (process.pivoted() > 0 || process.redundant_taps() > 0) return "a tap was set aside";
   const bool within = answer.variance.minCoeff() >= 0.0L && answer.variance.maxCoeff() <= one.prior() * (1 + 4 * kEps);
   return within ? "" : "variance outside of [0; prior]";
 }

@@ -238,7 +238,7 @@ TEST_P(SkinExactly, IsTheOptimumOverAllFreePoints) {
     skin.fit(solids, touches);
     SkinOracle oracle(GetParam(), kLength, skin.signal(), skin.rows());
     ASSERT_TRUE(oracle.factorise());
-    ASSERT_EQ(skin.ways_broken(), 0);
+    ASSERT_EQ(skin.violated_free_paths(), 0);
     for (const SurfaceTouch& way : touches) {
       double deepest = 0.0;
       double most = 0.0;

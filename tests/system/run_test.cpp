@@ -48,7 +48,7 @@ TEST_F(ARun, TheSummaryHoldsEveryFieldOfTheContractAndAddsUp) {
   for (const std::string& name :
        Words("name id seed status stop_reason taps object_taps desk_taps failed_taps first_hit_tap found "
              "rmse_m rmse_object_m rmse_height_m footprint_iou nlpd coverage_95 robot_seconds wall_seconds "
-             "compute_seconds compute.infer jitter_max interventions.jitter peak_rss_bytes")) {
+             "compute_seconds compute.infer jitter_max diagnostics.jitter peak_rss_bytes")) {
     value(ended.out, name);
   }
   const auto whole = [&](const char* name) { return std::get<std::int64_t>(value(ended.out, name)); };

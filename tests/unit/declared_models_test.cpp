@@ -105,7 +105,7 @@ TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
     }
     const RunResult result = followed.experiment.result();
     EXPECT_EQ(*result.errors.rmse, *alone.experiment.result().errors.rmse);
-    EXPECT_EQ(result.interventions, alone.experiment.result().interventions);
+    EXPECT_EQ(result.diagnostics, alone.experiment.result().diagnostics);
     EXPECT_FALSE(alone.taps.back().errors.rmse.has_value()) << "nobody reads the surface for the strategy";
   }
 }

@@ -35,7 +35,7 @@ TEST(Experiment, ADeadStartFallsBackToUncertaintyAndSaysSo) {
     EXPECT_EQ(run.taps[i].source, Source::fallback);
     EXPECT_EQ(run.taps[i].why, "no score is positive");
   }
-  EXPECT_EQ(run.experiment.result().interventions.at("fallback"), 14);
+  EXPECT_EQ(run.experiment.result().diagnostics.at("fallback"), 14);
 }
 
 TEST(Experiment, WithoutFallbackADeadStartStallsAtTheFirstCandidateAsThePapersRuleDoes) {
@@ -43,7 +43,7 @@ TEST(Experiment, WithoutFallbackADeadStartStallsAtTheFirstCandidateAsThePapersRu
   for (std::size_t i = 3; i < run.taps.size(); ++i) EXPECT_EQ(run.taps[i].candidate, 0);
   const RunResult result = run.experiment.result();
   EXPECT_EQ(result.taps, 17);
-  EXPECT_EQ(result.interventions.at("jitter"), 0) << "repeated taps are legal data with independent noise";
+  EXPECT_EQ(result.diagnostics.at("jitter"), 0) << "repeated taps are legal data with independent noise";
 }
 
 TEST(Experiment, ForbiddenRepeatsTapEveryCandidateAtMostOnceAndStopWhenNoneIsLeft) {
@@ -247,7 +247,7 @@ TEST(Experiment, SendsWhoeverTapsByHandWhereTheRunWent) {
     by_hand.experiment.observe({chosen->target, made.contact, chosen->source});
   }
   EXPECT_EQ(*by_hand.experiment.result().errors.rmse, *whole.experiment.result().errors.rmse);
-  EXPECT_EQ(by_hand.experiment.result().interventions, whole.experiment.result().interventions);
+  EXPECT_EQ(by_hand.experiment.result().diagnostics, whole.experiment.result().diagnostics);
 }
 
 TEST(Experiment, TheDeskMayLieAnywhere) {

@@ -47,12 +47,12 @@ TEST(Fields, AreWhatTheTablesOfTheFormatSay) {
   EXPECT_THAT(format, HasSubstr(test::table_of(object_list())));
 }
 
-TEST(Fields, OfInterventionsAreAllThatARunCounts) {
+TEST(Fields, OfDiagnosticsAreAllThatARunCounts) {
   RunResult result;
-  result.interventions = {{"jitter", 3}};
+  result.diagnostics = {{"jitter", 3}};
   const Row row = summary_list().row({result, ResolvedConfig{}, "", {}, {}, {}, {}});
-  EXPECT_EQ(row.number("interventions.jitter"), 3.0);
-  EXPECT_EQ(row.number("interventions.fallback"), 0.0);
+  EXPECT_EQ(row.number("diagnostics.jitter"), 3.0);
+  EXPECT_EQ(row.number("diagnostics.fallback"), 0.0);
 }
 
 TEST(Fields, OfAnErrorAreFoundAgainInTheirRow) {

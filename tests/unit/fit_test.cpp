@@ -134,10 +134,10 @@ TEST_F(Fit, ThatFailsIsCountedAndChangesNothing) {
     EXPECT_EQ(failing->taps[i].score, unfitted.taps[i].score);
   }
   const RunResult result = failing->experiment.result();
-  EXPECT_EQ(result.interventions.at("fit_failed"), 6) << "heights and labels, at 5, 10 and 15 contacts";
+  EXPECT_EQ(result.diagnostics.at("fit_failed"), 6) << "heights and labels, at 5, 10 and 15 contacts";
   const Row summary = summary_list().row({result, failing->config, "", {}, {}, {}, {}});
-  for (const auto& [kind, count] : {std::pair("fit_failed", 6), {"pivoted", 0}, {"set_aside", 0}}) {
-    const Scalar* value = summary.find(std::string("interventions.") + kind);
+  for (const auto& [kind, count] : {std::pair("fit_failed", 6), {"pivoted", 0}, {"redundant_taps", 0}}) {
+    const Scalar* value = summary.find(std::string("diagnostics.") + kind);
     ASSERT_NE(value, nullptr) << kind;
     EXPECT_EQ(*value, Scalar{std::int64_t{count}}) << kind;
   }
@@ -145,7 +145,7 @@ TEST_F(Fit, ThatFailsIsCountedAndChangesNothing) {
 
 TEST_F(Fit, ThatFailsForHeightsAndLabelsTogetherIsOneFailure) {
   fitting_->fails = true;
-  EXPECT_EQ(run({"label.hyperparameters=shared"})->experiment.result().interventions.at("fit_failed"), 3);
+  EXPECT_EQ(run({"label.hyperparameters=shared"})->experiment.result().diagnostics.at("fit_failed"), 3);
 }
 
 TEST_F(Fit, OfAResumedRunIsThatOfTheUnbrokenOne) {

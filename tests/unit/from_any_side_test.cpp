@@ -95,7 +95,7 @@ TEST(FromAnySide, AnEndThatIsNotOnTheWayOfTheToolIsRefusedAndCounted) {
     const bool refused = i < 6;
     EXPECT_EQ(run.journal.taps[i].contact.outcome == Outcome::aborted, refused) << i;
   }
-  EXPECT_EQ(run.experiment.counts().interventions.at("height_refused"), 6);
+  EXPECT_EQ(run.experiment.counts().diagnostics.at("heights_rejected"), 6);
   EXPECT_EQ(run.experiment.counts().failed_taps, 6);
   EXPECT_EQ(run.experiment.counts().no_contact_taps, 2);
 }

@@ -181,7 +181,7 @@ TEST(LikeliestLies, OfACovarianceThatIsNoneSetTapsAsideWhichKeepTheirSuspicion) 
   Trial trial(6, 1.0, true, 5);
   trial.testimony.covariance(2, 4) = trial.testimony.covariance(4, 2) = 7.0;
   const Judgement judgement = judge(trial.testimony);
-  EXPECT_GT(judgement.report.set_aside, 0);
+  EXPECT_GT(judgement.report.redundant_taps, 0);
   EXPECT_GT(judgement.report.pivoted, 0);
   const Judged got = read(trial, judgement);
   EXPECT_TRUE(got.doubt.allFinite() && got.mean.allFinite() && got.variance.allFinite());
@@ -193,9 +193,9 @@ TEST(LikeliestLies, DoNotDependOnTheOrderOfSignalsOfWhichSomeSetTapsAside) {
   trial.testimony.covariance(2, 4) = trial.testimony.covariance(4, 2) = 7.0;
   trial.testimony.signals = {0.005, 1.0};
   const Judgement one = judge(trial.testimony);
-  ASSERT_GT(one.report.set_aside, 0);
+  ASSERT_GT(one.report.redundant_taps, 0);
   trial.testimony.signals = {0.005};
-  ASSERT_EQ(judge(trial.testimony).report.set_aside, 0)
+  ASSERT_EQ(judge(trial.testimony).report.redundant_taps, 0)
       << "the noise is larger than what is wrong with so small a signal";
   trial.testimony.signals = {1.0, 0.005};
   EXPECT_LT((judge(trial.testimony).doubt - one.doubt).lpNorm<Eigen::Infinity>(), 1e-12);

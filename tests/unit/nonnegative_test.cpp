@@ -52,7 +52,7 @@ TEST(NonnegativeUnknowns, AreWhereTheSlopeIsNotNegativeAndNothingButZeroIsWhereI
     const VectorXd slope = problem.s * l - problem.d;
     EXPECT_GE(slope.minCoeff(), -kRounding);
     for (const int i : solver.held()) EXPECT_LE(std::abs(slope(i)), kRounding);
-    EXPECT_EQ(solver.set_aside(), 0);
+    EXPECT_EQ(solver.redundant_taps(), 0);
   }
 }
 
@@ -84,7 +84,7 @@ TEST(NonnegativeUnknowns, WithWhichTheFormIsNotPositiveDefiniteAreSetAsideAndCou
     }
     EXPECT_TRUE(solver.values().allFinite());
     EXPECT_TRUE((solver.values().array() >= 0.0).all());
-    aside += solver.set_aside();
+    aside += solver.redundant_taps();
   }
   EXPECT_GT(aside, 200);
 }

@@ -51,7 +51,7 @@ TEST(LastResort, DuplicatesWithoutNoiseNeedJitterButNoTapIsSetAside) {
       EXPECT_EQ(process.jitter_raised() > 0, i >= 3);
     }
     EXPECT_EQ(process.pivoted(), 0);
-    EXPECT_EQ(process.set_aside(), 0);
+    EXPECT_EQ(process.redundant_taps(), 0);
     EXPECT_LE(process.jitter_raised(), 3) << "each step is worth ten times more taps";
   }
 }
@@ -82,8 +82,8 @@ TEST(LastResort, AKernelThatIsNoCovarianceIsMetByPivoting) {
     expect_numbers(process);
   }
   EXPECT_GT(process.pivoted(), 0);
-  EXPECT_GT(process.set_aside(), 0);
-  EXPECT_LT(process.set_aside(), 25);
+  EXPECT_GT(process.redundant_taps(), 0);
+  EXPECT_LT(process.redundant_taps(), 25);
   EXPECT_EQ(process.size(), 25) << "they stay recorded";
 }
 
@@ -91,7 +91,7 @@ TEST(LastResort, PivotingWorksWithAnUnknownMeanToo) {
   Process process = process_of(box, 1e-6, 10.0);
   for (int i = 0; i < 25; ++i) process.add(kCandidates.target(i), 3.0);
   expect_numbers(process);
-  EXPECT_GT(process.set_aside(), 0);
+  EXPECT_GT(process.redundant_taps(), 0);
 }
 
 TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
@@ -103,11 +103,11 @@ TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
   process.add({0.0, 0.6}, 5.0);
   EXPECT_TRUE(process.mean().allFinite());
   EXPECT_EQ(process.size(), 2);
-  EXPECT_EQ(process.set_aside(), 1);
+  EXPECT_EQ(process.redundant_taps(), 1);
   EXPECT_LT((process.mean() - before).cwiseAbs().maxCoeff(), 1e-10) << "it told nothing";
   process.add({0.05, 0.15}, 1.0);
   EXPECT_TRUE(process.mean().allFinite());
-  EXPECT_EQ(process.set_aside(), 1) << "a later tap counts again";
+  EXPECT_EQ(process.redundant_taps(), 1) << "a later tap counts again";
 }
 
 TEST(LastResort, OfAKernelOfNothingButNoNumbersTheFirstTapIsLeft) {
@@ -118,7 +118,7 @@ TEST(LastResort, OfAKernelOfNothingButNoNumbersTheFirstTapIsLeft) {
   process.add({0.2, 0.0}, 1.0);
   EXPECT_TRUE(process.mean().allFinite());
   EXPECT_TRUE(process.variance().allFinite());
-  EXPECT_EQ(process.set_aside(), 2);
+  EXPECT_EQ(process.redundant_taps(), 2);
 }
 
 TEST(LastResort, JitterThatOnceWasNeededGoesWithTheHyperparametersThatNeededIt) {

@@ -28,7 +28,7 @@ TEST(RegularFactor, OfARegularMatrixIsThatOfItsFactorisationAndReportsNothing) {
   factor.solve(b);
   EXPECT_LT((b - expected).norm(), 1e-11);
   EXPECT_EQ(factor.report().jitter, 0.0);
-  EXPECT_EQ(factor.report().raised + factor.report().pivoted + factor.report().set_aside, 0);
+  EXPECT_EQ(factor.report().raised + factor.report().pivoted + factor.report().redundant_taps, 0);
 }
 
 TEST(RegularFactor, OfRowsThatRepeatAddsAJitterThatNobodySeesAndCountsIt) {
@@ -38,7 +38,7 @@ TEST(RegularFactor, OfRowsThatRepeatAddsAJitterThatNobodySeesAndCountsIt) {
     EXPECT_GT(factor.report().jitter, 0.0);
     EXPECT_LE(factor.report().jitter, 100.0 * 20 * kEpsilon * scale * 1.0001);
     EXPECT_EQ(factor.report().raised, 1);
-    EXPECT_EQ(factor.report().set_aside, 0);
+    EXPECT_EQ(factor.report().redundant_taps, 0);
     Eigen::VectorXd b = Eigen::VectorXd::Constant(20, scale);
     factor.solve(b);
     EXPECT_NEAR(b.sum(), 1.0, 1e-3) << "all rows have their share";
@@ -59,7 +59,7 @@ TEST(RegularFactor, OfAMatrixThatIsNoCovarianceSetsRowsAsideAndLeavesThemOutOfEv
   RegularFactor factor;
   factor.factorise(indefinite());
   EXPECT_EQ(factor.report().pivoted, 1);
-  ASSERT_EQ(factor.report().set_aside, 1);
+  ASSERT_EQ(factor.report().redundant_taps, 1);
   const Eigen::MatrixXd inverse = factor.inverse();
   EXPECT_TRUE(inverse.allFinite());
   EXPECT_EQ((inverse.diagonal().array() == 0.0).count(), 1);
@@ -78,7 +78,7 @@ TEST(RegularFactor, SetsAsideWhatIsNotFinite) {
     matrix.col(2).setConstant(bad);
     RegularFactor factor;
     factor.factorise(matrix);
-    EXPECT_GE(factor.report().set_aside, 1);
+    EXPECT_GE(factor.report().redundant_taps, 1);
     EXPECT_TRUE(factor.inverse().allFinite());
     factor.factorise(Eigen::MatrixXd::Constant(3, 3, bad));
     EXPECT_TRUE(factor.inverse().allFinite());

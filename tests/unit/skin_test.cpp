@@ -154,7 +154,7 @@ TEST(SkinAndFreeWays, NoneIsLeftInsideHoweverLongItIs) {
   touches.insert(touches.end(), ways.begin(), ways.end());
   Skin skin(kernel_of(), {0.006, 0.0005});
   skin.fit(solids, touches);
-  EXPECT_EQ(skin.ways_broken(), 0);
+  EXPECT_EQ(skin.violated_free_paths(), 0);
   // 0.5 mm is what a point may be inside and not be taken, the noise. One that is taken costs what a contact does that
   // is off, and between two of them, 1.5 mm apart, is no more.
   for (const SurfaceTouch& way : ways) EXPECT_LT(most_inside(skin, solids, way), 0.001) << way.line.origin.transpose();
@@ -195,8 +195,8 @@ TEST(SkinAndFreeWays, WithoutNoiseTheyAskForNoJitter) {
   skin.fit(solids, touches);
   EXPECT_GT(skin.rows().size(), 30U);
   EXPECT_EQ(skin.report().jitter, 0.0);
-  EXPECT_EQ(skin.report().set_aside, 0);
-  EXPECT_EQ(skin.ways_broken(), 0);
+  EXPECT_EQ(skin.report().redundant_taps, 0);
+  EXPECT_EQ(skin.violated_free_paths(), 0);
   EXPECT_NEAR(skin.mean(on_plate(0.0)), 0.001, 1e-4);  // no way is known better
 }
 
@@ -363,7 +363,7 @@ TEST(SkinOfHardData, FiveHundredContactsAndAHundredNormalsWithAndWithoutNoise) {
       if (noise > 0.0 || std::string(type) != "rbf") {
         EXPECT_EQ(skin.report().raised, 0);
       }
-      EXPECT_EQ(skin.report().set_aside, 0);
+      EXPECT_EQ(skin.report().redundant_taps, 0);
       EXPECT_EQ(skin.rows().size(), 700U);
     }
   }
@@ -394,9 +394,9 @@ TEST(SkinOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAndCounte
   EXPECT_FALSE(skin.free_points().empty());
   std::size_t contacts = 0;
   for (const Skin::Row& row : skin.rows()) contacts += row.free ? 0 : 1;
-  EXPECT_GE(static_cast<std::size_t>(skin.report().set_aside), 60 - contacts);
+  EXPECT_GE(static_cast<std::size_t>(skin.report().redundant_taps), 60 - contacts);
   EXPECT_GT(skin.report().pivoted, 0);
-  EXPECT_GT(skin.report().set_aside, 0);
+  EXPECT_GT(skin.report().redundant_taps, 0);
   EXPECT_GT(skin.rows().size(), 0U);
   const Skin::Posterior all = skin.posterior(all_over_the_ball(300));
   EXPECT_TRUE(all.mean.allFinite());

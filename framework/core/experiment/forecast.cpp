@@ -24,7 +24,7 @@ double variance_ratio(const Process& heights, double square) {
   const ProcessSettings& settings = heights.settings();
   const int level = settings.mean_ratio > 0.0 ? 1 : 0;  // taken out of the heights, it costs one of them
   return (square / (settings.signal * settings.signal) + heights.misfit()) /
-         (1 + heights.size() - heights.set_aside() - level);
+         (1 + heights.size() - heights.redundant_taps() - level);
 }
 
 void Forecaster::hit(double height) {

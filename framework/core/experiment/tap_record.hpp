@@ -127,8 +127,8 @@ struct RunResult : ModelState {
   void count(const PastTap& tap) {
     ++taps;
     robot_seconds += tap.contact.seconds;
-    if (tap.source == Source::fallback) ++interventions["fallback"];
-    if (is_refused(tap.contact)) ++interventions["height_refused"];
+    if (tap.source == Source::fallback) ++diagnostics["fallback"];
+    if (is_refused(tap.contact)) ++diagnostics["heights_rejected"];
     if (tap.contact.outcome != Outcome::contact) ++(tap.is_without_contact() ? no_contact_taps : failed_taps);
   }
 
@@ -136,10 +136,10 @@ struct RunResult : ModelState {
   /// of the same taps: one that several set aside is one.
   void count(const FactorReport& factors) {
     jitter_max = std::max(jitter_max, factors.jitter);
-    interventions["jitter"] += factors.raised;
-    interventions["pivoted"] += factors.pivoted;
-    int& set_aside = interventions["set_aside"];
-    set_aside = std::max(set_aside, factors.set_aside);
+    diagnostics["jitter"] += factors.raised;
+    diagnostics["pivoted"] += factors.pivoted;
+    int& redundant_taps = diagnostics["redundant_taps"];
+    redundant_taps = std::max(redundant_taps, factors.redundant_taps);
   }
 
   std::string stop_reason;
@@ -156,8 +156,8 @@ struct RunResult : ModelState {
   double robot_seconds = 0.0;
   double jitter_max = 0.0;
   /// By kind, zeros included.
-  std::map<std::string, int> interventions{{"fallback", 0}, {"fit_failed", 0}, {"height_refused", 0},  {"jitter", 0},
-                                           {"pivoted", 0},  {"set_aside", 0},  {"variance_clamped", 0}};
+  std::map<std::string, int> diagnostics{{"fallback", 0}, {"fit_failed", 0},     {"heights_rejected", 0}, {"jitter", 0},
+                                         {"pivoted", 0},  {"redundant_taps", 0}, {"variance_clamped", 0}};
 };
 
 /// What is known of a tap before it is made, for people.

@@ -174,12 +174,12 @@ RunResult Watch::result(TapBelief& belief) {
     if (!one) return;
     const Process& process = *one.process;
     state = state_of(one);
-    FactorReport factors{state->jitter, process.jitter_raised(), process.pivoted(), process.set_aside()};
+    FactorReport factors{state->jitter, process.jitter_raised(), process.pivoted(), process.redundant_taps()};
     if (std::find(counted.begin(), counted.end(), &process) != counted.end()) {
       factors.raised = factors.pivoted = 0;
     } else {
       counted.push_back(&process);
-      out.interventions["variance_clamped"] += process.variances_clamped();
+      out.diagnostics["variance_clamped"] += process.variances_clamped();
     }
     out.count(factors);
   };
@@ -190,7 +190,7 @@ RunResult Watch::result(TapBelief& belief) {
     out.doubted = belief.doubted();
     if (belief.surface_gp()) {
       out.count(belief.factors_of_outliers());
-      out.interventions["variance_clamped"] += belief.variances_clamped();
+      out.diagnostics["variance_clamped"] += belief.variances_clamped();
     }
   }
   if (const Footprint* footprint = belief.footprint()) {
@@ -201,11 +201,11 @@ RunResult Watch::result(TapBelief& belief) {
       if (one.name == "jitter") factors.jitter = one.value;
       if (one.name == "jitter_raised") factors.raised = static_cast<int>(one.value);
       if (one.name == "pivoted") factors.pivoted = static_cast<int>(one.value);
-      if (one.name == "set_aside") factors.set_aside = static_cast<int>(one.value);
+      if (one.name == "redundant_taps") factors.redundant_taps = static_cast<int>(one.value);
     }
     out.count(factors);
   }
-  out.interventions["fit_failed"] = belief.failed_fits();
+  out.diagnostics["fit_failed"] = belief.failed_fits();
   // Last, so that its maps change nothing that is counted above; not by the models beside, which only observers ask
   // for.
   if (out.forecast) {

@@ -29,7 +29,7 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
   judged_ = process.size() > 0 && settings.noise > 0.0;
   judgement_.doubt = suspicion;
   report_.jitter = 0.0;
-  report_.set_aside = 0;
+  report_.redundant_taps = 0;
   if (!judged_) return;
   Testimony testimony;
   const auto taps = static_cast<Eigen::Index>(process.size());

@@ -57,7 +57,7 @@ class Court {
   const Eigen::ArrayXd& log_odds() const { return log_odds_; }
   double level() const { return level_; }
   const FactorReport& report() const { return report_; }
-  std::vector<int> set_aside() const {
+  std::vector<int> redundant_taps() const {
     std::vector<int> out;
     for (int i = 0; i < taps(); ++i) {
       if (inverse_(i, i) == 0.0) out.push_back(i);
@@ -340,7 +340,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
         squares.take();
       }
       // Nothing was found about those that were set aside.
-      for (const int row : court.set_aside()) out.doubt(row) += all * testimony.suspicion(row);
+      for (const int row : court.redundant_taps()) out.doubt(row) += all * testimony.suspicion(row);
       of_signal += all;
       if (all > 0.0) squares.sum().bottomRightCorner(n, n).triangularView<Eigen::Lower>() -= all * court.inverse();
     }

@@ -96,7 +96,7 @@ class Process {
   int jitter_raised() const { return report_.raised; }
   int pivoted() const { return report_.pivoted; }
   /// How many taps do not enter the posterior.
-  int set_aside() const { return size_ - factor_.size(); }
+  int redundant_taps() const { return size_ - factor_.size(); }
   /// Of the maps: how many candidates' variances rounding has taken out of [0, prior] by now; they read as its ends.
   int variances_clamped() const;
   /// Estimate of the condition number of the covariance of the taps, noise and jitter included.

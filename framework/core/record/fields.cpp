@@ -311,10 +311,10 @@ bool is_read_again(const Summary& summary) {
 }
 
 /// How often a run took such a step.
-auto interventions(const std::string& kind) {
+auto diagnostics(const std::string& kind) {
   return [kind](const Summary& s) {
-    const auto found = s.interventions.find(kind);
-    return found != s.interventions.end() ? found->second : 0;
+    const auto found = s.diagnostics.find(kind);
+    return found != s.diagnostics.end() ? found->second : 0;
   };
 }
 
@@ -473,23 +473,23 @@ FieldList<Summary> make_summary_list() {
            std::pair{"fit_failed",
                      "fits that came to no finite values and kept the old ones; heights and labels fitted "
                      "together count once"},
-           std::pair{"height_refused",
+           std::pair{"heights_rejected",
                      "taps of which the backend reported no finite number, or, from any side, an end that is not on "
                      "the way of the tool"},
            std::pair{"jitter", "how often a factorisation needed jitter; the factorisations of every tap count"},
            std::pair{"pivoted",
                      "factorisations of all taps in which no jitter helped and rows were chosen by pivoting"},
            std::pair{
-               "set_aside",
+               "redundant_taps",
                "taps that stay out of a final model because the others tell all about them; the most of any model"},
            std::pair{"variance_clamped",
                      "candidates of the final models whose variance rounding took out of [0, prior]; "
                      "they read as its ends"},
        }) {
-    list.add(std::string("interventions.") + name, meaning, interventions(name)).less();
+    list.add(std::string("diagnostics.") + name, meaning, diagnostics(name)).less();
   }
-  list.add_where(is_from_any_side, "interventions.ways_broken",
-                 "from any side: free ways in which the final surface is left", interventions("ways_broken"))
+  list.add_where(is_from_any_side, "diagnostics.violated_free_paths",
+                 "from any side: free ways in which the final surface is left", diagnostics("violated_free_paths"))
       .less();
   list_models(list, true);
   list.add("peak_rss_bytes", "peak memory of the process", &Summary::peak_rss_bytes).less().measured();

@@ -195,8 +195,8 @@ RunResult FromAnySide::result() {
   RunResult out = result_;
   const Skin& skin = belief_.skin();
   out.count(belief_.factors());
-  out.interventions["variance_clamped"] = belief_.variances_clamped();
-  out.interventions["ways_broken"] = skin.ways_broken();
+  out.diagnostics["variance_clamped"] = belief_.variances_clamped();
+  out.diagnostics["violated_free_paths"] = skin.violated_free_paths();
   out.interrupted = out.stop_reason == kStoppedByUser;
   out.errors = errors();
   require_finite(out.errors, result_.taps);

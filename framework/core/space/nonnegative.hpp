@@ -28,7 +28,7 @@ class Nonnegative {
   const std::vector<int>& held() const { return held_; }
   const Eigen::VectorXd& values() const { return values_; }
   /// Unknowns that stay 0 because, with those that were held, S was not positive definite in double precision.
-  int set_aside() const { return set_aside_; }
+  int redundant_taps() const { return set_aside_; }
 
  private:
   enum class Is { free, held, aside };

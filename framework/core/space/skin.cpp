@@ -203,7 +203,7 @@ void Skin::take_in(std::vector<Row> rows) {
     table = table_of(rows);
   };
   regularise(report_, n, 1.0, with_jitter, pivot);
-  report_.set_aside = static_cast<int>(n) - factor.size();
+  report_.redundant_taps = static_cast<int>(n) - factor.size();
   Lower lower = Lower::Zero(factor.size(), factor.size());
   for (int i = 0; i < factor.size(); ++i) {
     lower.row(i).head(i) = factor.row(i);
@@ -278,7 +278,7 @@ void Skin::keep_free(std::vector<Passage> passages) {
   const Eigen::Index n = contacts.weights.size();
   MatrixXd known(n, 0);  // V
   Nonnegative pull(loops_);
-  const int aside = report_.set_aside;
+  const int aside = report_.redundant_taps;
   std::vector<Passage*> all, close;
   for (Passage& one : passages) all.push_back(&one);
   const auto look_at_all = [&] {
@@ -300,7 +300,8 @@ void Skin::keep_free(std::vector<Passage> passages) {
     if (round == kRounds) {
       look_at_all();
       more = deepest(close);
-      for (std::size_t i = 0; i < more.size(); ++i) ways_broken_ += i == 0 || more[i]->way != more[i - 1]->way ? 1 : 0;
+      for (std::size_t i = 0; i < more.size(); ++i)
+        violated_free_paths_ += i == 0 || more[i]->way != more[i - 1]->way ? 1 : 0;
       return;
     }
     std::vector<Row> rows;
@@ -322,7 +323,7 @@ void Skin::keep_free(std::vector<Passage> passages) {
     left.diagonal(m - left.rows()).array() += noise_of_ways() * noise_of_ways();
     pull.append(left, inside);
     pull.solve();
-    report_.set_aside = aside + pull.set_aside();
+    report_.redundant_taps = aside + pull.redundant_taps();
 
     VectorXd shift = known(Eigen::all, pull.held()) * pull.values();
     lower.transpose().solveInPlace(shift);
@@ -370,7 +371,7 @@ void Skin::fit(const Composition& solids, const std::vector<SurfaceTouch>& touch
   constexpr double kLeast = 0.001;
   signal_ = std::clamp(rms, std::min(kLeast, settings_.most), settings_.most);
   free_.clear();
-  ways_broken_ = 0;
+  violated_free_paths_ = 0;
   report_.jitter = 0.0;
   take_in(std::move(rows));
   keep_free(passages(solids, touches));

@@ -103,7 +103,7 @@ class Skin {
   const FactorReport& report() const { return report_; }
   /// Free ways that the surface is left in, by more than noise and elsewhere than at points that hold: the last fit
   /// ended before it had seen to them.
-  int ways_broken() const { return ways_broken_; }
+  int violated_free_paths() const { return violated_free_paths_; }
 
   /// What rows have in common before any of them is known, with the signal of the last fit, noise left out.
   Eigen::MatrixXd covariance(const std::vector<Row>& rows) const;
@@ -155,7 +155,7 @@ class Skin {
   Known known_;
   std::vector<Row> free_;
   FactorReport report_;
-  int ways_broken_ = 0;
+  int violated_free_paths_ = 0;
 };
 
 }  // namespace palpate

@@ -272,7 +272,7 @@ void SpaceBelief::look_for_reductions() {
   constexpr std::size_t kMost = 300;
   constexpr double kSquarely = 0.5;
   const Representatives some = representatives(places_, kMost);
-  reduced_.set_aside = 0;  // as it is now
+  reduced_.redundant_taps = 0;  // as it is now
   const Eigen::VectorXd reductions = expected_reductions(solids_, skin_, some.places, &reduced_);
   reduction_ = Eigen::VectorXd::Zero(met_.size());
   for (std::size_t i = 0; i < meets_.size(); ++i) {

@@ -13,8 +13,8 @@ namespace palpate {
 
 /// A number that a footprint tells of itself, for the record. Four names say what its factorisations needed: "jitter"
 /// (variance on the diagonal beside the noise, as it is now), "jitter_raised" (how often that was raised), "pivoted"
-/// (how often independent rows were looked for) and "set_aside" (touches that do not enter now). The framework adds
-/// them to those of the Gaussian processes.
+/// (how often independent rows were looked for) and "redundant_taps" (touches that do not enter now). The framework
+/// adds them to those of the Gaussian processes.
 struct FootprintNumber {
   std::string name;  ///< "mistakes", "acceptance", ... or one of the four
   double value = 0.0;

@@ -44,7 +44,7 @@ bool RegularFactor::try_rows(const Eigen::MatrixXd& matrix) {
 void RegularFactor::factorise(const Eigen::MatrixXd& matrix) {
   size_ = matrix.rows();
   report_.jitter = 0.0;
-  report_.set_aside = 0;
+  report_.redundant_taps = 0;
   Eigen::MatrixXd raised;
   const auto with_jitter = [&]() -> const Eigen::MatrixXd& {
     if (report_.jitter == 0.0) return matrix;
@@ -58,14 +58,14 @@ void RegularFactor::factorise(const Eigen::MatrixXd& matrix) {
     // The guards of both factorisations differ by rounding: what the second refuses is left out, from the end.
     while (!rows_.empty() && !try_rows(all(rows_, rows_))) rows_.pop_back();
     if (rows_.empty()) factor_.compute(Eigen::MatrixXd(0, 0));
-    report_.set_aside = static_cast<int>(size_) - static_cast<int>(rows_.size());
+    report_.redundant_taps = static_cast<int>(size_) - static_cast<int>(rows_.size());
   };
   regularise(
       report_, size_, size_ == 0 ? 0.0 : matrix.diagonal().maxCoeff(), [&] { return try_rows(with_jitter()); }, pivot);
 }
 
 Eigen::MatrixXd RegularFactor::inverse() const {
-  if (report_.set_aside == 0) return factor_.solve(Eigen::MatrixXd::Identity(size_, size_));
+  if (report_.redundant_taps == 0) return factor_.solve(Eigen::MatrixXd::Identity(size_, size_));
   Eigen::MatrixXd out = Eigen::MatrixXd::Identity(size_, size_);
   solve(out);
   return out;

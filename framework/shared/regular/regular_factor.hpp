@@ -54,17 +54,17 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 /// What rounding made necessary in the factorisations of one owner: it goes into the record. What is factorised anew at
 /// every tap is counted anew at every tap.
 struct FactorReport {
-  double jitter = 0.0;  ///< variance on the diagonal beside the noise, in the unit of the matrix; as it is now
-  int raised = 0;       ///< how often that was raised
-  int pivoted = 0;      ///< how often no jitter helped, and independent rows were looked for
-  int set_aside = 0;    ///< rows that do not enter now
+  double jitter = 0.0;     ///< variance on the diagonal beside the noise, in the unit of the matrix; as it is now
+  int raised = 0;          ///< how often that was raised
+  int pivoted = 0;         ///< how often no jitter helped, and independent rows were looked for
+  int redundant_taps = 0;  ///< rows that do not enter now
 
   /// Adds the counts of another owner of the same rows, and takes the larger jitter and the more rows set aside.
   void add(const FactorReport& other) {
     jitter = std::max(jitter, other.jitter);
     raised += other.raised;
     pivoted += other.pivoted;
-    set_aside = std::max(set_aside, other.set_aside);
+    redundant_taps = std::max(redundant_taps, other.redundant_taps);
   }
 };
 
@@ -117,7 +117,7 @@ class RegularFactor {
  private:
   template <class Derived, class Solve>
   void solve_by(Eigen::MatrixBase<Derived>& b, const Solve& solve) const {
-    if (report_.set_aside == 0) return solve(b.derived());
+    if (report_.redundant_taps == 0) return solve(b.derived());
     typename Derived::PlainObject some = b(rows_, Eigen::all);
     solve(some);
     b.setZero();

@@ -104,7 +104,7 @@ class Classifier final : public Footprint {
             {"jitter", factors.jitter},
             {"jitter_raised", static_cast<double>(factors.raised)},
             {"pivoted", static_cast<double>(factors.pivoted)},
-            {"set_aside", static_cast<double>(factors.set_aside)}};
+            {"redundant_taps", static_cast<double>(factors.redundant_taps)}};
   }
 
  private:

@@ -15,9 +15,9 @@ bool is_any_side(const Recording& recording) {
   return recording.config.options.scene.touch == SceneOptions::Touch::any;
 }
 
-int interventions(const RunResult& result, const char* kind) {
-  const auto found = result.interventions.find(kind);
-  return found != result.interventions.end() ? found->second : 0;
+int diagnostics(const RunResult& result, const char* kind) {
+  const auto found = result.diagnostics.find(kind);
+  return found != result.diagnostics.end() ? found->second : 0;
 }
 
 /// "3 taps" and what became of them; nothing where there are none.
@@ -57,7 +57,7 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
     out.push_back(any_side ? "No tap touched an object." : "No tap touched an object: the maps show where it is not.");
   }
   tell(out, last.failed_taps, "tap", " brought no contact and did not reach the models.");
-  tell(out, interventions(last, "height_refused"), "tap",
+  tell(out, diagnostics(last, "heights_rejected"), "tap",
        any_side ? " brought a height that is no number, or an end off its way, and was refused."
                 : " brought a height that is no number, and was refused.");
 }
@@ -65,7 +65,7 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
 void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
   const bool any_side = is_any_side(recording);
   const RunResult& last = history.moments.back().result;
-  if (const int fallbacks = interventions(last, "fallback"); fallbacks > 0) {
+  if (const int fallbacks = diagnostics(last, "fallback"); fallbacks > 0) {
     out.push_back(fmt::format(
         "{} of {} {} chosen by the fallback, the largest uncertainty, because the acquisition's scores told "
         "no candidate apart (so it is until the first hit).",
@@ -106,20 +106,20 @@ void warn_of_weights(const Recording& recording, const History& history, std::ve
 }
 
 void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
-  if (const int raised = interventions(last, "jitter"); raised > 0) {
+  if (const int raised = diagnostics(last, "jitter"); raised > 0) {
     out.push_back(
         fmt::format("Jitter up to {:.1e} was added to the covariance, {}: the taps made it singular in "
                     "double precision. It acts as noise of each tap.",
                     last.jitter_max, raised == 1 ? "once" : fmt::format("in {} steps", raised)));
   }
-  tell(out, interventions(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
-  if (const int aside = interventions(last, "set_aside"); aside > 0)
+  tell(out, diagnostics(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
+  if (const int aside = diagnostics(last, "redundant_taps"); aside > 0)
     out.push_back(fmt::format("{} set aside: the others already tell everything about {}, as far as numbers go.",
                               counted(aside, "tap") + (aside == 1 ? " was" : " were"), aside == 1 ? "it" : "them"));
-  if (const int clamped = interventions(last, "variance_clamped"); clamped > 0)
+  if (const int clamped = diagnostics(last, "variance_clamped"); clamped > 0)
     out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; shown are the bounds.",
                               counted(clamped, "candidate")));
-  tell(out, interventions(last, "fit_failed"), "fit", " came to no finite values and kept the old hyperparameters.");
+  tell(out, diagnostics(last, "fit_failed"), "fit", " came to no finite values and kept the old hyperparameters.");
 }
 
 }  // namespace

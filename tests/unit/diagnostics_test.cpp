@@ -6,17 +6,17 @@
 namespace palpate::test {
 namespace {
 
-TEST(Interventions, CountATapThatSeveralModelsSetAsideOnce) {
+TEST(Diagnostics, CountATapThatSeveralModelsSetAsideOnce) {
   RunResult result;
   result.count(FactorReport{1e-9, 2, 1, 3});
   result.count(FactorReport{1e-6, 1, 4, 2});
-  EXPECT_EQ(result.interventions.at("jitter"), 3);
-  EXPECT_EQ(result.interventions.at("pivoted"), 5);
-  EXPECT_EQ(result.interventions.at("set_aside"), 3);
+  EXPECT_EQ(result.diagnostics.at("jitter"), 3);
+  EXPECT_EQ(result.diagnostics.at("pivoted"), 5);
+  EXPECT_EQ(result.diagnostics.at("redundant_taps"), 3);
   EXPECT_EQ(result.jitter_max, 1e-6);
 }
 
-TEST(Interventions, CountAProcessOfHeightsAndLabelsOnce) {
+TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
   const std::vector<Contact> answers(6, contact_at(0.05));
   Finished run("default.yaml",
                {"label.hyperparameters=shared", "surface=single", "height.lies=none", "footprint=regression",
@@ -28,7 +28,7 @@ TEST(Interventions, CountAProcessOfHeightsAndLabelsOnce) {
   ASSERT_NE(process, nullptr);
   ASSERT_EQ(run.experiment.belief().label_gp().process, process);
   ASSERT_GT(process->jitter_raised(), 0);
-  EXPECT_EQ(result.interventions.at("jitter"), process->jitter_raised());
+  EXPECT_EQ(result.diagnostics.at("jitter"), process->jitter_raised());
 }
 
 /// A footprint that factorises something.
@@ -36,17 +36,17 @@ struct Factorising final : Footprint {
   void add(const Touch&) override {}
   void probability(const PointsView&, VectorOut out) override { out.setConstant(0.5); }
   std::vector<FootprintNumber> numbers() const override {
-    return {{"jitter", 0.25}, {"jitter_raised", 3.0}, {"pivoted", 2.0}, {"set_aside", 1.0}};
+    return {{"jitter", 0.25}, {"jitter_raised", 3.0}, {"pivoted", 2.0}, {"redundant_taps", 1.0}};
   }
 };
 
-TEST(Interventions, TakeTheNumbersOfAFootprintByTheirNames) {
+TEST(Diagnostics, TakeTheNumbersOfAFootprintByTheirNames) {
   const Instead<Footprint> plugins(std::make_shared<Factorising>());
   Finished run("default.yaml", {"taps=4"}, scripted(std::vector<Contact>(4, contact_at(0.05))), plugins);
   const RunResult result = run.experiment.result();
-  EXPECT_EQ(result.interventions.at("jitter"), 3);
-  EXPECT_EQ(result.interventions.at("pivoted"), 2);
-  EXPECT_EQ(result.interventions.at("set_aside"), 1);
+  EXPECT_EQ(result.diagnostics.at("jitter"), 3);
+  EXPECT_EQ(result.diagnostics.at("pivoted"), 2);
+  EXPECT_EQ(result.diagnostics.at("redundant_taps"), 1);
   EXPECT_EQ(result.jitter_max, 0.25);
 }
 
@@ -61,7 +61,7 @@ struct Impossible final : Kernel {
   std::vector<KernelParameter> parameters() const override { return {}; }
 };
 
-TEST(Interventions, OfTheClassifierTellJitterAsAVarianceAndItsCountBeside) {
+TEST(Diagnostics, OfTheClassifierTellJitterAsAVarianceAndItsCountBeside) {
   const Instead<Kernel> plugins(std::make_shared<Impossible>());
   Finished run("default.yaml", {"footprint=classifier", "posterior=dense", "acquisition=random", "taps=6"},
                scripted({contact_at(0.05), contact_at(0.0), contact_at(0.05), contact_at(0.05)}), plugins);
