@@ -7,13 +7,14 @@
 namespace palpate::acquisitions {
 
 struct DiscoveryOptions : Options {
-  double haste = 0.0;
+  double travel_cost_exponent = 0.0;
   void list(Fields& fields) override {
-    fields.real(haste, Field("haste",
-                             "power of the way that the tool is expected to go, by which what is expected of a "
-                             "tap is divided: 0 is most a tap, 1 most a metre")
-                           .at_least(0)
-                           .at_most(1));
+    fields.real(travel_cost_exponent,
+                Field("travel_cost_exponent",
+                      "power of the way that the tool is expected to go, by which what is expected of a "
+                      "tap is divided: 0 is most a tap, 1 most a metre")
+                    .at_least(0)
+                    .at_most(1));
   }
 };
 
@@ -32,7 +33,8 @@ class Discovery final : public Acquisition {
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
     constexpr double kUsual = 0.3;  // metres
     out = belief.unseen() + belief.reduction();
-    if (options_.haste > 0.0) out.array() /= (belief.way().array() / kUsual).max(0.1).pow(options_.haste);
+    if (options_.travel_cost_exponent > 0.0)
+      out.array() /= (belief.way().array() / kUsual).max(0.1).pow(options_.travel_cost_exponent);
   }
 
  private:

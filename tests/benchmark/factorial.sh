@@ -30,9 +30,9 @@ awk -F, '
   # What changing the acquisition, or the belief, takes off the error, the mean of before and after the other change.
   function share(what, acquisition, belief) {
     one[1] = acquisition SUBSEP belief
-    one[2] = "outline_and_fill" SUBSEP belief
+    one[2] = "footprint_then_height" SUBSEP belief
     one[3] = acquisition SUBSEP "default"
-    one[4] = "outline_and_fill" SUBSEP "default"
+    one[4] = "footprint_then_height" SUBSEP "default"
     weight[1] = 0.5; weight[4] = -0.5
     weight[2] = what == "taps" ? -0.5 : 0.5
     weight[3] = -weight[2]
@@ -48,7 +48,7 @@ awk -F, '
   END {
     print "| rmse_m [mm] of acquisition, with the belief of | `weighted` | `weighted_two_part` | `default` |"
     print "|---|---:|---:|---:|"
-    n = split("random grid uncertainty weighted outline_and_fill", acquisitions, " ")
+    n = split("random grid uncertainty weighted footprint_then_height", acquisitions, " ")
     for (a = 1; a <= n; ++a) {
       printf "| `%s` | %s | %s | %s |\n", acquisitions[a], cell(acquisitions[a], "weighted"),
         cell(acquisitions[a], "weighted_two_part"), cell(acquisitions[a], "default")

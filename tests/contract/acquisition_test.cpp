@@ -142,7 +142,8 @@ TEST(Acquisitions, FromAnySideTakeTheLargestVarianceAlongTheNormalOrWhereMostIsE
   EXPECT_EQ(best(score(*discovery, all[1])), best(all[1].found)) << "nothing is met";
   EXPECT_EQ(best(score(*discovery, all[2])), best(all[2].taken)) << "nothing is to be found";
   EXPECT_EQ(score(*discovery, all[0]), Eigen::VectorXd(all[0].found + all[0].taken)) << "both in metres";
-  const std::shared_ptr<Acquisition> hasty = make<Acquisition>(contract_host(), "discovery", "{haste: 1}");
+  const std::shared_ptr<Acquisition> hasty =
+      make<Acquisition>(contract_host(), "discovery", "{travel_cost_exponent: 1}");
   Eigen::Index near = 0;
   all[0].ways.minCoeff(&near);
   const Eigen::VectorXd kept = score(*hasty, all[0]).cwiseQuotient(score(*discovery, all[0]));

@@ -31,7 +31,7 @@ class RunsTable : public InFolder {
     const fs::path config =
         folder_.write(name + "/config.yaml", "name: " + name + "\nseed: " + std::to_string(hours) +
                                                  "\ntaps: 30\nkernel: {type: rbf, length_scale: 0.017 m}\n"
-                                                 "acquisition: {type: mixture}\n"
+                                                 "acquisition: {type: sum}\n"
                                                  "scene: {objects: [{type: wave}, {type: box}, {type: wave}]}\n");
     begin(config, hours);
     if (!summary.empty()) folder_.write(name + "/record.jsonl", ended(summary));
@@ -76,12 +76,12 @@ TEST_F(RunsTable, IsThisLetterByLetter) {
   EXPECT_EQ(runs_table(rows),
             "name    begun                strategy  scene      taps  rmse_m [mm]   IoU  state       set apart by  "
             "directory\n"
-            "first   2026-03-01T01:00:00  mixture   wave, box    30         12.3  0.88  done                      " +
+            "first   2026-03-01T01:00:00  sum       wave, box    30         12.3  0.88  done                      " +
                 in + "first\n" +
-                "killed  2026-03-02T02:00:00  mixture   wave, box     2                     "
+                "killed  2026-03-02T02:00:00  sum       wave, box     2                     "
                 "unfinished                " +
                 in + "killed\n" +
-                "failed  2026-03-02T03:00:00  mixture   wave, box     3                     failed"
+                "failed  2026-03-02T03:00:00  sum       wave, box     3                     failed"
                 "                    " +
                 in + "failed\n");
   EXPECT_EQ(runs_table({}), "");
@@ -103,11 +103,11 @@ TEST_F(RunsTable, TellsOfASweepWhatItSweepsAndOfWhichStrategyAndSceneItsJobsAre)
   Sweep sweep{folder_.path() / "many", {"seed", "kernel.length_scale"}, {}};
   for (int job = 0; job < 4; ++job)
     sweep.jobs.push_back({job, fmt::format("{:012x}", job), {std::to_string(job), job < 2 ? "1 cm" : "2 cm"}});
-  const std::string config = "name: many\nacquisition: {type: mixture}\nscene: {objects: [{type: wave}]}\n";
+  const std::string config = "name: many\nacquisition: {type: sum}\nscene: {objects: [{type: wave}]}\n";
   folder_.write("many/config.yaml", config);
   folder_.write("many/manifest.jsonl", manifest_text(sweep, sweep_id(parse_yaml(config, "config.yaml"), sweep)));
   folder_.write("many/jobs/000000000000/config.yaml",
-                "acquisition:\n  type: mixture  # configs/acquisition/fill.yaml:3:9\n"
+                "acquisition:\n  type: sum  # configs/acquisition/fill.yaml:3:9\n"
                 "scene:\n  desk: 0 m  # a b/scene/ring.yaml:1:1\n");
   const Row row = rows_of({list_record(sweep.directory)}).at(0);
   EXPECT_EQ(row.text("strategy"), "fill");
@@ -118,24 +118,24 @@ TEST_F(RunsTable, TellsOfASweepWhatItSweepsAndOfWhichStrategyAndSceneItsJobsAre)
 TEST_F(RunsTable, CallsItAStrategyOfTheCallerWhereHisScoresChoseTaps) {
   const auto strategy = [&](const std::string& source) {
     const fs::path config =
-        folder_.write("told/config.yaml", "name: told\nbackend: {type: caller}\nacquisition: {type: mixture}\n");
+        folder_.write("told/config.yaml", "name: told\nbackend: {type: caller}\nacquisition: {type: sum}\n");
     folder_.write(
         "told/record.jsonl",
         begun_record() + "{\"tap\": 1, \"source\": \"initial\"}\n{\"tap\": 2, \"source\": \"" + source + "\"}\n");
     return list_record(config.parent_path()).row.text("strategy");
   };
   EXPECT_EQ(strategy("caller"), "scores of the caller");
-  EXPECT_EQ(strategy("acquisition"), "mixture");
+  EXPECT_EQ(strategy("acquisition"), "sum");
 }
 
 TEST_F(RunsTable, CallsStrategyAndSceneAsTheGroupsAreThatTheConfigNamed) {
   const fs::path one = done("first", 1, "0.01");
   const std::string scene = "scene:\n  objects:\n    - type: wave  # default\n  desk: 0 m  # a b/scene/ring.yaml:1:1\n";
-  folder_.write("first/config.yaml", "acquisition:\n  type: mixture  # configs/acquisition/fill.yaml:3:9\n" + scene);
+  folder_.write("first/config.yaml", "acquisition:\n  type: sum  # configs/acquisition/fill.yaml:3:9\n" + scene);
   EXPECT_EQ(list_record(one).row.text("strategy"), "fill");
   EXPECT_EQ(list_record(one).row.text("scene"), "ring");
-  folder_.write("first/config.yaml", "acquisition:\n  type: mixture\n");
-  EXPECT_EQ(list_record(one).row.text("strategy"), "mixture") << "without comments no more than these names is lost";
+  folder_.write("first/config.yaml", "acquisition:\n  type: sum\n");
+  EXPECT_EQ(list_record(one).row.text("strategy"), "sum") << "without comments no more than these names is lost";
 }
 
 TEST_F(RunsTable, ConditionsNameColumnsFieldsOfTheSummaryAndKeysOfTheConfigWithTheirUnits) {

@@ -211,8 +211,8 @@ std::vector<Case> cases() {
       typed("UnknownPluginOnTheCommandLine", {"kernel=periodic"},
             "no plugin kernel/periodic, known: matern12, matern32, matern52, product, rational_quadratic, rbf, scale, "
             "sum, swell_and_texture"),
-      typed("TypoInTheNameOfAGroup", {"acquisition=outline_and_fil"},
-            "no plugin acquisition/outline_and_fil, did you mean 'outline_and_fill'?"),
+      typed("TypoInTheNameOfAGroup", {"acquisition=footprint_then_heigh"},
+            "no plugin acquisition/footprint_then_heigh, did you mean 'footprint_then_height'?"),
       whole("NoBackend", without("  - backend"),
             "1:1: no backend is chosen, write backend: {type: ...} or name a group under 'defaults'"),
       line("PluginWithoutType", "height: {kernel: }",

@@ -16,7 +16,7 @@ class CurvesOfGroups : public Shell {
  protected:
   /// A sweep of the default, whose taps have no errors in their record.
   fs::path defaults() const {
-    return swept("acquisition=outline_and_fill,weighted taps=7 candidates.count=16 seed=range(0,5)",
+    return swept("acquisition=footprint_then_height,weighted taps=7 candidates.count=16 seed=range(0,5)",
                  config("default.yaml"));
   }
   Ended curves(const fs::path& sweep, const Words& more = {}) const {

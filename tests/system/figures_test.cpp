@@ -92,7 +92,7 @@ TEST_F(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThemAndCurvesThatEndWithItsSumma
 }
 
 TEST_F(Figures, OfAFootprintHaveItsProbabilityAndTheScoreInPlaceOfTheWeight) {
-  const fs::path directory = drawn_run("seed=3 footprint=shape acquisition=outline_and_fill surface=two_part");
+  const fs::path directory = drawn_run("seed=3 footprint=shape acquisition=footprint_then_height surface=two_part");
   const auto maps = blocks_of(directory / "figures/maps.gnuplot");
   EXPECT_EQ(maps.count("w") + maps.count("e"), 0U);
   EXPECT_EQ(maps.count("score"), 1U);

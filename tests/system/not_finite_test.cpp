@@ -13,7 +13,7 @@ namespace palpate {
 namespace {
 
 const char* const kAbove =
-    "kernel: {type: rbf, length_scale: 3 cm}\nacquisition: {type: outline}\nfitting: {type: fixed}\n"
+    "kernel: {type: rbf, length_scale: 3 cm}\nacquisition: {type: footprint_entropy}\nfitting: {type: fixed}\n"
     "surface: two_part\nheight: {noise: 6 mm, lies: 0.03}\n"
     "backend: {type: simulator}\ntaps: 20\ncandidates: {count: 15}\n"
     "scene: {area: {width: 23 cm, depth: 23 cm}, min_object_height: 1 cm, objects: [{type: wave, at: [12 cm, 12 "
@@ -22,7 +22,7 @@ const char* const kAbove =
 const char* const kAnySide =
     "kernel: {type: matern32, length_scale: 4 cm}\nacquisition: {type: discovery}\nfitting: {type: fixed}\n"
     "surface: implicit\nheight: {signal: 6 mm, noise: 0.5 mm}\ninitial: {design: random, count: 1}\n"
-    "space: {compositions: 4, moves: 50, approaches: 100}\nbackend: {type: simulator}\ntaps: 12\n"
+    "space: {particles: 4, moves: 50, approaches: 100}\nbackend: {type: simulator}\ntaps: 12\n"
     "scene: {touch: any, area: {width: 26 cm, depth: 26 cm}, objects: [{type: block, at: [13 cm, 13 cm]}]}\n";
 
 /// A function of a plugin, what is said of it, and the rest of a config in which it is called.
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
             Spoilt{"fitting", "fit: noise", "fit() gave"}, Spoilt{"fitting", "fit: signal", "fit() gave"},
             Spoilt{"fitting", "fit: mean", "fit() gave"}, Spoilt{"fitting", "fit: objective", "fit() gave"},
             Spoilt{"fitting", "fit: kernel", "fit() gave"}, Spoilt{"footprint", "probability", "probability() gave"},
-            Spoilt{"footprint", "sample", "sample() gave", {"acquisition.type=foresight"}},
+            Spoilt{"footprint", "sample", "sample() gave", {"acquisition.type=variance_reduction"}},
             Spoilt{"footprint", "doubt", "doubt() gave"}, Spoilt{"footprint", "place_now", "place_now() gave"},
             Spoilt{"footprint", "left", "left() gave", {"stop.expected_rmse='3 cm'"}},
             Spoilt{"footprint", "numbers", "numbers() gave"}, Spoilt{"backend", "tap: height", "height that is not"},

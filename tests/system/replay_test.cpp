@@ -77,8 +77,9 @@ TEST_F(Replay, KnowsWhatABackendReadWhoeverChoseTheSecondTap) {
 }
 
 TEST_F(Replay, KnowsWhatWasReadByARunThatStoppedAtItsFirstLook) {
-  const fs::path run = replayed("footprint=shape acquisition=outline fallback=none stop.max_standard_deviation=10m",
-                                config("process.yaml"));
+  const fs::path run =
+      replayed("footprint=shape acquisition=footprint_entropy fallback=none stop.max_standard_deviation=10m",
+               config("process.yaml"));
   EXPECT_THAT(text_of(run / "summary.json"), HasSubstr("\"max_standard_deviation\""));
 }
 

@@ -42,20 +42,22 @@ const std::vector<double> kBits{0.0, 0.8112781244591328, 1.0, 0.0, 0.46899559358
 // Square roots of the uncertainties, to 16 digits.
 const std::vector<double> kDeep{1.0, 0.7071067811865476, 0.4472135954999579, 0.0, 0.8944271909999159};
 
-TEST(AcquisitionValues, OutlineIsTheEntropyOfTheFootprintInBits) { EXPECT_THAT(scores("outline"), near(kBits)); }
+TEST(AcquisitionValues, FootprintEntropyIsTheEntropyOfTheFootprintInBits) {
+  EXPECT_THAT(scores("footprint_entropy"), near(kBits));
+}
 
 TEST(AcquisitionValues, InsideIsTheStandardDeviationTimesTheProbabilityNotTimesTheWeight) {
-  EXPECT_THAT(scores("inside"), near({0.0, kDeep[1] * 0.25, kDeep[2] * 0.5, 0.0, kDeep[4] * 0.9}));
+  EXPECT_THAT(scores("object_uncertainty"), near({0.0, kDeep[1] * 0.25, kDeep[2] * 0.5, 0.0, kDeep[4] * 0.9}));
   EXPECT_THAT(scores("weighted"), near({0.1, 0.6, -0.06, 0.0, 0.0}));
 }
 
 TEST(AcquisitionValues, AMixtureIsTheSumOfItsPartsAndAScaleATimesItsPart) {
   const std::string parts =
-      "{acquisitions: [{type: scale, factor: 0.7, acquisition: {type: outline}}, "
-      "{type: scale, factor: 0.3, acquisition: {type: inside}}]}";
-  EXPECT_THAT(scores("mixture", parts), near({0.0, 0.7 * kBits[1] + 0.3 * kDeep[1] * 0.25, 0.7 + 0.3 * kDeep[2] * 0.5,
-                                              0.0, 0.7 * kBits[4] + 0.3 * kDeep[4] * 0.9}));
-  EXPECT_DOUBLE_EQ(scale_of("mixture", parts), 1.0);
+      "{acquisitions: [{type: scale, factor: 0.7, acquisition: {type: footprint_entropy}}, "
+      "{type: scale, factor: 0.3, acquisition: {type: object_uncertainty}}]}";
+  EXPECT_THAT(scores("sum", parts), near({0.0, 0.7 * kBits[1] + 0.3 * kDeep[1] * 0.25, 0.7 + 0.3 * kDeep[2] * 0.5, 0.0,
+                                          0.7 * kBits[4] + 0.3 * kDeep[4] * 0.9}));
+  EXPECT_DOUBLE_EQ(scale_of("sum", parts), 1.0);
   EXPECT_THAT(scores("scale", "{factor: 2.5, acquisition: {type: uncertainty}}"), near({2.5, 1.25, 0.5, 0.0, 2.0}));
   EXPECT_DOUBLE_EQ(scale_of("scale", "{factor: 2.5, acquisition: {type: uncertainty}}"), 2.5);
 }

@@ -50,14 +50,14 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
   EXPECT_THAT(readers({}), ElementsAre("height GP: acquisition weighted", "label GP: acquisition weighted",
                                        "height GP: fallback uncertainty, from its first use on"));
   EXPECT_THAT(readers({"acquisition=random", "fallback=none"}), ElementsAre());
-  EXPECT_THAT(readers({"acquisition=outline", "fallback=none"}),
-              ElementsAre("height GP: acquisition outline", "label GP: acquisition outline"))
+  EXPECT_THAT(readers({"acquisition=footprint_entropy", "fallback=none"}),
+              ElementsAre("height GP: acquisition footprint_entropy", "label GP: acquisition footprint_entropy"))
       << "two outputs of one process";
-  EXPECT_THAT(readers({"acquisition=outline", "fallback=none", "label.noise=1e-3"}),
-              ElementsAre("label GP: acquisition outline"));
-  EXPECT_THAT(readers({"acquisition=outline", "footprint=shape", "fallback=none", "surface=two_part",
+  EXPECT_THAT(readers({"acquisition=footprint_entropy", "fallback=none", "label.noise=1e-3"}),
+              ElementsAre("label GP: acquisition footprint_entropy"));
+  EXPECT_THAT(readers({"acquisition=footprint_entropy", "footprint=shape", "fallback=none", "surface=two_part",
                        "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
-              ElementsAre("footprint shape: acquisition outline", "height GP: stop.max_standard_deviation",
+              ElementsAre("footprint shape: acquisition footprint_entropy", "height GP: stop.max_standard_deviation",
                           "surface GP: stop.expected_rmse", "footprint shape: stop.expected_rmse"));
   EXPECT_THAT(readers({"acquisition=random", "fallback=none", "backend.motion.adaptive_hover={clearance: 2cm}"}),
               ElementsAre("height GP: backend simulator"));
@@ -67,10 +67,10 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
   for (const Words& words :
        std::vector<Words>{{},
                           {"acquisition=random"},
-                          {"acquisition=outline"},
-                          {"acquisition=outline", "label.noise=1e-3"},
+                          {"acquisition=footprint_entropy"},
+                          {"acquisition=footprint_entropy", "label.noise=1e-3"},
                           {"acquisition=uncertainty", "surface=two_part"},
-                          {"acquisition=inside", "footprint=shape", "surface=two_part"},
+                          {"acquisition=object_uncertainty", "footprint=shape", "surface=two_part"},
                           {"acquisition=random", "surface=two_part", "stop.expected_rmse=1mm"},
                           {"acquisition=random", "surface=two_part", "backend.motion.adaptive_hover={}"}}) {
     Words all = words;
@@ -90,7 +90,7 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
 }
 
 TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
-  for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=outline"}) {
+  for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=footprint_entropy"}) {
     const Words words{acquisition, "surface=two_part"};
     Finished alone("paper/object_i.yaml", words);
     Prepared followed("paper/object_i.yaml", words);

@@ -39,7 +39,7 @@ struct Touching {
                    answer ? std::make_shared<Answering>(std::move(answer)) : nullptr) {}
   static std::vector<std::string> words(std::vector<std::string> more) {
     more.insert(more.begin(),
-                {"scene=object_i", "scene.touch=any", "space.approaches=50", "space.moves=20", "space.compositions=4"});
+                {"scene=object_i", "scene.touch=any", "space.approaches=50", "space.moves=20", "space.particles=4"});
     return more;
   }
 

@@ -165,8 +165,8 @@ TEST_F(ProgramAcquisition, BesideAnotherInAMixtureHasItsOwnFileForWhatItSays) {
   };
   const std::string both = "{acquisitions: [" + part("first") + ", " + part("second") + "]}";
   for (int process = 1; process <= 2; ++process) {  // as when a run is resumed
-    const auto mixture = context_.create<Acquisition>(choose(shared_host(), "acquisition", "mixture", both));
-    EXPECT_EQ(scores(*mixture), std::vector<double>(6, 2.0));
+    const auto sum = context_.create<Acquisition>(choose(shared_host(), "acquisition", "sum", both));
+    EXPECT_EQ(scores(*sum), std::vector<double>(6, 2.0));
   }
   EXPECT_THAT(diary(), testing::AnyOf("first\nfirst\nsecond\nsecond\n", "second\nsecond\nfirst\nfirst\n"));
 }

@@ -165,11 +165,13 @@ void SpaceOptions::list(Fields& fields) {
       approaches,
       Field("approaches", "among which the next is chosen, drawn anew before every tap").at_least(1).at_most(100000));
   fields.integer(
-      compositions,
-      Field("compositions", "of simple solids that are kept, each about equally probable").at_least(2).at_most(1000));
+      particles,
+      Field("particles", "of simple solids that are kept, each about equally probable").at_least(2).at_most(1000));
   fields.integer(
       moves, Field("moves", "of each, after a tap, by which it is fitted to the touches").at_least(0).at_most(100000));
-  fields.real(misfit, Field("misfit", "by how much objects are off the simple solids").in(Unit::metre).at_least(1e-6));
+  fields.real(
+      model_discrepancy,
+      Field("model_discrepancy", "by how much objects are off the simple solids").in(Unit::metre).at_least(1e-6));
   fields.section(view, Field("view",
                              "what a camera 60 cm away sees of the scene, from one side, before the first tap; for "
                              "backend: simulator; not given, nothing"));

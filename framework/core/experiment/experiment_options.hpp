@@ -81,9 +81,9 @@ struct SideViewOptions : Options {
 /// Of `surface: implicit`: see space/.
 struct SpaceOptions : Options {
   std::int64_t approaches = 2000;
-  std::int64_t compositions = 24;
+  std::int64_t particles = 24;
   std::int64_t moves = 1000;
-  double misfit = 0.002;  ///< metres
+  double model_discrepancy = 0.002;  ///< metres
   std::optional<SideViewOptions> view;
   void list(Fields& fields) override;
 };

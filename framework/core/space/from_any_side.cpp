@@ -206,7 +206,7 @@ RunResult FromAnySide::result() {
 Preview FromAnySide::preview(const TapRecord& tap) const { return {std::nullopt, backend_->describe(request_of(tap))}; }
 
 std::vector<ModelReader> FromAnySide::readers() const {
-  return {{"compositions", "surface: implicit"}, {"skin", "surface: implicit"}};
+  return {{"particles", "surface: implicit"}, {"skin", "surface: implicit"}};
 }
 
 Crossings FromAnySide::crossings(double side) {

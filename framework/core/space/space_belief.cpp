@@ -26,9 +26,9 @@ bool goes_anywhere(std::size_t approach) { return approach % 2 == 0; }
 
 SolidsSettings settings_of(const SpaceOptions& options) {
   SolidsSettings out;
-  out.count = static_cast<int>(options.compositions);
+  out.count = static_cast<int>(options.particles);
   out.moves = static_cast<int>(options.moves);
-  out.misfit = options.misfit;
+  out.misfit = options.model_discrepancy;
   return out;
 }
 
@@ -74,7 +74,7 @@ SpaceBelief::SpaceBelief(const ExperimentOptions& options, const Context& contex
       solids_(context.scene.area(), settings_of(*options.space), context.random("space/solids")),
       skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise},
             simd::table_of(context.lanes)),
-      misfit_(options.space->misfit),
+      misfit_(options.space->model_discrepancy),
       noise_(options.height.noise),
       overtravel_(tip_of(context.scene), options.scene.min_object_height) {
   draw_approaches();

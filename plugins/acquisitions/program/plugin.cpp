@@ -281,7 +281,7 @@ class ProgramAcquisition final : public Acquisition {
     }
   }
 
-  /// Returns the path of a file of this program in the run's folder. Each program of a mixture has its own.
+  /// Returns the path of a file of this program in the run's folder. Each program of a sum has its own.
   std::string in_record(const std::string& ending) const {
     constexpr std::size_t kEnough = 8;
     return context_.directory + "/acquisition_" + options_.checksum.substr(0, kEnough) + ending;

@@ -77,11 +77,12 @@ std::vector<double> expected_to_settle(const WrittenBelief& belief) {
 
 std::vector<double> scored(const WrittenBelief& belief, double find) {
   Eigen::VectorXd out(kPlaces);
-  make<Acquisition>(shared_host(), "foresight", fmt::format("{{find: {}}}", find))->score(belief, out);
+  make<Acquisition>(shared_host(), "variance_reduction", fmt::format("{{new_object_weight: {}}}", find))
+      ->score(belief, out);
   return {out.data(), out.data() + kPlaces};
 }
 
-TEST(Foresight, ScoresByTheErrorThatATapIsExpectedToTakeOffAndByWhatItIsExpectedToFind) {
+TEST(VarianceReduction, ScoresByTheErrorThatATapIsExpectedToTakeOffAndByWhatItIsExpectedToFind) {
   WrittenBelief belief = some_belief();
   for (const Area& desk : {Area{0.23, 0.23}, Area{0.12, 0.20}}) {
     belief.desk = desk;
@@ -95,7 +96,7 @@ TEST(Foresight, ScoresByTheErrorThatATapIsExpectedToTakeOffAndByWhatItIsExpected
   }
 }
 
-TEST(Foresight, FindsBeforeItSettlesOnADeskWhereMoreThingsMayBe) {
+TEST(VarianceReduction, FindsBeforeItSettlesOnADeskWhereMoreThingsMayBe) {
   WrittenBelief belief = some_belief();
   belief.desk = {0.46, 0.46};
   const std::vector<double> settles = expected_to_settle(belief);
@@ -110,21 +111,21 @@ TEST(Foresight, FindsBeforeItSettlesOnADeskWhereMoreThingsMayBe) {
   }
 }
 
-TEST(Foresight, TakesEachPlaceForItselfWhereTheFootprintKnowsNoOutlines) {
+TEST(VarianceReduction, TakesEachPlaceForItselfWhereTheFootprintKnowsNoOutlines) {
   WrittenBelief belief;
   belief.places = Points::Zero(4, 2);
   belief.p = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0}};
   Eigen::VectorXd out(4);
-  make<Acquisition>(shared_host(), "foresight", "{}")->score(belief, out);
+  make<Acquisition>(shared_host(), "variance_reduction", "{}")->score(belief, out);
   EXPECT_THAT(std::vector<double>(out.data(), out.data() + 4), testing::ElementsAre(0.0, 0.75, 1.0, 0.0));
 }
 
-TEST(Foresight, IsFlatWhereAllIsSettledAndNothingIsLeft) {
+TEST(VarianceReduction, IsFlatWhereAllIsSettledAndNothingIsLeft) {
   WrittenBelief belief = some_belief();
   belief.sample.holds.setZero();
   belief.sample.to_find.setZero();
   Eigen::VectorXd out(kPlaces);
-  make<Acquisition>(shared_host(), "foresight", "{}")->score(belief, out);
+  make<Acquisition>(shared_host(), "variance_reduction", "{}")->score(belief, out);
   EXPECT_EQ(out, Eigen::VectorXd::Zero(kPlaces));
 }
 

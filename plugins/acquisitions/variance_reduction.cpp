@@ -123,19 +123,20 @@ std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
 /// sides of the desk are longer, and where most is to be found the score goes up to that, so that it is heard beside
 /// others that know of outlines alone. What that brings and costs: framework/docs/desks.md.
 struct ForesightOptions : Options {
-  double find = 1.5;
+  double new_object_weight = 1.5;
   void list(Fields& fields) override {
-    fields.real(find, Field("find",
-                            "what the extent of something new is worth on 23 cm x 23 cm, beside as much that is "
-                            "settled of what is known; on a larger desk more, as its sides are longer")
-                          .at_least(0));
+    fields.real(new_object_weight,
+                Field("new_object_weight",
+                      "what the extent of something new is worth on 23 cm x 23 cm, beside as much that is "
+                      "settled of what is known; on a larger desk more, as its sides are longer")
+                    .at_least(0));
   }
 };
 
-class Foresight final : public Acquisition {
+class VarianceReduction final : public Acquisition {
  public:
   using Options = ForesightOptions;
-  Foresight(const Options& options, const Context&) : options_(options) {}
+  VarianceReduction(const Options& options, const Context&) : options_(options) {}
 
   Quantities reads() const override { return Quantity::probability | Quantity::outlines; }
 
@@ -148,7 +149,7 @@ class Foresight final : public Acquisition {
     }
     const double area = belief.area().width * belief.area().depth;
     const double larger = std::max(1.0, std::sqrt(area) / kUsualSide);
-    out = options_.find * larger * sample.to_find;
+    out = options_.new_object_weight * larger * sample.to_find;
     const double settled = look_ahead(sample, area / static_cast<double>(out.size()), out);
     divide_by(settled > 0.0 ? std::max(settled, out.maxCoeff() / larger) : out.maxCoeff(), out);
   }
@@ -156,7 +157,7 @@ class Foresight final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 
  private:
-  static constexpr double kUsualSide = 0.23;  // metres, of the desk that `find` is for
+  static constexpr double kUsualSide = 0.23;  // metres, of the desk that `new_object_weight` is for
 
   static void divide_by(double most, VectorOut out) {
     if (most > 0.0) out /= most;
@@ -190,6 +191,7 @@ class Foresight final : public Acquisition {
   Options options_;
 };
 
-PALPATE_PLUGIN(Acquisition, Foresight, "foresight", "tap where most is learnt of all outlines together")
+PALPATE_PLUGIN(Acquisition, VarianceReduction, "variance_reduction",
+               "tap where most is learnt of all outlines together")
 
 }  // namespace palpate::acquisitions

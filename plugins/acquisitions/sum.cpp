@@ -16,10 +16,10 @@ struct MixtureOptions : Options {
   }
 };
 
-class Mixture final : public Acquisition {
+class Sum final : public Acquisition {
  public:
   using Options = MixtureOptions;
-  Mixture(const Options& options, const Context& context) {
+  Sum(const Options& options, const Context& context) {
     for (const PluginChoice& one : options.acquisitions) parts_.push_back(context.create<Acquisition>(one));
   }
 
@@ -46,6 +46,6 @@ class Mixture final : public Acquisition {
   std::vector<std::shared_ptr<Acquisition>> parts_;
 };
 
-PALPATE_PLUGIN(Acquisition, Mixture, "mixture", "sum of the scores of several acquisitions")
+PALPATE_PLUGIN(Acquisition, Sum, "sum", "sum of the scores of several acquisitions")
 
 }  // namespace palpate::acquisitions

@@ -6,10 +6,10 @@
 
 namespace palpate::acquisitions {
 
-class Inside final : public Acquisition {
+class ObjectUncertainty final : public Acquisition {
  public:
   using Options = NoOptions;
-  Inside(const Options&, const Context&) {}
+  ObjectUncertainty(const Options&, const Context&) {}
 
   Quantities reads() const override { return Quantity::uncertainty | Quantity::probability; }
   void score(const Belief& belief, VectorOut out) const override {
@@ -18,6 +18,7 @@ class Inside final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 };
 
-PALPATE_PLUGIN(Acquisition, Inside, "inside", "tap where the height is unknown and an object is probable")
+PALPATE_PLUGIN(Acquisition, ObjectUncertainty, "object_uncertainty",
+               "tap where the height is unknown and an object is probable")
 
 }  // namespace palpate::acquisitions

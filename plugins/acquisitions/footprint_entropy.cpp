@@ -8,10 +8,10 @@
 
 namespace palpate::acquisitions {
 
-class Outline final : public Acquisition {
+class FootprintEntropy final : public Acquisition {
  public:
   using Options = NoOptions;
-  Outline(const Options&, const Context&) {}
+  FootprintEntropy(const Options&, const Context&) {}
 
   Quantities reads() const override { return Quantity::probability; }
   void score(const Belief& belief, VectorOut out) const override {
@@ -21,6 +21,7 @@ class Outline final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 };
 
-PALPATE_PLUGIN(Acquisition, Outline, "outline", "tap where it is least sure whether there is an object")
+PALPATE_PLUGIN(Acquisition, FootprintEntropy, "footprint_entropy",
+               "tap where it is least sure whether there is an object")
 
 }  // namespace palpate::acquisitions
