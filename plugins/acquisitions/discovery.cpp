@@ -26,13 +26,13 @@ class Discovery final : public Acquisition {
   bool from_above() const override { return false; }
   bool any_side() const override { return true; }
   Quantities reads() const override { return {}; }
-  Quantities reads_of_approaches() const override { return Quantity::unseen | Quantity::reduction; }
+  Quantities reads_of_approaches() const override { return Quantity::expected_discovery | Quantity::std_reduction; }
   void score(const Belief&, VectorOut out) const override { out.setZero(); }
   double prior_scale() const override { return 0.001; }
 
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
     constexpr double kUsual = 0.3;  // metres
-    out = belief.unseen() + belief.reduction();
+    out = belief.expected_discovery() + belief.std_reduction();
     if (options_.travel_cost_exponent > 0.0)
       out.array() /= (belief.way().array() / kUsual).max(0.1).pow(options_.travel_cost_exponent);
   }

@@ -19,7 +19,7 @@ class Uncertainty final : public Acquisition {
     constexpr double kAlong = 0.999;
     const double most = belief.deviation().maxCoeff();
     const double scale = most > 0.0 ? 1.0 / most : 0.0;  // so that scores are of the size that ties are judged by
-    out = (belief.squareness().array() > kAlong).select((scale * belief.deviation().array()).square(), 0.0);
+    out = (belief.incidence_cosine().array() > kAlong).select((scale * belief.deviation().array()).square(), 0.0);
   }
   double prior_scale() const override { return 1.0; }
 };

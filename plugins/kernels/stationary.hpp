@@ -95,9 +95,9 @@ class Stationary final : public Kernel {
     shape_.set_parameters(values.tail(values.size() - axes()));
   }
 
-  bool has_slopes() const override { return Shape::kSlopes && !per_axis_; }
+  bool has_gradient() const override { return Shape::kSlopes && !per_axis_; }
 
-  void slope_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
+  void gradient_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
     if constexpr (Shape::kSlopes) {
       const double per_length = std::min(1.0 / along_x_, kLargestWithSquare);
       for (Eigen::Index i = 0; i < distances.size(); ++i) {

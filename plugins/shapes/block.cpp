@@ -12,7 +12,7 @@ class Block final : public Shape {
   using Options = BlockOptions;
   Block(const Options& o, const Context&) : half_length_(o.length / 2), half_width_(o.width / 2), height_(o.height) {}
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     Interval inside;
     inside.clip(line.origin.z(), line.direction.z(), 0.0, height_);
     inside.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);

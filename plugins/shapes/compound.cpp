@@ -50,19 +50,20 @@ class Compound final : public Shape {
     for (Part& part : parts_) part.at -= centre;
   }
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     double first = kInfinity;
     for (const Part& part : parts_) {
-      first = std::min(first, part.shape->first_hit({part.turned(line.origin - part.at), part.turned(line.direction)}));
+      first = std::min(
+          first, part.shape->first_intersection({part.turned(line.origin - part.at), part.turned(line.direction)}));
     }
     return first;
   }
 
-  std::vector<Stretch> stretches(const Line& line) const override {
+  std::vector<Stretch> intervals(const Line& line) const override {
     std::vector<Stretch> all;
     for (const Part& part : parts_) {
       const std::vector<Stretch> one =
-          part.shape->stretches({part.turned(line.origin - part.at), part.turned(line.direction)});
+          part.shape->intervals({part.turned(line.origin - part.at), part.turned(line.direction)});
       all.insert(all.end(), one.begin(), one.end());
     }
     return joined(std::move(all));

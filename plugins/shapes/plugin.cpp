@@ -17,8 +17,8 @@ class Plugin final : public Shape {
   using Options = PluginOptions;
   Plugin(const Options& options, const Context& context) : shape_(context.create<const Shape>(options.shape)) {}
 
-  double first_hit(const Line& line) const override { return shape_->first_hit(line); }
-  std::vector<Stretch> stretches(const Line& line) const override { return shape_->stretches(line); }
+  double first_intersection(const Line& line) const override { return shape_->first_intersection(line); }
+  std::vector<Stretch> intervals(const Line& line) const override { return shape_->intervals(line); }
   double support(const Eigen::Vector3d& direction) const override { return shape_->support(direction); }
   double top(double s, double t) const override { return shape_->top(s, t); }
 

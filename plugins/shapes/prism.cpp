@@ -28,7 +28,7 @@ double Prism::top(double s, double t) const {
   return contains(outline_, point) && !(!hole_.empty() && contains(hole_, point)) ? height_ : -kInfinity;
 }
 
-double Prism::first_hit(const Line& line) const {
+double Prism::first_intersection(const Line& line) const {
   // Between the planes of top and bottom.
   Interval between;
   between.clip(line.origin.z(), line.direction.z(), 0.0, height_);
@@ -61,11 +61,11 @@ double Prism::first_hit(const Line& line) const {
   return wall;
 }
 
-std::vector<Stretch> Prism::stretches(const Line& line) const {
+std::vector<Stretch> Prism::intervals(const Line& line) const {
   Interval between;
   between.clip(line.origin.z(), line.direction.z(), 0.0, height_);
   const Point direction{line.direction.x(), line.direction.y()};
-  if (between.empty() || std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) return Shape::stretches(line);
+  if (between.empty() || std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) return Shape::intervals(line);
   std::vector<double> crossings;
   const auto visit = [&](double x) { crossings.push_back(x); };
   const Point origin{line.origin.x(), line.origin.y()};

@@ -47,9 +47,9 @@ class Prism : public Shape {
   Prism(Outline outline, Outline hole, double height);
 
   double top(double s, double t) const final;
-  double first_hit(const Line& line) const final;
+  double first_intersection(const Line& line) const final;
   double support(const Eigen::Vector3d& direction) const final;
-  std::vector<Stretch> stretches(const Line& line) const final;
+  std::vector<Stretch> intervals(const Line& line) const final;
 
  private:
   Outline outline_, hole_;

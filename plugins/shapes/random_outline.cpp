@@ -109,7 +109,7 @@ class RandomOutline final : public Shape {
                                       : -kInfinity;
   }
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     Interval between;
     between.clip(line.origin.z(), line.direction.z(), 0.0, middle_ + relief_);
     if (between.empty()) return kInfinity;
@@ -128,11 +128,11 @@ class RandomOutline final : public Shape {
     return kInfinity;
   }
 
-  std::vector<Stretch> stretches(const Line& line) const override {
+  std::vector<Stretch> intervals(const Line& line) const override {
     Interval between;
     between.clip(line.origin.z(), line.direction.z(), 0.0, middle_ + relief_);
     if (between.empty() || std::abs(line.direction.x()) + std::abs(line.direction.y()) < 1e-12)
-      return Shape::stretches(line);
+      return Shape::intervals(line);
     std::vector<Stretch> all;
     for (const Stretch& seen : seen_from_above(line)) {
       const double end = std::min(between.end, seen.end);

@@ -25,7 +25,7 @@ class Ring final : public Round {
         inner_{{1, 1, 0}, {0, 0, 0}, o.inner * o.inner / 4},
         radius_(o.outer / 2) {}
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     Interval solid = inside(line);
     Interval hole;
     inner_.clip(line, hole);
@@ -34,7 +34,7 @@ class Ring final : public Round {
     return solid.first();
   }
 
-  std::vector<Stretch> stretches(const Line& line) const override {
+  std::vector<Stretch> intervals(const Line& line) const override {
     const Interval solid = inside(line);
     Interval hole;
     inner_.clip(line, hole);

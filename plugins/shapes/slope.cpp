@@ -30,7 +30,7 @@ class Slope final : public Shape {
     return low_ + (high_ - low_) * (s / length_ + 0.5);
   }
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     const Eigen::Vector3d& o = line.origin;
     const Eigen::Vector3d& u = line.direction;
     Interval inside;

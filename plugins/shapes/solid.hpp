@@ -133,7 +133,7 @@ class Round : public Shape {
  public:
   Round(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}
 
-  double first_hit(const Line& line) const override { return inside(line).first(); }
+  double first_intersection(const Line& line) const override { return inside(line).first(); }
 
  protected:
   Interval inside(const Line& line) const {

@@ -36,7 +36,7 @@ class Wave final : public Shape {
     return height_at(s);
   }
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     Interval box;
     box.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
     box.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
@@ -50,7 +50,7 @@ class Wave final : public Shape {
     return kInfinity;
   }
 
-  std::vector<Stretch> stretches(const Line& line) const override {
+  std::vector<Stretch> intervals(const Line& line) const override {
     Interval box;
     box.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
     box.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);

@@ -83,13 +83,13 @@ class Kernel final : public palpate::Kernel, Spoilt {
     slopes = -2.0 * value.array() * value.array().log();
     spoil("derivatives", slopes);
   }
-  bool has_slopes() const override { return true; }
-  void slope_covariance(const palpate::VectorView& r, palpate::VectorOut across,
-                        palpate::VectorOut along) const override {
+  bool has_gradient() const override { return true; }
+  void gradient_covariance(const palpate::VectorView& r, palpate::VectorOut across,
+                           palpate::VectorOut along) const override {
     const double square = length_ * length_;
     across = bell(r.array().square()) / square;
     along = across.array() * (1.0 - r.array().square() / square);
-    spoil("slope_covariance", along);
+    spoil("gradient_covariance", along);
   }
 
  private:
@@ -164,8 +164,8 @@ class Footprint final : public palpate::Footprint, Spoilt {
     out.setZero();
     spoil("doubt", out);
   }
-  void place_now(palpate::Points& places) const override { spoil("place_now", places); }
-  std::optional<double> left() const override { return number("left", 0.0); }
+  void current_positions(palpate::Points& places) const override { spoil("current_positions", places); }
+  std::optional<double> undiscovered_probability() const override { return number("undiscovered_probability", 0.0); }
   std::vector<palpate::FootprintNumber> numbers() const override { return {{"one", number("numbers", 1.0)}}; }
 
  private:
@@ -215,10 +215,10 @@ class Shape final : public palpate::Shape, Spoilt {
  public:
   using Options = broken::Options;
   Shape(const Options& options, const palpate::Context&) : Spoilt(options) {}
-  double first_hit(const palpate::Line& line) const override {
+  double first_intersection(const palpate::Line& line) const override {
     const palpate::Stretch in = within(line);
     // Infinity is what a line has that misses.
-    if (is("first_hit")) return std::isnan(bad()) ? bad() : -bad();
+    if (is("first_intersection")) return std::isnan(bad()) ? bad() : -bad();
     return in.begin < in.end ? in.begin : kInfinity;
   }
   double support(const Eigen::Vector3d& direction) const override {
@@ -229,10 +229,10 @@ class Shape final : public palpate::Shape, Spoilt {
     const bool inside = std::abs(s) <= kHalf && std::abs(t) <= kHalf;
     return number("top", inside ? 2.0 * kHalf : -kInfinity);
   }
-  std::vector<palpate::Stretch> stretches(const palpate::Line& line) const override {
+  std::vector<palpate::Stretch> intervals(const palpate::Line& line) const override {
     palpate::Stretch in = within(line);
     if (!(in.begin < in.end)) return {};
-    in.end = number("stretches", in.end);
+    in.end = number("intervals", in.end);
     return {in};
   }
 

@@ -278,7 +278,7 @@ class Run {
         implicit_(settings) {
     for (const Line& line : bundle_.lines) {
       if (directions_.empty() || directions_.back() != line.direction) directions_.push_back(line.direction);
-      const double hit = scene_->first_hit(line);
+      const double hit = scene_->first_intersection(line);
       if (hit < distance_down_to(0.0, line)) truth_.push_back(line.origin + hit * line.direction);
     }
     fine_truth_ = thinned(truth_, 0.001);
@@ -344,7 +344,7 @@ class Run {
   bool poke(const Line& line, double length) {
     ++touches_;
     // The tool comes along the whole line: what stands before its start is met there.
-    const double hit = scene_->first_hit(line);
+    const double hit = scene_->first_intersection(line);
     const double end = std::min({hit, distance_down_to(0.0, line), length});
     const bool met = hit == end;
     if (met) implicit_.know(line.origin + hit * line.direction);
@@ -377,7 +377,7 @@ class Run {
         return;
       }
       ++touches_;
-      const double hit = scene_->first_hit(line);
+      const double hit = scene_->first_intersection(line);
       if (hit < distance_down_to(0.0, line)) implicit_.know(line.origin + hit * direction);
       return;
     }

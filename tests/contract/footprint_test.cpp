@@ -106,7 +106,7 @@ TEST_P(FootprintContract, GivesTheSameBytesHoweverOftenAndWhereItIsAskedInBetwee
   for (const Touch& touch : touches) {
     for (const auto& [where, places] : trying_places()) probability_of(*often, places);
     often->numbers();
-    often->left();
+    often->undiscovered_probability();
     often->remark();
     often->add(touch);
     probability_of(*often, lattice(7, 7));
@@ -114,7 +114,7 @@ TEST_P(FootprintContract, GivesTheSameBytesHoweverOftenAndWhereItIsAskedInBetwee
   }
   EXPECT_TRUE(same_bytes(probability_of(*rarely, lattice(23, 23)), probability_of(*often, lattice(23, 23))));
   EXPECT_EQ(rarely->remark(), often->remark());
-  EXPECT_EQ(rarely->left(), often->left());
+  EXPECT_EQ(rarely->undiscovered_probability(), often->undiscovered_probability());
   const std::vector<FootprintNumber> some = rarely->numbers();
   const std::vector<FootprintNumber> others = often->numbers();
   ASSERT_EQ(some.size(), others.size());
@@ -135,7 +135,7 @@ TEST_P(FootprintContract, TellsFiniteNumbersOfTheSameNamesAtEachTouch) {
       const std::vector<FootprintNumber> numbers = footprint->numbers();
       EXPECT_EQ(names_of(numbers), first) << what;
       for (const FootprintNumber& one : numbers) EXPECT_TRUE(std::isfinite(one.value)) << what << ": " << one.name;
-      const double left = footprint->left().value_or(0.0);
+      const double left = footprint->undiscovered_probability().value_or(0.0);
       EXPECT_TRUE(left >= 0.0 && left <= 1.0) << what << ": " << left;
       EXPECT_EQ(footprint->remark().find('\n'), std::string::npos);
     }

@@ -184,7 +184,7 @@ std::vector<KernelCase> slope_cases() {
   std::vector<KernelCase> out;
   for (const KernelCase& one : kernel_cases()) {
     const auto all = variants(one);
-    if (std::any_of(all.begin(), all.end(), [](const auto& kernel) { return kernel->has_slopes(); }))
+    if (std::any_of(all.begin(), all.end(), [](const auto& kernel) { return kernel->has_gradient(); }))
       out.push_back(one);
   }
   return out;
@@ -194,7 +194,7 @@ class KernelSlopes : public testing::TestWithParam<KernelCase> {
  protected:
   void SetUp() override {
     for (const auto& kernel : variants(GetParam())) {
-      if (kernel->has_slopes()) kernels_.push_back(kernel);
+      if (kernel->has_gradient()) kernels_.push_back(kernel);
     }
   }
 
@@ -207,7 +207,7 @@ class KernelSlopes : public testing::TestWithParam<KernelCase> {
   };
   static Found slopes(const Kernel& kernel, const Eigen::VectorXd& distances) {
     Found out{Eigen::VectorXd(distances.size()), Eigen::VectorXd(distances.size())};
-    kernel.slope_covariance(distances, out.across, out.along);
+    kernel.gradient_covariance(distances, out.across, out.along);
     return out;
   }
 
@@ -265,9 +265,9 @@ TEST(ShippedKernel, HasSlopesIfItIsRbfOrASmoothMaternOfOneLengthScale) {
     const std::string options = row.name == "scale"                          ? "{factor: 2, kernel: {type: rbf}}"
                                 : row.name == "sum" || row.name == "product" ? "{kernels: [{type: rbf}]}"
                                                                              : "{}";
-    EXPECT_EQ(make<Kernel>(shared_host(), row.name, options)->has_slopes(), with.count(row.name) > 0) << row.name;
+    EXPECT_EQ(make<Kernel>(shared_host(), row.name, options)->has_gradient(), with.count(row.name) > 0) << row.name;
     if (with.count(row.name) > 0) {
-      EXPECT_FALSE(make<Kernel>(shared_host(), row.name, "{length_scale: 3 cm, length_scale_y: 1 cm}")->has_slopes());
+      EXPECT_FALSE(make<Kernel>(shared_host(), row.name, "{length_scale: 3 cm, length_scale_y: 1 cm}")->has_gradient());
     }
   }
 }

@@ -224,7 +224,7 @@ TEST_P(Owners, SkinAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
     Vector3d direction = test::random_direction(random);
     direction.z() = -std::abs(direction.z());
     const Line line{kBox.centre - 0.3 * direction, direction};
-    all.push_back({line, kBox.first_hit(line), true, false});
+    all.push_back({line, kBox.first_intersection(line), true, false});
   }
   solids.add(all);
   Skin::Places places;

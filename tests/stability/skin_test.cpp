@@ -155,7 +155,7 @@ std::vector<SurfaceTouch> touches_of(const Composition& solids, int count, Rando
     Vector3d direction = random_direction(random);
     const Vector3d through = Vector3d(0, 0, 0.06) + 0.055 * random_direction(random);
     const Line line{through - 0.3 * direction, direction};
-    const double hit = solids.first_hit(line);
+    const double hit = solids.first_intersection(line);
     if (hit == kNoHit) {
       out.push_back({line, 0.6, false, false});
       continue;

@@ -60,10 +60,10 @@ class WrittenSurface final : public SurfaceBelief {
   const std::vector<Approach>& approaches() const override { return lines; }
   int taps() const override { return count; }
   const Eigen::VectorXd& way() const override { return ways; }
-  const Eigen::VectorXd& unseen() const override { return seen(Quantity::unseen, found); }
-  const Eigen::VectorXd& reduction() const override { return seen(Quantity::reduction, taken); }
+  const Eigen::VectorXd& expected_discovery() const override { return seen(Quantity::expected_discovery, found); }
+  const Eigen::VectorXd& std_reduction() const override { return seen(Quantity::std_reduction, taken); }
   const Eigen::VectorXd& deviation() const override { return seen(Quantity::deviation, sigma); }
-  const Eigen::VectorXd& squareness() const override { return seen(Quantity::deviation, square); }
+  const Eigen::VectorXd& incidence_cosine() const override { return seen(Quantity::deviation, square); }
 
  private:
   const Eigen::VectorXd& seen(Quantity one, const Eigen::VectorXd& of) const {

@@ -57,10 +57,10 @@ void check_shape_laws(const Shape& shape) {
   int hits = 0;
   for (int i = 0; i < 2000; ++i) {
     const Line line = random_line(shape, random, i < 1000);
-    const double hit = shape.first_hit(line);
+    const double hit = shape.first_intersection(line);
     ASSERT_FALSE(std::isnan(hit));
     ASSERT_GT(hit, -HUGE_VAL);
-    const double moved = shape.first_hit({line.origin + 0.25 * line.direction, line.direction});
+    const double moved = shape.first_intersection({line.origin + 0.25 * line.direction, line.direction});
     if (std::isinf(hit) != std::isinf(moved)) {
       // On a silhouette a rounding decides: then a line beside agrees with either.
       ADD_FAILURE() << "hit only from one of two origins: " << line.origin.transpose();
@@ -76,15 +76,15 @@ void check_shape_laws(const Shape& shape) {
     // In front of a plane that touches the solid, and parallel to it, nothing is met.
     const Vector3d normal = line.direction.unitOrthogonal();
     const Vector3d beyond = (shape.support(normal) + 1e-5 * size) * normal;
-    EXPECT_EQ(shape.first_hit({beyond, line.direction}), HUGE_VAL);
+    EXPECT_EQ(shape.first_intersection({beyond, line.direction}), HUGE_VAL);
   }
   EXPECT_GT(hits, 100);
 
   // The other way along the same line the solid begins where it ends: both ways it is met, or neither, and no later.
   for (int i = 0; i < 1000; ++i) {
     const Line line = random_line(shape, random, false);
-    const double there = shape.first_hit(line);
-    const double back = shape.first_hit({line.origin, -line.direction});
+    const double there = shape.first_intersection(line);
+    const double back = shape.first_intersection({line.origin, -line.direction});
     if (std::isinf(there) != std::isinf(back)) {
       ADD_FAILURE() << "met one way only: " << line.origin.transpose() << " along " << line.direction.transpose();
     } else if (std::isfinite(there)) {
@@ -99,21 +99,21 @@ void check_shape_laws(const Shape& shape) {
   int agree = 0;
   for (int i = 0; i < 1000; ++i) {
     const Line line = random_line(shape, random, false);
-    const std::vector<Stretch> stretches = shape.stretches(line);
-    if (!stretches.empty()) {
-      EXPECT_NEAR(stretches.front().begin, shape.first_hit(line), 1e-6 * size);
-      EXPECT_NEAR(stretches.back().end, -shape.first_hit({line.origin, -line.direction}), 1e-5 * size);
+    const std::vector<Stretch> intervals = shape.intervals(line);
+    if (!intervals.empty()) {
+      EXPECT_NEAR(intervals.front().begin, shape.first_intersection(line), 1e-6 * size);
+      EXPECT_NEAR(intervals.back().end, -shape.first_intersection({line.origin, -line.direction}), 1e-5 * size);
     }
-    for (std::size_t k = 0; k < stretches.size(); ++k) {
-      EXPECT_LE(stretches[k].begin, stretches[k].end);
-      EXPECT_TRUE(k == 0 || stretches[k].begin > stretches[k - 1].end);
+    for (std::size_t k = 0; k < intervals.size(); ++k) {
+      EXPECT_LE(intervals[k].begin, intervals[k].end);
+      EXPECT_TRUE(k == 0 || intervals[k].begin > intervals[k - 1].end);
     }
     const auto holds = [&](const Vector3d& point, const Vector3d& direction) {
-      const std::vector<Stretch> through = shape.stretches({point, direction});
+      const std::vector<Stretch> through = shape.intervals({point, direction});
       return std::any_of(through.begin(), through.end(), [](const Stretch& s) { return s.begin < 0.0 && s.end > 0.0; });
     };
-    const double first = stretches.empty() ? 0.0 : stretches.front().begin;
-    const double last = stretches.empty() ? 0.0 : stretches.back().end;
+    const double first = intervals.empty() ? 0.0 : intervals.front().begin;
+    const double last = intervals.empty() ? 0.0 : intervals.back().end;
     const Vector3d point = line.origin + (first + (last - first) * random.uniform()) * line.direction;
     ++points;
     const bool inside = holds(point, random_direction(random));
@@ -127,7 +127,7 @@ void check_shape_laws(const Shape& shape) {
     const Line line = random_line(shape, random, true);
     const double s = line.origin.x();
     const double t = line.origin.y();
-    const double straight = -shape.first_hit({{s, t, 0.0}, {0.0, 0.0, -1.0}});
+    const double straight = -shape.first_intersection({{s, t, 0.0}, {0.0, 0.0, -1.0}});
     const double top = shape.top(s, t);
     EXPECT_TRUE(top == straight || std::abs(top - straight) < kRounding) << top << " " << straight;
   }

@@ -86,10 +86,10 @@ TEST(Compound, IsMetFirstWhereOneOfItsPartsIsAndReachesAsFarAsTheOneThatReachesF
     const Vector3d origin(0.14 * (random.uniform() - 0.5), 0.1 * (random.uniform() - 0.5), 0.06 * random.uniform());
     double first = HUGE_VAL;
     for (std::size_t k = 0; k < shapes.size(); ++k) {
-      first = std::min(
-          first, shapes[k]->first_hit({frames[k].inverse() * origin, frames[k].linear().transpose() * direction}));
+      first = std::min(first, shapes[k]->first_intersection(
+                                  {frames[k].inverse() * origin, frames[k].linear().transpose() * direction}));
     }
-    const double hit = whole->first_hit({origin, direction});
+    const double hit = whole->first_intersection({origin, direction});
     ASSERT_EQ(std::isinf(hit), std::isinf(first));
     if (std::isinf(hit)) continue;
     ++hits;

@@ -120,8 +120,8 @@ TEST(Forecast, AsksTheFootprintWhatIsLeftAndSaysNothingWhereNobodyKnows) {
       if (!left) continue;
       EXPECT_TRUE(tap.forecast->rmse);
       const std::vector<FootprintNumber>& numbers = tap.footprint->numbers;
-      const auto number =
-          std::find_if(numbers.begin(), numbers.end(), [](const auto& one) { return one.name == "left"; });
+      const auto number = std::find_if(numbers.begin(), numbers.end(),
+                                       [](const auto& one) { return one.name == "undiscovered_probability"; });
       ASSERT_NE(number, numbers.end());
       EXPECT_EQ(*left, number->value);
     }

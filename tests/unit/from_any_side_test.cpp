@@ -122,7 +122,7 @@ TEST(FromAnySide, AnObjectAtTheEndOfALongAreaIsLookedForAndCompared) {
                 "scene.objects=[{type: block, length: 6 cm, width: 6 cm, height: 8 cm, at: [8 cm, 10 cm]}]"});
   int aimed = 0;
   for (const Approach& approach : run.experiment.belief().approaches()) {
-    aimed += run.experiment.scene().first_hit(approach.line) < kNoHit ? 1 : 0;
+    aimed += run.experiment.scene().first_intersection(approach.line) < kNoHit ? 1 : 0;
   }
   EXPECT_GT(aimed, 0) << "of lines anywhere through the region";
   EXPECT_FALSE(run.experiment.truth().cloud.empty());

@@ -117,13 +117,13 @@ TEST_F(HeightMap, IsMetWhereItsTrianglesAre) {
     for (std::size_t at = 0; at + 1 < expected.size(); at += 2) {
       if (expected[at + 1] - expected[at] > 1e-9) ends.insert(ends.end(), {expected[at], expected[at + 1]});
     }
-    const std::vector<Stretch> stretches = shape->stretches(line);
-    ASSERT_EQ(2 * stretches.size(), ends.size()) << i;
-    for (std::size_t k = 0; k < stretches.size(); ++k) {
-      EXPECT_NEAR(stretches[k].begin, ends[2 * k], 1e-9) << i;
-      EXPECT_NEAR(stretches[k].end, ends[2 * k + 1], 1e-9) << i;
+    const std::vector<Stretch> intervals = shape->intervals(line);
+    ASSERT_EQ(2 * intervals.size(), ends.size()) << i;
+    for (std::size_t k = 0; k < intervals.size(); ++k) {
+      EXPECT_NEAR(intervals[k].begin, ends[2 * k], 1e-9) << i;
+      EXPECT_NEAR(intervals[k].end, ends[2 * k + 1], 1e-9) << i;
     }
-    const double hit = shape->first_hit(line);
+    const double hit = shape->first_intersection(line);
     EXPECT_TRUE(ends.empty() ? hit == kInfinity : std::abs(hit - ends[0]) < 1e-9) << i << ": " << hit;
     met += ends.empty() ? 0 : 1;
   }
@@ -151,8 +151,8 @@ TEST_F(HeightMap, LeavesOutZerosAroundTheObject) {
 
 TEST_F(HeightMap, HasWallsWhereTheMapEnds) {
   const auto shape = of("block.csv", "20000,20000\n20000,20000\n");
-  EXPECT_NEAR(shape->first_hit({{-1, 0, 0.01}, {1, 0, 0}}), 1 - kSpacing / 2, 1e-12);
-  EXPECT_EQ(shape->first_hit({{-1, 0, 0.021}, {1, 0, 0}}), kInfinity);
+  EXPECT_NEAR(shape->first_intersection({{-1, 0, 0.01}, {1, 0, 0}}), 1 - kSpacing / 2, 1e-12);
+  EXPECT_EQ(shape->first_intersection({{-1, 0, 0.021}, {1, 0, 0}}), kInfinity);
   EXPECT_NEAR(shape->top(0.0049, -0.0049), 0.02, 1e-12);
   EXPECT_EQ(shape->top(0.0051, 0), -kInfinity);
 }

@@ -129,7 +129,7 @@ TEST(Left, ItIsSaidOfDesksOfThePriorAsOftenAsSomethingIsLeft) {
       touches.push_back(truth.tap({places(next, 0), places(next, 1)}));
       belief.add(touches.back());
       if (static_cast<int>(touches.size()) < kTaps[asked]) continue;
-      calibrations[asked++].add(belief.left(kLong), something_left(truth.outline(), touches));
+      calibrations[asked++].add(belief.undiscovered_probability(kLong), something_left(truth.outline(), touches));
     }
   }
   for (std::size_t i = 0; i < kTaps.size(); ++i) {

@@ -41,7 +41,7 @@ struct BrokenFootprint final : Footprint {
   bool is_weight() const override { fail(); }
   void add(const Touch&) override { fail(); }
   void probability(const PointsView&, VectorOut) override { fail(); }
-  std::optional<double> left() const override { fail(); }
+  std::optional<double> undiscovered_probability() const override { fail(); }
   std::vector<FootprintNumber> numbers() const override { fail(); }
   std::string remark() const override { fail(); }
 };
@@ -64,8 +64,8 @@ struct BrokenBackend final : Backend {
 };
 
 struct BrokenShape final : Shape {
-  double first_hit(const Line&) const override { fail(); }
-  std::vector<Stretch> stretches(const Line&) const override { fail(); }
+  double first_intersection(const Line&) const override { fail(); }
+  std::vector<Stretch> intervals(const Line&) const override { fail(); }
   double support(const Eigen::Vector3d&) const override { fail(); }
   double top(double, double) const override { fail(); }
 };
@@ -103,7 +103,7 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   EXPECT_EQ(error_of([&] { footprint->is_weight(); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->add({}); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->probability(points, vector); }), "footprint/mine: it broke");
-  EXPECT_EQ(error_of([&] { footprint->left(); }), "footprint/mine: it broke");
+  EXPECT_EQ(error_of([&] { footprint->undiscovered_probability(); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->numbers(); }), "footprint/mine: it broke");
   EXPECT_EQ(error_of([&] { footprint->remark(); }), "footprint/mine: it broke");
 
@@ -119,8 +119,8 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   EXPECT_EQ(error_of([&] { backend->scene_is_truth(); }), "backend/mine: it broke");
 
   const auto shape = broken<BrokenShape, Shape>();
-  EXPECT_EQ(error_of([&] { shape->first_hit({}); }), "shape/mine: it broke");
-  EXPECT_EQ(error_of([&] { shape->stretches({}); }), "shape/mine: it broke");
+  EXPECT_EQ(error_of([&] { shape->first_intersection({}); }), "shape/mine: it broke");
+  EXPECT_EQ(error_of([&] { shape->intervals({}); }), "shape/mine: it broke");
   EXPECT_EQ(error_of([&] { shape->support({}); }), "shape/mine: it broke");
   EXPECT_EQ(error_of([&] { shape->top(0.0, 0.0); }), "shape/mine: it broke");
 }
@@ -156,7 +156,7 @@ struct NoNumbers final : Kernel {
     value.setConstant(1.0);
     slopes.setConstant(kNan);
   }
-  void slope_covariance(const VectorView&, VectorOut across, VectorOut along) const override {
+  void gradient_covariance(const VectorView&, VectorOut across, VectorOut along) const override {
     across.setConstant(1.0);
     along.setConstant(kNan);
   }
@@ -177,7 +177,7 @@ TEST(NamedKernel, ThatGivesWhatIsNotFiniteIsNamedWithItsFunction) {
   EXPECT_EQ(error_of([&] { kernel->axis_covariance(0, vector, vector, matrix); }), said("axis_covariance"));
   EXPECT_EQ(error_of([&] { kernel->parameters(); }), said("parameters"));
   EXPECT_EQ(error_of([&] { kernel->derivatives(points, points, matrix, matrix); }), said("derivatives"));
-  EXPECT_EQ(error_of([&] { kernel->slope_covariance(vector, vector, other); }), said("slope_covariance"));
+  EXPECT_EQ(error_of([&] { kernel->gradient_covariance(vector, vector, other); }), said("gradient_covariance"));
   // No kernel makes numbers of such hyperparameters: a fit that tries them turns back.
   kernel->set_parameters(Eigen::VectorXd::Constant(1, 1e200));
   kernel->covariance(points, points, matrix);

@@ -286,7 +286,7 @@ bool meet(const Piece& one, const Piece& other, const Points& places) {
 TEST(Particles, ThinkAsOftenThatSomethingIsLeftAsTheDrawsDoThatAreWeighedByAllLabels) {
   constexpr double kWrong = 0.05;
   constexpr double kLong = 0.04;
-  EXPECT_EQ(belief_of(10, 0, kWrong, 11).left(1.0), 0.0) << "nothing is a metre long";
+  EXPECT_EQ(belief_of(10, 0, kWrong, 11).undiscovered_probability(1.0), 0.0) << "nothing is a metre long";
   // Once the desk alone, and once a thing in the middle.
   for (const bool on : {false, true}) {
     std::vector<Touch> touches;
@@ -298,7 +298,7 @@ TEST(Particles, ThinkAsOftenThatSomethingIsLeftAsTheDrawsDoThatAreWeighedByAllLa
     for (int run = 0; run < runs; ++run) {
       Particles belief = belief_of(500, 40, kWrong, 20 + static_cast<std::uint64_t>(run));
       for (const Touch& touch : touches) belief.add(touch);
-      found += belief.left(kLong) / runs;
+      found += belief.undiscovered_probability(kLong) / runs;
     }
     OutlinePrior::Settings settings;
     settings.area = {0.23, 0.23};

@@ -25,7 +25,7 @@ TEST(Piece, IsWithinALineExactlyWhereItHoldsThePointsOfTheLine) {
     const Line line = through(piece, random);
     const auto chords = piece.inside(line);
     met += chords[0].empty() ? 0 : 1;
-    EXPECT_EQ(piece.first_hit(line), chords[0].empty() ? kNoHit : chords[0].begin);
+    EXPECT_EQ(piece.first_intersection(line), chords[0].empty() ? kNoHit : chords[0].begin);
     for (int k = 0; k < 400; ++k) {
       const double x = 0.8 * (k + random.uniform()) / 400;
       const auto margin = [&](const Chord& chord) {
@@ -51,7 +51,7 @@ TEST(Piece, TellsTheSideOfItsSurfaceByTheSignOfTheDistanceWhichIsNoneOnIt) {
       }
     }
     const Line line = through(piece, random);
-    const double hit = piece.first_hit(line);
+    const double hit = piece.first_intersection(line);
     if (hit < kNoHit) {
       EXPECT_NEAR(piece.distance(line.origin + hit * line.direction), 0.0, 1e-9);
     }
@@ -81,7 +81,7 @@ TEST(Piece, IsPassedByALineThatIsMovedAsFarAsideAsItSays) {
     Piece piece = random_piece(random);
     piece.wall = 0.0;
     const Line line = through(piece, random);
-    if (piece.first_hit(line) == kNoHit) continue;
+    if (piece.first_intersection(line) == kNoHit) continue;
     // Over all directions across the line: by some it gets clear within that way, and by none in much less.
     const Vector3d one = line.direction.unitOrthogonal();
     const Vector3d other = line.direction.cross(one);
@@ -90,8 +90,9 @@ TEST(Piece, IsPassedByALineThatIsMovedAsFarAsideAsItSays) {
     for (int k = 0; k < 360; ++k) {
       const double angle = 3.14159265358979323846 * k / 180;
       const Vector3d across = std::cos(angle) * one + std::sin(angle) * other;
-      clear = clear || piece.first_hit({line.origin + (1.01 * aside + 5e-4) * across, line.direction}) == kNoHit;
-      EXPECT_LT(piece.first_hit({line.origin + 0.95 * aside * across, line.direction}), kNoHit);
+      clear =
+          clear || piece.first_intersection({line.origin + (1.01 * aside + 5e-4) * across, line.direction}) == kNoHit;
+      EXPECT_LT(piece.first_intersection({line.origin + 0.95 * aside * across, line.direction}), kNoHit);
     }
     EXPECT_TRUE(clear);
   }

@@ -187,7 +187,7 @@ TEST(Particles, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
   Points now(50, 2);
   for (Eigen::Index i = 0; i < 50; ++i)
     now.row(i) << places[static_cast<std::size_t>(i)].x, places[static_cast<std::size_t>(i)].y;
-  belief.place_now(now);
+  belief.current_positions(now);
   const Target& middle = places[12];
   EXPECT_NEAR(now(12, 0) - middle.x, 0.015, 0.006);
   EXPECT_NEAR(now(12, 1) - middle.y, 0.0, 0.006);

@@ -143,7 +143,7 @@ TEST(RandomOutline, IsMetByTiltedLinesWhereAMarchDownThemFirstIsNotAboveItsTop) 
       const Vector3d p = line.origin + x * line.direction;
       if (p.z() <= shape->top(p.x(), p.y())) marched = x;
     }
-    const double hit = shape->first_hit(line);
+    const double hit = shape->first_intersection(line);
     // A march may step over a corner that the line cuts by less than a step.
     if (std::isinf(marched)) {
       if (std::isinf(hit)) continue;

@@ -30,7 +30,7 @@ class Reductions : public testing::Test {
     skin.fit(solids.best(), all);
     for (int i = 0; i < 400; ++i) {
       const Line line = towards(random);
-      const double hit = solids.best().first_hit(line);
+      const double hit = solids.best().first_intersection(line);
       if (hit == kNoHit) continue;
       const Vector3d at = line.origin + hit * line.direction;
       places.push_back({at, Skin::normal(solids.best(), at)});
@@ -53,7 +53,7 @@ class Reductions : public testing::Test {
   void touch(Random& random) {
     const Line line = towards(random);
     const double desk = -line.origin.z() / line.direction.z();
-    const double hit = box.first_hit(line);
+    const double hit = box.first_intersection(line);
     all.push_back({line, std::min(hit, desk), true, desk <= hit});
     solids.add({all.back()});
   }

@@ -28,7 +28,7 @@ TEST(SideView, IsFreeUpToWhereTheSceneIsFirstMetAndKnowsObjectFromDesk) {
   for (const SurfaceTouch& ray : view) {
     EXPECT_NEAR((ray.line.origin - kMiddleOfCup).norm(), 0.6, 1e-12);
     EXPECT_NEAR((ray.line.origin - kMiddleOfCup).z(), 0.6 * std::sin(options.elevation), 1e-12);
-    const double hit = scene->first_hit({ray.line.origin + Vector3d(0, 0, 0.02), ray.line.direction});
+    const double hit = scene->first_intersection({ray.line.origin + Vector3d(0, 0, 0.02), ray.line.direction});
     if (ray.contact && !ray.desk) {
       ++on;
       EXPECT_EQ(ray.length, hit);

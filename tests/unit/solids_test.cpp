@@ -32,7 +32,7 @@ TEST(Solids, FindABoxFromTouchesOfIt) {
     const Vector3d through = kStanding.centre + 0.06 * random.uniform() * random_direction(random);
     const Line line{through - 0.3 * direction, direction};
     const double desk = -line.origin.z() / direction.z();
-    const double hit = std::min(kStanding.first_hit(line), desk);
+    const double hit = std::min(kStanding.first_intersection(line), desk);
     solids.add({{line, hit, true, hit == desk}});
   }
   const Composition& best = solids.best();
@@ -41,8 +41,10 @@ TEST(Solids, FindABoxFromTouchesOfIt) {
   Cloud truth, believed;
   for (const Line& line : bundle.lines) {
     const double desk = line.direction.z() < 0 ? -line.origin.z() / line.direction.z() : kNoHit;
-    if (kStanding.first_hit(line) < desk) truth.push_back(line.origin + kStanding.first_hit(line) * line.direction);
-    if (best.first_hit(line) < desk) believed.push_back(line.origin + best.first_hit(line) * line.direction);
+    if (kStanding.first_intersection(line) < desk)
+      truth.push_back(line.origin + kStanding.first_intersection(line) * line.direction);
+    if (best.first_intersection(line) < desk)
+      believed.push_back(line.origin + best.first_intersection(line) * line.direction);
   }
   EXPECT_GT(compare_clouds(thinned(believed, 0.003), thinned(truth, 0.003)).f_score, 0.95);
 }
@@ -56,7 +58,7 @@ std::vector<SurfaceTouch> seen(const Piece& piece) {
       const Vector3d at(0.13, 0.13 + 0.02 * (i - 6), 0.03 + 0.015 * (j - 6));
       const Line line{eye, (at - eye).normalized()};
       const double desk = line.direction.z() < 0 ? -eye.z() / line.direction.z() : kNoHit;
-      const double hit = piece.first_hit(line);
+      const double hit = piece.first_intersection(line);
       out.push_back({line, std::min({hit, desk, 1.0}), std::min(hit, desk) < 1.0, desk <= hit});
     }
   }
@@ -91,7 +93,8 @@ TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
     direction.z() = -std::abs(direction.z());
     const Line line{kStanding.centre + 0.08 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
     const double desk = -line.origin.z() / direction.z();
-    touches.push_back({line, std::min(kStanding.first_hit(line), desk), true, desk <= kStanding.first_hit(line)});
+    touches.push_back(
+        {line, std::min(kStanding.first_intersection(line), desk), true, desk <= kStanding.first_intersection(line)});
     solids.add({touches.back()});
     if (i % 13 != 12) continue;
     const std::vector<Piece> unseen = solids.unseen(solids.best(), 300, random);
@@ -154,7 +157,8 @@ std::vector<SurfaceTouch> touches_of(int count) {
     direction.z() = -std::abs(direction.z());
     const Line line{kStanding.centre + 0.06 * random.uniform() * random_direction(random) - 0.3 * direction, direction};
     const double desk = -line.origin.z() / direction.z();
-    out.push_back({line, std::min(kStanding.first_hit(line), desk), true, desk <= kStanding.first_hit(line)});
+    out.push_back(
+        {line, std::min(kStanding.first_intersection(line), desk), true, desk <= kStanding.first_intersection(line)});
   }
   return out;
 }

@@ -54,7 +54,7 @@ Believed any_belief(Random& random) {
   for (int i = 0; i < 15; ++i) {
     const Vector3d direction = random_direction(random);
     const Line line{Vector3d(0.1, 0.1, 0.06) - 0.3 * direction, direction};
-    const double hit = bare.solids.first_hit(line);
+    const double hit = bare.solids.first_intersection(line);
     if (hit == kNoHit) continue;
     touches.push_back({line, hit + 0.004 * (random.uniform() - 0.5), true, false});
     // And a way past it, a little inside.

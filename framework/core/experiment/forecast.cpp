@@ -41,7 +41,7 @@ Forecast Forecaster::forecast(const TapBelief& belief) const {
       belief.two_part() ? expected_square(belief.probability(), belief.height_mean().array() - belief.desk(), variance)
                         : variance.mean();
   if (std::isfinite(square)) out.rmse = std::sqrt(square);
-  if (belief.footprint() != nullptr) out.left = belief.footprint()->left();
+  if (belief.footprint() != nullptr) out.left = belief.footprint()->undiscovered_probability();
   return out;
 }
 

@@ -83,7 +83,7 @@ void TapBelief::follow() {
     places_.row(i) << place.x, place.y;
   }
   places_now_ = places_;
-  footprint_->place_now(places_now_);
+  footprint_->current_positions(places_now_);
   for (int i = 0; i < known; ++i) {
     for (int k = 0; k < 2; ++k) {
       const double way = places_now_(i, k) - places_(i, k);

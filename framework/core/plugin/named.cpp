@@ -147,12 +147,12 @@ class NamedKernel final : public Named<Kernel> {
     require("derivatives()", value);
     require("derivatives()", slopes);
   }
-  bool has_slopes() const override { return call(&Kernel::has_slopes); }
+  bool has_gradient() const override { return call(&Kernel::has_gradient); }
   // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
-  void slope_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
-    call(&Kernel::slope_covariance, distances, across, along);
-    require("slope_covariance()", across);
-    require("slope_covariance()", along);
+  void gradient_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
+    call(&Kernel::gradient_covariance, distances, across, along);
+    require("gradient_covariance()", across);
+    require("gradient_covariance()", along);
   }
 
  private:
@@ -222,13 +222,13 @@ class NamedFootprint final : public Named<Footprint> {
     call(&Footprint::doubt, out);
     require_finite("doubt()", out);
   }
-  void place_now(Points& places) const override {
-    call(&Footprint::place_now, places);
-    require_finite("place_now()", places);
+  void current_positions(Points& places) const override {
+    call(&Footprint::current_positions, places);
+    require_finite("current_positions()", places);
   }
-  std::optional<double> left() const override {
-    const std::optional<double> out = call(&Footprint::left);
-    require_finite("left()", out);
+  std::optional<double> undiscovered_probability() const override {
+    const std::optional<double> out = call(&Footprint::undiscovered_probability);
+    require_finite("undiscovered_probability()", out);
     return out;
   }
   std::vector<FootprintNumber> numbers() const override {
@@ -257,16 +257,16 @@ class NamedShape final : public Named<Shape> {
  public:
   using Named::Named;
   // A line that misses has its hit at infinity, and its top at minus infinity.
-  double first_hit(const Line& line) const override {
-    const double out = call(&Shape::first_hit, line);
-    if (out != kNever) require_finite("first_hit()", out);
+  double first_intersection(const Line& line) const override {
+    const double out = call(&Shape::first_intersection, line);
+    if (out != kNever) require_finite("first_intersection()", out);
     return out;
   }
-  std::vector<Stretch> stretches(const Line& line) const override {
-    std::vector<Stretch> out = call(&Shape::stretches, line);
+  std::vector<Stretch> intervals(const Line& line) const override {
+    std::vector<Stretch> out = call(&Shape::intervals, line);
     for (const Stretch& one : out) {
-      require_finite("stretches()", one.begin);
-      require_finite("stretches()", one.end);
+      require_finite("intervals()", one.begin);
+      require_finite("intervals()", one.end);
     }
     return out;
   }

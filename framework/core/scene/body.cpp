@@ -32,7 +32,7 @@ double Body::height(double x, double y) const {
   if (upright_) return std::max(0.0, shape_->top(s, t));
   // Down the vertical through (s, t), from the desk.
   const Line line{untilted(s, t, -lift_), untilted(0.0, 0.0, -1.0)};
-  return std::max(0.0, -shape_->first_hit(line));
+  return std::max(0.0, -shape_->first_intersection(line));
 }
 
 Line Body::own(const Line& line) const {
@@ -43,9 +43,9 @@ Line Body::own(const Line& line) const {
   return {turned(from), turned(line.direction)};
 }
 
-double Body::first_hit(const Line& line) const { return shape_->first_hit(own(line)); }
+double Body::first_intersection(const Line& line) const { return shape_->first_intersection(own(line)); }
 
-std::vector<Stretch> Body::stretches(const Line& line) const { return shape_->stretches(own(line)); }
+std::vector<Stretch> Body::intervals(const Line& line) const { return shape_->intervals(own(line)); }
 
 double Body::highest() const { return shape_->support(untilted(0.0, 0.0, 1.0)) + lift_; }
 

@@ -23,10 +23,10 @@ class Body {
   double height(double x, double y) const;
 
   /// Where a line first meets it, metres from the line's origin; +infinity if it does not.
-  double first_hit(const Line& line) const;
+  double first_intersection(const Line& line) const;
 
   /// Which parts of a line lie in it, in their order.
-  std::vector<Stretch> stretches(const Line& line) const;
+  std::vector<Stretch> intervals(const Line& line) const;
 
   /// Of its highest point, above the desk.
   double highest() const;

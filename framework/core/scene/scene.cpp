@@ -48,18 +48,18 @@ class Desk final : public Scene {
 
   bool any_side() const override { return any_side_; }
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     const Line above{line.origin - Eigen::Vector3d(0.0, 0.0, desk_), line.direction};
     double first = std::numeric_limits<double>::infinity();
-    for (const Body& body : bodies_) first = std::min(first, body.first_hit(above));
+    for (const Body& body : bodies_) first = std::min(first, body.first_intersection(above));
     return first;
   }
 
-  std::vector<Stretch> stretches(const Line& line) const override {
+  std::vector<Stretch> intervals(const Line& line) const override {
     const Line above{line.origin - Eigen::Vector3d(0.0, 0.0, desk_), line.direction};
     std::vector<Stretch> all;
     for (const Body& body : bodies_) {
-      const std::vector<Stretch> one = body.stretches(above);
+      const std::vector<Stretch> one = body.intervals(above);
       all.insert(all.end(), one.begin(), one.end());
     }
     return joined(std::move(all));

@@ -24,14 +24,14 @@ struct Plane {
 
  private:
   static std::vector<Stretch> cut(const Scene& scene, const Vector3d& begin, const Vector3d& direction) {
-    return scene.stretches({begin + Vector3d(0.0, 0.0, scene.desk()), direction});
+    return scene.intervals({begin + Vector3d(0.0, 0.0, scene.desk()), direction});
   }
 };
 
 /// Where the surface is between two nodes of a line, as a share of the way, `from` metres along it: in the middle where
-/// the stretches do not tell, as those of a row and of a column may differ at what they touch.
-double share_between(const std::vector<Stretch>& stretches, double from, double side) {
-  for (const Stretch& one : stretches) {
+/// the intervals do not tell, as those of a row and of a column may differ at what they touch.
+double share_between(const std::vector<Stretch>& intervals, double from, double side) {
+  for (const Stretch& one : intervals) {
     for (const double end : {one.begin, one.end}) {
       if (end >= from && end <= from + side) return (end - from) / side;
     }

@@ -98,7 +98,7 @@ std::optional<TapRecord> FromAnySide::choose_next(const Wish*) {
   if (backend_->scene_is_truth()) {
     const Line& line = tap.approach->line;
     const double end = std::min(distance_down_to(scene_->desk(), line), tap.approach->length);
-    tap.true_on_object = scene_now().first_hit(line) < end;
+    tap.true_on_object = scene_now().first_intersection(line) < end;
   }
   return tap;
 }
@@ -144,7 +144,7 @@ const FromAnySide::TrueSurface& FromAnySide::truth() {
   Cloud& cloud = truth_->cloud;
   const Eigen::Vector3d desk(0.0, 0.0, scene_->desk());
   for (const Line& line : bundle_.lines) {
-    const double hit = scene.first_hit({line.origin + desk, line.direction});
+    const double hit = scene.first_intersection({line.origin + desk, line.direction});
     if (hit < distance_down_to(0.0, line)) cloud.push_back(line.origin + hit * line.direction);
   }
   cloud = thinned(cloud, kSide);

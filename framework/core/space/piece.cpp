@@ -152,7 +152,7 @@ std::array<Chord, 2> Piece::inside(const Line& line) const {
   return out;
 }
 
-double Piece::first_hit(const Line& line) const {
+double Piece::first_intersection(const Line& line) const {
   const Chord first = inside(line)[0];
   if (first.empty()) return kNoHit;
   return first.begin;

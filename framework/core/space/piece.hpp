@@ -43,7 +43,7 @@ struct Piece {
   /// Which parts of a line lie in the solid, in their order: none, one or, where it passes through the hollow, two.
   std::array<Chord, 2> inside(const Line& line) const;
   /// Where a line first meets it, infinity where it does not.
-  double first_hit(const Line& line) const;
+  double first_intersection(const Line& line) const;
 
   /// By how much a line that passes through would have to be moved aside to pass by, metres, whatever is hollow: 0 or
   /// less where it does pass by; `most` if it is more. An upper bound, of boxes exact, of others nearly.

@@ -121,7 +121,7 @@ void Skin::covariances(const Table& a, const Table& b, Points& apart, MatrixOut 
   kernel_->covariance(apart.topRows(n * m), Points::Zero(1, 2), Eigen::Map<MatrixXd>(out.data(), n * m, 1));
   if (a.slopes || b.slopes) {
     VectorXd across(n * m), along(n * m);
-    kernel_->slope_covariance(apart.col(0).head(n * m), across, along);
+    kernel_->gradient_covariance(apart.col(0).head(n * m), across, along);
     for (Eigen::Index j = 0; j < m; ++j) {
       const bool slope = !b.along.row(j).isZero(0.0);
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -163,7 +163,7 @@ std::vector<Skin::Row> Skin::contacts_of(const Composition& solids, const std::v
     // Where the composition's surface is turned by more than that, it is another than the one that is felt.
     constexpr double kTurned = 0.5;
     if (!touch.normal || touch.normal->dot(place.normal) < kTurned) continue;
-    if (!kernel_->has_slopes()) {
+    if (!kernel_->has_gradient()) {
       throw Error("kernel", "has no slopes at every place, and normals that a tool feels are slopes",
                   "choose matern32, matern52 or rbf");
     }

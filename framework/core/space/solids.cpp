@@ -69,9 +69,9 @@ Piece draw(const Vector3d& near, Random& random) {
 
 }  // namespace
 
-double Composition::first_hit(const Line& line) const {
+double Composition::first_intersection(const Line& line) const {
   double first = kNoHit;
-  for (const Part& part : parts) first = std::min(first, part.piece.first_hit(line));
+  for (const Part& part : parts) first = std::min(first, part.piece.first_intersection(line));
   return first;
 }
 

@@ -39,7 +39,7 @@ struct Composition {
   double prior = 0.0;       ///< log
 
   double posterior() const { return likelihood + prior; }
-  double first_hit(const Line& line) const;
+  double first_intersection(const Line& line) const;
   double distance(const Eigen::Vector3d& point) const;
 };
 

@@ -82,7 +82,7 @@ SpaceBelief::SpaceBelief(const ExperimentOptions& options, const Context& contex
 
 double SpaceBelief::meeting(const Approach& approach, const Composition& composition) const {
   const Line line = line_of(approach);
-  return std::max(0.0, std::min({approach.length, distance_down_to(0.0, line), composition.first_hit(line)}));
+  return std::max(0.0, std::min({approach.length, distance_down_to(0.0, line), composition.first_intersection(line)}));
 }
 
 void SpaceBelief::look(const std::vector<SurfaceTouch>& seen) {
@@ -164,8 +164,8 @@ void SpaceBelief::update(Quantities reads) {
   if (reads == Quantities{}) return;
   look_where_met();
   if (reads.has(Quantity::deviation)) look_at_deviations();
-  if (reads.has(Quantity::reduction)) look_for_reductions();
-  if (reads.has(Quantity::unseen)) look_for_unseen();
+  if (reads.has(Quantity::std_reduction)) look_for_reductions();
+  if (reads.has(Quantity::expected_discovery)) look_for_unseen();
   require_finite(met_, "the way to the surface", taps_);
   require_finite(deviation_, "the deviation of the surface", taps_);
   require_finite(reduction_, "the reduction of the deviation", taps_);
@@ -192,7 +192,7 @@ Line SpaceBelief::random_line(Random& random) const {
 /// Straight onto the surface that is believed, where a line from outside meets it.
 std::optional<Line> SpaceBelief::along_normal(Random& random) const {
   const Line line = random_line(random);
-  const double hit = solids_.best().first_hit(line);
+  const double hit = solids_.best().first_intersection(line);
   if (hit >= distance_down_to(0.0, line)) return std::nullopt;
   const Vector3d at = line.origin + hit * line.direction;
   const Vector3d inwards = -Skin::normal(solids_.best(), at);
@@ -243,21 +243,21 @@ Line SpaceBelief::line_of(const Approach& approach) const {
 void SpaceBelief::look_where_met() {
   const auto count = static_cast<Eigen::Index>(approaches_.size());
   met_.resize(count);
-  squareness_ = Eigen::VectorXd::Zero(count);
+  incidence_cosine_ = Eigen::VectorXd::Zero(count);
   places_.clear();
   meets_.clear();
   const Composition& best = solids_.best();
   for (Eigen::Index i = 0; i < count; ++i) {
     const Approach& approach = approaches_[static_cast<std::size_t>(i)];
     const Line line = line_of(approach);
-    const double hit = best.first_hit(line);
+    const double hit = best.first_intersection(line);
     met_(i) = std::min({hit, approach.length, distance_down_to(0.0, line)});
     if (hit > met_(i)) continue;
     const Vector3d at = line.origin + hit * line.direction;
     const Vector3d normal = Skin::normal(best, at);
     places_.push_back({at, normal});
     meets_.push_back(i);
-    squareness_(i) = std::min(1.0, std::abs(normal.dot(line.direction)));
+    incidence_cosine_(i) = std::min(1.0, std::abs(normal.dot(line.direction)));
   }
 }
 
@@ -276,7 +276,7 @@ void SpaceBelief::look_for_reductions() {
   const Eigen::VectorXd reductions = expected_reductions(solids_, skin_, some.places, &reduced_);
   reduction_ = Eigen::VectorXd::Zero(met_.size());
   for (std::size_t i = 0; i < meets_.size(); ++i) {
-    if (squareness_(meets_[i]) > kSquarely)
+    if (incidence_cosine_(meets_[i]) > kSquarely)
       reduction_(meets_[i]) = reductions(static_cast<Eigen::Index>(some.stands_for[i]));
   }
 }
@@ -316,7 +316,8 @@ void SpaceBelief::look_for_unseen() {
     double moves = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) {
       if (aside(i) > radius * radius || along(i) - radius > met_(i)) continue;
-      const double earlier = met_(i) - piece.first_hit({origin.row(i).transpose(), direction.row(i).transpose()});
+      const double earlier =
+          met_(i) - piece.first_intersection({origin.row(i).transpose(), direction.row(i).transpose()});
       if (earlier <= kClearly) continue;
       meets.push_back(i);
       if (goes_anywhere(static_cast<std::size_t>(i))) moves += std::min(kFarthest, earlier);
@@ -342,7 +343,7 @@ Cloud SpaceBelief::surface(const Bundle& bundle, double side) const {
   const Composition& best = solids_.best();
   Cloud points;
   for (const Line& line : bundle.lines) {
-    const double hit = best.first_hit(line);
+    const double hit = best.first_intersection(line);
     if (hit < distance_down_to(0.0, line)) points.emplace_back(line.origin + hit * line.direction);
   }
   Skin::Places places;

@@ -61,10 +61,10 @@ class SpaceBelief final : public SurfaceBelief {
   int find(const Approach& approach) const;
   int taps() const override { return taps_; }
   const Eigen::VectorXd& way() const override { return met_; }
-  const Eigen::VectorXd& unseen() const override { return unseen_; }
-  const Eigen::VectorXd& reduction() const override { return reduction_; }
+  const Eigen::VectorXd& expected_discovery() const override { return unseen_; }
+  const Eigen::VectorXd& std_reduction() const override { return reduction_; }
   const Eigen::VectorXd& deviation() const override { return deviation_; }
-  const Eigen::VectorXd& squareness() const override { return squareness_; }
+  const Eigen::VectorXd& incidence_cosine() const override { return incidence_cosine_; }
 
   const Region& region() const { return region_; }
   const Solids& solids() const { return solids_; }
@@ -132,7 +132,7 @@ class SpaceBelief final : public SurfaceBelief {
   Eigen::VectorXd met_;  ///< how far along each approach the most probable composition is met, or else the end is
   Skin::Places places_;  ///< where it is met
   std::vector<Eigen::Index> meets_;  ///< the approaches that meet it there
-  Eigen::VectorXd squareness_, deviation_, reduction_, unseen_;
+  Eigen::VectorXd incidence_cosine_, deviation_, reduction_, unseen_;
   int clamped_ = 0;
   FactorReport reduced_;
 };

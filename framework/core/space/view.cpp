@@ -45,7 +45,7 @@ std::vector<SurfaceTouch> side_view(const SideViewOptions& options, const Scene&
       const Vector3d through = centre + place(column) * right - place(row) * up;
       const Line line{eye, (through - eye).normalized()};
       const double to_desk = distance_down_to(0.0, line);
-      const double hit = scene.first_hit({line.origin + desk, line.direction});
+      const double hit = scene.first_intersection({line.origin + desk, line.direction});
       const double length = std::min({hit, to_desk, away + 1.5 * radius});
       all.push_back({line, length, length == hit || length == to_desk, length < hit && length == to_desk});
     }

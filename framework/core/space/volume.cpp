@@ -24,7 +24,7 @@ Cubes::Held Cubes::of(const Scene& scene) const {
   for (int i = 0; i < across_; ++i) {
     for (int k = 0; k < across_; ++k, column += static_cast<std::size_t>(up_)) {
       const Line line{lowest_ + Vector3d(i * side_, k * side_, scene.desk()), Vector3d::UnitZ()};
-      for (const Stretch& stretch : scene.stretches(line)) {
+      for (const Stretch& stretch : scene.intervals(line)) {
         const int last = std::min(up_ - 1, static_cast<int>(std::floor(stretch.end / side_)));
         for (int n = std::max(0, static_cast<int>(std::ceil(stretch.begin / side_))); n <= last; ++n)
           out[column + static_cast<std::size_t>(n)] = true;

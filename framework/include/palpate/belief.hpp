@@ -19,9 +19,9 @@ enum class Quantity : unsigned {
   doubt = 16,       ///< which contacts are believed; nothing that a plugin reads
   outlines = 32,    ///< some of the outlines that p is the mean of
   // From any side, of a SurfaceBelief:
-  unseen = 64,      ///< unseen
-  deviation = 128,  ///< deviation and squareness
-  reduction = 256   ///< reduction
+  expected_discovery = 64,  ///< expected_discovery
+  deviation = 128,          ///< deviation and incidence_cosine
+  reduction = 256           ///< reduction
 };
 
 /// A set of quantities: `Quantity::uncertainty | Quantity::weight`, or {} for none.

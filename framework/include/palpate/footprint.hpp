@@ -53,11 +53,11 @@ class Footprint {
 
   /// Where each touch so far would be made now, a row each in their order, metres; `places` holds where they were made.
   /// A footprint that thinks the objects were pushed since moves those made before along with them.
-  virtual void place_now(Points& /*places*/) const {}
+  virtual void current_positions(Points& /*places*/) const {}
 
   /// The probability that somewhere lies an object of 3 cm or more that no touch was on; none where it thinks of no
   /// such thing. A run that stops when done waits until it is small.
-  virtual std::optional<double> left() const { return std::nullopt; }
+  virtual std::optional<double> undiscovered_probability() const { return std::nullopt; }
 
   /// What it has come to, in numbers; the same names at every touch.
   virtual std::vector<FootprintNumber> numbers() const { return {}; }

@@ -62,12 +62,12 @@ class Kernel {
   /// Whether it is a function f of the distance alone, with two derivatives everywhere: then what it describes has a
   /// slope at every place, and the method below is implemented too. A belief over space needs it where normals are
   /// felt.
-  virtual bool has_slopes() const { return false; }
+  virtual bool has_gradient() const { return false; }
 
   /// How alike slopes are at two places so far apart: `along` of those along the line between both, -f''(r), `across`
   /// of those at right angles to it, -f'(r) / r. At r = 0 both are -f''(0). `distances` n, not negative, and n each.
   /// Finite for all finite distances. Never throws.
-  virtual void slope_covariance(const VectorView& distances, VectorOut across, VectorOut along) const;
+  virtual void gradient_covariance(const VectorView& distances, VectorOut across, VectorOut along) const;
 };
 
 // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
@@ -76,6 +76,6 @@ inline void Kernel::set_parameters(const VectorView&) {}
 // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
 inline void Kernel::derivatives(const PointsView&, const PointsView&, MatrixOut, MatrixOut) const {}
 // Views go by value, as in covariance(). NOLINTNEXTLINE(performance-unnecessary-value-param)
-inline void Kernel::slope_covariance(const VectorView&, VectorOut, VectorOut) const {}
+inline void Kernel::gradient_covariance(const VectorView&, VectorOut, VectorOut) const {}
 
 }  // namespace palpate

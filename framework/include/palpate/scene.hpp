@@ -37,11 +37,11 @@ class Scene {
 
   /// Where the line first meets an object, metres from its origin, negative behind it; +infinity if it meets none. The
   /// desk does not count. z of the line is as heights are.
-  virtual double first_hit(const Line& line) const = 0;
+  virtual double first_intersection(const Line& line) const = 0;
 
   /// Which parts of the line lie in an object, in their order: what is solid, not what it encloses. See
-  /// Shape::stretches().
-  virtual std::vector<Stretch> stretches(const Line& line) const = 0;
+  /// Shape::intervals().
+  virtual std::vector<Stretch> intervals(const Line& line) const = 0;
 
   /// Upper bound of `height` over the plane, metres.
   virtual double highest() const = 0;

@@ -30,19 +30,19 @@ class SurfaceBelief {
   /// is believed: the probability that there is one which no touch so far contradicts and which the approach meets
   /// before all that is believed, times how far it moves the surface: the mean over lines from all sides of how much
   /// earlier they are met, of which no line counts more than 3 cm.
-  virtual const Eigen::VectorXd& unseen() const = 0;
+  virtual const Eigen::VectorXd& expected_discovery() const = 0;
 
   /// N: by how much a tap is expected to lower what is not known of the surface that is believed, metres: its standard
   /// deviation, the mean over all of it, by what the tap tells of where it is met and of all that hangs together with
   /// that; 0 for approaches that meet no object, or meet it at less than 30 degrees.
-  virtual const Eigen::VectorXd& reduction() const = 0;
+  virtual const Eigen::VectorXd& std_reduction() const = 0;
 
   /// N: the standard deviation of the surface where the most probable composition has an approach meet it, along its
   /// normal there, metres; 0 where it meets no object.
   virtual const Eigen::VectorXd& deviation() const = 0;
 
   /// N: the cosine between approach and normal there, in [0, 1]; 0 where it meets no object.
-  virtual const Eigen::VectorXd& squareness() const = 0;
+  virtual const Eigen::VectorXd& incidence_cosine() const = 0;
 };
 
 }  // namespace palpate

@@ -81,7 +81,7 @@ std::string relative_variance(const SurfaceBelief& belief) {
   const double most = belief.deviation().maxCoeff();
   const double scale = most > 0.0 ? 1.0 / most : 0.0;
   const Eigen::ArrayXd share = (scale * belief.deviation().array()).square();
-  return npy(Eigen::VectorXd((belief.squareness().array() > kAlong).select(share, 0.0)));
+  return npy(Eigen::VectorXd((belief.incidence_cosine().array() > kAlong).select(share, 0.0)));
 }
 
 }  // namespace
@@ -112,9 +112,13 @@ const std::vector<Map>& maps() {
       {"desk_position", {}, [](B b) { return npy(RowMajor(b.candidates())); }, {}, nullptr},
       {"contacts", {}, contacts, {}, nullptr},
       {"surface_std", {}, nullptr, Quantity::deviation, [](S s) { return npy(s.deviation()); }},
-      {"incidence_cosine", {}, nullptr, Quantity::deviation, [](S s) { return npy(s.squareness()); }},
-      {"expected_discovery", {}, nullptr, Quantity::unseen, [](S s) { return npy(s.unseen()); }},
-      {"std_reduction", {}, nullptr, Quantity::reduction, [](S s) { return npy(s.reduction()); }},
+      {"incidence_cosine", {}, nullptr, Quantity::deviation, [](S s) { return npy(s.incidence_cosine()); }},
+      {"expected_discovery",
+       {},
+       nullptr,
+       Quantity::expected_discovery,
+       [](S s) { return npy(s.expected_discovery()); }},
+      {"std_reduction", {}, nullptr, Quantity::std_reduction, [](S s) { return npy(s.std_reduction()); }},
       {"expected_distance", {}, nullptr, {}, [](S s) { return npy(s.way()); }},
       {"start", {}, nullptr, {}, [](S s) { return lines(s, [](const Line& one) { return one.origin; }); }},
       {"direction", {}, nullptr, {}, [](S s) { return lines(s, [](const Line& one) { return one.direction; }); }}};

@@ -129,7 +129,7 @@ double along(const Effects& effects, const Line& line, const Free& free) {
 
 double contact_along(const Scene& scene, const Effects& effects, const Line& line) {
   return along(effects, line, [&](const Line& beside) {
-    return std::min(scene.first_hit(beside), distance_down_to(scene.desk(), beside));
+    return std::min(scene.first_intersection(beside), distance_down_to(scene.desk(), beside));
   });
 }
 

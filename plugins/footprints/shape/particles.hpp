@@ -58,7 +58,7 @@ class Particles {
 
   /// Where each touch so far would be made now (rows as they were made; set already to where they were): elsewhere
   /// where more than half of the outlines were pushed since.
-  void place_now(Points& places) const;
+  void current_positions(Points& places) const;
   /// Share of the outlines that were pushed, and the touches before it and the shift of an average one of these.
   struct Pushed {
     double share = 0.0;
@@ -69,7 +69,7 @@ class Particles {
 
   /// The probability that there is something at least `size` long (metres) that was not touched: a piece that lies
   /// apart from all that hold a touch of an object.
-  double left(double size) const;
+  double undiscovered_probability(double size) const;
 
   /// Touches so far that an outline has wrong, on average.
   double mean_mistakes() const;

@@ -22,7 +22,7 @@ double Particles::mean_pieces() const {
   return sum / size();
 }
 
-double Particles::left(double size) const { return 1.0 - std::exp(-unseen_.apart(size)); }
+double Particles::undiscovered_probability(double size) const { return 1.0 - std::exp(-unseen_.apart(size)); }
 
 void Particles::doubt(VectorOut out) const {
   out.setZero();
@@ -35,7 +35,7 @@ void Particles::doubt(VectorOut out) const {
   out /= size();
 }
 
-void Particles::place_now(Points& places) const {
+void Particles::current_positions(Points& places) const {
   Points sums = Points::Zero(places.rows(), 2);
   std::vector<int> counts(touches_.size(), 0);
   for (const Particle& particle : particles_) {

@@ -93,19 +93,19 @@ class Shape final : public Footprint {
     particles_.doubt(out);
   }
 
-  void place_now(Points& places) const override {
-    if (handed_over_at_ == 0 && options_.pushes > 0.0) particles_.place_now(places);
+  void current_positions(Points& places) const override {
+    if (handed_over_at_ == 0 && options_.pushes > 0.0) particles_.current_positions(places);
   }
 
-  std::optional<double> left() const override {
+  std::optional<double> undiscovered_probability() const override {
     if (handed_over_at_ > 0) return std::nullopt;
-    return particles_.left(kWorthFinding);
+    return particles_.undiscovered_probability(kWorthFinding);
   }
 
   std::vector<FootprintNumber> numbers() const override {
     std::vector<FootprintNumber> out{{"mistakes", particles_.mean_mistakes()},
                                      {"pieces", particles_.mean_pieces()},
-                                     {"left", particles_.left(kWorthFinding)},
+                                     {"left", particles_.undiscovered_probability(kWorthFinding)},
                                      {"acceptance", particles_.acceptance()},
                                      {"handed_over", handed_over_at_ > 0 ? 1.0 : 0.0}};
     if (options_.pushes > 0.0) out.push_back({"pushed", particles_.pushed().share});

@@ -61,13 +61,13 @@ class HeightMap final : public Shape {
     }
   }
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     double out = kInfinity;
     visit(line, [&](const Stretch& one) { return out = one.begin, false; });
     return out;
   }
 
-  std::vector<Stretch> stretches(const Line& line) const override {
+  std::vector<Stretch> intervals(const Line& line) const override {
     std::vector<Stretch> out;
     visit(line, [&](const Stretch& one) { return out.push_back(one), true; });
     return out;

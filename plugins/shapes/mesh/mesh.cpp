@@ -64,14 +64,14 @@ class Mesh final : public Shape {
 
   /// Which triangle is met is found in single precision around the middle of the mesh, within 1e-6 of its size; where
   /// on that triangle is computed in double precision.
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     const RTCRayHit ray = cast(line, 0.0F);
     return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : meeting(line, ray.hit.primID).at;
   }
 
   /// Parts of a mesh may reach into each other: inside is where more surfaces were entered than left. Where the order
   /// of corners does not tell which is which, each second meeting leads out.
-  std::vector<Stretch> stretches(const Line& line) const override {
+  std::vector<Stretch> intervals(const Line& line) const override {
     std::call_once(looked_at_, [this] { oriented_ = is_oriented(); });
     // Triangles that share an edge are met within rounding of each other: one step lies over all of them.
     const auto step = static_cast<float>(4e-6 * radius_);

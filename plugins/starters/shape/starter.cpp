@@ -25,7 +25,7 @@ class MyShape final : public Shape {
   using Options = MyShapeOptions;
   MyShape(const Options& options, const Context&) : half_(options.length / 2, options.width / 2, options.height / 2) {}
 
-  double first_hit(const Line& line) const override {
+  double first_intersection(const Line& line) const override {
     const Eigen::Vector3d origin = (line.origin - Eigen::Vector3d(0, 0, half_.z())).cwiseQuotient(half_);
     const Eigen::Vector3d direction = line.direction.cwiseQuotient(half_);
     const double nearest = -origin.dot(direction) / direction.squaredNorm();

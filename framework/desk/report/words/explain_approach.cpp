@@ -90,19 +90,19 @@ class ApproachExplained final : public Explanation {
     if (now->ties.value_or(1) > 1)
       text += fmt::format("; {} are tied with it (tie_tolerance), and the first of them is taken", *now->ties - 1);
     page_.say(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
-    const Eigen::VectorXd& unseen = experiment_.belief().unseen();
-    if (unseen.size() == scores.size()) {
+    const Eigen::VectorXd& expected_discovery = experiment_.belief().expected_discovery();
+    if (expected_discovery.size() == scores.size()) {
       page_.say(fmt::format(
           "Of one piece more than is believed, as far as no touch has contradicted it, the line is expected to "
           "find {}, as a mean over lines from all sides; the best of all finds {}.",
-          length_words(unseen(now->candidate)), length_words(unseen.maxCoeff())));
+          length_words(expected_discovery(now->candidate)), length_words(expected_discovery.maxCoeff())));
     }
-    const Eigen::VectorXd& reduction = experiment_.belief().reduction();
+    const Eigen::VectorXd& std_reduction = experiment_.belief().std_reduction();
     if (reduction.size() == scores.size()) {
       page_.say(fmt::format(
           "Of the standard deviation of the surface that is believed, the mean over all of it, a touch there is "
           "expected to take off {}; the best of all takes off {}.",
-          length_words(reduction(now->candidate)), length_words(reduction.maxCoeff())));
+          length_words(std_reduction(now->candidate)), length_words(std_reduction.maxCoeff())));
     }
     if (scores.size() < 2) return;
     Eigen::Index second = now->candidate == 0 ? 1 : 0;

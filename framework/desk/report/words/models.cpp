@@ -137,7 +137,7 @@ void explain_footprint(Page& page, const Row& row, const std::string& type) {
   for (std::string& one : numbers) one = fmt::format("{} {}", parameter_words(one), number_words(row, prefix + one));
   page.say(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
                        numbers.empty() ? "" : fmt::format(". It tells: {}", fmt::join(numbers, ", "))));
-  if (const auto left = row.number("footprint.left"))
+  if (const auto left = row.number("footprint.undiscovered_probability"))
     page.say(fmt::format("{:.0f} % that something of 3 cm or more is left that nobody has touched.", 100.0 * *left));
   if (const std::string remark = row.text("footprint.remark"); !remark.empty())
     page.say(fmt::format("Its remark: {}.", remark));
