@@ -91,7 +91,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
       (options.acquisition.type != "random" && options.surface == ExperimentOptions::Surface::single) ||
       (recording.taps.front().predicted && !options.height.lies);  // else a height is predicted without its map
   EXPECT_EQ(compared > 0, reads_surface);
-  EXPECT_EQ(compared_footprint > 10, options.footprint.type != "regression");
+  EXPECT_EQ(compared_footprint > 10, options.footprint.type != "gp_regression");
   RunResult last = history.moments.back().result;
   last.stop_reason = cell(*recording.summary, "stop_reason");
   for (const auto& [name, value] : summary_list().row({last, recording.config, "", {}, {}, {}, {}}).fields) {
@@ -112,8 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"paper/object_i.yaml", "backend=continuous",
                                                "scene.effects={missed_contacts: {probability: 0.3}}"},
                       std::vector<std::string>{"default.yaml"},
-                      std::vector<std::string>{"default.yaml", "footprint.contradictions=0.01", "seed=2"},
-                      std::vector<std::string>{"default.yaml", "footprint=classifier", "scene=object_ii"}));
+                      std::vector<std::string>{"default.yaml", "footprint.max_contradictions=0.01", "seed=2"},
+                      std::vector<std::string>{"default.yaml", "footprint=gp_classifier", "scene=object_ii"}));
 
 TEST(History, KeepsAScoreOfItsOwnOnlyWhereItIsNeitherUNorE) {
   const auto names = [](const std::vector<std::string>& words) {
@@ -242,7 +242,7 @@ TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
 }
 
 TEST(Warnings, TellWhatTheFootprintRemarksAndNothingOfWeights) {
-  const std::vector<std::string> said = warnings("default.yaml", {"footprint.contradictions=0.01"});
+  const std::vector<std::string> said = warnings("default.yaml", {"footprint.max_contradictions=0.01"});
   EXPECT_THAT(said, Contains(AllOf(HasSubstr("The footprint, shape, says: "), HasSubstr("has taken over at touch"))));
   EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("weight"))));
 }

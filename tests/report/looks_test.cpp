@@ -247,7 +247,7 @@ TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
 }
 
 TEST_P(Looks, PicturesCallMapsAndCurvesAsThePageDoes) {
-  for (const char* footprint : {"footprint=regression", "footprint=classifier"}) {
+  for (const char* footprint : {"footprint=gp_regression", "footprint=gp_classifier"}) {
     const fs::path directory = run_with_page({"seed=3", "taps=8", footprint});
     const test::Ended drawn_too = test::palpate({"report", directory.string(), "--figures"}, folder_.path());
     ASSERT_EQ(drawn_too.status, 0) << drawn_too.err;

@@ -15,8 +15,8 @@ const int kMany = brief() ? 200 : 1000;
 
 const std::vector<std::pair<std::string, std::string>>& footprints() {
   static const std::vector<std::pair<std::string, std::string>> all{
-      {"classifier", "{kernel: {type: rbf, length_scale: 3 cm}}"},
-      {"shape", "{kernel: {type: rbf, length_scale: 3.5 cm}}"}};
+      {"gp_classifier", "{kernel: {type: rbf, length_scale: 3 cm}}"},
+      {"primitives", "{kernel: {type: rbf, length_scale: 3.5 cm}}"}};
   return all;
 }
 
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(OfLabels, FootprintExtremes,
 TEST(FootprintHeights, OfAnySizeLeaveProbabilities) {
   for (const double height : {0.0, 0.05, 1e3}) {
     const auto footprint =
-        test::make<Footprint>(test::shared_host(), "shape", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
+        test::make<Footprint>(test::shared_host(), "primitives", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
     int number = 0;
     for (Touch touch : test::disorderly_touches(kMany / 10)) {
       touch.height = ++number % 3 == 0 ? -height : height;
@@ -78,7 +78,8 @@ TEST(FootprintHeights, OfAnySizeLeaveProbabilities) {
     EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, test::lattice(47, 47)))) << height;
     for (const FootprintNumber& one : footprint->numbers()) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
     // All alike at one place: each of the others makes the piece a hundred times as probable.
-    const auto one = test::make<Footprint>(test::shared_host(), "shape", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
+    const auto one =
+        test::make<Footprint>(test::shared_host(), "primitives", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
     for (int i = 0; i < kMany / 10; ++i) one->add({{0.1, 0.12}, height, true});
     EXPECT_NEAR(test::probability_of(*one, Points{{0.1, 0.12}})(0), 1.0, 1e-6) << height;
   }
@@ -129,7 +130,7 @@ TEST_P(FootprintRuns, OfHundredsOfContradictoryTapsAtOnePlaceEndWithProbabilitie
   expect_sound_long_run(GetParam(), 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, FootprintRuns, ::testing::Values("classifier", "shape"),
+INSTANTIATE_TEST_SUITE_P(Of, FootprintRuns, ::testing::Values("gp_classifier", "primitives"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace

@@ -101,7 +101,7 @@ TEST_P(Owners, ClassifierGivesProbabilitiesThatAgreeWithLabelsAlike) {
       fmt::format("{{kernel: {{type: rbf, length_scale: {} m}}, signal: ", GetParam().length_scale);
   for (const char* const signal : {"0.01", "2", "100"}) {
     for (const bool contradictory : {false, true}) {
-      const auto footprint = test::make<Footprint>(test::shared_host(), "classifier", options + signal + "}");
+      const auto footprint = test::make<Footprint>(test::shared_host(), "gp_classifier", options + signal + "}");
       std::vector<Touch> touches = test::alike_touches(GetParam().taps, true);
       for (std::size_t i = 1; i < touches.size(); i += 2) {
         if (again(1)) touches[i].place = {touches[i - 1].place.x + gap(), touches[i - 1].place.y};

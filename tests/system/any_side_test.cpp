@@ -413,7 +413,7 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
                                 "label.fitting={type: fixed}",
                                 "posterior=dense",
                                 "lowrank.tolerance=1e-9",
-                                "footprint={type: shape, kernel: {type: rbf}}",
+                                "footprint={type: primitives, kernel: {type: rbf}}",
                                 "fitting.type=ceres",
                                 "fallback=none",
                                 "repeat=allow",

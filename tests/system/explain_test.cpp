@@ -157,12 +157,12 @@ INSTANTIATE_TEST_SUITE_P(With, ExplainEveryTap,
                              "backend=adaptive"));
 
 TEST_F(Explain, TellsEveryTapOfAFootprintByItsProbability) {
-  expect_explained(ran({}, config("default.yaml")), "shape");
-  expect_explained(ran("footprint=classifier acquisition=random taps=6"), "classifier");
+  expect_explained(ran({}, config("default.yaml")), "primitives");
+  expect_explained(ran("footprint=gp_classifier acquisition=random taps=6"), "gp_classifier");
 }
 
 TEST_F(Explain, TellsWhatTheFootprintRemarks) {
-  const fs::path directory = ran("footprint.contradictions=0.01 taps=20", config("default.yaml"));
+  const fs::path directory = ran("footprint.max_contradictions=0.01 taps=20", config("default.yaml"));
   const json last = taps_of(directory).back();
   ASSERT_TRUE(last["footprint"]["remark"].is_string());
   EXPECT_THAT(explain(directory, 20), HasSubstr("Its remark: " + last["footprint"]["remark"].get<std::string>() + "."));

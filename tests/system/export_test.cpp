@@ -89,7 +89,7 @@ TEST_F(Export, WritesASurfaceThatAssimpReadsVertexByVertex) {
 TEST_F(Export, WritesTheNumbersOfTheRecordToTheLastBit) { expect_numbers_of_record(ran("surface=two_part")); }
 
 TEST_F(Export, WritesTheProbabilityOfTheFootprint) {
-  const fs::path directory = ran({"surface=two_part", "footprint=shape"});
+  const fs::path directory = ran({"surface=two_part", "footprint=primitives"});
   expect_numbers_of_record(directory);
   EXPECT_THAT(text_of(directory / "summary.json"), HasSubstr("\"mistakes\": ")) << "it is not the weight";
 }

@@ -92,11 +92,12 @@ TEST_F(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThemAndCurvesThatEndWithItsSumma
 }
 
 TEST_F(Figures, OfAFootprintHaveItsProbabilityAndTheScoreInPlaceOfTheWeight) {
-  const fs::path directory = drawn_run("seed=3 footprint=shape acquisition=footprint_then_height surface=two_part");
+  const fs::path directory =
+      drawn_run("seed=3 footprint=primitives acquisition=footprint_then_height surface=two_part");
   const auto maps = blocks_of(directory / "figures/maps.gnuplot");
   EXPECT_EQ(maps.count("w") + maps.count("e"), 0U);
   EXPECT_EQ(maps.count("score"), 1U);
-  EXPECT_THAT(text_of(directory / "figures/maps.gnuplot"), HasSubstr("by footprint/shape"));
+  EXPECT_THAT(text_of(directory / "figures/maps.gnuplot"), HasSubstr("by footprint/primitives"));
   for (const Cells& cell : csv_rows(text_of(directory / "surface.csv"))) {
     EXPECT_NEAR(value_at(maps.at("p"), 100 * std::stod(cell.at("x")), 100 * std::stod(cell.at("y"))),
                 std::stod(cell.at("object_probability")), 1e-5);

@@ -22,7 +22,7 @@ using testing::Not;
 
 /// What every build of a run of the paper takes; a scene may take shapes beside.
 const Targets kPaper{"palpate_kernel_rbf", "palpate_acquisition_weighted", "palpate_fitting_fixed",
-                     "palpate_footprint_regression", "palpate_backend_simulator"};
+                     "palpate_footprint_gp_regression", "palpate_backend_simulator"};
 
 /// A build folder with nothing in it but the program and the list of plugins, as the first ./palpate finds it.
 class FirstCommand : public Shell {
@@ -57,9 +57,9 @@ TEST_F(FirstCommand, ARunTakesThePluginsThatItsConfigNamesAndNothingElse) {
 }
 
 TEST_F(FirstCommand, OverridesAndDefaultsCountAsTheConfigDoes) {
-  const Targets found = needs({"run", paper(), "kernel=matern52", "footprint=classifier"});
+  const Targets found = needs({"run", paper(), "kernel=matern52", "footprint=gp_classifier"});
   EXPECT_THAT(found, Contains("palpate_kernel_matern52"));
-  EXPECT_THAT(found, Contains("palpate_footprint_classifier"));
+  EXPECT_THAT(found, Contains("palpate_footprint_gp_classifier"));
   EXPECT_THAT(found, Not(Contains("palpate_kernel_rbf")));
 }
 

@@ -36,7 +36,7 @@ struct Spoilt {
 
 void PrintTo(const Spoilt& one, std::ostream* out) { *out << one.kind << ": " << one.function; }
 
-const char* const kFootprint = "footprint: {type: classifier, kernel: {type: rbf, length_scale: 3 cm}}\n";
+const char* const kFootprint = "footprint: {type: gp_classifier, kernel: {type: rbf, length_scale: 3 cm}}\n";
 
 class NotFinite : public Shell, public testing::WithParamInterface<std::tuple<Spoilt, const char*>> {};
 

@@ -78,7 +78,7 @@ TEST_F(Replay, KnowsWhatABackendReadWhoeverChoseTheSecondTap) {
 
 TEST_F(Replay, KnowsWhatWasReadByARunThatStoppedAtItsFirstLook) {
   const fs::path run =
-      replayed("footprint=shape acquisition=footprint_entropy fallback=none stop.max_standard_deviation=10m",
+      replayed("footprint=primitives acquisition=footprint_entropy fallback=none stop.max_standard_deviation=10m",
                config("process.yaml"));
   EXPECT_THAT(text_of(run / "summary.json"), HasSubstr("\"max_standard_deviation\""));
 }

@@ -89,16 +89,17 @@ TEST_F(Report, SaysThatAProgramChoosesTheNextTapAndOfAPluginWhereThatIs) {
 }
 
 TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
-  const fs::path directory = ran("footprint.contradictions=0.01 log.maps=true", config("default.yaml"));
+  const fs::path directory = ran("footprint.max_contradictions=0.01 log.maps=true", config("default.yaml"));
   const json data = reported(directory);
-  EXPECT_EQ(data.at("footprint"), "shape");
+  EXPECT_EQ(data.at("footprint"), "primitives");
   std::vector<std::string> names;
   for (const json& map : data.at("maps")) names.push_back(map.at("name"));
   EXPECT_THAT(names, ElementsAre("height", "deviation", "u", "p", "score", "truth"));
   const json summary = json::parse(text_of(directory / "summary.json"));
   const auto& panels = data.at("curves");
-  const auto told = std::find_if(panels.begin(), panels.end(),
-                                 [](const json& panel) { return panel.at("title") == "What footprint/shape tells"; });
+  const auto told = std::find_if(panels.begin(), panels.end(), [](const json& panel) {
+    return panel.at("title") == "What footprint/primitives tells";
+  });
   ASSERT_NE(told, panels.end());
   json last{{"remark", data.at("moments").back().at("remark")}};
   for (const json& curve : told->at("curves")) {

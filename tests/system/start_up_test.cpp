@@ -43,7 +43,7 @@ std::vector<std::string> plugins_among(const std::set<std::string>& libraries) {
 TEST_F(StartUp, LoadsThePluginsOfTheConfigAndNoLibraryOfAnother) {
   const std::set<std::string> fixed = loaded_libraries({});
   EXPECT_THAT(plugins_among(fixed), ElementsAre("acquisition/weighted.so", "backend/simulator.so", "fitting/fixed.so",
-                                                "footprint/regression.so", "kernel/rbf.so", "shape/wave.so"));
+                                                "footprint/gp_regression.so", "kernel/rbf.so", "shape/wave.so"));
   // What Ceres brings, whether it is linked into its plugin or not.
   const auto of_ceres = AnyOf(HasSubstr("libceres"), HasSubstr("libglog"), HasSubstr("lapack"), HasSubstr("blas"));
   EXPECT_THAT(fixed, Not(Contains(of_ceres)));

@@ -55,10 +55,11 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
       << "two outputs of one process";
   EXPECT_THAT(readers({"acquisition=footprint_entropy", "fallback=none", "label.noise=1e-3"}),
               ElementsAre("label GP: acquisition footprint_entropy"));
-  EXPECT_THAT(readers({"acquisition=footprint_entropy", "footprint=shape", "fallback=none", "surface=two_part",
-                       "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
-              ElementsAre("footprint shape: acquisition footprint_entropy", "height GP: stop.max_standard_deviation",
-                          "surface GP: stop.expected_rmse", "footprint shape: stop.expected_rmse"));
+  EXPECT_THAT(
+      readers({"acquisition=footprint_entropy", "footprint=primitives", "fallback=none", "surface=two_part",
+               "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
+      ElementsAre("footprint primitives: acquisition footprint_entropy", "height GP: stop.max_standard_deviation",
+                  "surface GP: stop.expected_rmse", "footprint primitives: stop.expected_rmse"));
   EXPECT_THAT(readers({"acquisition=random", "fallback=none", "backend.motion.adaptive_hover={clearance: 2cm}"}),
               ElementsAre("height GP: backend simulator"));
 }
@@ -70,7 +71,7 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
                           {"acquisition=footprint_entropy"},
                           {"acquisition=footprint_entropy", "label.noise=1e-3"},
                           {"acquisition=uncertainty", "surface=two_part"},
-                          {"acquisition=object_uncertainty", "footprint=shape", "surface=two_part"},
+                          {"acquisition=object_uncertainty", "footprint=primitives", "surface=two_part"},
                           {"acquisition=random", "surface=two_part", "stop.expected_rmse=1mm"},
                           {"acquisition=random", "surface=two_part", "backend.motion.adaptive_hover={}"}}) {
     Words all = words;
@@ -84,7 +85,7 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
     if (last.height_gp) recorded.insert("height GP");
     if (last.label_gp) recorded.insert("label GP");
     if (last.surface_gp) recorded.insert("surface GP");
-    if (last.footprint) recorded.insert("footprint shape");
+    if (last.footprint) recorded.insert("footprint primitives");
     EXPECT_EQ(recorded, named) << (words.empty() ? "weighted" : words.front());
   }
 }

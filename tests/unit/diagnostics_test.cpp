@@ -19,7 +19,7 @@ TEST(Diagnostics, CountATapThatSeveralModelsSetAsideOnce) {
 TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
   const std::vector<Contact> answers(6, contact_at(0.05));
   Finished run("default.yaml",
-               {"label.hyperparameters=shared", "surface=single", "height.lies=none", "footprint=regression",
+               {"label.hyperparameters=shared", "surface=single", "height.lies=none", "footprint=gp_regression",
                 "height.noise=0mm", "candidates.count=1", "repeat=allow", "taps=6"},
                scripted(answers));
   run.experiment.ask(Quantity::weight | Quantity::height);
@@ -63,7 +63,7 @@ struct Impossible final : Kernel {
 
 TEST(Diagnostics, OfTheClassifierTellJitterAsAVarianceAndItsCountBeside) {
   const Instead<Kernel> plugins(std::make_shared<Impossible>());
-  Finished run("default.yaml", {"footprint=classifier", "posterior=dense", "acquisition=random", "taps=6"},
+  Finished run("default.yaml", {"footprint=gp_classifier", "posterior=dense", "acquisition=random", "taps=6"},
                scripted({contact_at(0.05), contact_at(0.0), contact_at(0.05), contact_at(0.05)}), plugins);
   run.experiment.ask(Quantity::probability | Quantity::height);
   const RunResult result = run.experiment.result();

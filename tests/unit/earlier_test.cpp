@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(OfEveryKind, Earlier,
                                            std::vector<std::string>{"strategy=weighted", "seed=4"},
                                            std::vector<std::string>{"strategy=weighted_two_part", "fitting=ceres",
                                                                     "fitting.every=4"},
-                                           std::vector<std::string>{"strategy=random", "footprint=classifier"}));
+                                           std::vector<std::string>{"strategy=random", "footprint=gp_classifier"}));
 
 }  // namespace
 }  // namespace palpate::test

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Outlines that are drawn again take over what a touch tells of, and keep their own of what lies apart.
-#include "shape/exchange.hpp"
+#include "primitives/exchange.hpp"
 
 #include "outline_bench.hpp"
-#include "shape/particles.hpp"
+#include "primitives/particles.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
 

@@ -111,7 +111,7 @@ TEST(GoodEnough, WantsLittleToBeLeftWhereThatIsKnownAndThenLessOfAMargin) {
 }
 
 TEST(Forecast, AsksTheFootprintWhatIsLeftAndSaysNothingWhereNobodyKnows) {
-  for (const char* footprint : {"shape", "classifier", "regression"}) {
+  for (const char* footprint : {"primitives", "gp_classifier", "gp_regression"}) {
     Finished run("default.yaml", {"taps=12", "stop.expected_rmse=1e-6 mm", std::string("footprint=") + footprint});
     int told = 0;
     for (const TapRecord& tap : run.taps) {
@@ -125,8 +125,8 @@ TEST(Forecast, AsksTheFootprintWhatIsLeftAndSaysNothingWhereNobodyKnows) {
       ASSERT_NE(number, numbers.end());
       EXPECT_EQ(*left, number->value);
     }
-    EXPECT_EQ(told > 5, footprint == std::string("shape")) << footprint;
-    EXPECT_EQ(told == 0, footprint != std::string("shape")) << footprint;
+    EXPECT_EQ(told > 5, footprint == std::string("primitives")) << footprint;
+    EXPECT_EQ(told == 0, footprint != std::string("primitives")) << footprint;
   }
 }
 
@@ -134,7 +134,7 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
   std::vector<Contact> answers(20, contact_at(0.0));
   answers.push_back(contact_at(0.05));
   // A hit so late is more probably none where contacts may lie; the classifier knows nothing of what is left.
-  Finished run("default.yaml", {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint=classifier"},
+  Finished run("default.yaml", {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint=gp_classifier"},
                scripted(answers));
   EXPECT_EQ(run.taps.size(), 21U) << "the hit is the 21st";
   for (const TapRecord& tap : run.taps) {
@@ -146,9 +146,10 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
   EXPECT_GT(*result.forecast->rmse, 0.0);
 
   // Where it is known that something is left, it goes on after the hit.
-  const Finished knowing("default.yaml",
-                         {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint.lies=0.0001"},
-                         scripted(answers));
+  const Finished knowing(
+      "default.yaml",
+      {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint.false_contact_probability=0.0001"},
+      scripted(answers));
   EXPECT_GE(knowing.taps.size(), 21U);
   for (std::size_t i = 0; i < 21; ++i) EXPECT_FALSE(knowing.taps[i].forecast->rmse.has_value()) << i;
 }
@@ -156,7 +157,7 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
   const Finished run(
       "default.yaml",
-      {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m", "footprint=classifier"},
+      {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m", "footprint=gp_classifier"},
       scripted(std::vector<Contact>(25, contact_at(0.05))));
   EXPECT_EQ(run.taps.size(), 12U);
   const Finished knowing("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"},
@@ -172,7 +173,7 @@ TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
 
 TEST(Forecast, IsFiniteForEverySurfaceAndFootprint) {
   for (const char* surface : {"single", "two_part"}) {
-    for (const char* footprint : {"regression", "classifier", "shape"}) {
+    for (const char* footprint : {"gp_regression", "gp_classifier", "primitives"}) {
       Finished run("default.yaml", {"taps=20", "stop.expected_rmse=1e-6 mm", std::string("surface=") + surface,
                                     std::string("footprint=") + footprint});
       for (const TapRecord& tap : run.taps)

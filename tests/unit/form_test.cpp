@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Boxes and ellipses, against the simplest ways to compute the same: corners and foci.
-#include "shape/form.hpp"
-#include "shape/forms.hpp"
+#include "primitives/form.hpp"
+#include "primitives/forms.hpp"
 
 #include "outline_bench.hpp"
 #include "support/support.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The classifier's approximation against what it approximates, in numbers with more digits and by plain quadrature.
-#include "classifier/laplace.hpp"
+#include "gp_classifier/laplace.hpp"
 
 #include "support/testing.hpp"
 #include "support/touches.hpp"

@@ -2,8 +2,8 @@
 // "5 % that something is left": of all desks of which it is said, on 5 % there is. Desks are drawn from the prior, with
 // labels, heights and errors as the belief expects them, and tapped where it is least sure.
 #include "outline_bench.hpp"
-#include "shape/particles.hpp"
-#include "shape/steps.hpp"
+#include "primitives/particles.hpp"
+#include "primitives/steps.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"

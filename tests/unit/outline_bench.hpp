@@ -3,7 +3,7 @@
 // numbers, by which it is seen whether two ways to draw outlines are one distribution.
 #pragma once
 
-#include "shape/outline.hpp"
+#include "primitives/outline.hpp"
 
 #include <palpate/footprint.hpp>
 

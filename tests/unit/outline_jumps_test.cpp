@@ -3,8 +3,8 @@
 // and moved cannot be told from what is drawn; and can be where the ratio of one kind of move is false. Without labels
 // it is that of those pieces of the prior that were touched.
 #include "outline_bench.hpp"
-#include "shape/particles.hpp"
-#include "shape/steps.hpp"
+#include "primitives/particles.hpp"
+#include "primitives/steps.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"

@@ -2,7 +2,7 @@
 // What the belief over outlines comes to, against draws of the prior, with all that nobody has touched, that are
 // weighed by all that the touches say, each likelihood by its definition.
 #include "outline_bench.hpp"
-#include "shape/particles.hpp"
+#include "primitives/particles.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Outlines, and whether the density of the prior is that of its draws.
-#include "shape/outline.hpp"
+#include "primitives/outline.hpp"
 
 #include "outline_bench.hpp"
-#include "shape/particles.hpp"
+#include "primitives/particles.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"

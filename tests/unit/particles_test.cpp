@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A belief as a set of outlines: what is told of them is what is told of each one, and they are drawn by their weights.
-#include "shape/particles.hpp"
+#include "primitives/particles.hpp"
 
 #include "outline_bench.hpp"
 #include "support/sanitizers.hpp"

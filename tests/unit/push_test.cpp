@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Things that are pushed: where they stand after, what is measured against it, and that the belief finds out as surely
 // as draws do that are weighed by all labels.
-#include "shape/particles.hpp"
+#include "primitives/particles.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"

@@ -59,7 +59,7 @@ TEST(ReadAgain, APlateTakenForTheDeskIsKnownAsAnObjectOnceTheDeskWasTouched) {
 
 TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
   for (const std::vector<std::string>& words : {std::vector<std::string>{},
-                                                {"footprint=regression"},
+                                                {"footprint=gp_regression"},
                                                 {"height.lies=none", "fitting=ceres", "surface=single"}}) {
     Reader late(words);
     Reader soon(words);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What nobody has touched, against pieces drawn from the prior that are weighed by what the touches say of each.
-#include "shape/unseen.hpp"
+#include "primitives/unseen.hpp"
 
 #include "outline_bench.hpp"
 #include "support/sanitizers.hpp"

@@ -127,7 +127,7 @@ struct ExperimentOptions : Options {
   LowrankOptions lowrank;
   PluginChoice acquisition{"acquisition", {}, nullptr};
   PluginChoice fitting{"fitting", "fixed", nullptr};
-  PluginChoice footprint{"footprint", "regression", nullptr};
+  PluginChoice footprint{"footprint", "gp_regression", nullptr};
   Fallback fallback = Fallback::uncertainty;
   Repeat repeat = Repeat::forbid;
   double tie_tolerance = 1e-8;

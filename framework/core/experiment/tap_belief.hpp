@@ -81,7 +81,7 @@ class TapBelief final : public Belief {
   /// Has the models take in the taps noted since, one by one, fits included, and their maps follow.
   void update();
 
-  /// The models behind some quantities, by their names: "height GP", "footprint shape".
+  /// The models behind some quantities, by their names: "height GP", "footprint primitives".
   std::vector<std::string> models_of(Quantities quantities) const;
 
   /// The quantities that belong to the record: those that were asked for, and what comes from the same models.

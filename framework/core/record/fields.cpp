@@ -169,7 +169,7 @@ void list_models(FieldList<Record>& list, bool reasons) {
       &ModelState::surface_gp);
   list.add_family("footprint.*",
                   "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
-                  "how it came to them; only where `footprint` is not `regression`",
+                  "how it came to them; only where `footprint` is not `gp_regression`",
                   [](Row& row, const Record& record) { add_footprint(row, record.footprint); });
   list.add_family("doubted",
                   "the contacts that are thought to lie with a probability of 0.1 or more, each by the number of its "
@@ -253,7 +253,7 @@ FieldList<TapRecord> make_tap_list() {
   list.add("w", "the weight there, never clipped", &Tap::weight);
   list.add("e", "their product", &Tap::exploration);
   list.add_where([](const Tap& t) { return t.footprint.has_value(); }, "p",
-                 "the footprint's probability of an object there; only where `footprint` is not `regression`, whose "
+                 "the footprint's probability of an object there; only where `footprint` is not `gp_regression`, whose "
                  "probability is the weight, clipped",
                  &Tap::probability);
   list.add("ties", "how many candidates were tied with the best", &Tap::ties);

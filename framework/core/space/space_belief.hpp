@@ -46,7 +46,7 @@ class SpaceBelief final : public SurfaceBelief {
   bool on_object(const Approach& approach, const Contact& contact) const;
 
   /// Has the models take in what was observed, draws the approaches of the next tap, and says of them what of
-  /// deviation, reduction and unseen is in `reads`.
+  /// deviation, std_reduction and expected_discovery is in `reads`.
   void update(Quantities reads);
 
   /// Which of the lines that the last update() drew the backend refused, "" for none: in hex, a digit for four lines in

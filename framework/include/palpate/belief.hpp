@@ -21,7 +21,7 @@ enum class Quantity : unsigned {
   // From any side, of a SurfaceBelief:
   expected_discovery = 64,  ///< expected_discovery
   deviation = 128,          ///< deviation and incidence_cosine
-  reduction = 256           ///< reduction
+  std_reduction = 256       ///< std_reduction
 };
 
 /// A set of quantities: `Quantity::uncertainty | Quantity::weight`, or {} for none.

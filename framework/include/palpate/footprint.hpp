@@ -16,7 +16,7 @@ namespace palpate {
 /// (how often independent rows were looked for) and "redundant_taps" (touches that do not enter now). The framework
 /// adds them to those of the Gaussian processes.
 struct FootprintNumber {
-  std::string name;  ///< "mistakes", "acceptance", ... or one of the four
+  std::string name;  ///< "label_errors", "acceptance_rate", ... or one of the four
   double value = 0.0;
 };
 

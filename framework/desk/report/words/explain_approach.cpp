@@ -98,7 +98,7 @@ class ApproachExplained final : public Explanation {
           length_words(expected_discovery(now->candidate)), length_words(expected_discovery.maxCoeff())));
     }
     const Eigen::VectorXd& std_reduction = experiment_.belief().std_reduction();
-    if (reduction.size() == scores.size()) {
+    if (std_reduction.size() == scores.size()) {
       page_.say(fmt::format(
           "Of the standard deviation of the surface that is believed, the mean over all of it, a touch there is "
           "expected to take off {}; the best of all takes off {}.",

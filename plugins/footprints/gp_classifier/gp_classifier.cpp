@@ -5,7 +5,7 @@
 
 namespace palpate::footprints {
 
-PALPATE_PLUGIN(Footprint, Classifier, "classifier",
+PALPATE_PLUGIN(Footprint, Classifier, "gp_classifier",
                "Gaussian process classification (Laplace's approximation, probit), for outlines of any form")
 
 }  // namespace palpate::footprints
