@@ -196,7 +196,7 @@ void add_sweep(CommandLine& line) {
       ->required();
   sub->add_option("AXIS", line.sweep.axes,
                   "what to vary: seed=range(0,10), acquisition=weighted,random, "
-                  "kernel.length_scale=log(1cm,5cm,8)")
+                  "kernel.length_scale=logspace(1cm,5cm,8)")
       ->type_name("KEY=VALUES");
   sub->add_option("--runs", line.sweep.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
   sub->add_flag("--list", line.sweep.list, "list the jobs and stop");

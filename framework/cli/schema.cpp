@@ -72,7 +72,7 @@ void sweep_schema(Tree& sweep) {
   sweep.at("type") = Tree::quote("object");
   sweep.at("additionalProperties") = Tree::scalar("false");
   Tree& blocks = sweep.at("properties");
-  blocks.at("grid") = of_type("object", "every value with every other; lists, range(0,10), log(1cm,5cm,8)");
+  blocks.at("grid") = of_type("object", "every value with every other; lists, range(0,10), logspace(1cm,5cm,8)");
   blocks.at("zip") = of_type("object", "side by side: values of equal number");
   blocks.at("list") = of_type("array", "settings one after the other, each a little grid");
   blocks.at("list").at("items") = of_type("object");
@@ -82,7 +82,8 @@ void sweep_schema(Tree& sweep) {
   Tree& samples = sobol.at("properties").at("samples") = of_type("integer", "how many points");
   samples.at("minimum") = Tree::scalar("1");
   samples.at("maximum") = Tree::scalar("100000");
-  Tree& keys = sobol.at("properties").at("keys") = of_type("object", "ranges: uniform(0.1 mm, 1 mm), log(1cm, 10cm)");
+  Tree& keys = sobol.at("properties").at("keys") =
+      of_type("object", "ranges: uniform(0.1 mm, 1 mm), log_uniform(1 cm, 10 cm)");
   keys.at("additionalProperties") = of_type("string");
   const char* const condition = "combinations for which it does not hold are dropped: taps >= 12 and not kernel == rbf";
   Tree several = of_type("array", "all of which have to hold");

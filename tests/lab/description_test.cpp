@@ -54,7 +54,7 @@ TEST(Grid, MultipliesItsKeysTheLastRunningFastest) {
 }
 
 TEST(Zip, TakesItsKeysSideBySide) {
-  EXPECT_EQ(shown(described(" {zip: {a: [1, 2, 3], b: 'range(7,10)', c: 'log(1,100,3)'}}")),
+  EXPECT_EQ(shown(described(" {zip: {a: [1, 2, 3], b: 'range(7,10)', c: 'logspace(1,100,3)'}}")),
             "a=1 b=7 c=1; a=2 b=8 c=10; a=3 b=9 c=100; ");
 }
 
@@ -155,8 +155,8 @@ TEST(Sobol, FillsEveryBinaryBoxAlike) {
 }
 
 TEST(Sobol, SpreadsALogarithmicRangeInTheLogarithmAndKeepsToItsEnds) {
-  const auto axes =
-      sobol_axes(parse_yaml("{samples: 32, keys: {a: 'log(1cm, 10cm)', b: 'uniform(-2 mm, 3 mm)'}}", "c"), fresh());
+  const auto axes = sobol_axes(
+      parse_yaml("{samples: 32, keys: {a: 'log_uniform(1 cm, 10 cm)', b: 'uniform(-2 mm, 3 mm)'}}", "c"), fresh());
   int below = 0;
   for (std::size_t i = 0; i < 32; ++i) {
     const double a = std::atof(axes[0].values[i].text.c_str());
@@ -174,7 +174,8 @@ TEST(Sobol, SpreadsALogarithmicRangeInTheLogarithmAndKeepsToItsEnds) {
 TEST(Sobol, GivesTheSamePointsEveryTimeAndFewerAreTheFirstOfMore) {
   const auto values = [](int samples) {
     std::vector<std::string> out;
-    const std::string text = "{samples: " + std::to_string(samples) + ", keys: {a: 'log(1,9)', b: 'uniform(0,1)'}}";
+    const std::string text =
+        "{samples: " + std::to_string(samples) + ", keys: {a: 'log_uniform(1,9)', b: 'uniform(0,1)'}}";
     for (const Axis& axis : sobol_axes(parse_yaml(text, "c"), fresh())) {
       for (std::size_t i = 0; i < 5; ++i) out.push_back(axis.values[i].text);
     }
@@ -185,24 +186,23 @@ TEST(Sobol, GivesTheSamePointsEveryTimeAndFewerAreTheFirstOfMore) {
 }
 
 TEST(Sobol, RefusesWhatIsNoContinuousRange) {
-  const std::string how_to = ", write uniform(0.1 mm, 1 mm) or log(1cm, 10cm), both ends with the same unit";
+  const std::string how_to = ", write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
   const auto line = [](const std::string& range) {
     return refused("\n  sobol: {samples: 4, keys: {a: " + range + "}}");
   };
   EXPECT_EQ(line("'uniform(1 cm, 20 mm)'"),
-            "c.yaml:2:33: a: the ends of 'uniform(1 cm, 20 mm)' have unlike units" + how_to);
-  EXPECT_EQ(line("'uniform(1, 2 cm)'"), "c.yaml:2:33: a: the ends of 'uniform(1, 2 cm)' have unlike units" + how_to);
+            "c.yaml:2:33: a: 'uniform(1 cm, 20 mm)' has ends with different units" + how_to);
+  EXPECT_EQ(line("'uniform(1, 2 cm)'"), "c.yaml:2:33: a: 'uniform(1, 2 cm)' has ends with different units" + how_to);
   EXPECT_EQ(line("'uniform(2, 1)'"),
-            "c.yaml:2:33: a: 'uniform(2, 1)' is no range, the first end must lie below the last");
+            "c.yaml:2:33: a: 'uniform(2, 1)' is not a range, the first end must be below the last");
   EXPECT_EQ(line("'uniform(1, 1)'"),
-            "c.yaml:2:33: a: 'uniform(1, 1)' is no range, the first end must lie below the last");
+            "c.yaml:2:33: a: 'uniform(1, 1)' is not a range, the first end must be below the last");
   EXPECT_EQ(line("'uniform(-1e308, 1e308)'"),
-            "c.yaml:2:33: a: 'uniform(-1e308, 1e308)' is no range, the first end must lie below the last");
-  EXPECT_EQ(line("'log(0, 1)'"),
-            "c.yaml:2:33: a: 'log(0, 1)' is no range, both ends must be above 0, the first below the last");
-  EXPECT_EQ(line("'range(0, 1)'"), "c.yaml:2:33: a: 'range(0, 1)' is no continuous range" + how_to);
-  EXPECT_EQ(line("'log(1, 2, 3)'"), "c.yaml:2:33: a: 'log(1, 2, 3)' is no continuous range" + how_to);
-  EXPECT_EQ(line("[1, 2]"), "c.yaml:2:33: a: this is no continuous range" + how_to);
+            "c.yaml:2:33: a: 'uniform(-1e308, 1e308)' is not a range, the first end must be below the last");
+  EXPECT_EQ(line("'log_uniform(0, 1)'"), "c.yaml:2:33: a: 'log_uniform(0, 1)' is not above 0, both ends must be");
+  EXPECT_EQ(line("'range(0, 1)'"), "c.yaml:2:33: a: 'range(0, 1)' is not a continuous range" + how_to);
+  EXPECT_EQ(line("'logspace(1, 2, 3)'"), "c.yaml:2:33: a: 'logspace(1, 2, 3)' is not a continuous range" + how_to);
+  EXPECT_EQ(line("[1, 2]"), "c.yaml:2:33: a: this is not a continuous range" + how_to);
   EXPECT_EQ(line("'uniform(a, b)'"), "c.yaml:2:33: a: 'a' in 'uniform(a, b)' is not a number" + how_to);
 }
 
@@ -216,7 +216,7 @@ TEST(Sobol, RefusesWrongSamplesAndKeys) {
             "c.yaml:1:16: sweep.sobol: 'samples' is missing, write samples: 64");
   EXPECT_EQ(refused(" {sobol: {samples: 4}}"),
             "c.yaml:1:16: sweep.sobol.keys: expects a map of 1 to 1000 keys to ranges, write keys: "
-            "{kernel.length_scale: \"log(1cm, 10cm)\"}");
+            "{kernel.length_scale: \"log_uniform(1 cm, 10 cm)\"}");
   EXPECT_EQ(refused(" {sobol: {sample: 4, keys: {a: 'uniform(0,1)'}}}"),
             "c.yaml:1:17: unknown option 'sample' of sweep.sobol, did you mean 'samples'?");
   EXPECT_EQ(refused(" {sobol: 4}").substr(0, 54), "c.yaml:1:16: sweep.sobol: expects samples and keys, wr");
@@ -295,9 +295,10 @@ TEST(Words, ReplaceWholeBlocks) {
   EXPECT_EQ(shown(described(" {list: [{a: 1}]}", {"sweep.list=[{a: 2}, {b: x}]", "c=3"})), "a=2 c=3; b=x c=3; ");
   EXPECT_EQ(shown(described("", {"sweep.zip={taps: [12, 17], candidates.count: [24, 47]}"})),
             "taps=12 candidates.count=24; taps=17 candidates.count=47; ");
-  EXPECT_EQ(
-      described("", {"sweep.sobol={samples: 16, keys: {kernel.length_scale: 'log(1cm,10cm)'}}"}).combinations().size(),
-      16U);
+  EXPECT_EQ(described("", {"sweep.sobol={samples: 16, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)'}}"})
+                .combinations()
+                .size(),
+            16U);
 }
 
 TEST(Words, RefuseBlocksThatThereAreNot) {
@@ -319,10 +320,10 @@ TEST(Words, KeepWhatIsExpectedApart) {
 
 TEST(WrittenDescription, ReadsBackAsTheSameCombinations) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> cases{
-      {" {grid: {seed: 'range(0,3)', b: [[1, 2], x, 'log(1,2,3)']}}", {}},
-      {" {zip: {a: [1, 2], b: 'log(1 cm,2 cm,2)'}, grid: {c: ['1', {type: rbf}]}}", {"d=1,range(2,4)"}},
+      {" {grid: {seed: 'range(0,3)', b: [[1, 2], x, 'logspace(1,2,3)']}}", {}},
+      {" {zip: {a: [1, 2], b: 'logspace(1 cm,2 cm,2)'}, grid: {c: ['1', {type: rbf}]}}", {"d=1,range(2,4)"}},
       {" {list: [{a: 1}, {a: 2, b: [x, y]}, {}], where: ['a == 2 or c > 1', not b == x]}", {"c=1,2"}},
-      {" {sobol: {samples: 8, keys: {a: 'uniform(0 m,1 m)', b: 'log(1,9)'}}}", {"b=range(0,2)"}},
+      {" {sobol: {samples: 8, keys: {a: 'uniform(0 m,1 m)', b: 'log_uniform(1,9)'}}}", {"b=range(0,2)"}},
       {" {where: a > 1}", {"a=1,2", "sweep.list=[{b: 1}]"}},
   };
   for (const auto& [sweep, words] : cases) {

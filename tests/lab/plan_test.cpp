@@ -264,7 +264,8 @@ TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
        {"sweep.list=[{acquisition: random}, {acquisition: grid, acquisition.count: [3, 4]}, {taps: 9}]", "seed=1,2",
         "sweep.where=not (seed == 1 and taps == 9)"}},
       {"paper/object_i.yaml",
-       {"sweep.sobol={samples: 5, keys: {kernel.length_scale: 'log(1cm,10cm)', height.noise: 'uniform(0.1mm,1mm)'}}",
+       {"sweep.sobol={samples: 5, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)', height.noise: "
+        "'uniform(0.1mm,1mm)'}}",
         "expect.failed_runs=<= 1", "name=points"}},
       {"paper/comparison.yaml", {"seed=range(0,3)"}},
       {"sweep/fitting.yaml", {"seed=4", "taps=17"}},

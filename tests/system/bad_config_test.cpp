@@ -63,7 +63,8 @@ std::string without(const std::string& beginning) {
   return text.erase(at, text.find('\n', at) + 1 - at);
 }
 
-const char* const kRangeHint = ", write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
+const char* const kRangeHint =
+    ", write range(0,10), range(0,10,2) or logspace(1cm,5cm,8), both ends with the same unit";
 
 std::vector<Case> cases() {
   return {
@@ -323,8 +324,8 @@ std::vector<Case> cases() {
             std::string("bad.yaml:12:11: seed: 'range(0)' is not understood") + kRangeHint),
       sweep("BackwardSweepRange", "", {"seed=range(10,0)"},
             "command line: seed: 'range(10,0)' has no value, the end must lie beyond the start"),
-      sweep("SweepOfMixedUnits", "", {"kernel.length_scale=log(1cm,5mm,8)"},
-            std::string("command line: kernel.length_scale: 'log(1cm,5mm,8)' is not understood") + kRangeHint),
+      sweep("SweepOfMixedUnits", "", {"kernel.length_scale=logspace(1cm,5mm,8)"},
+            std::string("command line: kernel.length_scale: 'logspace(1cm,5mm,8)' is not understood") + kRangeHint),
       sweep("SweepOfAnUnknownKey", "sweep:\n  grid:\n    kernel.length_scal: [1 cm, 2 cm]\n", {},
             "bad.yaml:12:26: unknown option 'length_scal', did you mean 'length_scale'?"),
       sweep("SweepWithABadValue", "sweep:\n  grid:\n    seed: [1, -2]\n", {},

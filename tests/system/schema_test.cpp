@@ -86,7 +86,7 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/scene/objects/0", {{"length", "3 cm"}})) << "an object without type";
   EXPECT_FALSE(refused("/scene/objects/0", {{"type", "ring"}, {"inner", "3 cm"}, {"at", {"9 cm", "9 cm"}}}));
   EXPECT_FALSE(refused("/kernel", "matern52")) << "a group by name is legal";
-  const Json ring = {{"type", "ring"}, {"inner", "between(3 cm, 4 cm)"}, {"height", "5 cm"}};
+  const Json ring = {{"type", "ring"}, {"inner", "uniform(3 cm, 4 cm)"}, {"height", "5 cm"}};
   const Json draw = {{"least", 1}, {"most", 3}, {"of", Json::array({ring})}};
   EXPECT_FALSE(refused("/scene/objects", {{"draw", draw}}));
   EXPECT_TRUE(refused("/scene/objects", Json::array({ring}))) << "a range that nobody draws";
@@ -108,7 +108,7 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("/expect", {{"rmse", "<= 2 cm"}})) << "no field of the summary";
   EXPECT_TRUE(refused("/expect", {{"meadian(rmse_m)", "<= 2 cm"}})) << "unknown statistic";
   EXPECT_TRUE(refused("/expect", {{"taps", 17}})) << "no comparison";
-  const Json points = {{"samples", 64}, {"keys", {{"kernel.length_scale", "log(1cm, 10cm)"}}}};
+  const Json points = {{"samples", 64}, {"keys", {{"kernel.length_scale", "log_uniform(1 cm, 10 cm)"}}}};
   EXPECT_FALSE(refused("/sweep", {{"grid", {{"seed", "range(0,9)"}, {"taps", {12, 17}}}}, {"sobol", points}}));
   EXPECT_FALSE(refused("/sweep", {{"list", Json::array({{{"taps", 12}}})}, {"where", "taps > 9"}}));
   EXPECT_FALSE(refused("/sweep", {{"zip", {{"taps", {12, 17}}}}, {"where", {"taps > 9", "seed < 3"}}}));

@@ -40,7 +40,7 @@ TEST_F(SweepDescription, RunsEveryBlockOfAConfigAndLeavesCellsEmptyWhereAnOption
         "  list:\n"
         "    - acquisition: random\n"
         "    - {acquisition: grid, acquisition.count: [3, 4]}\n"
-        "  sobol: {samples: 2, keys: {kernel.length_scale: 'log(1cm,10cm)'}}\n"
+        "  sobol: {samples: 2, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)'}}\n"
         "  grid: {seed: [1, 2]}\n"
         "  where: [taps == 8 or not acquisition == grid, seed == 1 or taps < 8]\n");
   // Of 2 x 3 x 2 x 2: with 6 taps random alone, 2 x 2; with 8 all three, with one seed.
@@ -60,7 +60,7 @@ TEST_F(SweepDescription, LeavesAConfigThatIsTheSameSweep) {
   for (const Words& words :
        {Words{"sweep.zip={taps: [6, 8], candidates.count: [12, 24]}", "seed=1,2"},
         Words{"sweep.list=[{acquisition: random}, {acquisition: grid, acquisition.count: [3, 4]}]", "taps=6"},
-        Words{"sweep.sobol={samples: 3, keys: {kernel.length_scale: 'log(1cm,10cm)'}}", "taps=6"},
+        Words{"sweep.sobol={samples: 3, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)'}}", "taps=6"},
         Words{"kernel=rbf,rational_quadratic", "kernel.alpha=1,2", "taps=6", "sweep.where=not kernel.alpha == 2"}}) {
     const fs::path directory = swept(words);
     const fs::path other = swept("--runs again", directory / "config.yaml");
@@ -115,8 +115,8 @@ INSTANTIATE_TEST_SUITE_P(
               "== two_part"},
         Wrong{"EndsOfUnlikeUnits",
               {"sweep.sobol={samples: 4, keys: {height.noise: 'uniform(0.1 mm, 1 cm)'}}"},
-              "height.noise: the ends of 'uniform(0.1 mm, 1 cm)' have unlike units, write uniform(0.1 mm, 1 mm) or "
-              "log(1cm, 10cm), both ends with the same unit"},
+              "height.noise: 'uniform(0.1 mm, 1 cm)' has ends with different units, write uniform(0.1 mm, 1 mm) or "
+              "log_uniform(1 cm, 10 cm), both ends with the same unit"},
         Wrong{"AnOptionThatNoJobHas", "acquisition=weighted,grid acquisition.conut=3,4",
               "no job of the sweep has an option 'acquisition.conut', did you mean 'count'?"},
         Wrong{"AnUnknownBlock", "sweep.sobl={}", "unknown option 'sobl' of sweep, did you mean 'sobol'?"},

@@ -130,7 +130,7 @@ TEST(Draw, IsMadeAnewForAnotherSeed) {
 }
 
 TEST(Draw, KnowsWhereEachValueWasWritten) {
-  const ResolvedConfig config = clutter(1, {"scene.objects.draw.of=[{type: cone, height: \"between(4 cm, 6 cm)\"}]"});
+  const ResolvedConfig config = clutter(1, {"scene.objects.draw.of=[{type: cone, height: \"uniform(4 cm, 6 cm)\"}]"});
   const auto& origins = config.notes.origins;
   const auto height = std::find_if(origins.begin(), origins.end(),
                                    [](const auto& one) { return one.path == "scene.objects.1.height"; });
@@ -169,32 +169,34 @@ TEST(Draw, RefusesWhatNoObjectMayBeEvenIfThisSeedDoesNotDrawIt) {
   const std::string many = "{type: block}, {type: block}, {type: block}, {type: block}, ";
   EXPECT_EQ(drawn_from(many + "{type: block, lenght: 3 cm}"),
             "c.yaml:3:110: unknown option 'lenght', did you mean 'length'?");
-  EXPECT_EQ(drawn_from(many + "{type: ring, outer: \"between(6 cm, 9 cm)\", inner: \"between(3 cm, 7 cm)\"}"),
+  EXPECT_EQ(drawn_from(many + "{type: ring, outer: \"uniform(6 cm, 9 cm)\", inner: \"uniform(3 cm, 7 cm)\"}"),
             "c.yaml:3:146: scene.objects.draw.of.4.inner: is not less than the outer diameter");
   EXPECT_EQ(drawn_from("{type: blok}").substr(0, 40), "c.yaml:3:43: no plugin shape/blok, did y");
 }
 
 TEST(Draw, RefusesRangesThatAreNone) {
-  const std::string how = ", write between(3 cm, 8 cm), both ends with the same unit, the lower one first";
+  const std::string how = ", write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
   const auto of_length = [](const std::string& value) { return drawn_from("{type: block, length: " + value + "}"); };
   const std::string at = "c.yaml:3:58: scene.objects.draw.of.0.length: ";
-  EXPECT_EQ(of_length("\"between(8 cm, 3 cm)\""), at + "'between(8 cm, 3 cm)' has its larger end first" + how);
-  EXPECT_EQ(of_length("\"between(8 mm, 3 cm)\""), at + "'between(8 mm, 3 cm)' has ends of different units" + how);
-  EXPECT_EQ(of_length("\"between(8 mm)\""), at + "'between(8 mm)' does not have two ends" + how);
-  EXPECT_EQ(of_length("\"between(a, b)\""), at + "'a' in 'between(a, b)' is not a number" + how);
-  EXPECT_EQ(of_length("between(3 cm, 8 cm)"), at + "'between(3 cm' lacks its ')', within braces, where commas part "
-                                                   "entries, put it into quotes: \"between(...)\"");
-  EXPECT_EQ(of_length("\"between(3 s, 8 s)\"").substr(0, at.size() + 9), at + "'3 s' is ");
+  EXPECT_EQ(of_length("\"uniform(8 cm, 3 cm)\""),
+            at + "'uniform(8 cm, 3 cm)' is not a range, the first end must be below the last");
+  EXPECT_EQ(of_length("\"uniform(8 mm, 3 cm)\""), at + "'uniform(8 mm, 3 cm)' has ends with different units" + how);
+  EXPECT_EQ(of_length("\"uniform(8 mm)\""), at + "'uniform(8 mm)' does not have two ends" + how);
+  EXPECT_EQ(of_length("\"uniform(a, b)\""), at + "'a' in 'uniform(a, b)' is not a number" + how);
+  EXPECT_EQ(of_length("uniform(3 cm, 8 cm)"), at + "'uniform(3 cm' lacks its ')', within braces, where commas part "
+                                                   "entries, put it into quotes: \"uniform(...)\"");
+  EXPECT_EQ(of_length("\"uniform(3 s, 8 s)\"").substr(0, at.size() + 9), at + "'3 s' is ");
 }
 
 TEST(Draw, IsTheOnlyPlaceForARange) {
-  const std::string why = "is not a number, only an object that is drawn may say so, one of scene.objects.draw.of";
-  EXPECT_EQ(error_of([] { shipped_config("paper/object_i.yaml", {"height.signal=between(1 m, 2 m)"}); }),
-            "command line: height.signal: 'between(1 m, 2 m)' " + why);
+  const std::string why =
+      "is not a number, ranges are for the objects of scene.objects.draw.of and for the keys of sweep.sobol";
+  EXPECT_EQ(error_of([] { shipped_config("paper/object_i.yaml", {"height.signal=uniform(1 m, 2 m)"}); }),
+            "command line: height.signal: 'uniform(1 m, 2 m)' " + why);
   EXPECT_EQ(error_of([] {
-              shipped_config("paper/object_i.yaml", {"scene.objects=[{type: block, length: \"between(1 m, 2 m)\"}]"});
+              shipped_config("paper/object_i.yaml", {"scene.objects=[{type: block, length: \"uniform(1 m, 2 m)\"}]"});
             }),
-            "command line: scene.objects.0.length: 'between(1 m, 2 m)' " + why);
+            "command line: scene.objects.0.length: 'uniform(1 m, 2 m)' " + why);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ std::string refused_value(const std::string& value) {
   return error_of([&] { expanded(value); });
 }
 
-constexpr const char* kHowTo = ", write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
+constexpr const char* kHowTo =
+    ", write range(0,10), range(0,10,2) or logspace(1cm,5cm,8), both ends with the same unit";
 
 TEST(Expand, TakesAPlainValueAsTheOnlyOneAListAsItsItemsAndCountsARangeWithoutItsEnd) {
   const std::pair<const char*, Texts> cases[] = {
@@ -54,8 +55,8 @@ TEST(Expand, TakesAPlainValueAsTheOnlyOneAListAsItsItemsAndCountsARangeWithoutIt
 }
 
 TEST(Expand, SpacesALogarithmicRangeEvenlyAndKeepsItsEnds) {
-  EXPECT_EQ(expanded("log(1,100,3)"), (Texts{"1", "10", "100"}));
-  const Texts values = expanded("log(1cm,5cm,8)");
+  EXPECT_EQ(expanded("logspace(1,100,3)"), (Texts{"1", "10", "100"}));
+  const Texts values = expanded("logspace(1cm,5cm,8)");
   ASSERT_EQ(values.size(), 8U);
   EXPECT_EQ(values.front(), "1 cm");
   EXPECT_EQ(values.back(), "5 cm");
@@ -66,8 +67,8 @@ TEST(Expand, SpacesALogarithmicRangeEvenlyAndKeepsItsEnds) {
 }
 
 TEST(Expand, RefusesRangesThatAreNotUnderstood) {
-  for (const char* text : {"range(5)", "range(1,2,3,4)", "log(1,2)", "range(1cm,2)", "range(1cm,3cm,1)",
-                           "log(1cm,2m,3)", "log(1,2,3cm)", "range(0x10,20)"}) {
+  for (const char* text : {"range(5)", "range(1,2,3,4)", "logspace(1,2)", "range(1cm,2)", "range(1cm,3cm,1)",
+                           "logspace(1cm,2m,3)", "logspace(1,2,3cm)", "range(0x10,20)"}) {
     EXPECT_EQ(refused_value(text), std::string("c.yaml:1:4: k: '") + text + "' is not understood" + kHowTo);
   }
 }
@@ -96,7 +97,8 @@ TEST(Expand, RefusesRangesWithoutValuesOrWithTooMany) {
 }
 
 TEST(Expand, RefusesLogarithmsOfNothing) {
-  for (const char* text : {"log(0,1,3)", "log(-1,1,3)", "log(1,2,1)", "log(1,2,2.5)", "log(1,2,10001)"}) {
+  for (const char* text :
+       {"logspace(0,1,3)", "logspace(-1,1,3)", "logspace(1,2,1)", "logspace(1,2,2.5)", "logspace(1,2,10001)"}) {
     EXPECT_EQ(refused_value(text),
               std::string("c.yaml:1:4: k: '") + text + "' needs two positive ends and a count of 2 to 10000" + kHowTo);
   }
@@ -134,7 +136,7 @@ TEST(AxisText, IsWrittenAsWhatReadsBackAsTheSame) {
     EXPECT_EQ(texts(expand_values(*file.find("k"), "k", fresh())), texts(axis.values)) << text;
   };
   for (const char* text : {"seed=range(0,3)", "seed=range(0,2),7", "a=1", "a=x,y", "a=[1, 2],[3, 4]", "a=[1, 2]",
-                           "a='x,y',z", "a=log(1cm,5cm,3)", "kernel={type: rbf},matern52"}) {
+                           "a='x,y',z", "a=logspace(1cm,5cm,3)", "kernel={type: rbf},matern52"}) {
     again(text);
   }
 }
@@ -148,7 +150,7 @@ TEST(ParsedCall, TakesNameAndBoundsApart) {
   EXPECT_EQ(call->bounds[0].unit, "mm");
   EXPECT_EQ(call->bounds[1].value, 2.5);
   EXPECT_EQ(call->bounds[1].unit, "cm");
-  EXPECT_FALSE(parse_call(Tree::scalar("log(1,2)"), "k", {"uniform"}, "")) << "another name";
+  EXPECT_FALSE(parse_call(Tree::scalar("log_uniform(1,2)"), "k", {"uniform"}, "")) << "another name";
   EXPECT_FALSE(parse_call(Tree::scalar(""), "k", {"uniform"}, ""));
 }
 

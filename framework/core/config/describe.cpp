@@ -212,15 +212,16 @@ Tree section_schema(const FieldDescription& field) {
   return Tree::map({{"anyOf", Tree::list({field.group ? name : none, std::move(group)})}});
 }
 
-/// A schema in which any number may be drawn: `between(3 cm, 8 cm)`.
-Tree or_between(Tree schema) {
+/// A schema in which any number may be drawn: `uniform(3 cm, 8 cm)`.
+Tree or_drawn(Tree schema) {
   const Tree* type = schema.find("type");
   if (schema.find("pattern") != nullptr || (type != nullptr && (type->text == "number" || type->text == "integer"))) {
-    const Tree between = Tree::map({{"type", Tree::quote("string")}, {"pattern", Tree::quote("^between\\(.*\\)$")}});
-    return Tree::map({{"anyOf", Tree::list({std::move(schema), between})}});
+    const Tree drawn =
+        Tree::map({{"type", Tree::quote("string")}, {"pattern", Tree::quote("^(log_)?uniform\\(.*\\)$")}});
+    return Tree::map({{"anyOf", Tree::list({std::move(schema), drawn})}});
   }
-  for (Tree& item : schema.items) item = or_between(std::move(item));
-  for (Tree::Entry& entry : schema.entries) entry.value = or_between(std::move(entry.value));
+  for (Tree& item : schema.items) item = or_drawn(std::move(item));
+  for (Tree::Entry& entry : schema.entries) entry.value = or_drawn(std::move(entry.value));
   return schema;
 }
 
@@ -239,7 +240,7 @@ Tree list_schema(const FieldDescription& field) {
   };
   const Tree count = Tree::map({{"type", Tree::quote("integer")}});
   const Tree draw =
-      closed(Tree::map({{"least", count}, {"most", count}, {"of", array_schema(or_between(std::move(item)))}}));
+      closed(Tree::map({{"least", count}, {"most", count}, {"of", array_schema(or_drawn(std::move(item)))}}));
   return Tree::map({{"anyOf", Tree::list({std::move(list), closed(Tree::map({{"draw", draw}}))})}});
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxValues = 1'000'000;        ///< of an axis
 constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< of all axes
-constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or log(1cm,5cm,8), both ends with the same unit";
+constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or logspace(1cm,5cm,8), both ends with the same unit";
 
 [[noreturn]] void refuse(const Tree& tree, const std::string& key, const std::string& reason, const std::string& hint) {
   throw Error(tree.place.text(), fmt::format("{}: '{}' {}", key, tree.text, reason), hint);
@@ -79,8 +79,8 @@ std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree,
   return out;
 }
 
-std::vector<Tree> expand_log(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
-                             ValueCount& counted) {
+std::vector<Tree> expand_logspace(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
+                                  ValueCount& counted) {
   const double first = from[0].value;
   const double last = from[1].value;
   const double count = from[2].value;
@@ -116,6 +116,24 @@ std::optional<Call> parse_call(const Tree& value, const std::string& key, const 
   return call;
 }
 
+double ContinuousRange::at(double share) const {
+  if (share == 1.0) return last;
+  return logarithmic ? first * std::pow(last / first, share) : first + share * (last - first);
+}
+
+std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key) {
+  const std::optional<Call> call = parse_call(value, key, {"uniform", "log_uniform"}, kContinuousHint);
+  if (!call) return std::nullopt;
+  const std::vector<Bound>& ends = call->bounds;
+  if (ends.size() != 2) refuse(value, key, "does not have two ends", kContinuousHint);
+  if (ends[0].unit != ends[1].unit) refuse(value, key, "has ends with different units", kContinuousHint);
+  const ContinuousRange range{call->name == "log_uniform", ends[0].value, ends[1].value, ends[0].unit};
+  if (range.logarithmic && !(range.first > 0.0)) refuse(value, key, "is not above 0", "both ends must be");
+  if (!(range.first < range.last) || !std::isfinite(range.last - range.first))
+    refuse(value, key, "is not a range", "the first end must be below the last");
+  return range;
+}
+
 Tree number(double value, const std::string& unit, const Tree& like) {
   Tree out = like;
   out.quoted = false;
@@ -138,7 +156,7 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key, Value
   }
   if (value.kind == Tree::Kind::null)
     throw Error(value.place.text(), fmt::format("{}: has no value", key), "write [value, value]");
-  const std::optional<Call> call = parse_call(value, key, {"range", "log"}, kHowTo);
+  const std::optional<Call> call = parse_call(value, key, {"range", "logspace"}, kHowTo);
   if (!call) return count.add(1, value.place, key), std::vector<Tree>{value};
   const std::vector<Bound>& parts = call->bounds;
   const bool is_range = call->name == "range";
@@ -146,7 +164,7 @@ std::vector<Tree> expand_values(const Tree& value, const std::string& key, Value
   const bool same_unit = right_count && parts[0].unit == parts[1].unit &&
                          (parts.size() < 3 || parts[2].unit == (is_range ? parts[0].unit : std::string()));
   if (!same_unit) refuse(value, key, "is not understood", kHowTo);
-  return is_range ? expand_range(parts, value, key, count) : expand_log(parts, value, key, count);
+  return is_range ? expand_range(parts, value, key, count) : expand_logspace(parts, value, key, count);
 }
 
 Axis parse_axis(const std::string& text, ValueCount& count) {

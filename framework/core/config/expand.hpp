@@ -36,6 +36,25 @@ struct Call {
 std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
                                const std::string& how_to);
 
+/// A continuous range: `uniform(a, b)`, or `log_uniform(a, b)`, which is uniform in the logarithm.
+struct ContinuousRange {
+  bool logarithmic = false;
+  double first = 0.0;  ///< in `unit`; below `last`, and above 0 if logarithmic
+  double last = 1.0;
+  std::string unit;  ///< "" for none
+
+  /// Returns the number at `share` of the way, 0 to 1.
+  double at(double share) const;
+};
+
+/// Returns nullopt for a value that is no such text. Throws Error, with `key`, for ends with different units or in the
+/// wrong order.
+std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key);
+
+/// How a continuous range is written: the hint of an error.
+inline constexpr const char* kContinuousHint =
+    "write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
+
 /// A number as people write it, with its unit, at the place of `like`.
 Tree number(double value, const std::string& unit, const Tree& like);
 
@@ -50,12 +69,12 @@ class ValueCount {
 };
 
 /// The values of a list, of `range(first, end)`, `range(first, end, step)` (end excluded) or of
-/// `log(first, last, count)` (both included, evenly spaced in the logarithm; both with the same unit); any other value
-/// is the only one. Throws Error.
+/// `logspace(first, last, count)` (both included, evenly spaced in the logarithm; both with the same unit); any other
+/// value is the only one. Throws Error.
 std::vector<Tree> expand_values(const Tree& value, const std::string& key, ValueCount& count);
 
-/// `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=log(1cm,5cm,8)`: as typed behind `palpate sweep`. A list among
-/// several values is one value.
+/// `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=logspace(1cm,5cm,8)`: as typed behind `palpate sweep`. A list
+/// among several values is one value.
 Axis parse_axis(const std::string& text, ValueCount& count);
 
 /// The text of a swept value as it stands in results.csv.

@@ -52,8 +52,10 @@ constexpr std::array kUnits{
     UnitName{"N/mm", Unit::newton_per_metre, 3},
 };
 
-/// How what is drawn is written: scene/draw.hpp.
-constexpr std::string_view kBetween = "between(";
+/// Whether `text` is a continuous range: config/expand.hpp.
+bool is_continuous_range(std::string_view text) {
+  return text.substr(0, 8) == "uniform(" || text.substr(0, 12) == "log_uniform(";
+}
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -95,9 +97,9 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   if (!tree.is_scalar()) refuse(tree, name, "is a list or a map, not a number", unit);
   const std::string_view text = tree.text;
   const std::size_t length = decimal_length(text);
-  if (length == 0 && text.substr(0, kBetween.size()) == kBetween) {
+  if (length == 0 && is_continuous_range(text)) {
     refuse(tree, name, fmt::format("'{}' is not a number", text),
-           "only an object that is drawn may say so, one of scene.objects.draw.of");
+           "ranges are for the objects of scene.objects.draw.of and for the keys of sweep.sobol");
   }
   if (length == 0) refuse(tree, name, fmt::format("'{}' is not a number", text), unit);
   std::string_view rest = text.substr(length);

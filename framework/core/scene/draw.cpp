@@ -21,7 +21,6 @@ namespace palpate {
 namespace {
 
 constexpr const char* kObjects = "scene.objects";
-constexpr const char* kBetween = "write between(3 cm, 8 cm), both ends with the same unit, the lower one first";
 
 struct DrawOptions : Options {
   std::int64_t least = 1;
@@ -44,27 +43,11 @@ struct DrawnObjects : Options {
   void list(Fields& fields) override { fields.section(draw, Field("draw", "objects from the seed").needed()); }
 };
 
-/// The ends of what `value` says to be drawn; none if it says no such thing.
-std::optional<std::pair<Bound, Bound>> range_of(const Tree& value, const std::string& path) {
-  const std::optional<Call> call = parse_call(value, path, {"between"}, kBetween);
-  if (!call) return std::nullopt;
-  const auto refuse = [&](const char* reason) {
-    throw Error(value.place.text(), fmt::format("{}: '{}' {}", path, value.text, reason), kBetween);
-  };
-  const std::vector<Bound>& ends = call->bounds;
-  if (ends.size() != 2) refuse("does not have two ends");
-  if (ends[0].unit != ends[1].unit) refuse("has ends of different units");
-  if (ends[0].value > ends[1].value) refuse("has its larger end first");
-  return std::pair(ends[0], ends[1]);
-}
-
 /// Puts a number in the place of each range of an object, in their order: at a share of the way from its lower end to
 /// its upper one, which `share` tells of the range with that number. Returns how many there are.
 int settle(Tree& tree, const std::string& path, const std::function<double(int)>& share, int count = 0) {
-  if (const auto range = range_of(tree, path)) {
-    const auto& [low, high] = *range;
-    const double part = share(count);
-    tree = number(part == 1.0 ? high.value : low.value + part * (high.value - low.value), low.unit, tree);
+  if (const auto range = parse_continuous(tree, path)) {
+    tree = number(range->at(share(count)), range->unit, tree);
     return count + 1;
   }
   for (std::size_t i = 0; i < tree.items.size(); ++i)

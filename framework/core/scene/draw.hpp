@@ -15,8 +15,8 @@ namespace palpate {
 bool draws_objects(const Tree& config);
 
 /// Puts the objects that `seed` draws in the place of `draw`. Their number is uniform in least..most; each is one of
-/// `of`, any as likely as another, and each `between(a, b)` in it a number uniform in [a, b]. Every object has a stream
-/// of its own, so that the first of many are those of few.
+/// `of`, any as likely as another, and each `uniform(a, b)` or `log_uniform(a, b)` in it a number of that range. Every
+/// object has a stream of its own, so that the first of many are those of few.
 ///
 /// Throws Error for what no object may be, whether it is drawn or not: all of `of` are read with every range at its
 /// lower and at its upper end, and with each range alone at the other end.

@@ -49,7 +49,7 @@ void SceneOptions::list(Fields& fields) {
   fields.sections(
       objects, Field("objects",
                      "what stands on the desk; or {draw: {least: 2, most: 6, of: [...]}}: as many from the seed, each "
-                     "one of a list, in which a number may be between(3 cm, 8 cm)")
+                     "one of a list, in which a number may be uniform(3 cm, 8 cm)")
                    .drawable());
   fields.section(effects, Field("effects", "how taps differ from perfect ones; each is absent by default").group());
 }

@@ -10,44 +10,17 @@
 #include <boost/random/sobol.hpp>
 
 #include <charconv>
-#include <cmath>
 
 namespace palpate {
 namespace {
 
-constexpr const char* kHowToDraw = "write uniform(0.1 mm, 1 mm) or log(1cm, 10cm), both ends with the same unit";
 constexpr std::int64_t kMaxSamples = 100'000;
 constexpr std::size_t kMaxKeys = 1000;  // Boost's tables end at 3667
 
-/// A continuous range.
-struct Range {
-  bool logarithmic;
-  double first;
-  double last;
-  std::string unit;
-
-  /// `share` in [0, 1).
-  double at(double share) const {
-    return logarithmic ? first * std::pow(last / first, share) : first + share * (last - first);
-  }
-};
-
-Range parse_range(const Tree::Entry& entry) {
-  const Tree& value = entry.value;
-  const auto refuse = [&](const std::string& reason, const char* hint) {
-    throw Error(value.place.text(), entry.key + ": " + reason, hint);
-  };
-  const std::string shown = value.is_scalar() ? "'" + value.text + "'" : "this";
-  const std::optional<Call> call = parse_call(value, entry.key, {"uniform", "log"}, kHowToDraw);
-  if (!call || call->bounds.size() != 2) refuse(shown + " is no continuous range", kHowToDraw);
-  Range range{call->name == "log", call->bounds[0].value, call->bounds[1].value, call->bounds[0].unit};
-  if (call->bounds[1].unit != range.unit) refuse("the ends of " + shown + " have unlike units", kHowToDraw);
-  if (!(range.first < range.last) || (range.logarithmic && !(range.first > 0.0)) ||
-      !std::isfinite(range.last - range.first)) {
-    refuse(shown + " is no range", range.logarithmic ? "both ends must be above 0, the first below the last"
-                                                     : "the first end must lie below the last");
-  }
-  return range;
+ContinuousRange parse_range(const Tree::Entry& entry) {
+  if (const auto range = parse_continuous(entry.value, entry.key)) return *range;
+  const std::string shown = entry.value.is_scalar() ? "'" + entry.value.text + "'" : "this";
+  throw Error(entry.value.place.text(), entry.key + ": " + shown + " is not a continuous range", kContinuousHint);
 }
 
 /// Nine digits are more than any setting needs, and still tell points apart.
@@ -74,7 +47,7 @@ std::int64_t read_samples(const Tree& described, const Place& place) {
 std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
   if (!described.is_map()) {
     throw Error(described.place.text(), "sweep.sobol: expects samples and keys",
-                "write sobol: {samples: 64, keys: {kernel.length_scale: \"log(1cm, 10cm)\"}}");
+                "write sobol: {samples: 64, keys: {kernel.length_scale: \"log_uniform(1 cm, 10 cm)\"}}");
   }
   for (const Tree::Entry& entry : described.entries) {
     if (entry.key != "samples" && entry.key != "keys") {
@@ -87,11 +60,11 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
   if (keys == nullptr || !keys->is_map() || keys->entries.empty() || keys->entries.size() > kMaxKeys) {
     throw Error((keys != nullptr ? keys->place : described.place).text(),
                 "sweep.sobol.keys: expects a map of 1 to 1000 keys to ranges",
-                "write keys: {kernel.length_scale: \"log(1cm, 10cm)\"}");
+                "write keys: {kernel.length_scale: \"log_uniform(1 cm, 10 cm)\"}");
   }
   count.add(keys->entries.size() * static_cast<std::size_t>(samples), keys->place, "sweep.sobol");
   std::vector<Axis> axes;
-  std::vector<Range> ranges;
+  std::vector<ContinuousRange> ranges;
   // As for the first taps: one random pattern of bits an axis, added without carry to every point, keeps the points
   // as evenly spread and moves the first of them off the corner of all lower ends.
   std::vector<std::uint64_t> shift;
