@@ -8,7 +8,7 @@
 #
 # What was renamed stands in tests/same_taps.csv, or in FILE, a line for each name: what,other,here.
 #   word,OLD,NEW     a whole word of a sweep, such as backend=paper: the other program is given OLD for NEW
-#   key,OLD,NEW      a name within a word, such as height.lies, or lies of a map in braces: the same
+#   key,OLD,NEW      a name within a word, such as height.outlier_probability, or lies of a map in braces: the same
 #   column,OLD,NEW   a column of taps.csv, or what stands before a dot of it; without OLD it is new, without NEW it is gone
 # A column without a partner fails.
 set -eu
@@ -224,7 +224,7 @@ solids=any_bottle,any_bowl,any_bracket,any_jug,any_leaning,any_lidded_box,any_mu
 # again, contacts with what is not of the scene, objects that are pushed, places out of reach.
 wrong='{force_noise: {}, force_drift: {}, stiffness: {object: 1500 N/m, arm: 4 kN/m}, joint_lag: {}, latency: {}, pose_noise: {}'
 wrong="$wrong, height_offset: {constant: 8 mm, drift: 0.03 mm/s}, missed_contacts: {probability: 0.05}, tip_radius: {}"
-wrong="$wrong, false_contacts: {probability: 0.05}, outliers: {probability: 0.1}, push: {probability: 0.1}, reach: {}, shaft: {}}"
+wrong="$wrong, false_contacts: {probability: 0.05}, foreign_objects: {probability: 0.1}, push: {probability: 0.1}, reach: {}, shaft: {}}"
 status=0
 sweep paper configs/paper/object_i.yaml scene=object_i,object_i_right,object_ii \
   acquisition=uncertainty,weighted,random,grid "seed=range(0,$seeds)" || status=1

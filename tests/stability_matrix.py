@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The stability matrix of the default: its errors beside those of `height.lies: none`, over noise, length and taps.
+"""The stability matrix of the default: its errors beside those of `height.outlier_probability: none`, over noise, length and taps.
 
     python3 tests/stability_matrix.py PROGRAM [--taps 3,30] [--seeds 12] [--jobs 1] [--noise 0,1e-12] [--length 0.03]
 
@@ -94,7 +94,7 @@ def main():
         waiting = []
         for cell in cells:
             judged = outcomes(cell, [])
-            waiting.append((cell, judged, judged if from_any_side else outcomes(cell, ["height.lies=none"])))
+            waiting.append((cell, judged, judged if from_any_side else outcomes(cell, ["height.outlier_probability=none"])))
         for cell, judged, believed in waiting:
             judged, believed = [[one.result() for one in runs] for runs in (judged, believed)]
             failed = [said for code, _, said in judged if code != 0]

@@ -89,7 +89,8 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   const ExperimentOptions& options = recording.config.options;
   const bool reads_surface =
       (options.acquisition.type != "random" && options.surface == ExperimentOptions::Surface::single) ||
-      (recording.taps.front().predicted && !options.height.lies);  // else a height is predicted without its map
+      (recording.taps.front().predicted &&
+       !options.height.outlier_probability);  // else a height is predicted without its map
   EXPECT_EQ(compared > 0, reads_surface);
   EXPECT_EQ(compared_footprint > 10, options.footprint.type != "gp_regression");
   RunResult last = history.moments.back().result;

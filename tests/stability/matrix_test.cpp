@@ -31,7 +31,7 @@ struct MeanErrors {
       std::vector<std::string> all = overrides;
       all.push_back(fmt::format("seed={}", seed));
       judged += error_of_run(all) / seeds;
-      all.emplace_back("height.lies=none");
+      all.emplace_back("height.outlier_probability=none");
       believed += error_of_run(all) / seeds;
     }
   }

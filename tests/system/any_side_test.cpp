@@ -400,8 +400,8 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
 TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
   for (const char* const key : {"candidates.count=60",
                                 "candidates.spacing=5mm",
-                                "height.lies=0.1",
-                                "height.systematic={}",
+                                "height.outlier_probability=0.1",
+                                "height.offset={}",
                                 "height.kernel={type: rbf}",
                                 "height.fitting={type: fixed}",
                                 "label.signal=2",

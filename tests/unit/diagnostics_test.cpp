@@ -19,8 +19,8 @@ TEST(Diagnostics, CountATapThatSeveralModelsSetAsideOnce) {
 TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
   const std::vector<Contact> answers(6, contact_at(0.05));
   Finished run("default.yaml",
-               {"label.hyperparameters=shared", "surface=single", "height.lies=none", "footprint=gp_regression",
-                "height.noise=0mm", "candidates.count=1", "repeat=allow", "taps=6"},
+               {"label.hyperparameters=shared", "surface=single", "height.outlier_probability=none",
+                "footprint=gp_regression", "height.noise=0mm", "candidates.count=1", "repeat=allow", "taps=6"},
                scripted(answers));
   run.experiment.ask(Quantity::weight | Quantity::height);
   const RunResult result = run.experiment.result();

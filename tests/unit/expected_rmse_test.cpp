@@ -90,8 +90,8 @@ TEST(ExpectedRmse, OfTheDefaultIsNearTheTrueOneOverManySeedsAndFalls) {
 
 // One process for object and desk is too sure of itself at edges. Over 40 seeds: 2.54, 0.98 and 0.62.
 TEST(ExpectedRmse, OfOneProcessForObjectAndDeskIsNearTheTrueOneOverManySeedsAndFalls) {
-  const Moments moments =
-      over_seeds({"surface=single", "acquisition=uncertainty", "footprint=gp_regression", "height.lies=none"});
+  const Moments moments = over_seeds(
+      {"surface=single", "acquisition=uncertainty", "footprint=gp_regression", "height.outlier_probability=none"});
   EXPECT_GT(moments.middle.ratio(), 0.8);
   EXPECT_LT(moments.middle.ratio(), 1.25);
   EXPECT_GT(moments.last.ratio(), 0.45);
@@ -138,8 +138,9 @@ double rmse_by_the_formula(FromAbove& experiment, const ExperimentOptions& optio
 }
 
 TEST(ExpectedRmse, IsAtEachTapThatOfTheFormulaAlsoWhereTheDeskIsNotAtZero) {
-  const std::vector<std::string> plain{"scene.desk=-3 cm", "height.lies=none", "height.systematic=none",
-                                       "backend=gentle",   "taps=14",          "kernel.length_scale=3 cm"};
+  const std::vector<std::string> plain{
+      "scene.desk=-3 cm", "height.outlier_probability=none", "height.offset=none", "backend=gentle",
+      "taps=14",          "kernel.length_scale=3 cm"};
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
            {}, {"footprint=gp_classifier"}, {"surface=single", "acquisition=uncertainty", "footprint=gp_regression"}}) {
     std::vector<std::string> all = plain;
@@ -163,7 +164,7 @@ TEST(ExpectedRmse, IsAtEachTapThatOfTheFormulaAlsoWhereTheDeskIsNotAtZero) {
 TEST(ExpectedRmse, IsSeenAndChangesNoTapAndNoResult) {
   const std::vector<std::pair<const char*, std::vector<std::string>>> configs{
       {"default.yaml", {"taps=12"}},
-      {"default.yaml", {"taps=12", "height.lies=none", "footprint=gp_classifier"}},
+      {"default.yaml", {"taps=12", "height.outlier_probability=none", "footprint=gp_classifier"}},
       {"default.yaml", {"taps=12", "acquisition=random"}},
       {"paper/object_i.yaml", {}},
   };
@@ -193,7 +194,7 @@ TEST(ExpectedRmse, NeedsNoTruthAndNoModelThatTheRunHasNot) {
   EXPECT_LT(*result.expected_rmse, 0.2);
 
   Finished blind("default.yaml",
-                 {"taps=6", "acquisition=random", "initial.design=random", "height.lies=none",
+                 {"taps=6", "acquisition=random", "initial.design=random", "height.outlier_probability=none",
                   "footprint=gp_classifier", "backend=gentle"},
                  scripted({contact_at(0.1), contact_at(0.1)}));
   EXPECT_FALSE(blind.experiment.expected_rmse());

@@ -217,9 +217,12 @@ TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
 TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore) {
   // From there on nobody is judged any more: what was thought of each contact is carried along.
   if (kSanitized) GTEST_SKIP() << "./check --all makes it in release";
-  const std::vector<std::string> words{
-      "scene=large_block",      "taps=150",        "seed=4",
-      "scene.effects=standard", "height.lies=0.1", "acquisition={type: object_uncertainty}"};
+  const std::vector<std::string> words{"scene=large_block",
+                                       "taps=150",
+                                       "seed=4",
+                                       "scene.effects=standard",
+                                       "height.outlier_probability=0.1",
+                                       "acquisition={type: object_uncertainty}"};
   const Finished unbroken("default.yaml", words);
   ASSERT_GT(unbroken.experiment.counts().object_taps, 105);
   ASSERT_FALSE(unbroken.taps.back().doubted->empty());

@@ -134,7 +134,8 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
   std::vector<Contact> answers(20, contact_at(0.0));
   answers.push_back(contact_at(0.05));
   // A hit so late is more probably none where contacts may lie; the classifier knows nothing of what is left.
-  Finished run("default.yaml", {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint=gp_classifier"},
+  Finished run("default.yaml",
+               {"taps=25", "stop.expected_rmse=1 m", "height.outlier_probability=none", "footprint=gp_classifier"},
                scripted(answers));
   EXPECT_EQ(run.taps.size(), 21U) << "the hit is the 21st";
   for (const TapRecord& tap : run.taps) {
@@ -146,10 +147,10 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
   EXPECT_GT(*result.forecast->rmse, 0.0);
 
   // Where it is known that something is left, it goes on after the hit.
-  const Finished knowing(
-      "default.yaml",
-      {"taps=25", "stop.expected_rmse=1 m", "height.lies=none", "footprint.false_contact_probability=0.0001"},
-      scripted(answers));
+  const Finished knowing("default.yaml",
+                         {"taps=25", "stop.expected_rmse=1 m", "height.outlier_probability=none",
+                          "footprint.false_contact_probability=0.0001"},
+                         scripted(answers));
   EXPECT_GE(knowing.taps.size(), 21U);
   for (std::size_t i = 0; i < 21; ++i) EXPECT_FALSE(knowing.taps[i].forecast->rmse.has_value()) << i;
 }
@@ -166,7 +167,7 @@ TEST(Forecast, NeverCutsTheInitialTapsShort) {
 }
 
 TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
-  Finished run("default.yaml", {"taps=12", "height.lies=none", "backend=gentle"});
+  Finished run("default.yaml", {"taps=12", "height.outlier_probability=none", "backend=gentle"});
   for (const TapRecord& tap : run.taps) EXPECT_FALSE(tap.forecast || tap.surface_gp);
   EXPECT_FALSE(run.experiment.result().forecast.has_value());
 }

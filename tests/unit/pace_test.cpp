@@ -30,7 +30,7 @@ class Given final : public Motions {
 /// What is believed of the scene of configs/default.yaml after a hit in its middle and the desk in a corner.
 struct Believed {
   Believed()
-      : config(shipped_config("default.yaml", {"height.systematic=none"})),
+      : config(shipped_config("default.yaml", {"height.offset=none"})),
         scene(build_scene(config.options.scene, 1, shared_host())),
         context{shared_host(), *scene, 1, nullptr},
         candidates(grid_by_count(scene->area(), 21)),

@@ -58,9 +58,10 @@ TEST(ReadAgain, APlateTakenForTheDeskIsKnownAsAnObjectOnceTheDeskWasTouched) {
 }
 
 TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
-  for (const std::vector<std::string>& words : {std::vector<std::string>{},
-                                                {"footprint=gp_regression"},
-                                                {"height.lies=none", "fitting=ceres", "surface=single"}}) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{},
+        {"footprint=gp_regression"},
+        {"height.outlier_probability=none", "fitting=ceres", "surface=single"}}) {
     Reader late(words);
     Reader soon(words);
     soon.belief.ask(kAll);

@@ -174,7 +174,7 @@ TEST(Simulator, HasTheDeskAsSoftAsTheConfigSaysWhateverObjectsAre) {
 }
 
 TEST(Simulator, MeetsThingsThatAreNotOfTheSceneOnAShareOfTheSquaresAndAlikeAtEveryTouch) {
-  const TappingBench bench(kBare, "{outliers: {probability: 0.1, height: 2 cm, size: 1 cm}}", "{type: paper}");
+  const TappingBench bench(kBare, "{foreign_objects: {probability: 0.1, height: 2 cm, size: 1 cm}}", "{type: paper}");
   int met = 0;
   constexpr int kSide = 22;
   for (int row = 0; row < kSide; ++row) {

@@ -27,8 +27,8 @@ void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields)
   only("candidates.count", options.candidates.count == kPaperCount);
   only("height.kernel", !options.height.kernel);
   only("height.fitting", !options.height.fitting);
-  only("height.lies", !options.height.lies);
-  only("height.systematic", !options.height.systematic);
+  only("height.outlier_probability", !options.height.outlier_probability);
+  only("height.offset", !options.height.offset);
   only("label.signal", options.label.signal == usual.label.signal);
   only("label.noise", options.label.noise == usual.label.noise);
   only("label.prior_mean", options.label.prior_mean == usual.label.prior_mean);
@@ -79,7 +79,7 @@ void ProcessOptions::list_plugins(Fields& fields) {
   fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
 }
 
-void SystematicOptions::list(Fields& fields) {
+void OffsetOptions::list(Fields& fields) {
   fields.real(offset, Field("offset", "prior standard deviation of what is added to every height")
                           .in(Unit::metre)
                           .above(0)
@@ -103,14 +103,14 @@ void HeightOptions::list(Fields& fields) {
   fields.real(
       noise,
       Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0).at_most(kMostSignal));
-  fields.real(lies, Field("lies",
-                          "probability assumed, per contact, that its height has nothing to do with the surface of an "
-                          "object; not given, every contact is believed; for surface: two_part")
-                        .above(0)
-                        .at_most(0.5));
-  fields.section(systematic, Field("systematic",
-                                   "learn from taps on the desk, whose height is known, what motion and arm add to all "
-                                   "heights, and take it off; not given, heights are taken as they come"));
+  fields.real(outlier_probability, Field("outlier_probability",
+                                         "prior probability that the height of a contact is an outlier, unrelated to "
+                                         "the surface; not given, no contact is; for surface: two_part")
+                                       .above(0)
+                                       .at_most(0.5));
+  fields.section(offset, Field("offset",
+                               "estimate the offset that motion and arm add to all heights from taps on the desk, "
+                               "whose height is known, and subtract it; not given, heights are used as measured"));
   list_plugins(fields);
 }
 

@@ -42,8 +42,8 @@ struct ProcessOptions : Options {
   void list_plugins(Fields& fields);
 };
 
-/// Prior deviations of what is learnt from the desk: see systematic.hpp.
-struct SystematicOptions : Options {
+/// Prior standard deviations of the offset that is estimated from the desk: see systematic.hpp.
+struct OffsetOptions : Options {
   double offset = 0.006;        ///< metres
   double drift = 0.001 / 60.0;  ///< metres a second
   double noise = 0.002;         ///< metres
@@ -51,8 +51,8 @@ struct SystematicOptions : Options {
 };
 
 struct HeightOptions : ProcessOptions {
-  std::optional<SystematicOptions> systematic;  ///< absent: heights are taken as they come
-  std::optional<double> lies;                   ///< absent: every tap is believed
+  std::optional<OffsetOptions> offset;        ///< absent: heights are used as measured
+  std::optional<double> outlier_probability;  ///< absent: no contact is an outlier
   void list(Fields& fields) override;
 };
 

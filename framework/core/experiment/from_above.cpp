@@ -82,7 +82,7 @@ void FromAbove::resume(const std::vector<PastTap>& past) {
     read = read | reads_for(tap.of_caller() ? Source::caller : tap.source);
     if (tap.source == Source::fallback) read = read | Chooser::kFallbackReads;
     // Who is doubted depends on who was, once there are many; a fit on what was taken off the heights at its tap.
-    if (options_.height.lies || options_.height.systematic) belief_.ask(read);
+    if (options_.height.outlier_probability || options_.height.offset) belief_.ask(read);
     observe(tap);
   }
   belief_.ask(read);
@@ -90,7 +90,7 @@ void FromAbove::resume(const std::vector<PastTap>& past) {
 
 Quantities FromAbove::reads_for(Source source) const {
   Quantities out = belief_.predictable(backend_->expects() | chooser_.predicts());
-  if (options_.height.lies) out = out | Quantity::doubt;
+  if (options_.height.outlier_probability) out = out | Quantity::doubt;
   if (source == Source::initial) return out;
   if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
   if (source == Source::caller) return out;
@@ -106,7 +106,7 @@ std::vector<ModelReader> FromAbove::readers() const {
   };
   add(chooser_.reads(), "acquisition " + options_.acquisition.type);
   if (chooser_.may_fall_back()) add(Chooser::kFallbackReads, "fallback uncertainty, from its first use on");
-  if (options_.height.lies) add(Quantity::doubt, "height.lies");
+  if (options_.height.outlier_probability) add(Quantity::doubt, "height.outlier_probability");
   if (options_.stop.max_standard_deviation) add(Quantity::uncertainty, "stop.max_standard_deviation");
   if (options_.stop.expected_rmse) add(belief_.surface_reads(), "stop.expected_rmse");
   add(backend_->reads() | belief_.predictable(backend_->expects()), "backend " + options_.backend.type);

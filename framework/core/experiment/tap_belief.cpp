@@ -79,7 +79,7 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       clip_(options.label.clip),
       two_part_(options.surface == ExperimentOptions::Surface::two_part),
       sights_(sights_of(options.prior, context.scene)),
-      lies_(two_part_ ? options.height.lies : std::nullopt),
+      lies_(two_part_ ? options.height.outlier_probability : std::nullopt),
       doubted_(candidates) {
   posterior_.taps += static_cast<int>(sights_.size());
   const HeightOptions& height = options.height;
@@ -98,8 +98,7 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     settings.noise = height.noise / height.signal * settings.signal;
     heights_.outputs.push_back(settings);
   }
-  if (height.systematic)
-    systematic_.emplace(height.systematic->offset, height.systematic->drift, height.systematic->noise);
+  if (height.offset) systematic_.emplace(height.offset->offset, height.offset->drift, height.offset->noise);
   footprint_choice_ = options.footprint;
   footprint_ = context.create<Footprint>(footprint_choice_);
   if (footprint_->is_weight()) footprint_.reset();

@@ -130,8 +130,8 @@ class TapBelief final : public Belief {
   /// The footprint, if it is not the weight and was asked for; else null.
   const Footprint* footprint() const { return footprint_asked_ ? footprint_.get() : nullptr; }
 
-  /// The probability that each contact so far lies, by the config's `height.lies`; empty where all are believed, or no
-  /// height was asked for.
+  /// The probability that each contact so far lies, by the config's `height.outlier_probability`; empty where all are
+  /// believed, or no height was asked for.
   const Eigen::VectorXd& doubt() const { return doubt_; }
   /// What rounding made necessary in the sum over which contacts are believed; jitter in square metres.
   const FactorReport& factors_of_outliers() const { return doubted_.report(); }

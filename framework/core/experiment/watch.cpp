@@ -110,7 +110,7 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
     tap.probability = belief.probability()(tap.candidate);
     tap.footprint = state_of(*belief.footprint());
   }
-  if (options_.height.lies) tap.doubted = belief.doubted();
+  if (options_.height.outlier_probability) tap.doubted = belief.doubted();
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* real = truth()) {
     tap.true_on_object = real->on(tap.candidate);
@@ -144,7 +144,7 @@ Errors Watch::errors(TapBelief& belief) {
     for (const auto& [tap, manner] : taps_) beside_->observe(tap.target, tap.contact, manner);
   }
   // The outlines have a word in who is believed.
-  beside_->ask(options_.height.lies ? lacking | Quantity::probability : lacking);
+  beside_->ask(options_.height.outlier_probability ? lacking | Quantity::probability : lacking);
   const SurfaceMaps others = maps_of(*beside_, lacking);
   if (maps.height == nullptr) maps.height = others.height;
   if (maps.probability == nullptr) maps.probability = others.probability;
@@ -186,7 +186,7 @@ RunResult Watch::result(TapBelief& belief) {
   take(belief.height_gp(), out.height_gp);
   take(belief.label_gp(), out.label_gp);
   if (belief.two_part()) take(belief.surface_gp(), out.surface_gp);
-  if (options_.height.lies) {
+  if (options_.height.outlier_probability) {
     out.doubted = belief.doubted();
     if (belief.surface_gp()) {
       out.count(belief.factors_of_outliers());

@@ -171,12 +171,13 @@ void list_models(FieldList<Record>& list, bool reasons) {
                   "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
                   "how it came to them; only where `footprint` is not `gp_regression`",
                   [](Row& row, const Record& record) { add_footprint(row, record.footprint); });
-  list.add_family("doubted",
-                  "the contacts that are thought to lie with a probability of 0.1 or more, each by the number of its "
-                  "tap and that probability: `8 0.93, 12 0.61`; null if there is none; only with `height.lies`",
-                  [](Row& row, const Record& record) {
-                    if (record.doubted) row.add("doubted", if_any(words(*record.doubted)));
-                  });
+  list.add_family(
+      "doubted",
+      "the contacts that are thought to lie with a probability of 0.1 or more, each by the number of its "
+      "tap and that probability: `8 0.93, 12 0.61`; null if there is none; only with `height.outlier_probability`",
+      [](Row& row, const Record& record) {
+        if (record.doubted) row.add("doubted", if_any(words(*record.doubted)));
+      });
 }
 
 template <class T, class Member>
@@ -233,7 +234,7 @@ FieldList<TapRecord> make_tap_list() {
   list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
   list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
                  "the same less what motion and arm were thought, when it was made, to add to all heights; only with "
-                 "`height.systematic`",
+                 "`height.offset`",
                  [](const Tap& t) { return t.corrected; })
       .in(Unit::metre);
   list.add("force", "of a contact, the largest that was felt (in a scene without effects, the threshold)",
@@ -307,7 +308,7 @@ bool is_from_any_side(const Summary& summary) { return summary.config.options.sc
 
 /// Whether contacts are read again after later taps.
 bool is_read_again(const Summary& summary) {
-  return summary.config.options.height.systematic.has_value() || is_from_any_side(summary);
+  return summary.config.options.height.offset.has_value() || is_from_any_side(summary);
 }
 
 /// How often a run took such a step.
@@ -406,7 +407,7 @@ FieldList<Summary> make_summary_list() {
       [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
   list.add("taps", "all of them; the next three, from any side four, add up to it", &Summary::taps).less().headline();
   list.add("object_taps",
-           "contacts with an object, as they are read at the end: with `height.systematic`, and from any side, all "
+           "contacts with an object, as they are read at the end: with `height.offset`, and from any side, all "
            "are read again after every tap",
            &Summary::object_taps)
       .more()
@@ -427,7 +428,7 @@ FieldList<Summary> make_summary_list() {
       is_read_again, "relabelled",
       "the contacts that these counts take otherwise than `on_object` of their taps does, each by the number "
       "of its tap and the label at the end: `5 object; 9 desk`; null if there is none; only with "
-      "`height.systematic` and from any side",
+      "`height.offset` and from any side",
       [](const Summary& s) { return if_any(words(s.relabelled)); });
   list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
   list.add(kExpectedError,

@@ -64,7 +64,7 @@ void list(HeightOffset& effect, Fields& fields) {
                                 .from("0: an arm that warms up drifts by the order of 1 mm/min, an estimate"));
 }
 
-void list(Outliers& effect, Fields& fields) {
+void list(ForeignObjects& effect, Fields& fields) {
   fields.real(effect.probability,
               Field("probability", "share of the squares").at_least(0).at_most(1).from("2 %: as false contacts"));
   fields.real(effect.height, Field("height", "the most that it adds; a uniform share of it, drawn for each square")
@@ -178,7 +178,8 @@ void EffectOptions::list(Fields& fields) {
           Field("joint_lag", "the arm trails what it is told; what it presses with is true only beside stiffness"));
   section(fields, values.latency, Field("latency", "the force is heard late, by another time at each tap"));
   section(fields, values.height_offset, Field("height_offset", "all heights are off, and drift"));
-  section(fields, values.outliers, Field("outliers", "things that are not of the scene: each touch of one repeats it"));
+  section(fields, values.foreign_objects,
+          Field("foreign_objects", "objects that are not of the scene; they stay where they are"));
   section(fields, values.tip_radius, Field("tip_radius", "the tip is a sphere: it meets the side of a step first"));
   section(fields, values.pose_noise, Field("pose_noise", "the tip is not quite where the joints say"));
   section(fields, values.missed_contacts, Field("missed_contacts", "contacts that are not felt"));

@@ -50,7 +50,7 @@ struct HeightOffset {
 
 /// Something lies there that is not of the scene, a chip or a cable: on a share of the squares of side `size` that the
 /// area is divided into, as high as a uniform share of `height` (metres), and just the same at every touch.
-struct Outliers {
+struct ForeignObjects {
   double probability = 0.02;
   double height = 0.03;
   double size = 0.01;
@@ -111,7 +111,7 @@ struct Effects {
   std::optional<JointLag> joint_lag;
   std::optional<Latency> latency;
   std::optional<HeightOffset> height_offset;
-  std::optional<Outliers> outliers;
+  std::optional<ForeignObjects> foreign_objects;
   std::optional<TipRadius> tip_radius;
   std::optional<PoseNoise> pose_noise;
   std::optional<MissedContacts> missed_contacts;

@@ -137,7 +137,7 @@ double desk_along(const Scene& scene, const Effects& effects, const Line& line) 
   return along(effects, line, [&](const Line& beside) { return distance_down_to(scene.desk(), beside); });
 }
 
-double outlier(const Outliers& effect, std::uint64_t seed, double x, double y) {
+double outlier(const ForeignObjects& effect, std::uint64_t seed, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x / effect.size));
   const auto row = static_cast<std::int64_t>(std::floor(y / effect.size));
   constexpr std::int64_t kColumns = 1 << 20;  // more than any area has

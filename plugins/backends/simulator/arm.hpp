@@ -72,7 +72,7 @@ double contact_along(const Scene& scene, const Effects& effects, const Line& lin
 double desk_along(const Scene& scene, const Effects& effects, const Line& line);
 
 /// What lies at (x, y) beside the scene, metres of height: 0 nearly everywhere. A function of seed and place alone.
-double outlier(const Outliers& effect, std::uint64_t seed, double x, double y);
+double outlier(const ForeignObjects& effect, std::uint64_t seed, double x, double y);
 
 /// What the arm meets and feels during one tap: a spring at `surface`, a sensor with noise, drift, blindness and jerks.
 class Touch {

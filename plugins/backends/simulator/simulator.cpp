@@ -21,7 +21,7 @@ Simulator::Simulator(const Options& options, const Context& context)
   moves_ = effects.force_noise || effects.force_drift || effects.stiffness || effects.joint_lag || effects.latency ||
            effects.missed_contacts || effects.false_contacts;
   perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
-               effects.height_offset || effects.outliers || effects.push);
+               effects.height_offset || effects.foreign_objects || effects.push);
   if (!scene_.any_side() && scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
@@ -91,7 +91,7 @@ Contact Simulator::tap_along(const TapRequest& request) const {
   constexpr double kAsExact = 1e-6;  // as the search of either, and more
   const bool desk = effects.stiffness && along > desk_along(scene, effects, true_line) - kAsExact;
   const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;
-  if (effects.outliers) along -= outlier(*effects.outliers, context_.seed, met.x(), met.y());
+  if (effects.foreign_objects) along -= outlier(*effects.foreign_objects, context_.seed, met.x(), met.y());
   const Descending way{motion, {length, length, 0.0}};
   const bool met_any = along <= length;
   const double left = met_any ? std::max(0.0, length - along) : -motion.overrun;
@@ -122,9 +122,9 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& ta
   }
   double surface = contact_height(scene, effects, target.x + dx, target.y + dy);
   const bool desk = surface <= scene_.desk();
-  if (effects.outliers) {
-    surface =
-        std::min(surface + outlier(*effects.outliers, context_.seed, target.x + dx, target.y + dy), tap.descent.hover);
+  if (effects.foreign_objects) {
+    surface = std::min(surface + outlier(*effects.foreign_objects, context_.seed, target.x + dx, target.y + dy),
+                       tap.descent.hover);
   }
   Contact contact = moves_ ? simulated_tap(request.number, tap, surface, desk) : ideal_tap(tap, surface);
   contact.seconds += tapping::travel_seconds(tap.motion, request);

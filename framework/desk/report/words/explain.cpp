@@ -265,7 +265,7 @@ class FromAboveExplained final : public Explanation {
 
   /// Whether the tap is believed, right after it and by all that came later.
   void explain_doubt() {
-    if (!options_.height.lies || tap_.contact.outcome != Outcome::contact) return;
+    if (!options_.height.outlier_probability || tap_.contact.outcome != Outcome::contact) return;
     page_.heading("Whether it is believed");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
