@@ -21,10 +21,10 @@ inline BaxterOptions fake_options() {
   out.motion.tare = 0.5;
   out.motion.overrun = 0.02;
   out.tool.tip[2] = 0.15;
-  out.place.corner[0] = 0.507;
-  out.place.corner[1] = 0.067;
-  out.place.height = -0.17;
-  out.place.rotation = 10.0 * 3.14159265358979323846 / 180.0;
+  out.scene_pose.corner[0] = 0.507;
+  out.scene_pose.corner[1] = 0.067;
+  out.scene_pose.height = -0.17;
+  out.scene_pose.rotation = 10.0 * 3.14159265358979323846 / 180.0;
   return out;
 }
 
@@ -35,7 +35,7 @@ class PlannerBench {
  public:
   explicit PlannerBench(const BaxterOptions& options = fake_options())
       : arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip)),
-        planner(options.place, arm,
+        planner(options.scene_pose, arm,
                 [this](const Pose& tip, const Joints& seed) { return arm.solve(tip, seed, 0.03); }) {}
   PlannerBench(const PlannerBench&) = delete;
   PlannerBench& operator=(const PlannerBench&) = delete;

@@ -44,7 +44,7 @@ class BodyBench {
   BodyBench(const std::string& objects, const std::string& effects, const fake_baxter::BodyOptions& options)
       : scene(scene_of(objects, effects, options.seed)),
         tool(Eigen::Vector3d(options.tool.tip)),
-        frame(options.place.frame()),
+        frame(options.scene_pose.frame()),
         body(*scene, options),
         target(body.joints()) {}
 

@@ -20,7 +20,7 @@ using palpate::fake_baxter::FaultKind;
 inline BodyOptions body_options(const BaxterOptions& options) {
   BodyOptions out;
   out.tool = options.tool;
-  out.place = options.place;
+  out.scene_pose = options.scene_pose;
   out.hover = options.motion.hover;
   return out;
 }

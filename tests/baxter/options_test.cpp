@@ -17,7 +17,7 @@ using testing::HasSubstr;
 std::string refusal(const std::string& motion, const std::string& more = "") {
   try {
     palpate::test::filled<BaxterOptions>(
-        "{tool: {tip: [0 cm, 0 cm, 15 cm]}, place: {corner: [50 cm, 7 cm], height: "
+        "{tool: {tip: [0 cm, 0 cm, 15 cm]}, scene_pose: {corner: [50 cm, 7 cm], height: "
         "-17 cm}, motion: " +
         motion + more + "}");
     return "";

@@ -60,7 +60,7 @@ TEST(BaxterKinematics, AgreesWithFiveReferencePoses) {
 }
 
 TEST(Places, OfTheSceneGoToTheRobotsFrameAndBack) {
-  PlaceOptions place;
+  ScenePoseOptions scene_pose;
   place.corner[0] = 0.5;
   place.corner[1] = 0.1;
   place.height = -0.2;
@@ -196,14 +196,14 @@ TEST(TheReachOfTheArea, IsWholeWhereTheFakeRobotHasItsSceneAndElseRefusedWithThe
   };
   EXPECT_EQ(reach(PlannerBench(), 0.02), 13 * 13);
   BaxterOptions far = fake_options();
-  far.place.corner[0] = 0.85;
+  far.scene_pose.corner[0] = 0.85;
   try {
     reach(PlannerBench(far), 0.05);
     FAIL() << "parts of it lie more than 1 m before the robot";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::run);
     EXPECT_THAT(error.what(),
-                testing::ContainsRegex("place: [0-9]+ of 36 places of the area cannot be reached, the first at "
+                testing::ContainsRegex("scene_pose: [0-9]+ of 36 places of the area cannot be reached, the first at "
                                        "\\(.* cm, .* cm\\): .*, put the middle of the area near x = 60 cm, y = 20 cm "
                                        "of base"));
   }

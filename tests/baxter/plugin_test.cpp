@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kOptions =
     "{motion: {type: continuous, speed: 2 cm/s, threshold: 6 N}, tool: {tip: [0 cm, 0 cm, 15 cm]}, "
-    "place: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}, force_sign: negative}";
+    "scene_pose: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}, force_sign: negative}";
 
 TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
   RobotLab lab(robot_words());

@@ -87,7 +87,7 @@ TEST(AForce, ThatIsRenewedTwentyOrTenTimesASecondIsTappedWith) {
 // an arm that was measured.
 TEST(AForce, ThatIsRenewedEightOrTenTimesASecondIsExpectedWithinTheBoundAtTheFirstTap) {
   BaxterOptions options = fake_options();
-  options.place.corner[0] = 0.4;  // 8.4 kN/m: stiffer than any place of a usual area
+  options.scene_pose.corner[0] = 0.4;  // 8.4 kN/m: stiffer than any place of a usual area
   for (const int every : {10, 12}) {
     Desk desk(kHard, options);
     desk.inject(fmt::format("slow_force={}", every));
@@ -104,8 +104,8 @@ TEST(AForce, ThatIsRenewedEightOrTenTimesASecondIsExpectedWithinTheBoundAtTheFir
 
 TEST(ARobot, ThatMayBeTooSlowIsRejectedBeforeItsFirstTapWithWhatIsAssumed) {
   BaxterOptions options = fake_options();
-  options.place.corner[0] = 0.36;
-  options.place.corner[1] = 0.2;  // stiffer still
+  options.scene_pose.corner[0] = 0.36;
+  options.scene_pose.corner[1] = 0.2;  // stiffer still
   Desk desk(kHard, options);
   desk.inject("slow_force=10");
   desk.inject("jitter=0.07");

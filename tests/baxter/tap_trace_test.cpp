@@ -73,13 +73,13 @@ TapTrace record(const Case& one) {
   const bool contact = one.verdict == TapTrace::Verdict::contact;
   BaxterOptions options = test::shipped_options();
   test::BodyOptions body = test::body_options(options);
-  if (!contact) options.place.height += kDeeper;
+  if (!contact) options.scene_pose.height += kDeeper;
   body.mechanics.type = fake_baxter::MechanicsOptions::Type::springs;
   test::BodyRobot robot(*scene, body);
   for (const fake_baxter::Fault& fault : one.faults) robot.body.inject(fault);
   Tapper tapper(options, *scene, robot, nullptr, [](const std::string&) {});
   const Arm arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip));
-  const Eigen::Isometry3d to_scene = options.place.frame().inverse();
+  const Eigen::Isometry3d to_scene = options.scene_pose.frame().inverse();
   std::vector<TapTrace::Row> rows;
   double touched = -1.0;
   robot.every_period = [&] {
@@ -154,7 +154,7 @@ Watched watch_tap(const fake_baxter::Fault& fault, const fake_baxter::Trigger& t
   robot.body.inject(fault, trigger);
   Tapper tapper(options, *scene, robot, nullptr, [](const std::string&) {});
   const Arm arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip));
-  const Eigen::Isometry3d to_scene = options.place.frame().inverse();
+  const Eigen::Isometry3d to_scene = options.scene_pose.frame().inverse();
   Watched out;
   robot.every_period = [&] {
     const Snapshot seen = robot.read();

@@ -169,7 +169,7 @@ TEST(ACalibrationTap, EndsTheRunWhereTheDeskIsNotNearWhereTheConfigHasIt) {
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
-  EXPECT_THAT(contact.reason, HasSubstr("cm higher than place.height has it"));
+  EXPECT_THAT(contact.reason, HasSubstr("cm higher than scene_pose.height has it"));
 }
 
 TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {

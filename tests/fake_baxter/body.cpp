@@ -42,7 +42,7 @@ const Joints& tucked() {
 
 Body::Body(const Scene& scene, const BodyOptions& options)
     : scene_(scene),
-      ground_(scene, options.place),
+      ground_(scene, options.scene_pose),
       tool_(Eigen::Vector3d(options.tool.tip)),
       gripper_({0.0, 0.0, options.tool.gripper}),
       seed_(options.seed),
@@ -72,7 +72,7 @@ Joints Body::start_joints(const BodyOptions& options) const {
   pose.rotation = baxter::straight_down();
   const std::optional<Joints> found = tool_.solve(pose, untucked());
   if (!found)
-    throw Error("--start-at", "the arm cannot reach where it should start", "move the scene by backend.place");
+    throw Error("--start-at", "the arm cannot reach where it should start", "move the scene by backend.scene_pose");
   return *found;
 }
 

@@ -27,7 +27,7 @@ const Joints& tucked();
 
 struct BodyOptions {
   baxter::ToolOptions tool;
-  baxter::PlaceOptions place;
+  baxter::ScenePoseOptions scene_pose;
   double hover = 0.135;    ///< of travel, metres above the desk
   std::uint64_t seed = 1;  ///< of all noise
   /// Of the tip, straight down, in the scene's frame; else 3 cm above the height of travel, over the middle of the

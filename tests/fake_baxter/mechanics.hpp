@@ -15,10 +15,10 @@ namespace palpate::fake_baxter {
 
 using baxter::Joints;
 
-/// What there is to press on: a scene where `place` puts it before the robot. Keeps a reference to the scene.
+/// What there is to press on: a scene where `scene_pose` puts it before the robot. Keeps a reference to the scene.
 class Ground {
  public:
-  Ground(const Scene& scene, const baxter::PlaceOptions& place) : scene_(scene), frame_(place.frame()) {}
+  Ground(const Scene& scene, const baxter::ScenePoseOptions& place) : scene_(scene), frame_(place.frame()) {}
 
   const Scene& scene() const { return scene_; }
   /// A place in the robot's frame `base` as one of the scene, metres; and back.

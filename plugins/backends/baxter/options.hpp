@@ -49,7 +49,7 @@ struct ToolOptions : Options {
 };
 
 /// Where the frame of the scene lies in the robot's frame `base`.
-struct PlaceOptions : Options {
+struct ScenePoseOptions : Options {
   double corner[2] = {0.0, 0.0};  ///< metres
   double height = 0.0;            ///< of the scene's zero, metres
   double rotation = 0.0;          ///< about the vertical, radians
@@ -77,11 +77,12 @@ struct CalibrationOptions : Options {
     fields.reals(
         at, 2,
         Field("at", "where to tap, a place in the area at which nothing lies on the desk").in(Unit::metre).needed());
-    fields.real(tolerance, Field("tolerance", "how far the desk may be from where `place` has it; farther ends the run")
-                               .in(Unit::metre)
-                               .above(0)
-                               .at_most(0.05)
-                               .from("Baxter's absolute accuracy is 2 to 10 mm"));
+    fields.real(tolerance,
+                Field("tolerance", "how far the desk may be from where `scene_pose` has it; farther ends the run")
+                    .in(Unit::metre)
+                    .above(0)
+                    .at_most(0.05)
+                    .from("Baxter's absolute accuracy is 2 to 10 mm"));
   }
 };
 
@@ -92,7 +93,7 @@ struct BaxterOptions : Options {
 
   tapping::BackendMotion motion;
   ToolOptions tool;
-  PlaceOptions place;
+  ScenePoseOptions scene_pose;
   std::optional<CalibrationOptions> calibration;
   std::optional<ForceSign> force_sign;  ///< `learn` with a calibration and else `negative`, if the config says nothing
   double force_stop = 14.0;             ///< N
@@ -114,7 +115,7 @@ struct BaxterOptions : Options {
       require_gentle(fields, motion.of[i], "motion.of." + std::to_string(i) + ".");
     if (motion.of.empty()) require_gentle(fields, motion, "motion.");
     fields.section(tool, Field("tool", "what is fixed to the flange of the left arm"));
-    fields.section(place, Field("place", "where the scene lies before the robot"));
+    fields.section(scene_pose, Field("scene_pose", "pose of the scene in the robot's frame base"));
     fields.section(calibration,
                    Field("calibration", "begin with a tap on the bare desk, and take its height for the desk's"));
     ForceSign chosen = sign();

@@ -162,7 +162,7 @@ int check_reach(const Area& area, double spacing, const std::function<void(const
     }
   }
   if (missed == 0) return nx * ny;
-  throw trouble("place",
+  throw trouble("scene_pose",
                 fmt::format("{} of {} places of the area cannot be reached, the first at {}", missed, nx * ny, first),
                 "put the middle of the area near x = 60 cm, y = 20 cm of base");
 }

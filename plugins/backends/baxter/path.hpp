@@ -60,7 +60,7 @@ using Inverse = std::function<std::optional<Joints>(const Pose& tip, const Joint
 /// Plans in the frame of the scene. Throws NoPath.
 class Planner {
  public:
-  Planner(const PlaceOptions& place, const Arm& arm, Inverse inverse)
+  Planner(const ScenePoseOptions& place, const Arm& arm, Inverse inverse)
       : frame_(place.frame()), arm_(arm), inverse_(std::move(inverse)) {}
 
   /// Of a point of the scene and back, metres; the tool points straight down.

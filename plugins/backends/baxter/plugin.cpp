@@ -80,7 +80,7 @@ class Baxter final : public Backend {
         tapper_(options, context.scene, *robot_, context.interrupted,
                 [this](const std::string& line) { diary_.note(line); }) {
     tapper_.check();
-    if (options.view) view_ = make_view(*robot_, options.place, scene_.area(), scene_.desk());
+    if (options.view) view_ = make_view(*robot_, options.scene_pose, scene_.area(), scene_.desk());
   }
 
   Contact tap(const TapRequest& request) override {

@@ -60,7 +60,7 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
       interrupted_(interrupted),
       note_(std::move(note)),
       arm_(Eigen::Map<const Eigen::Vector3d>(options.tool.tip)),
-      planner_(options.place, arm_, [this](const Pose& tip, const Joints& seed) { return inverse(tip, seed); }),
+      planner_(options.scene_pose, arm_, [this](const Pose& tip, const Joints& seed) { return inverse(tip, seed); }),
       workspace_(workspace_of(options, scene)),
       watch_(workspace_, options.force_stop),
       sign_(options.sign() == ForceSign::learn      ? 0.0
@@ -121,7 +121,7 @@ void Tapper::calibrate(const Contact& contact) {
   const double off = contact.height - scene_.desk();
   if (std::abs(off) > options_.calibration->tolerance) {
     throw Fault{
-        fmt::format("the calibration tap found the desk {} {} than place.height has it: measure again, see that "
+        fmt::format("the calibration tap found the desk {} {} than scene_pose.height has it: measure again, see that "
                     "nothing lies there, or raise calibration.tolerance",
                     centimetres(std::abs(off)), off > 0.0 ? "higher" : "lower"),
         Then::hold};

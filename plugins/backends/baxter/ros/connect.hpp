@@ -45,6 +45,6 @@ class View {
 /// Publishes latched in frame `base`: palpate/surface (PointCloud2 with x, y, z, intensity = standard deviation) and
 /// palpate/taps (MarkerArray: taps on and off the object, the area, the next target). `robot` is what connect() has
 /// made.
-std::unique_ptr<View> make_view(Robot& robot, const PlaceOptions& place, const Area& area, double desk);
+std::unique_ptr<View> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area, double desk);
 
 }  // namespace palpate::baxter

@@ -25,7 +25,7 @@ constexpr const char* kFrame = "base";
 
 class RosView final : public View {
  public:
-  RosView(std::shared_ptr<Bag> bag, const PlaceOptions& place, const Area& area, double desk)
+  RosView(std::shared_ptr<Bag> bag, const ScenePoseOptions& place, const Area& area, double desk)
       : frame_(place.frame()), area_(area), desk_(desk), bag_(std::move(bag)) {
     surface_publisher_ = handle_.advertise<sensor_msgs::PointCloud2>("palpate/surface", 1, true);
     taps_publisher_ = handle_.advertise<MarkerArray>("palpate/taps", 1, true);
@@ -140,7 +140,7 @@ class RosView final : public View {
 
 }  // namespace
 
-std::unique_ptr<View> make_view(Robot& robot, const PlaceOptions& place, const Area& area, double desk) {
+std::unique_ptr<View> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area, double desk) {
   return std::make_unique<RosView>(dynamic_cast<Link&>(robot).bag(), place, area, desk);
 }
 
