@@ -121,7 +121,7 @@ std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
 /// On a larger desk, where more things may be, to find them comes first: otherwise the last of them are found late, or
 /// never, while each known outline is settled to the millimetre. There something new is worth more by as much as the
 /// sides of the desk are longer, and where most is to be found the score goes up to that, so that it is heard beside
-/// others that know of outlines alone. What that brings and costs: framework/docs/desks.md.
+/// others that know of outlines alone. What that brings and costs: framework/docs/clutter.md.
 struct ForesightOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {

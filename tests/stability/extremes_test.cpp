@@ -70,7 +70,7 @@ TEST(ExtremesTable, HoldsManyCasesOnBothSidesOfWhatDoublePrecisionCanHold) {
 }
 
 TEST(ExtremesTable, ItsPageCountsTheCasesThatThereAre) {
-  EXPECT_THAT(test::text_of(test::source_folder() / "framework/docs/exactness.md"),
+  EXPECT_THAT(test::text_of(test::source_folder() / "framework/docs/numerics.md"),
               ::testing::HasSubstr(fmt::format("\n{} cases", cases().size())));
 }
 

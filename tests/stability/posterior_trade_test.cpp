@@ -11,7 +11,7 @@ namespace palpate::test {
 namespace {
 
 TEST(PosteriorTrade, StandsInItsPageAsItWasRecorded) {
-  const std::string page = test::text_of(test::source_folder() / "framework/docs/exactness.md");
+  const std::string page = test::text_of(test::source_folder() / "framework/docs/numerics.md");
   int shown = 0;
   for (const test::Cells& row :
        test::csv_rows(test::text_of(test::source_folder() / "runs/reference/posterior_trade.csv"))) {

@@ -242,13 +242,13 @@ TEST_F(Gates, ThatAreShippedCloseWhenAnyOfTheirBoundsIsTightened) {
   }
 }
 
-/// The workflow that gates.md shows, in a repository of somebody's own: its steps in order, but what installs palpate.
+/// The workflow that ci.md shows, in a repository of somebody's own: its steps in order, but what installs palpate.
 class Workflow : public Shell {
  protected:
   Workflow() {
-    const std::string page = text_of(test::source_folder() / "framework/docs/gates.md");
+    const std::string page = text_of(test::source_folder() / "framework/docs/ci.md");
     const auto begin = page.find("```yaml\n# .github/workflows/");
-    if (begin == std::string::npos) throw std::runtime_error("gates.md shows no workflow");
+    if (begin == std::string::npos) throw std::runtime_error("ci.md shows no workflow");
     write("workflow.yaml", page.substr(begin + 8, page.find("\n```\n", begin) - begin - 7));
     const Tree workflow = read_yaml(here() / "workflow.yaml");
     for (const Tree& step : workflow.find_path("jobs.gate.steps")->items) {

@@ -135,7 +135,7 @@ TEST(Left, ItIsSaidOfDesksOfThePriorAsOftenAsSomethingIsLeft) {
   for (std::size_t i = 0; i < kTaps.size(); ++i) {
     EXPECT_LT(calibrations[i].deviation(), 4.0) << "after " << kTaps[i] << " taps";
     RecordProperty("error_after_" + std::to_string(kTaps[i]), std::to_string(calibrations[i].error()));
-    // So few desks make 0.04 of it by chance; framework/docs/desks.md has 800.
+    // So few desks make 0.04 of it by chance; framework/docs/clutter.md has 800.
     if (!test::brief()) {
       EXPECT_LT(calibrations[i].error(), 0.1) << "after " << kTaps[i] << " taps";
     }
