@@ -89,7 +89,7 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
     std::optional<int>& taps = known[deciding(sweep.jobs[job])];
     const std::optional<ResolvedConfig> config = taps ? std::nullopt : readable_config(campaign, job);
     if (!config) continue;
-    // All taps until the first hit are the search's: its dead starts are those that never hit.
+    // All taps until the first hit are the search's: its starts without contact are those that never hit.
     const ExperimentOptions& options = config->options;
     taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
   }

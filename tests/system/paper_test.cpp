@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's numbers, over a thousand starts, and what our policies make of its dead starts.
+// The paper's numbers, over a thousand starts, and what our policies make of its starts without contact.
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "system/shell.hpp"
@@ -52,7 +52,7 @@ TEST_F(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertaint
     if (is_live(row)) {
       live[row.at("acquisition")].push_back(std::stod(row.at("object_taps")));
     } else if (row.at("acquisition") == "weighted") {
-      EXPECT_EQ(row.at("object_taps"), "0") << "without a fallback a dead start never recovers";
+      EXPECT_EQ(row.at("object_taps"), "0") << "without a fallback a start without contact never recovers";
     }
   }
   for (const char* acquisition : {"uncertainty", "weighted"}) {

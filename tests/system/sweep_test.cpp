@@ -72,31 +72,32 @@ TEST_F(Sweeps, WithABadValueAreRefusedBeforeAnyJobStartsAndLeaveNothing) {
   EXPECT_EQ(std::distance(fs::directory_iterator(here() / "runs"), {}), 1);
 }
 
-/// The dead starts in a group's row of the table at the end of a sweep.
-std::string dead_starts(const std::string& table, const std::string& group) {
+/// The starts without contact in a group's row of the table at the end of a sweep.
+std::string starts_without_contact(const std::string& table, const std::string& group) {
   const auto begin = table.find("\n" + group + " ");
   EXPECT_NE(begin, std::string::npos) << group << "\n" << table;
   if (begin == std::string::npos) return {};
   std::istringstream row(table.substr(begin + 1 + group.size()));
-  std::string runs, dead;
-  row >> runs >> dead;
-  return dead;
+  std::string runs, share;
+  row >> runs >> share;
+  return share;
 }
 
-TEST_F(Sweeps, CountDeadStartsByTheInitialTapsOfEachGroup) {
+TEST_F(Sweeps, CountStartsWithoutContactByTheInitialTapsOfEachGroup) {
   const auto table = [&](const std::string& counts) {
     return sweep("initial.count=" + counts + " seed=range(0,20) --quiet").out;
   };
   const std::string one = table("1");
   const std::string eleven = table("11");
-  EXPECT_NE(dead_starts(one, "all jobs"), dead_starts(eleven, "all jobs")) << "else this tests nothing";
+  EXPECT_NE(starts_without_contact(one, "all jobs"), starts_without_contact(eleven, "all jobs"))
+      << "else this tests nothing";
   for (const std::string& made : {table("1,11"), table("11,1")}) {
-    EXPECT_EQ(dead_starts(made, "1"), dead_starts(one, "all jobs"));
-    EXPECT_EQ(dead_starts(made, "11"), dead_starts(eleven, "all jobs"));
+    EXPECT_EQ(starts_without_contact(made, "1"), starts_without_contact(one, "all jobs"));
+    EXPECT_EQ(starts_without_contact(made, "11"), starts_without_contact(eleven, "all jobs"));
   }
 }
 
-TEST_F(Sweeps, CountAsDeadStartsOfASearchWhatItNeverFound) {
+TEST_F(Sweeps, CountAsStartsWithoutContactOfASearchWhatItNeverFound) {
   const std::string table =
       sweep("backend=chosen strategy=random,default scene=cube scene.effects=none taps=12 seed=range(0,10) --quiet",
             config("benchmark/strategies.yaml"))
@@ -110,7 +111,7 @@ TEST_F(Sweeps, CountAsDeadStartsOfASearchWhatItNeverFound) {
   }
   EXPECT_GT(never, 0) << "else this tests nothing";
   EXPECT_GT(late, 0) << "else this tests nothing";
-  EXPECT_EQ(dead_starts(table, "default"), std::to_string(10 * never) + ".0%");
+  EXPECT_EQ(starts_without_contact(table, "default"), std::to_string(10 * never) + ".0%");
 }
 
 TEST_F(Sweeps, CarryOnWithWhatIsMissing) {

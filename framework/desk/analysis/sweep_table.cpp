@@ -24,11 +24,11 @@ struct SweepTableRow {
   std::string name;
   std::size_t scene = 0;  ///< place of its scene in the sweep
   int runs = 0;
-  int dead = 0;
+  int without_contact = 0;
   int found = 0;
   int failed = 0;
   bool is_initial_known = false;
-  std::vector<double> on_surface_live, on_surface_all, rmse, iou;  ///< of the jobs that are done, ascending
+  std::vector<double> object_taps_with, object_taps_all, rmse, iou;  ///< of the jobs that are done, ascending
 
   /// By which the rows of a scene are sorted: of what has no error it is more than any.
   double median_rmse() const { return rmse.empty() ? std::numeric_limits<double>::infinity() : quantile(rmse, 0.5); }
@@ -53,19 +53,19 @@ SweepTableRow row_of(const JobGroup& group, const std::function<std::optional<in
     }
     if (!initial) initial = initial_taps(static_cast<std::size_t>(job->index));
     const std::optional<double> hit = row->number("first_hit_tap");
-    const bool is_dead = !hit || !initial || *hit > *initial;
-    out.dead += is_dead ? 1 : 0;
+    const bool is_without_contact = !hit || !initial || *hit > *initial;
+    out.without_contact += is_without_contact ? 1 : 0;
     out.found += hit ? 1 : 0;
     const auto add = [&, of = row](std::vector<double>& values, const std::string& field) {
       if (const auto value = of->number(field)) values.push_back(*value);
     };
-    add(out.on_surface_all, "object_taps");
+    add(out.object_taps_all, "object_taps");
     add(out.rmse, main_error());
     add(out.iou, "footprint_iou");
-    if (!is_dead) add(out.on_surface_live, "object_taps");
+    if (!is_without_contact) add(out.object_taps_with, "object_taps");
   }
   out.is_initial_known = initial.has_value();
-  for (std::vector<double>* values : {&out.on_surface_live, &out.on_surface_all, &out.rmse, &out.iou})
+  for (std::vector<double>* values : {&out.object_taps_with, &out.object_taps_all, &out.rmse, &out.iou})
     std::sort(values->begin(), values->end());
   return out;
 }
@@ -105,14 +105,14 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
   const Scale share{"", 1.0, 2};
   const Scale count{"", 1.0, 0};
   std::vector<std::vector<std::string>> lines{
-      {"group", "runs", "dead starts", "found", any_failed ? "failed" : "", "on-surface, live", "on-surface, all",
+      {"group", "runs", "without contact", "found", any_failed ? "failed" : "", "object taps, with", "object taps, all",
        medians.empty() ? "" : error.title(main_error()), any_iou ? "footprint_iou" : ""}};
   for (const SweepTableRow& row : rows) {
     const int done = row.runs - row.failed;
     const auto part = [&](int jobs) { return done > 0 ? fmt::format("{:.1f}%", 100.0 * jobs / done) : "-"; };
-    lines.push_back({row.name, std::to_string(row.runs), row.is_initial_known ? part(row.dead) : "-", part(row.found),
-                     any_failed ? std::to_string(row.failed) : "", spread(row.on_surface_live, count),
-                     spread(row.on_surface_all, count), medians.empty() ? "" : spread(row.rmse, error),
+    lines.push_back({row.name, std::to_string(row.runs), row.is_initial_known ? part(row.without_contact) : "-",
+                     part(row.found), any_failed ? std::to_string(row.failed) : "", spread(row.object_taps_with, count),
+                     spread(row.object_taps_all, count), medians.empty() ? "" : spread(row.rmse, error),
                      any_iou ? spread(row.iou, share) : ""});
   }
   // Long names stand at the end of their lines, so that the numbers keep to the width of a screen.
@@ -121,7 +121,8 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
     if (longest > kLongest) std::rotate(line.begin(), line.begin() + 1, line.end());
   }
   std::string out = aligned(lines, longest > kLongest ? "rrrrrrrrl" : "lrrrrrrrr");
-  out += "dead start: no tap on the object among the initial ones; live: all others. Median (10 %-90 %).\n";
+  out +=
+      "without contact: starts whose initial taps all missed the object; with: the other starts. Median (10 %-90 %).\n";
   if (rows.size() < 2 || medians.empty()) return out;
   return out + fmt::format("The least {} first{}.\n", main_error(), places.size() > 1 ? ", scene by scene" : "");
 }

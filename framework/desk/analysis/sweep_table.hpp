@@ -11,7 +11,8 @@
 
 namespace palpate {
 
-/// Medians and spreads of taps on the object, RMSE and IoU, and dead starts, by group: all keys that vary but the seed.
+/// Medians and spreads of taps on the object, RMSE and IoU, and starts without contact, by group: all
+/// keys that vary but the seed.
 /// One line per group under a header; those of a scene stand together, the least median RMSE first. How many taps of a
 /// job are initial may be swept, so it is asked of the first job of each group.
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
