@@ -84,8 +84,8 @@ run() {
   name=$1
   iou=footprint_iou
   case $name in
-    objects) set -- strategies.yaml backend=chosen scene.effects=none strategy=default,weighted taps=17,30 ;;
-    standard) set -- strategies.yaml backend=chosen scene.effects=standard strategy=default,weighted taps=30 ;;
+    objects) set -- strategies.yaml motion=per_tap scene.effects=none strategy=default,weighted taps=17,30 ;;
+    standard) set -- strategies.yaml motion=per_tap scene.effects=standard strategy=default,weighted taps=30 ;;
     clutter) set -- clutter.yaml strategy=default,weighted taps=60 ;;
     any_side) set -- any_side.yaml acquisition=discovery taps=19; iou=volume_iou ;;
   esac

@@ -41,6 +41,12 @@ class Keys {
     for (const Field& field : keys_beside_options()) {
       if (field.is_group) out.push_back(describe_key(field));
     }
+    for (const FieldDescription& field : Descriptions(out)) {
+      if (field.beside.empty()) continue;
+      for (FieldDescription& option : options_of(field.kind, chosen_plugin(field, field.name))) {
+        if (option.name == field.beside) out.push_back(std::move(option));
+      }
+    }
     return out;
   }
 
@@ -93,7 +99,7 @@ class Keys {
     type.default_value = chosen_plugin(field, path);
     Descriptions out{std::move(type)};
     for (FieldDescription& one : beside(options_of(field.kind, out.front().default_value), path + ".")) {
-      out.push_back(std::move(one));
+      if (one.name != field.beside) out.push_back(std::move(one));
     }
     return out;
   }

@@ -10,6 +10,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <map>
+#include <set>
+
 namespace palpate::cli {
 namespace {
 
@@ -33,15 +36,31 @@ Tree any_of(std::vector<Tree> schemas) { return Tree::map({{"anyOf", Tree::list(
 
 /// A group of a kind: its name as plain text, or the options of one of its plugins. The type may be left to a group
 /// named under `defaults`, so it is not required.
-Tree kind_schema(const PluginHost& host, const std::string& kind) {
+/// `beside`: the options that stand beside a plugin of this kind (Field::with_beside()) and are left out.
+Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set<std::string>& beside) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("the name of a group file or of a plugin");
   for (const FieldDescription::CaseDescription& one : plugins_of(host, kind)) {
     Tree plugin = schema_of(one.fields);
+    for (const std::string& option : beside) plugin.at("properties").erase(option);
     plugin.at("title") = Tree::quote(kind + "/" + one.name);
     plugin.at("description") = Tree::quote(one.meaning);
     plugin.at("properties").at("type").at("const") = Tree::quote(one.name);
     any.push_back(std::move(plugin));
+  }
+  return any_of(std::move(any));
+}
+
+/// What may stand beside a plugin of this kind: the name of a group file, or the options of one of the plugins.
+Tree beside_schema(const PluginHost& host, const std::string& kind, const std::string& option) {
+  std::vector<Tree> any{of_type("string")};
+  any.front().at("description") = Tree::quote("the name of a group file");
+  std::set<std::string> seen;
+  for (const FieldDescription::CaseDescription& one : plugins_of(host, kind)) {
+    Tree plugin = schema_of(one.fields);
+    Tree& properties = plugin.at("properties");
+    const Tree* const schema = properties.find(option);
+    if (schema != nullptr && seen.insert(schema->canonical()).second) any.push_back(*schema);
   }
   return any_of(std::move(any));
 }
@@ -95,15 +114,24 @@ void sweep_schema(Tree& sweep) {
 
 int schema(Program& program) {
   ExperimentOptions options;
-  Tree out = schema_of(describe_fields([&](Fields& fields) { options.list(fields); },
-                                       [&](const std::string& kind) { return plugins_of(program.host, kind); }));
+  const std::vector<FieldDescription> fields =
+      describe_fields([&](Fields& visitor) { options.list(visitor); },
+                      [&](const std::string& kind) { return plugins_of(program.host, kind); });
+  Tree out = schema_of(fields);
   Tree& properties = out.at("properties");
+  std::map<std::string, std::set<std::string>> beside;
+  for (const FieldDescription& field : fields) {
+    if (field.beside.empty()) continue;
+    beside[field.kind].insert(field.beside);
+    properties.at(field.beside) = beside_schema(program.host, field.kind, field.beside);
+  }
   for (const Field& field : keys_beside_options()) properties.at(field.name) = of_type("string", field.meaning);
   defaults_schema(properties.at("defaults"));
   sweep_schema(properties.at("sweep"));
   expect_schema(properties.at("expect"));
   Tree& definitions = out.at("definitions") = Tree::map();
-  for (const std::string& kind : PluginHost::kinds()) definitions.at(kind) = kind_schema(program.host, kind);
+  for (const std::string& kind : PluginHost::kinds())
+    definitions.at(kind) = kind_schema(program.host, kind, beside[kind]);
   out.at("$schema") = Tree::quote("http://json-schema.org/draft-07/schema#");
   out.at("title") = Tree::quote("palpate experiment");
   print_data(to_json(out));

@@ -20,7 +20,7 @@ struct Condition {
   bool spikes = false;                     ///< one reading of the force in a hundred is 9 N off
   bool stalls = false;                     ///< three periods in a hundred take up to 50 ms longer
   std::vector<fake_baxter::Fault> faults;  ///< from the start: delay, jitter, wrench_filter, force_drift
-  std::string motion;                      ///< YAML of backend.motion; empty: the shipped one
+  std::string motion;                      ///< YAML of motion; empty: the shipped one
 };
 
 /// What became of them.

@@ -26,7 +26,7 @@ using test::BodyRobot;
 constexpr double kLateral = 0.002;   // m
 constexpr double kVertical = 0.001;  // m
 const std::string kMotion =
-    "backend.motion={type: continuous, speed: 1.5 cm/s, threshold: 5 N, hover: 13.5 cm, travel_speed: 15 cm/s, "
+    "motion={type: continuous, speed: 1.5 cm/s, threshold: 5 N, hover: 13.5 cm, travel_speed: 15 cm/s, "
     "retreat_speed: 10 cm/s, tare: 500 ms, overrun: 2 cm}";
 const std::string kEffects =
     "{force_noise: {deviation: 1.5 N}, stiffness: {object: 1500 N/m}, joint_lag: {delay: 350 ms}";
@@ -85,7 +85,7 @@ class ArmBackend final : public Backend {
 };
 
 std::vector<std::string> words(int seed, int taps, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> out{"backend=continuous", kMotion, "scene.placement=random", fmt::format("seed={}", seed),
+  std::vector<std::string> out{"motion=continuous", kMotion, "scene.placement=random", fmt::format("seed={}", seed),
                                fmt::format("taps={}", taps)};
   out.insert(out.end(), more.begin(), more.end());
   return out;

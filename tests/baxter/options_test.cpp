@@ -46,8 +46,8 @@ TEST(BaxterOptions, ThatComeDownTooFastOrTooFarAreRefused) {
   EXPECT_THAT(refusal("{type: two_stage, fine_speed: 20 cm/s}"), HasSubstr("take at most 10 cm/s"));
   EXPECT_THAT(refusal("{type: paper, adaptive_hover: {speed: 20 cm/s}}"), HasSubstr("take at most 10 cm/s"));
   EXPECT_THAT(refusal("{type: paper, overrun: 20 cm}"), HasSubstr("take at most 10 cm"));
-  EXPECT_EQ(refusal("{type: chosen, of: [{type: continuous}, {type: paper}]}"), "");
-  EXPECT_THAT(refusal("{type: chosen, of: [{type: continuous}, {type: continuous, speed: 20 cm/s}]}"),
+  EXPECT_EQ(refusal("{type: per_tap, of: [{type: continuous}, {type: paper}]}"), "");
+  EXPECT_THAT(refusal("{type: per_tap, of: [{type: continuous}, {type: continuous, speed: 20 cm/s}]}"),
               AllOf(HasSubstr("motion.of.1.speed"), HasSubstr("take at most 10 cm/s")));
 }
 

@@ -114,8 +114,8 @@ TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffectsAndIsRepla
   const fs::path run = run_of(lab);
   EXPECT_EQ(outcomes(lab), std::vector<std::string>(17, "contact"));
 
-  palpate_does(lab, {"run", object_i(), "scene=object_i_arm", "backend=continuous", "backend.motion.speed=2cm/s",
-                     "backend.motion.threshold=6N", "--runs", "simulator"});
+  palpate_does(lab, {"run", object_i(), "scene=object_i_arm", "motion=continuous", "motion.speed=2cm/s",
+                     "motion.threshold=6N", "--runs", "simulator"});
   const fs::path other = only_run(lab.folder() / "simulator");
   const double on_robot = rmse_height(run / "surface.csv", other / "surface.csv");
   const double in_simulator = rmse_height(other / "surface.csv", other / "surface.csv");
@@ -139,7 +139,7 @@ TEST(RobotRun, WorksInRealTimeAsWell) {
   RobotLab lab;
   // Low, and above the desk, where the first tap of this seed goes: it takes seconds.
   lab.start_robot({object_i(), "backend=fake_baxter", "scene=object_i_arm", "--start-at", "0.04,0.07,0.07"});
-  palpate_does(lab, run_words(1, {"backend.motion.hover=6cm"}));
+  palpate_does(lab, run_words(1, {"motion.hover=6cm"}));
   EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
 }
 

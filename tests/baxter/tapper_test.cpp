@@ -52,7 +52,7 @@ TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
 TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
   Bench bench(with([&](BaxterOptions& o) {
     const tapping::MotionOptions alone = o.motion;
-    o.motion.type = Type::chosen;
+    o.motion.type = Type::per_tap;
     o.motion.of = {alone, alone};
     for (tapping::MotionOptions& one : o.motion.of) one.type = Type::continuous;
     o.motion.of[0].speed = 0.005;

@@ -36,8 +36,8 @@ def main():
     for motion, speed, threshold in ROWS:
         with tempfile.TemporaryDirectory() as runs:
             command = [PROGRAM, "sweep", "configs/paper/object_i.yaml", "scene=object_i_arm", "surface=two_part",
-                       "height.signal=5cm", "backend=" + motion, "backend.motion.speed=" + speed,
-                       "backend.motion.threshold=" + threshold, "seed=range(0,40)", "--runs", runs, "--quiet"]
+                       "height.signal=5cm", "motion=" + motion, "motion.speed=" + speed,
+                       "motion.threshold=" + threshold, "seed=range(0,40)", "--runs", runs, "--quiet"]
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
             taps = []
             for file in sorted(glob.glob(runs + "/*/*/jobs/*/taps.csv")):

@@ -143,8 +143,8 @@ TEST_F(Calibrate, HasTheSimulatorErrAsTheArmDidThatTheTapsAreOf) {
   const std::string effects =
       "scene.effects={force_noise: {}, force_drift: {}, stiffness: {}, joint_lag: {}, latency: {}, pose_noise: "
       "{lateral: 3 mm, vertical: 2 mm}, missed_contacts: {probability: 0.1}, height_offset: {constant: -3 mm}}";
-  for (const std::string backend : {"chosen", "paper", "continuous"}) {
-    const std::vector<std::string> words{"scene=block", "acquisition=random", "taps=40", "backend=" + backend, effects};
+  for (const std::string motion : {"per_tap", "paper", "continuous"}) {
+    const std::vector<std::string> words{"scene=block", "acquisition=random", "taps=40", "motion=" + motion, effects};
     const Recording arm = recorded(test::shipped_config("default.yaml", words));
     const std::string file = calibrate(workshop, {arm});
     SCOPED_TRACE(file);

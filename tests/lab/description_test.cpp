@@ -338,7 +338,7 @@ TEST(WrittenDescription, ReadsBackAsTheSameCombinations) {
 
 TEST(Overrides, HoldChoicesAboveOptionsAndBothAboveTheConfig) {
   const SweepDescription description =
-      described(" {grid: {kernel: [rbf], backend.motion.type: [paper], kernel.length_scale: [1 cm]}}");
+      described(" {grid: {kernel: [rbf], motion.type: [paper], kernel.length_scale: [1 cm]}}");
   const std::vector<Override> overrides = overrides_of(description.combinations()[0]);
   ASSERT_EQ(overrides.size(), 3U);
   EXPECT_GT(overrides[0].value.layer, overrides[2].value.layer);

@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
                                                "fitting.every=4", "seed=4"},
                       std::vector<std::string>{"paper/object_i.yaml", "acquisition=random", "label.clip=true",
                                                "posterior=dense"},
-                      std::vector<std::string>{"paper/object_i.yaml", "backend=continuous",
+                      std::vector<std::string>{"paper/object_i.yaml", "motion=continuous",
                                                "scene.effects={missed_contacts: {probability: 0.3}}"},
                       std::vector<std::string>{"default.yaml"},
                       std::vector<std::string>{"default.yaml", "footprint.max_contradictions=0.01", "seed=2"},

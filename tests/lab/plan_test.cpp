@@ -156,7 +156,7 @@ TEST(Plan, LeavesOutOptionsOfAChoiceInTheConfigThatTheCommandLineNames) {
 }
 
 TEST(Plan, LeavesOutOptionsOfMotionsAndOfWholeGroups) {
-  EXPECT_EQ(rows(plan_of({"backend=paper,two_stage,continuous", "backend.motion.back_off=1cm,3cm"})),
+  EXPECT_EQ(rows(plan_of({"motion=paper,two_stage,continuous", "motion.back_off=1cm,3cm"})),
             (Texts{"paper|", "two_stage|1cm", "two_stage|3cm", "continuous|"}));
 }
 
@@ -172,8 +172,8 @@ TEST(Plan, RefusesAnOptionThatNoJobHas) {
             "command line: no job of the sweep has an option 'acquisition.cuont', did you mean 'count'?");
   EXPECT_EQ(refused({"acquisition=weighted,random", "acquisition.beta=1,2"}),
             "command line: no job of the sweep has an option 'acquisition.beta', take it away");
-  EXPECT_EQ(refused({"backend=paper,two_stage", "backend.motoin.speed=1cm/s,2cm/s"}).substr(0, 68),
-            "command line: no job of the sweep has an option 'backend.motoin.spee");
+  EXPECT_EQ(refused({"motion=paper,two_stage", "motion.spede=1cm/s,2cm/s"}).substr(0, 66),
+            "command line: no job of the sweep has an option 'motion.spede'");
   EXPECT_NE(refused({"acquisition.beta=1,2"}).find("unknown option 'beta'"), std::string::npos);
 }
 
@@ -254,8 +254,8 @@ TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
   const std::vector<RoundTrip> cases{
       {"paper/object_i.yaml", {"seed=range(0,3)", "taps=12,17"}},
       {"paper/object_i.yaml", {"kernel=rbf,matern52,rational_quadratic", "kernel.alpha=1,2"}},
-      {"paper/object_i.yaml", {"backend=paper,two_stage,adaptive", "backend.motion.speed=3cm/s,6cm/s"}},
-      {"paper/object_i.yaml", {"backend.motion.type=two_stage,continuous,paper"}},
+      {"paper/object_i.yaml", {"motion=paper,two_stage,adaptive", "motion.speed=3cm/s,6cm/s"}},
+      {"paper/object_i.yaml", {"motion.type=two_stage,continuous,paper"}},
       {"paper/object_i.yaml", {"candidates.spacing=5 mm,1 cm", "candidates.count=none"}},
       {"paper/object_i.yaml", {"scene=object_i,two_blocks,cone", "fitting=fixed,ceres"}},
       {"paper/object_i.yaml", {"height.kernel=matern32,rbf", "kernel.length_scale=2cm,3cm"}},

@@ -85,7 +85,7 @@ class Module(InFolder):
         self.refuses("after", "there are 9 taps", "take fewer", lambda: run.after(10))
 
     def test_who_tells_what_the_simulator_felt_is_sent_where_the_simulator_was(self):
-        felt = palpate.run(DEFAULT, "taps=14", "backend=gentle", seed=5, runs=self.folder)
+        felt = palpate.run(DEFAULT, "taps=14", "motion=gentle", seed=5, runs=self.folder)
         with self.begun("taps=14", seed=5) as experiment:
             for row in felt.taps:
                 tap = experiment.ask()
@@ -101,7 +101,7 @@ class Module(InFolder):
         self.assertIn("all equal", program("replay", experiment.directory))
 
     def test_a_caller_who_taps_the_scene_has_the_errors_of_the_simulator(self):
-        felt = palpate.run(DEFAULT, "taps=14", "backend=gentle", seed=5, runs=self.folder)
+        felt = palpate.run(DEFAULT, "taps=14", "motion=gentle", seed=5, runs=self.folder)
         with self.begun("taps=14", "backend.scene_is_truth=true", seed=5) as experiment:
             for row in felt.taps:
                 experiment.ask()

@@ -69,7 +69,7 @@ TEST_F(ReportedRun, SaysByWhichMotionATapWasMadeWhereThereAreSeveral) {
     EXPECT_EQ(seen.trouble, "");
     return seen.values.at(0).get<std::string>();
   };
-  EXPECT_THAT(story("chosen"), testing::ContainsRegex("chosen by [a-z ]+, by motion [01], touched"));
+  EXPECT_THAT(story("per_tap"), testing::ContainsRegex("chosen by [a-z ]+, by motion [01], touched"));
   EXPECT_THAT(story("paper"), testing::Not(HasSubstr("by motion")));
 }
 

@@ -174,7 +174,7 @@ TEST_F(AnySide, ARunWhoseApproachesAreLimitedByTheToolOrTheArmIsPlayedAgainAndEx
 TEST_F(AnySide, ARunThatFailedByItsArmIsPlayedAgainToItsEnd) {
   // On every tap the arm takes longer than it may.
   const Ended failed = palpate({"run", config(), "--quiet", "scene=any_bowl", "space.approaches=50", "space.moves=20",
-                                "taps=9", "backend.motion.timeout=100ms", "stop.failed_in_a_row=3"});
+                                "taps=9", "motion.timeout=100ms", "stop.failed_in_a_row=3"});
   EXPECT_EQ(failed.status, 1);
   EXPECT_THAT(failed.err, testing::HasSubstr("3 taps in a row failed"));
   const Ended ended = palpate({"replay", directory()});

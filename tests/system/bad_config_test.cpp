@@ -76,7 +76,7 @@ std::vector<Case> cases() {
            "label, "
            "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
            "tie_tolerance, "
-           "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
+           "accuracy, threads, instruction_set, stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
       line("DottedKeyInAFile", "label.clip: yes", "10:1: unknown option 'label.clip', write label: {clip: yes}"),
       line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",
            "10:1: unknown option 'height.kernel.length_scale', write height: {kernel: {length_scale: 2 cm}}"),
@@ -95,18 +95,18 @@ std::vector<Case> cases() {
             "label, "
             "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
             "tie_tolerance, "
-            "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
+            "accuracy, threads, instruction_set, stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
       whole("GroupUnderAnotherName", without("  - scene") + "world: {area: {width: 23 cm, depth: 23 cm}}\n",
             "9:1: unknown option 'world', known: complete, name, seed, taps, initial, candidates, kernel, height, "
             "label, "
             "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
             "tie_tolerance, "
-            "accuracy, threads, instruction_set, stop, scene, backend, log, defaults, strategy, sweep, expect"),
-      typed("OptionThatTheGroupsFileHasToo", {"backend=chosen", "backend.motion.speed=6cm/s"},
-            "unknown option 'speed' of backend.motion, known: type, of"),
+            "accuracy, threads, instruction_set, stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
+      typed("OptionThatTheGroupsFileHasToo", {"motion=per_tap", "motion.speed=6cm/s"},
+            "unknown option 'speed' of motion, known: type, of"),
       line("OptionThatTheGroupsFileHadForAnotherType",
-           "backend: {motion: {type: chosen, of: [{type: paper}, {type: paper}], pause: 1 s}}",
-           "10:70: unknown option 'pause' of backend.motion, known: type, of"),
+           "motion: {type: per_tap, of: [{type: paper}, {type: paper}], pause: 1 s}",
+           "10:61: unknown option 'pause' of motion, known: type, of"),
       line("OptionOfAnotherPlugin", "acquisition: {type: weighted, count: 4}",
            "10:31: unknown option 'count' of acquisition/weighted, known: type"),
       line("UnknownNameOfAChoice", "posterior: dens", "10:12: posterior: unknown value 'dens', did you mean 'dense'?"),
@@ -175,12 +175,16 @@ std::vector<Case> cases() {
       typed("KeyGivenTwice", {"taps=6", "seed=2", "taps=7"}, "taps is given twice, leave one of them out"),
       sweep("KeySweptTwice", "", {"taps=6", "seed=2", "taps=7"},
             "command line: taps is given twice, leave one of them out"),
-      {"MotionThatTakesTheArmAway",
+      {"MotionThatTheBackendDoesNotKnow",
        without("  - backend") + "backend: {type: process, command: tap}\n",
-       {"run", "bad.yaml", "backend=chosen"},
-       "command line: backend=chosen would tap with the simulator instead of process, add backend.type=simulator if "
-       "that "
-       "is meant"},
+       {"run", "bad.yaml", "motion=per_tap"},
+       "command line: motion.type: unknown value 'per_tap', known: paper, two_stage, continuous"},
+      {"MotionOfABackendWithoutOne",
+       without("  - backend") + "backend: caller\n",
+       {"run", "bad.yaml", "motion=gentle"},
+       "command line: backend/caller has no motion, take 'motion' away"},
+      line("MotionWithinTheBackend", "backend: {motion: {speed: 1 cm/s}}",
+           "10:11: unknown option 'motion' of backend, write motion: {...} beside backend, not within"),
 
       // Files, groups and plugins
       line("MeshThatIsNotThere", "scene: {objects: [{type: mesh, file: /nowhere.stl, unit: 1 mm}]}",
@@ -242,8 +246,8 @@ std::vector<Case> cases() {
            "10:57: scene.objects.0.amplitude: is larger than the mean height, the top would dip below the desk"),
       line("ObjectTooBigForRandomPlacement", "scene: {placement: random, objects: [{type: wave, length: 50 cm}]}",
            "10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
-      line("HoverBelowTheObject", "backend: {motion: {hover: 5 cm}}",
-           "10:27: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, raise it or "
+      line("HoverBelowTheObject", "motion: {hover: 5 cm}",
+           "10:17: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, raise it or "
            "lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",

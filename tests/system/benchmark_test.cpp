@@ -15,7 +15,7 @@ class Benchmark : public Shell {
  protected:
   /// The sweep with fewer taps and seeds, and some of its keys narrowed.
   fs::path narrowed(const Words& keys, int taps = 20, const std::string& seeds = "1000,1001") const {
-    return swept(Words("backend=chosen seed=" + seeds + " taps=" + std::to_string(taps)) + keys, kStrategies);
+    return swept(Words("motion=per_tap seed=" + seeds + " taps=" + std::to_string(taps)) + keys, kStrategies);
   }
   /// One object, and strategies that cost little.
   fs::path cubes(int taps) const { return narrowed("scene=cube strategy=random,grid scene.effects=none", taps); }
@@ -57,7 +57,7 @@ TEST_F(Benchmark, TapsWithEachAcquisitionForEachBeliefFromTheSameFirstTaps) {
 
 TEST_F(Benchmark, RunsTheDefaultAsItIsShipped) {
   const Words print = "name=x --print-config";
-  const std::string in_sweep = run(print + "strategy=default scene=object_i backend=chosen", kStrategies).out;
+  const std::string in_sweep = run(print + "strategy=default scene=object_i motion=per_tap", kStrategies).out;
   const std::string shipped = run(print + "scene.placement=random taps=60", config("default.yaml")).out;
   ASSERT_THAT(in_sweep, HasSubstr("\ntaps:"));
   EXPECT_EQ(in_sweep.substr(in_sweep.find("\ntaps:")), shipped.substr(shipped.find("\ntaps:")));

@@ -100,7 +100,7 @@ TEST_F(Completion, OfValuesHasChoicesFlagsAndTheItemsOfLists) {
   EXPECT_THAT(keys("log.maps="), UnorderedElementsAre(Key("log.maps=true"), Key("log.maps=false")));
   EXPECT_THAT(keys("scene.objects."), UnorderedElementsAre(Key("scene.objects.0.")));
   EXPECT_THAT(keys("scene.objects.0.amp"), UnorderedElementsAre(Key("scene.objects.0.amplitude=")));
-  EXPECT_THAT(keys("backend.motion."), Contains(Key("backend.motion.step=")));
+  EXPECT_THAT(keys("motion."), Contains(Key("motion.step=")));
   for (const char* before : {"", "["}) {
     const std::string axis = std::string("acquisition=") + before + "weighted,";
     EXPECT_THAT(offered({"sweep", "configs/paper/object_i.yaml", axis + "unc"}),

@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(With, ExplainEveryTap,
                              // Failed taps, some and all, and predictions.
                              Words{"scene.effects={missed_contacts: {probability: 0.3}, reach: {}}", "seed=2"},
                              Words{"scene.effects.missed_contacts={probability: 1}", "surface=two_part", "taps=6"},
-                             "backend=adaptive"));
+                             "motion=adaptive"));
 
 TEST_F(Explain, TellsEveryTapOfAFootprintByItsProbability) {
   expect_explained(ran({}, config("default.yaml")), "primitives");
@@ -172,7 +172,7 @@ TEST_F(Explain, TellsWhatTheFootprintRemarks) {
 TEST_F(Explain, SaysWhichTapsAreDoubtedSinceWhenAndWhy) {
   // Some of these taps are of the air.
   const fs::path directory =
-      ran("scene=l scene.placement=random seed=112 scene.effects=standard backend=gentle backend.motion.confirm=false "
+      ran("scene=l scene.placement=random seed=112 scene.effects=standard motion=gentle motion.confirm=false "
           "taps=30",
           config("default.yaml"));
   const json summary = json::parse(text_of(directory / "summary.json"));

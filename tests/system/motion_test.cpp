@@ -19,12 +19,12 @@ struct Motion {
   int taps = 0;
 };
 
-Motion measured(const std::string& backend, int seeds) {
+Motion measured(const std::string& motion, int seeds) {
   Motion out;
   for (int seed = 0; seed < seeds; ++seed) {
     const ResolvedConfig config =
         shipped_config("paper/object_i.yaml", {"scene=object_i_arm", "surface=two_part", "height.signal=5cm",
-                                               "backend=" + backend, "seed=" + std::to_string(seed)});
+                                               "motion=" + motion, "seed=" + std::to_string(seed)});
     FromAbove experiment(config.options, shared_host(), nullptr);
     Collector collector;
     experiment.run(collector);
@@ -41,25 +41,25 @@ Motion measured(const std::string& backend, int seeds) {
 }
 
 TEST(Motions, OfThePaperHasTheErrorAndTheTimeThatAreKnownOfIt) {
-  const Motion paper = measured("simulator", 40);
+  const Motion paper = measured("paper", 40);
   EXPECT_NEAR(paper.error, 0.013, 0.0012);
   EXPECT_NEAR(paper.seconds, 6.4, 0.4);
 }
 
 TEST(Motions, OfOurOwnAreExactToTwoMillimetresAtLessThanFiveSeconds) {
-  for (const char* backend : {"continuous", "adaptive"}) {
-    const Motion ours = measured(backend, 40);
-    EXPECT_LT(ours.error, 0.002) << backend;
-    EXPECT_LT(ours.seconds, 5.0) << backend;
+  for (const char* motion : {"continuous", "adaptive"}) {
+    const Motion ours = measured(motion, 40);
+    EXPECT_LT(ours.error, 0.002) << motion;
+    EXPECT_LT(ours.seconds, 5.0) << motion;
   }
 }
 
 TEST(Motions, AdaptiveHoverSavesTimeWhereTheModelIsSure) {
   // A long length scale: after a few taps the height of a block is known everywhere.
-  const auto seconds = [](const std::string& backend) {
-    const ResolvedConfig config =
-        shipped_config("paper/object_ii.yaml", {"kernel.length_scale=10cm", "surface=two_part", "height.signal=5cm",
-                                                "taps=30", "seed=3", "backend=" + backend});
+  const auto seconds = [](const std::string& motion) {
+    const ResolvedConfig config = shipped_config(
+        "paper/object_ii.yaml",
+        {"kernel.length_scale=10cm", "surface=two_part", "height.signal=5cm", "taps=30", "seed=3", "motion=" + motion});
     FromAbove experiment(config.options, shared_host(), nullptr);
     Collector collector;
     experiment.run(collector);

@@ -93,7 +93,7 @@ using Earlier = Shell;
 
 TEST_F(Earlier, SummariesHaveTheModelsThatABackendReadsWhereNoTruthIsKnown) {
   const fs::path directory =
-      swept("backend.motion.adaptive_hover={} name=early acquisition=random,grid taps=8", config("process.yaml"));
+      swept("motion.adaptive_hover={} name=early acquisition=random,grid taps=8", config("process.yaml"));
   EXPECT_EQ(palpate(Words{"compare", directory} + "--by acquisition --at 5 --metric robot_seconds").status, 0);
   for (int job : {0, 1})
     EXPECT_THAT(text_of(job_of(directory, job) / "summary_at_5.json"), ContainsRegex("\"signal\": [0-9]"));

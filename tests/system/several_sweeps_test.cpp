@@ -31,7 +31,7 @@ class SeveralSweeps : public Shell {
   /// A config of one's own, whose acquisition is not swept.
   std::string own() const {
     return write("own.yaml",
-                 "defaults: [{strategy: uncertainty}, {backend: paper}]\nname: own\nscene: object_i\ntaps: 30\n")
+                 "defaults: [{strategy: uncertainty}, {motion: paper}]\nname: own\nscene: object_i\ntaps: 30\n")
         .string();
   }
 };
@@ -57,10 +57,9 @@ TEST_F(SeveralSweeps, GroupAnOptionThatOneSweepsAndTheOtherHasInItsConfig) {
   const fs::path swept = named("earlier", "acquisition=random,uncertainty height.noise=2mm");
   // The same acquisition and noise, in another unit, on seeds of which four are the same.
   const fs::path fixed =
-      named("later", "seed=range(1,6) height.noise=0.2cm backend.motion.speed=5cm/s acquisition=uncertainty");
-  const Ended ended =
-      about("compare", {swept, fixed},
-            "--by acquisition,backend.motion.speed --metric rmse_m --format csv --baseline random,0.024m/s");
+      named("later", "seed=range(1,6) height.noise=0.2cm motion.speed=5cm/s acquisition=uncertainty");
+  const Ended ended = about("compare", {swept, fixed},
+                            "--by acquisition,motion.speed --metric rmse_m --format csv --baseline random,0.024m/s");
   std::vector<std::string> groups;
   for (const Cells& row : csv_rows(ended.out)) {
     if (row.at("kind") != "group") continue;

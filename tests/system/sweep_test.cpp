@@ -99,7 +99,7 @@ TEST_F(Sweeps, CountStartsWithoutContactByTheInitialTapsOfEachGroup) {
 
 TEST_F(Sweeps, CountAsStartsWithoutContactOfASearchWhatItNeverFound) {
   const std::string table =
-      sweep("backend=chosen strategy=random,default scene=cube scene.effects=none taps=12 seed=range(0,10) --quiet",
+      sweep("motion=per_tap strategy=random,default scene=cube scene.effects=none taps=12 seed=range(0,10) --quiet",
             config("benchmark/strategies.yaml"))
           .out;
   int never = 0;

@@ -70,14 +70,13 @@ TEST_F(ComposeStrategy, MayBeAWholeConfig) {
 }
 
 TEST_F(ComposeStrategy, BringsAMotionWhereNobodyElseSaysOneAndNeverAPartOfOne) {
-  folder_.write("strategy/quick.yaml",
-                "backend: {type: process, motion: {type: continuous, speed: 20 cm/s, brake: 3 cm}}\n");
+  folder_.write("strategy/quick.yaml", "backend: process\nmotion: {type: continuous, speed: 20 cm/s, brake: 3 cm}\n");
   folder_.write("strategy/quicker.yaml",
-                "defaults:\n  - strategy: quick\nbackend: {motion: {type: continuous, speed: 30 cm/s}}\n");
-  folder_.write("backend/arm.yaml", "backend: {type: baxter, motion: {type: continuous, speed: 1 cm/s}}\n");
+                "defaults:\n  - strategy: quick\nmotion: {type: continuous, speed: 30 cm/s}\n");
+  folder_.write("backend/arm.yaml", "backend: {type: baxter}\nmotion: {type: continuous, speed: 1 cm/s}\n");
   folder_.write("backend/bare.yaml", "backend: {type: simulator}\n");
   const auto motion = [&](const std::string& text, const std::vector<std::string>& words = {}) {
-    return value(text, "backend.motion", words);
+    return value(text, "motion", words);
   };
   EXPECT_EQ(value("strategy: quick\nbackend: bare\n", "backend.type"), "simulator") << "the backend is the run's";
   const std::string quick = of("{type: continuous, speed: 20 cm/s, brake: 3 cm}");
@@ -87,13 +86,32 @@ TEST_F(ComposeStrategy, BringsAMotionWhereNobodyElseSaysOneAndNeverAPartOfOne) {
   const std::string slow = of("{type: continuous, speed: 1 cm/s}");
   EXPECT_EQ(motion("strategy: quick\nbackend: arm\n"), slow);
   EXPECT_EQ(motion("backend: arm\n", {"strategy=quick"}), slow);
-  EXPECT_EQ(motion("defaults:\n  - strategy: quick\nbackend: {type: baxter, motion: {speed: 1 cm/s}}\n"),
+  EXPECT_EQ(motion("defaults:\n  - strategy: quick\nbackend: {type: baxter}\nmotion: {speed: 1 cm/s}\n"),
             of("{speed: 1 cm/s}"));
-  EXPECT_EQ(motion("strategy: quick\nbackend: bare\n", {"backend.motion.speed=2cm/s"}),
+  EXPECT_EQ(motion("strategy: quick\nbackend: bare\n", {"motion.speed=2cm/s"}),
             of("{type: continuous, speed: 2cm/s, brake: 3 cm}"))
       << "a person may";
-  EXPECT_TRUE(config_keys().is_of_strategy("backend.motion.speed"));
-  EXPECT_FALSE(config_keys().is_of_strategy("backend.motions"));
+  EXPECT_TRUE(config_keys().is_of_strategy("motion.speed"));
+  EXPECT_FALSE(config_keys().is_of_strategy("backend.pace"));
+}
+
+TEST_F(ComposeStrategy, ABackendBringsItsMotionUnlessThatIsChosenAsLate) {
+  folder_.write("backend/arm.yaml", "backend: {type: baxter}\nmotion: {type: continuous, speed: 1 cm/s}\n");
+  folder_.write("backend/other.yaml", "defaults:\n  - backend: arm\nbackend: {dry_run: true}\n");
+  folder_.write("motion/steps.yaml", "motion: {type: paper, step: 1 cm}\n");
+  const std::string both = "defaults:\n  - backend: simulator\n  - motion: steps\n";
+  const std::string steps = of("{type: paper, step: 1 cm}");
+  const std::string slow = of("{type: continuous, speed: 1 cm/s}");
+  EXPECT_EQ(value(both, "motion"), steps);
+  for (const char* arm : {"backend=arm", "backend=other"}) {
+    EXPECT_EQ(value(both, "motion", {arm}), slow) << "no arm moves as a simulated one did";
+    EXPECT_EQ(value(both, "motion", {arm, "motion=steps"}), steps);
+    EXPECT_EQ(value(both, "motion", {"motion=steps", arm}), steps);
+  }
+  EXPECT_EQ(value(both, "motion", {"backend=arm", "motion.speed=2cm/s"}), of("{type: continuous, speed: 2cm/s}"));
+  EXPECT_EQ(value("defaults:\n  - motion: steps\n  - backend: arm\n", "motion"), steps);
+  EXPECT_EQ(value("defaults:\n  - backend: arm\nmotion: {speed: 3 cm/s}\n", "motion"),
+            of("{type: continuous, speed: 3 cm/s}"));
 }
 
 TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {

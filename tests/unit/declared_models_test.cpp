@@ -60,7 +60,7 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
                "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
       ElementsAre("footprint primitives: acquisition footprint_entropy", "height GP: stop.max_standard_deviation",
                   "surface GP: stop.expected_rmse", "footprint primitives: stop.expected_rmse"));
-  EXPECT_THAT(readers({"acquisition=random", "fallback=none", "backend.motion.adaptive_hover={clearance: 2cm}"}),
+  EXPECT_THAT(readers({"acquisition=random", "fallback=none", "motion.adaptive_hover={clearance: 2cm}"}),
               ElementsAre("height GP: backend simulator"));
 }
 
@@ -73,7 +73,7 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
                           {"acquisition=uncertainty", "surface=two_part"},
                           {"acquisition=object_uncertainty", "footprint=primitives", "surface=two_part"},
                           {"acquisition=random", "surface=two_part", "stop.expected_rmse=1mm"},
-                          {"acquisition=random", "surface=two_part", "backend.motion.adaptive_hover={}"}}) {
+                          {"acquisition=random", "surface=two_part", "motion.adaptive_hover={}"}}) {
     Words all = words;
     all.insert(all.end(), {"fallback=none", "initial.design=grid", "initial.count=9"});  // one of them hits
     Prepared prepared("paper/object_i.yaml", all);

@@ -139,7 +139,7 @@ double rmse_by_the_formula(FromAbove& experiment, const ExperimentOptions& optio
 
 TEST(ExpectedRmse, IsAtEachTapThatOfTheFormulaAlsoWhereTheDeskIsNotAtZero) {
   const std::vector<std::string> plain{
-      "scene.desk=-3 cm", "height.outlier_probability=none", "height.offset=none", "backend=gentle",
+      "scene.desk=-3 cm", "height.outlier_probability=none", "height.offset=none", "motion=gentle",
       "taps=14",          "kernel.length_scale=3 cm"};
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
            {}, {"footprint=gp_classifier"}, {"surface=single", "acquisition=uncertainty", "footprint=gp_regression"}}) {
@@ -195,7 +195,7 @@ TEST(ExpectedRmse, NeedsNoTruthAndNoModelThatTheRunHasNot) {
 
   Finished blind("default.yaml",
                  {"taps=6", "acquisition=random", "initial.design=random", "height.outlier_probability=none",
-                  "footprint=gp_classifier", "backend=gentle"},
+                  "footprint=gp_classifier", "motion=gentle"},
                  scripted({contact_at(0.1), contact_at(0.1)}));
   EXPECT_FALSE(blind.experiment.expected_rmse());
   EXPECT_FALSE(blind.experiment.result().expected_rmse);

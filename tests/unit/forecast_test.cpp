@@ -167,7 +167,7 @@ TEST(Forecast, NeverCutsTheInitialTapsShort) {
 }
 
 TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
-  Finished run("default.yaml", {"taps=12", "height.outlier_probability=none", "backend=gentle"});
+  Finished run("default.yaml", {"taps=12", "height.outlier_probability=none", "motion=gentle"});
   for (const TapRecord& tap : run.taps) EXPECT_FALSE(tap.forecast || tap.surface_gp);
   EXPECT_FALSE(run.experiment.result().forecast.has_value());
 }

@@ -9,7 +9,7 @@ constexpr const char* kTrailing = "{stiffness: {object: 1500 N/m}, joint_lag: {d
 
 TEST(Motions, OfTheSimulatorAreThoseThatAreAskedFor) {
   const char* several =
-      "{type: chosen, of: [{type: paper}, {type: continuous, speed: 6 cm/s}, {type: continuous, speed: 3 cm/s}]}";
+      "{type: per_tap, of: [{type: paper}, {type: continuous, speed: 6 cm/s}, {type: continuous, speed: 3 cm/s}]}";
   const char* alone[] = {"{type: paper}", "{type: continuous, speed: 6 cm/s}", "{type: continuous, speed: 3 cm/s}"};
   for (const char* effects : {"{}", kTrailing}) {
     const TappingBench all(kObjectI, effects, several);
@@ -25,7 +25,7 @@ TEST(Motions, OfTheSimulatorAreThoseThatAreAskedFor) {
 
 TEST(Motions, TellWhatATapTakesOnAPerfectArm) {
   const auto choice = choose(shared_host(), "backend", "simulator",
-                             "{motion: {type: chosen, of: [{type: paper}, {type: two_stage}, {type: continuous}, "
+                             "{motion: {type: per_tap, of: [{type: paper}, {type: two_stage}, {type: continuous}, "
                              "{type: continuous, adaptive_hover: {certainty: 0.9}}]}}");
   const TappingBench bench(kObjectI, "{}", "{type: paper}");
   const auto motions = shared_host().motions(choice, bench.scene());
@@ -58,10 +58,10 @@ TEST(Motions, OfWhichThereIsNoChoiceAreRefused) {
       return error.what();
     }
   };
-  EXPECT_NE(refusal("{type: chosen, of: [{type: paper}]}").find("at least two"), std::string::npos);
-  EXPECT_NE(refusal("{type: chosen, of: [{type: paper}, {type: paper, hover: 20 cm}]}").find("same hover"),
+  EXPECT_NE(refusal("{type: per_tap, of: [{type: paper}]}").find("at least two"), std::string::npos);
+  EXPECT_NE(refusal("{type: per_tap, of: [{type: paper}, {type: paper, hover: 20 cm}]}").find("same hover"),
             std::string::npos);
-  EXPECT_NE(refusal("{type: chosen, of: [{type: paper}, {type: chosen}]}").find("chosen"), std::string::npos);
+  EXPECT_NE(refusal("{type: per_tap, of: [{type: paper}, {type: per_tap}]}").find("per_tap"), std::string::npos);
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ TEST(Pace, ARunRecordsByWhichMotionEachTapWasMadeAndGoesOnAsItWouldHave) {
 }
 
 TEST(Pace, ABackendWithOneMotionIsAskedForNoOtherAndItsRecordTellsOfNone) {
-  Finished one("default.yaml", {"backend=gentle", "taps=8"});
+  Finished one("default.yaml", {"motion=gentle", "taps=8"});
   for (const TapRecord& tap : one.taps) {
     EXPECT_EQ(tap.motion, 0);
     EXPECT_FALSE(tap.expected_seconds);
@@ -169,7 +169,7 @@ TEST(Pace, ABackendWithOneMotionIsAskedForNoOtherAndItsRecordTellsOfNone) {
 TEST(Chooser, ASearchLooksAgainWhereATapWasBrokenOff) {
   // The first tap of the search comes to nothing: nobody has looked there, so the next goes beside it.
   const auto second = [](Contact first) {
-    Prepared run("default.yaml", {"backend=gentle", "taps=2"}, scripted({std::move(first)}));
+    Prepared run("default.yaml", {"motion=gentle", "taps=2"}, scripted({std::move(first)}));
     run.run();
     return std::hypot(run.taps[1].target.x - run.taps[0].target.x, run.taps[1].target.y - run.taps[0].target.y);
   };

@@ -57,9 +57,6 @@ fs::path shown(const fs::path& path) {
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
 constexpr Layer kLayersOfGroup = 16;
 
-constexpr const char* kBackend = "backend";
-constexpr const char* kSimulator = "simulator";
-
 [[noreturn]] void refuse_depth(const Place& place) {
   throw Error(place.text(), fmt::format("groups build on each other more than {} deep", kLayersOfGroup),
               "put what they hold into fewer files");
@@ -104,7 +101,7 @@ bool others_may_write(const fs::path& folder) { return gives(folder, fs::perms::
 /// of some mounted disks.
 bool is_common(const fs::path& folder) { return gives(folder, fs::perms::others_write | fs::perms::sticky_bit); }
 
-/// A group that is chosen brings its types, those of the groups within it (a backend's motion) included.
+/// A group that is chosen brings its types, those of the groups within it included.
 void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
   for (Tree::Entry& entry : content.entries) {
     if (entry.value.is_map()) set_layer_of_type(entry.value, layer, place);
@@ -126,6 +123,15 @@ void inherit_shared(Tree& tree, const ConfigKeys& keys) {
     merged.merge(*own);
     merged.place = own->place;
     tree.at_path(heir, own->place) = std::move(merged);
+  }
+}
+
+/// Refuses, within the group of a plugin, the options that stand beside it.
+void check_beside(const Tree& group, const std::string& name, const std::string& beside) {
+  for (const Tree::Entry& entry : group.entries) {
+    if (beside.empty() || entry.key != beside) continue;
+    throw Error(entry.place.text(), fmt::format("unknown option '{}' of {}", entry.key, name),
+                fmt::format("write {}: {{...}} beside {}, not within", beside, name));
   }
 }
 
@@ -251,16 +257,24 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
     below.shift_layer(static_cast<int>(i) - static_cast<int>(bases.size()));
     content.merge(below);
   }
+  const std::string beside_group = keys_.beside(group);
   for (const Tree::Entry& entry : own.entries) {
-    if (entry.key != group) {
+    const bool is_beside = !beside_group.empty() && entry.key == beside_group;
+    if (entry.key != group && !is_beside) {
       throw Error(entry.place.text(), fmt::format("unknown key '{}'", entry.key),
-                  fmt::format("a file in {}/ holds only '{}:'", group, group));
+                  fmt::format("a file in {}/ holds only '{}:'{}", group, group,
+                              beside_group.empty() ? "" : fmt::format(" and '{}:'", beside_group)));
     }
     if (!entry.value.is_map()) {
-      throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", group),
+      throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", entry.key),
                   "write key: value below it");
     }
-    content.merge(entry.value);
+    if (is_beside) {
+      content.at(beside_group).merge(entry.value);
+    } else {
+      check_beside(entry.value, group, beside_group);
+      content.merge(entry.value);
+    }
   }
   check_layers(content, place);
   chain.pop_back();
@@ -332,9 +346,19 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
+  // What a group brings for the key beside it, as a backend its motion, counts unless that is chosen as late itself.
+  const auto is_chosen = [&](const std::string& key, Layer since) {
+    return std::any_of(choices.begin(), choices.end(),
+                       [&](const Choice& one) { return one.path == key && one.value.layer >= since; });
+  };
   const auto lay = [&](const Choice& choice) {
-    const Tree content = take_group(choice, beside, layer);
+    Tree content = take_group(choice, beside, layer);
     layer += kLayersOfGroup;
+    const std::string key = keys_.beside(choice.path);
+    if (const Tree* const brought = key.empty() ? nullptr : content.find(key)) {
+      if (!is_chosen(key, choice.value.layer)) tree.at_path(key, brought->place) = *brought;
+      content.erase(key);
+    }
     Tree& slot = tree.at_path(choice.path, choice.value.place);
     if (slot.kind == Tree::Kind::null || keys_.is_part(choice.path)) slot = Tree::map();
     if (slot.place.line == 0) slot.place = content.place;
@@ -362,16 +386,19 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   Tree own = load(file);
   own.set_layer(kGroupLayer);
   std::map<std::string, Tree> brought;
-  for (const std::string& path : keys_.strategy_parts()) {
-    if (const Tree* part = own.find_path(path)) brought.emplace(path, *part);
+  for (const std::string& key : keys_.brought()) {
+    if (const Tree* part = own.find(key); part != nullptr && part->is_map()) brought.emplace(key, *part);
   }
   std::vector<Choice> inner = take_defaults(own);
-  drop(own.entries, [&](const Tree::Entry& one) { return !keys_.is_of_strategy(one.key); });
+  const auto is_of_run = [&](const std::string& path) {
+    return !keys_.is_of_strategy(path) || keys_.is_brought(first_key(path));
+  };
+  drop(own.entries, [&](const Tree::Entry& one) { return is_of_run(one.key); });
   take_names(own, "", inner);
-  drop(inner, [&](const Choice& one) { return !keys_.is_of_strategy(one.path); });
+  drop(inner, [&](const Choice& one) { return is_of_run(one.path); });
   const fs::path root = root_of(file, kStrategy);
   lay_strategy(tree, inner, root, layer, chain);
-  for (auto& [path, part] : brought) brought_[path] = std::move(part);
+  for (auto& [key, part] : brought) brought_[key] = std::move(part);
   lay_groups(tree, inner, root, layer);
   own.set_layer(layer);
   layer += kLayersOfGroup;
@@ -392,30 +419,6 @@ fs::path Composer::found(const fs::path& file) const {
   return fs::is_regular_file(own, none) ? own.lexically_normal() : file;
 }
 
-void Composer::check_backend(const Choice& chosen, const std::vector<Choice>& before, const Tree& own,
-                             const std::vector<Override>& overrides, const fs::path& beside) {
-  const auto type_of = [](const Tree* group) {
-    const Tree* const type = group != nullptr ? group->find("type") : nullptr;
-    return type != nullptr ? type->text : std::string();
-  };
-  const auto type_in = [&](const Choice& choice) {
-    std::vector<std::string> chain;
-    const Tree content = group_content(kBackend, choice.value.text, choice.value.place, beside, chain);
-    return type_of(&content);
-  };
-  std::string old = type_of(own.find(kBackend));
-  for (const Choice& one : before) {
-    if (old.empty() && one.path == kBackend) old = type_in(one);
-  }
-  const auto is_type = [](const Override& one) { return one.path == std::string(kBackend) + ".type"; };
-  const bool is_said = std::any_of(overrides.begin(), overrides.end(), is_type);
-  const std::string type = type_in(chosen);
-  if (is_said || type != kSimulator || chosen.value.text == type || old.empty() || old == type) return;
-  throw Error(chosen.value.place.text(),
-              fmt::format("backend={} would tap with the {} instead of {}", chosen.value.text, type, old),
-              fmt::format("add backend.type={} if that is meant", type));
-}
-
 Tree Composer::compose(const fs::path& named, const std::vector<Override>& overrides) {
   groups_.clear();
   brought_.clear();
@@ -427,7 +430,6 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   take_names(own, "", choices);
   for (const Override& one : overrides) {
     if (!keys_.is_group(one.path) || !one.value.is_scalar() || is_inner(one.path)) continue;
-    if (one.path == kBackend) check_backend(one, choices, own, overrides, beside);
     drop(choices, [&](const Choice& choice) { return choice.path == one.path; });
     choices.push_back(one);
   }
@@ -444,8 +446,9 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   lay_groups(tree, choices, beside, layer);
   tree.merge(own);
   tree.complete = own.complete;
-  for (const auto& [path, part] : brought_) {
-    if (tree.find_path(path) == nullptr) tree.at_path(path, part.place) = part;
+  for (const Tree::Entry& entry : tree.entries) check_beside(entry.value, entry.key, keys_.beside(entry.key));
+  for (const auto& [key, part] : brought_) {
+    if (tree.find(key) == nullptr) tree.at_path(key, part.place) = part;
   }
   for (const Override& one : overrides) {
     if (keys_.is_group(one.path) && one.value.is_scalar()) {

@@ -40,7 +40,7 @@ void mark_complete(Tree& config);
 /// its file is a config like any other, in strategy/ or in the folder itself, so that a whole config is a strategy as
 /// well. Named by the config it is laid below the groups that the config names; as an override it takes the place of
 /// each top-level key that it has. What it says of keys that are the run's own (Field::of_run()) is left out, but for
-/// the motion of the backend: that counts, as a whole, where neither a group nor the config says any of it. So no
+/// the motion: that counts, as a whole, where neither a group nor the config says any of it. So no
 /// strategy makes an arm faster than its own config has it.
 class Composer {
  public:
@@ -87,10 +87,6 @@ class Composer {
   /// there.
   std::filesystem::path find_group(const std::string& group, const std::string& name, const Place& place,
                                    const std::filesystem::path& beside) const;
-  /// Throws Error where a file chosen on the command line is a simulator's, its name does not say so, and the config
-  /// has another backend: who thinks of a motion would believe that the arm moves.
-  void check_backend(const Choice& chosen, const std::vector<Choice>& before, const Tree& own,
-                     const std::vector<Override>& overrides, const std::filesystem::path& beside);
   void note_group(const Choice& choice, const std::filesystem::path& beside);
   Error no_file(const std::string& group, const std::string& name, const Place& place,
                 const std::filesystem::path& beside) const;
@@ -123,7 +119,7 @@ class Composer {
   /// Of group, name and folder: the content of a group that another builds on. Each is composed once, though many may
   /// build on it.
   std::map<std::array<std::string, 3>, Tree> bases_;
-  std::map<std::string, Tree> brought_;  ///< by the strategy of this composition, for keys of the run
+  std::map<std::string, Tree> brought_;  ///< by the strategy of this composition, for runs that do not say them
   std::vector<Group> groups_;
   std::filesystem::path beside_;  ///< the folder of the config of the last composition
   /// Of group, name and folder: where their file is. A sweep composes the same groups again and again.

@@ -329,7 +329,7 @@ FieldDescription describe_key(const Field& field) {
   out.drawable = field.is_drawable;
   out.heir_of = field.heir_of;
   out.owner = field.owner;
-  out.strategy_part = field.strategy_part;
+  out.beside = field.beside;
   out.neutral = constant_text(field.neutral_value, field.unit);
   return out;
 }

@@ -31,7 +31,7 @@ struct FieldDescription {
   bool drawable = false;  ///< see Field::drawable()
   std::string heir_of;    ///< see Field::inherits(); "" for none
   Owner owner = Owner::unsaid;
-  std::string strategy_part;
+  std::string beside;                  ///< see Field::with_beside(); "" for none
   std::string neutral;                 ///< see Field::neutral(): as in a config, "none" where it is absent; "" for none
   std::size_t count = 0;               ///< of `reals`, and of a row of `table`
   std::string kind;                    ///< of `plugin`

@@ -66,7 +66,10 @@ class ConfigKeys::Reader final : public Fields {
       throw std::logic_error("the key '" + name + "' does not say whether it is of a strategy or of the run");
     }
     if (field.owner == Owner::run) keys_.of_run_.insert(name);
-    if (*field.strategy_part != '\0') keys_.strategy_parts_.push_back(name + "." + field.strategy_part);
+    if (*field.beside == '\0') return;
+    keys_.groups_.emplace_back(field.beside);
+    keys_.brought_.insert(field.beside);
+    keys_.beside_.emplace(name, field.beside);
   }
 };
 
@@ -81,14 +84,16 @@ bool ConfigKeys::is_group(const std::string& path) const {
 
 bool ConfigKeys::is_plugin(const std::string& path) const { return plugins_.count(last_key(path)) > 0; }
 
+std::string ConfigKeys::beside(const std::string& path) const {
+  const auto found = beside_.find(path);
+  return found != beside_.end() ? found->second : std::string();
+}
+
 bool ConfigKeys::is_part(const std::string& path) const {
   return path.find('.') != std::string::npos && is_group(path) && !is_plugin(path);
 }
 
-bool ConfigKeys::is_of_strategy(const std::string& path) const {
-  const auto in = [&](const std::string& part) { return is_at_or_below(path, part); };
-  return of_run_.count(first_key(path)) == 0 || std::any_of(strategy_parts_.begin(), strategy_parts_.end(), in);
-}
+bool ConfigKeys::is_of_strategy(const std::string& path) const { return of_run_.count(first_key(path)) == 0; }
 
 std::vector<std::string> ConfigKeys::heirs_of(const std::string& path) const {
   std::vector<std::string> out;

@@ -6,6 +6,7 @@
 #include <palpate/options.hpp>
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -33,8 +34,12 @@ class ConfigKeys {
 
   /// Whether the value at a dotted path may come from a strategy. What no list knows may: it is refused later.
   bool is_of_strategy(const std::string& path) const;
-  /// Paths within keys of the run that a strategy may bring along.
-  const std::vector<std::string>& strategy_parts() const { return strategy_parts_; }
+  /// Whether a strategy brings a top-level key along only for runs that do not say it: Field::with_beside().
+  bool is_brought(const std::string& key) const { return brought_.count(key) > 0; }
+  /// These keys.
+  const std::set<std::string>& brought() const { return brought_; }
+  /// The key beside the plugin at a top-level path that has its options, "" for none: `motion` of `backend`.
+  std::string beside(const std::string& path) const;
 
   /// Pairs of paths: what the first does not say, the second says.
   const std::vector<std::pair<std::string, std::string>>& heirs() const { return heirs_; }
@@ -47,7 +52,8 @@ class ConfigKeys {
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< groups that are plugins: their names
   std::set<std::string> of_run_;
-  std::vector<std::string> strategy_parts_;
+  std::set<std::string> brought_;
+  std::map<std::string, std::string> beside_;  ///< by the plugin's key
   std::vector<std::pair<std::string, std::string>> heirs_;
 };
 

@@ -59,7 +59,7 @@ Tree MapReader::finish(const std::vector<std::string>& elsewhere) {
     Layer highest = entry.value.layer;  // of the last who had a say in it
     for_all(entry.value, [&](const Tree& one) { highest = std::max(highest, one.layer); });
     if (highest < type_layer_) {
-      notes_.dropped.push_back({path_ + entry.key, entry.value.place.text()});
+      notes_.dropped.push_back({path_of(entry.key), entry.value.place.text()});
       continue;
     }
     known_.insert(known_.end(), elsewhere.begin(), elsewhere.end());
@@ -182,7 +182,7 @@ std::int64_t MapReader::whole(const Tree& tree, const Field& field) const {
 }
 
 std::string MapReader::id_name(const Field& field) const {
-  return id_path_ + (*field.former_name != '\0' ? field.former_name : field.name);
+  return (is_beside(field.name) ? id_above_ : id_path_) + (*field.former_name != '\0' ? field.former_name : field.name);
 }
 
 std::string MapReader::id_text(const double* values, std::size_t count, Unit unit) {
@@ -211,7 +211,7 @@ void MapReader::write(const Field& field, std::string text) {
 }
 
 void MapReader::write(const Field& field, Tree value, std::string_view id_text) {
-  notes_.origins.push_back({path_ + field.name, claimed_ != nullptr ? claimed_->place.text() : "default"});
+  notes_.origins.push_back({name(field), claimed_ != nullptr ? claimed_->place.text() : "default"});
   if (claimed_ != nullptr) value.place = claimed_->place;
   const auto is_neutral = [&] {
     if (!is_value(field.neutral_value)) return false;
@@ -232,6 +232,10 @@ bool MapReader::is_known(const std::string& key) const {
 }
 
 void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const {
+  if (is_beside(entry.key)) {
+    throw Error(entry.place.text(), fmt::format("{} has no {}", plugin_, entry.key),
+                fmt::format("take '{}' away", path_of(entry.key)));
+  }
   const std::string reason = fmt::format("unknown option '{}'", entry.key);
   if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));
   const std::string hint = suggestion(entry.key, known);

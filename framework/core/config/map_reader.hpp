@@ -38,7 +38,9 @@ class MapReader : public Fields {
 
  protected:
   /// The name by which messages call a field: its whole path.
-  std::string name(const Field& field) const { return path_ + field.name; }
+  std::string name(const Field& field) const { return path_of(field.name); }
+  std::string path_of(const std::string& key) const { return (is_beside(key) ? above_ : path_) + key; }
+  bool is_beside(const std::string& key) const { return !beside_.empty() && key == beside_; }
   static std::string item_of(const Field& field, std::size_t i) { return field.name + ("." + std::to_string(i)); }
   std::string owner() const { return path_.empty() ? "the config" : path_.substr(0, path_.size() - 1); }
   std::string where() const { return output_.place.text(); }
@@ -71,6 +73,7 @@ class MapReader : public Fields {
   // What enters the id (identity_text()):
   bool enters(const Field& field) const { return enters_id_ && field.enters_id; }
   std::string id_name(const Field& field) const;
+  std::string id_above_;  ///< as above_, for the id
   void identify(std::string path, std::string_view value) {
     notes_.identity.push_back(std::move(path.append("=").append(value)));
   }
@@ -92,6 +95,8 @@ class MapReader : public Fields {
   const Tree& input_;
   std::string path_;
   std::string plugin_;   ///< whose options these are; "" for none
+  std::string beside_;   ///< the option of the plugin that stands beside it: Field::with_beside(); "" for none
+  std::string above_;    ///< the path of what is around such a plugin
   bool silent_ = false;  ///< a plugin among these is: any key may be its
   std::string adopted_;  ///< whose options stand among them; "" for none
   ResolveNotes& notes_;

@@ -168,7 +168,18 @@ class Resolver final : public MapReader {
                   {tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
                    fmt::format("write {}: {{type: ...}} or name a group under 'defaults'", field.name)});
     }
-    output_.at(field.name) = read_plugin(choice, tree, field, field.name);
+    if (*field.beside == '\0') {
+      output_.at(field.name) = read_plugin(choice, tree, field, field.name);
+      return;
+    }
+    known_.emplace_back(field.beside);
+    const Tree input = with_beside(tree, field);
+    Tree written = read_plugin(choice, &input, field, field.name);
+    const Tree* const found = written.find(field.beside);
+    const Tree beside = found != nullptr ? *found : Tree();
+    written.erase(field.beside);
+    output_.at(field.name) = std::move(written);
+    if (found != nullptr) output_.at(field.beside) = beside;
   }
 
   void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) override {
@@ -216,9 +227,23 @@ class Resolver final : public MapReader {
   }
 
  private:
+  /// What a config says of the plugin at `field`, with the options that stand beside it: see Field::with_beside().
+  Tree with_beside(const Tree* tree, const Field& field) const {
+    Tree out = tree != nullptr ? *tree : Tree::map();
+    for (const Tree::Entry& entry : out.entries) {
+      if (entry.key != field.beside) continue;
+      throw Error(entry.place.text(), fmt::format("unknown option '{}' of {}", entry.key, field.name),
+                  fmt::format("write {}: {{...}} beside {}, not within", field.beside, field.name));
+    }
+    for (const Tree::Entry& entry : input_.entries) {
+      if (entry.key == field.beside) out.entries.push_back(entry);
+    }
+    return out;
+  }
+
   /// Nested options at `name`, as of around(); `tree` is null where the config does not say them.
   Tree read_group(Options& options, const Tree* tree, const Field& field, const std::string& name) {
-    Resolver inner(tree != nullptr ? *tree : kNothing, path_ + name + ".", plugins_, notes_, around(field, name));
+    Resolver inner(tree != nullptr ? *tree : kNothing, path_of(name) + ".", plugins_, notes_, around(field, name));
     options.list(inner);
     return inner.finish();
   }
@@ -261,6 +286,9 @@ class Resolver final : public MapReader {
     if (type != nullptr) choice.type = name_of_plugin(*type, choice.kind, path + ".type");
     Resolver inner(tree != nullptr ? *tree : kNothing, path + ".", plugins_, notes_, around(field, name));
     inner.plugin_ = choice.kind + "/" + choice.type;
+    inner.beside_ = field.beside;
+    inner.above_ = path_;
+    inner.id_above_ = id_path_;
     inner.known_.emplace_back("type");
     inner.note_type(type != nullptr ? *type : kNothing);  // options older than it may be dropped
     if (inner.enters_id_) inner.identify(inner.id_path_ + "type", choice.type);

@@ -285,7 +285,7 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(stop, Field("stop", "reasons to stop before the budget is spent").of_strategy());
   fields.section(scene,
                  Field("scene", "what the world holds; a robot backend reads only area and desk").of_run().group());
-  fields.plugin(backend, Field("backend", "what is tapped").of_run().but_of_strategy("motion").group());
+  fields.plugin(backend, Field("backend", "what is tapped").of_run().with_beside("motion").group());
   fields.section(log, Field("log", "what is written").of_run().not_identifying());
   fields.require(
       initial.searches() || initial.count <= taps, "taps",

@@ -270,7 +270,7 @@ FieldList<TapRecord> make_tap_list() {
   list.add("max_weight", "the same", &Tap::max_weight);
   const auto is_chosen = [](const Tap& t) { return t.expected_seconds.has_value(); };
   list.add_where(is_chosen, "motion",
-                 "by which the tap was made: its place, from 0, in `backend.motion.of`; only with "
+                 "by which the tap was made: its index, from 0, in `motion.of`; only with "
                  "`type: chosen`",
                  &Tap::motion);
   list.add_where(is_chosen, "expected_seconds", "the robot time that it was expected to take",

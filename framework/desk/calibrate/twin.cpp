@@ -42,14 +42,12 @@ std::vector<TapRequest> requests_of(const Recording& recording) {
 
 Twin::Twin(const Workshop& workshop, const Recording& recording)
     : workshop_(workshop), recording_(recording), config_(recording.config.tree) {
-  const Tree* motion = config_.find_path("backend.motion");
-  if (motion == nullptr) {
+  if (config_.find("motion") == nullptr) {
     throw Error(recording.directory.string(),
                 "its backend, " + recording.config.options.backend.type + ", has no motion to be simulated by",
                 "calibrate takes runs of backends with 'motion': baxter, process, simulator");
   }
-  Tree backend = Tree::map({{"type", Tree::scalar("simulator")}, {"motion", *motion}});
-  config_.at("backend") = std::move(backend);
+  config_.at("backend") = Tree::map({{"type", Tree::scalar("simulator")}});
   config_.erase("expect");
 }
 

@@ -104,8 +104,9 @@ class Field {
   /// Whose it is; every top-level key of a config says one of the two.
   Field& of_strategy() { return owner = Owner::strategy, *this; }
   Field& of_run() { return owner = Owner::run, *this; }
-  /// Of what is the run's own, an option that a strategy may bring along for runs that do not say it.
-  Field& but_of_strategy(const char* option) { return strategy_part = option, *this; }
+  /// Of a plugin: its group of options with this name does not stand within the plugin's block but beside it, as a
+  /// group of its own. It is the run's, and a strategy may bring it along for runs that do not say it.
+  Field& with_beside(const char* option) { return beside = option, *this; }
 
   /// The value with which a run is the same as before the option existed. An option that has it does not enter the id,
   /// and a record that lacks the option is read with it. Every option that was added after version 0.1.0 declares one,
@@ -138,7 +139,7 @@ class Field {
   const char* former_name = "";
   const char* heir_of = "";
   Owner owner = Owner::unsaid;
-  const char* strategy_part = "";
+  const char* beside = "";
 };
 
 /// One of the named values of a choice. A choice that is a `type` may bring fields of its own.

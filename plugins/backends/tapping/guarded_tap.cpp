@@ -290,7 +290,7 @@ void GuardedTap::touched(double height) {
     case MotionOptions::Type::two_stage:
       return enter(Stage::back_off);
     case MotionOptions::Type::continuous:
-    case MotionOptions::Type::chosen:  // no motion of its own
+    case MotionOptions::Type::per_tap:  // no motion of its own
       return enter(Stage::stop);
   }
 }

@@ -61,10 +61,11 @@ void MotionOptions::list(Fields& fields) {
 }
 
 void BackendMotion::list(Fields& fields) {
-  list_types(fields, {{"chosen", "for each tap the one that tells most in its time", [this](Fields& inner) {
-                         inner.sections(of, Field("of", "the motions to choose from, each with options of its own"));
-                       }}});
-  if (type != Type::chosen) return list_rest(fields);
+  list_types(fields,
+             {{"per_tap", "for each tap the motion that gains most information per second", [this](Fields& inner) {
+                 inner.sections(of, Field("of", "the motions to choose from, each with options of its own"));
+               }}});
+  if (type != Type::per_tap) return list_rest(fields);
   fields.require(of.size() >= 2, "of", "names the motions to choose from, at least two");
   const auto same = [this](const MotionOptions& one) { return one.hover == of.front().hover; };
   fields.require(std::all_of(of.begin(), of.end(), same), "of", "all travel at one height, give them the same hover");
@@ -205,7 +206,7 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
       return seconds + back / motion.speed + motion.pause + back / motion.fine_speed;
     }
     case MotionOptions::Type::continuous:
-    case MotionOptions::Type::chosen:
+    case MotionOptions::Type::per_tap:
       return seconds + kWatched;
   }
   return seconds;

@@ -27,7 +27,7 @@ struct AdaptiveHover : Options {
 
 /// One tap: travel at `hover` above the desk, tare, come down in a way of its own until the force rises, retreat.
 struct MotionOptions : Options {
-  enum class Type { paper, two_stage, continuous, chosen };  ///< `chosen` is a BackendMotion's alone
+  enum class Type { paper, two_stage, continuous, per_tap };  ///< `per_tap` is a BackendMotion's alone
   Type type = Type::paper;
   double speed = 0.024;         ///< m/s, of the descent
   double step = 0.03;           ///< m, paper

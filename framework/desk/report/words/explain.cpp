@@ -93,7 +93,7 @@ class FromAboveExplained final : public Explanation {
     explain_repeats();
     if (const std::optional<double> seconds = row_.number("expected_seconds")) {
       page_.say(
-          fmt::format("It was made by motion {} of backend.motion.of, which tells most here in its time: {} "
+          fmt::format("It was made by motion {} of motion.of, which tells most here in its time: {} "
                       "were expected.",
                       tap_.motion, seconds_words(*seconds)));
     }
