@@ -42,9 +42,9 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
 program=$build/palpate
 bench=$build/tests/palpate_bench
-paper="$root/configs/paper/object_i.yaml instruction_set=baseline log.sync=none"
-default="$root/configs/default.yaml instruction_set=baseline log.sync=none"
-export PALPATE_PLUGIN_PATH='' HOME="$work"
+paper="$root/configs/paper/object_i.yaml log.sync=none"
+default="$root/configs/default.yaml log.sync=none"
+export PALPATE_PLUGIN_PATH='' PALPATE_INSTRUCTIONS=baseline HOME="$work"
 # Nothing else of the environment is there, which every program reads through when it starts.
 export GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX512VL,-AVX512BW,-AVX2,-AVX,-FMA,-FMA4,-BMI1,-BMI2,-MOVBE,-LZCNT,-ERMS,-FSRM,-RTM,-SSE4_1,-SSE4_2,-SSSE3
 
@@ -81,7 +81,7 @@ command_of() {
 count() {
   words=$(command_of "$1")
   rm -f "$work"/out.*
-  (cd "$work" && env -i PATH="$PATH" HOME="$HOME" PALPATE_PLUGIN_PATH= GLIBC_TUNABLES="$GLIBC_TUNABLES" \
+  (cd "$work" && env -i PATH="$PATH" HOME="$HOME" PALPATE_PLUGIN_PATH= PALPATE_INSTRUCTIONS=baseline GLIBC_TUNABLES="$GLIBC_TUNABLES" \
     valgrind --tool=callgrind --zero-before='palpate::run_job*' \
     --callgrind-out-file="$work/out.%p" $words) >"$work/said" 2>&1 ||
     { cat "$work/said" >&2; echo "instructions: $1 failed: $words" >&2; exit 1; }

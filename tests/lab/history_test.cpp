@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::string>{"paper/object_i.yaml", "surface=two_part", "fitting=ceres",
                                                "fitting.every=4", "seed=4"},
                       std::vector<std::string>{"paper/object_i.yaml", "acquisition=random", "label.clip=true",
-                                               "posterior=dense"},
+                                               "engine.type=dense"},
                       std::vector<std::string>{"paper/object_i.yaml", "motion=continuous",
                                                "scene.effects={missed_contacts: {probability: 0.3}}"},
                       std::vector<std::string>{"default.yaml"},

@@ -189,7 +189,7 @@ TEST(Plan, RefusesJobsThatAreTheSameRunForAnotherReason) {
   };
   ends({"seed=1,1"}, "0 and 1", twice);
   ends({"name=a,b"}, "0 and 1", differ("name"));
-  ends({"log.maps=true,false", "seed=1,2", "threads=1,2"}, "0 and 1", differ("threads"));
+  ends({"log.maps=true,false", "seed=1,2", "engine.threads=1,2"}, "0 and 1", differ("engine.threads"));
   ends({"kernel.length_scale=1cm,10mm"}, "0 and 1", differ("kernel.length_scale"));
   ends({"acquisition=grid,weighted,weighted", "acquisition.count=3,4"}, "2 and 3", twice);
   ends({"acquisition=weighted,grid", "acquisition.count=3,4,3"}, "1 and 3", twice);

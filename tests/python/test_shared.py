@@ -96,7 +96,7 @@ class Shared(InFolder):
             os.close(wait)
 
     def test_another_process_opens_a_run_for_itself(self):
-        run = palpate.run(DEFAULT, "taps=5", "threads=2", runs=self.folder)
+        run = palpate.run(DEFAULT, "taps=5", "engine.threads=2", runs=self.folder)
         surface = run.surface
         self.assertEqual(self.in_fork(lambda: np.array_equal(run.after(5).surface, surface)), "True")
         again = pickle.loads(pickle.dumps(run))

@@ -4,9 +4,12 @@
 
 #include "plugin/host.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::test {
@@ -96,5 +99,21 @@ std::string text_of(const std::filesystem::path& file);
 
 /// The one run directory below `runs`; fails the test if there is not exactly one.
 std::filesystem::path only_run(const std::filesystem::path& runs);
+
+/// An environment variable that has a value while this lives.
+class EnvironmentVariable {
+ public:
+  EnvironmentVariable(std::string name, const std::string& value) : name_(std::move(name)) {
+    if (const char* before = std::getenv(name_.c_str())) before_ = before;
+    setenv(name_.c_str(), value.c_str(), 1);
+  }
+  EnvironmentVariable(const EnvironmentVariable&) = delete;
+  EnvironmentVariable& operator=(const EnvironmentVariable&) = delete;
+  ~EnvironmentVariable() { before_ ? setenv(name_.c_str(), before_->c_str(), 1) : unsetenv(name_.c_str()); }
+
+ private:
+  std::string name_;
+  std::optional<std::string> before_;
+};
 
 }  // namespace palpate::test

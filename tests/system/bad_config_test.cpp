@@ -74,9 +74,9 @@ std::vector<Case> cases() {
       line("UnknownTopLevelKey", "colour: red",
            "10:1: unknown option 'colour', known: complete, name, seed, taps, initial, candidates, kernel, height, "
            "label, "
-           "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
+           "prior, surface, space, engine, acquisition, fitting, footprint, fallback, repeat, "
            "tie_tolerance, "
-           "accuracy, threads, instruction_set, stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
+           "stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
       line("DottedKeyInAFile", "label.clip: yes", "10:1: unknown option 'label.clip', write label: {clip: yes}"),
       line("DottedKeyOfManyParts", "height.kernel.length_scale: 2 cm",
            "10:1: unknown option 'height.kernel.length_scale', write height: {kernel: {length_scale: 2 cm}}"),
@@ -93,15 +93,15 @@ std::vector<Case> cases() {
       whole("KeysUnderAHeadingOfTheirOwn", "experiment:\n  kernel: rbf\n" + kGood,
             "1:1: unknown option 'experiment', known: complete, name, seed, taps, initial, candidates, kernel, height, "
             "label, "
-            "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
+            "prior, surface, space, engine, acquisition, fitting, footprint, fallback, repeat, "
             "tie_tolerance, "
-            "accuracy, threads, instruction_set, stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
+            "stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
       whole("GroupUnderAnotherName", without("  - scene") + "world: {area: {width: 23 cm, depth: 23 cm}}\n",
             "9:1: unknown option 'world', known: complete, name, seed, taps, initial, candidates, kernel, height, "
             "label, "
-            "prior, surface, space, posterior, lowrank, acquisition, fitting, footprint, fallback, repeat, "
+            "prior, surface, space, engine, acquisition, fitting, footprint, fallback, repeat, "
             "tie_tolerance, "
-            "accuracy, threads, instruction_set, stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
+            "stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
       typed("OptionThatTheGroupsFileHasToo", {"motion=per_tap", "motion.speed=6cm/s"},
             "unknown option 'speed' of motion, known: type, of"),
       line("OptionThatTheGroupsFileHadForAnotherType",
@@ -109,7 +109,8 @@ std::vector<Case> cases() {
            "10:61: unknown option 'pause' of motion, known: type, of"),
       line("OptionOfAnotherPlugin", "acquisition: {type: weighted, count: 4}",
            "10:31: unknown option 'count' of acquisition/weighted, known: type"),
-      line("UnknownNameOfAChoice", "posterior: dens", "10:12: posterior: unknown value 'dens', did you mean 'dense'?"),
+      line("UnknownNameOfAChoice", "engine: {type: dens}",
+           "10:16: engine.type: unknown value 'dens', did you mean 'dense'?"),
 
       // Quantities
       line("MissingUnit", "kernel: {length_scale: 0.017}",
@@ -283,19 +284,15 @@ std::vector<Case> cases() {
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
-      line("GridPosteriorWithANonSeparableKernel", "posterior: grid\nkernel: {type: matern32}",
-           "10:12: posterior: grid cannot be used with the kernel matern32, which is not separable: no product of a "
-           "factor along x and one along y, posterior: dense serves every kernel"),
-      line("LowrankPosteriorWithASum", "posterior: lowrank\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
-           "10:12: posterior: lowrank cannot be used with the kernel sum, which is not separable: no product of a "
-           "factor along x and one along y, posterior: dense serves every kernel"),
-      line("NoThreads", "threads: 0", "10:10: threads: 0 is out of range, it must be at least 1"),
-      line("UnknownInstructionSet", "instruction_set: avx",
-           "10:18: instruction_set: unknown value 'avx', known: auto, baseline"),
-      line("LowrankInSinglePrecisionAsOnce", "lowrank: {precision: single}",
-           "10:22: lowrank.precision: unknown value 'single', known: double"),
-      line("LowrankThatKeepsNothing", "lowrank: {tolerance: 0}",
-           "10:22: lowrank.tolerance: 0 is out of range, it must be above 0"),
+      line("GridPosteriorWithANonSeparableKernel", "engine: {type: grid}\nkernel: {type: matern32}",
+           "10:16: engine.type: grid cannot be used with the kernel matern32, which is not separable: no product of a "
+           "factor along x and one along y, engine: {type: dense} serves every kernel"),
+      line("LowrankPosteriorWithASum", "engine: {type: lowrank}\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
+           "10:16: engine.type: lowrank cannot be used with the kernel sum, which is not separable: no product of a "
+           "factor along x and one along y, engine: {type: dense} serves every kernel"),
+      line("NoThreads", "engine: {threads: 0}", "10:19: engine.threads: 0 is out of range, it must be at least 1"),
+      line("LowrankThatKeepsNothing", "engine: {tolerance: 0}",
+           "10:21: engine.tolerance: 0 is out of range, it must be above 0"),
 
       // The command line
       typed("OverrideOfAKernelThatIsNotThere",
@@ -314,7 +311,7 @@ std::vector<Case> cases() {
       typed("NameThatIsNotUtf8SoThatNoRecordCouldHoldIt", {"name=a\xff"}, "not UTF-8, write it in UTF-8"),
       typed("ManyNamesOfAGroup", {"acquisition=weighted,random"},
             "acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
-      typed("ManyValues", {"posterior=dense,grid"},
+      typed("ManyValues", {"engine.type=dense,grid"},
             "posterior has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ManyWholeNumbers", {"seed=1,2"},
             "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),

@@ -57,7 +57,7 @@ TEST_P(NotFinite, EndsTheRunWithOneLineThatNamesPluginAndFunction) {
 }
 
 const Words kCeres{"fitting.type=ceres"};
-const Words kFarFit{"fitting.type=not_finite", "fitting.spoils='fit: far'", "posterior=dense"};
+const Words kFarFit{"fitting.type=not_finite", "fitting.spoils='fit: far'", "engine.type=dense"};
 
 INSTANTIATE_TEST_SUITE_P(
     By, NotFinite,
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
             Spoilt{"kernel", "axis_covariance", "axis_covariance() gave"},
             Spoilt{"kernel", "parameters", "parameters() gave"},
             Spoilt{"kernel", "derivatives", "derivatives() gave", kCeres},
-            Spoilt{"kernel", "covariance", "covariance() gave", {"posterior=dense", "threads=3"}},
+            Spoilt{"kernel", "covariance", "covariance() gave", {"engine.type=dense", "engine.threads=3"}},
             Spoilt{"kernel", "covariance", "covariance() gave", {}, kAnySide},
             Spoilt{"kernel", "set_parameters", "() gave", kCeres},
             Spoilt{"kernel", "covariance of a far fit", "covariance() gave", kFarFit},

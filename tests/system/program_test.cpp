@@ -41,7 +41,7 @@ TEST_F(ProgramRun, TapsAsThePluginWithTheSameScoresOnAnyNumberOfThreads) {
   const fs::path own = ran(few(acquisition, "name=own tie_tolerance=0"));
   const fs::path plugin = ran(few("acquisition=uncertainty", "name=plugin tie_tolerance=0"));
   EXPECT_EQ(text_of(own / "taps.csv"), text_of(plugin / "taps.csv"));
-  const fs::path threads = ran(few(acquisition, "name=threads threads=2 tie_tolerance=0"));
+  const fs::path threads = ran(few(acquisition, "name=threads engine.threads=2 tie_tolerance=0"));
   EXPECT_EQ(text_of(own / "taps.csv"), text_of(threads / "taps.csv"));
 }
 

@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(OfEveryKind, KilledBeforeItsSummary,
                              {kPaper, {"stop.robot_time=60 s", "taps=100"}},
                              {kPaper,
                               {"acquisition=random", "stop.max_standard_deviation=90 cm", "kernel.length_scale=5 cm"}},
-                             {kPaper, {"posterior=lowrank", "kernel.length_scale=6 cm"}}}));
+                             {kPaper, {"engine.type=lowrank", "kernel.length_scale=6 cm"}}}));
 
 }  // namespace
 }  // namespace palpate

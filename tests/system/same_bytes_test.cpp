@@ -14,10 +14,10 @@ namespace {
 using ARun = Shell;
 
 TEST_F(ARun, GivesTheSameBytesUnderTheSameIdEachTimeAndOnAnyNumberOfThreads) {
-  for (const char* posterior : {"posterior=dense", "posterior=grid", "posterior=lowrank"}) {
+  for (const char* posterior : {"engine.type=dense", "engine.type=grid", "engine.type=lowrank"}) {
     fs::path first;
     for (const char* threads : {"1", "2", "3", "1"}) {
-      const fs::path again = ran({"candidates.count=150", posterior, std::string("threads=") + threads});
+      const fs::path again = ran({"candidates.count=150", posterior, std::string("engine.threads=") + threads});
       if (first.empty()) {
         first = here() / again.filename();
         fs::rename(again, first);
@@ -34,8 +34,14 @@ TEST_F(ARun, GivesTheSameBytesUnderTheSameIdEachTimeAndOnAnyNumberOfThreads) {
 TEST_F(ARun, NamesTheInstructionSetOfItsLoopsInTheManifest) {
   EXPECT_THAT(part_of(ran(), "manifest"),
               HasSubstr(std::string("\"instruction_path\": \"") + simd::fastest().name + "\""));
-  EXPECT_THAT(part_of(ran("--runs baseline instruction_set=baseline"), "manifest"),
-              HasSubstr("\"instruction_path\": \"SSE2\""));
+  const EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "baseline");
+  EXPECT_THAT(part_of(ran("--runs baseline"), "manifest"), HasSubstr("\"instruction_path\": \"SSE2\""));
+}
+
+TEST_F(ARun, RejectsAnUnknownInstructionSet) {
+  const EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "avx");
+  EXPECT_THAT(refused({"run", config("paper/object_i.yaml").string()}),
+              HasSubstr("PALPATE_INSTRUCTIONS: unknown value 'avx', write baseline, or unset it"));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ struct Impossible final : Kernel {
 
 TEST(Diagnostics, OfTheClassifierTellJitterAsAVarianceAndItsCountBeside) {
   const Instead<Kernel> plugins(std::make_shared<Impossible>());
-  Finished run("default.yaml", {"footprint=gp_classifier", "posterior=dense", "acquisition=random", "taps=6"},
+  Finished run("default.yaml", {"footprint=gp_classifier", "engine.type=dense", "acquisition=random", "taps=6"},
                scripted({contact_at(0.05), contact_at(0.0), contact_at(0.05), contact_at(0.05)}), plugins);
   run.experiment.ask(Quantity::probability | Quantity::height);
   const RunResult result = run.experiment.result();

@@ -34,14 +34,14 @@ TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
 }
 
 TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
-  EXPECT_EQ(id_of({"name=other", "log.maps=true", "log.sync=none", "log.surface=false", "threads=2"}), id_of());
+  EXPECT_EQ(id_of({"name=other", "log.maps=true", "log.sync=none", "log.surface=false", "engine.threads=2"}), id_of());
 }
 
 TEST(ResolvedConfig, PutsAllElseIntoTheId) {
   const std::string id = id_of();
   for (const char* text :
        {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "height.noise=0.2mm", "label.clip=true",
-        "posterior=dense", "acquisition=uncertainty", "fallback=none", "repeat=allow", "tie_tolerance=0",
+        "engine.type=dense", "acquisition=uncertainty", "fallback=none", "repeat=allow", "tie_tolerance=0",
         "stop.robot_time=9min", "scene.desk=1cm", "motion.pause=0s", "kernel=matern32", "kernel=swell_and_texture",
         "surface=two_part", "label.hyperparameters=shared"}) {
     EXPECT_NE(id_of({text}), id) << text;

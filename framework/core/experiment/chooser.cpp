@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/chooser.hpp"
 
+#include "gp/instructions.hpp"
+
 #include <palpate/error.hpp>
 
 #include <algorithm>
@@ -77,7 +79,7 @@ bool Chooser::choose_place(TapBelief& belief, TapRecord& tap, const Wish* wish) 
   }
   tap.source = wish != nullptr ? Source::caller : Source::acquisition;
   const auto pick = [&](const Eigen::VectorXd& of, double scale) {
-    return pick_best(of, allowed_, scale, options_.tie_tolerance, loops_of(options_));
+    return pick_best(of, allowed_, scale, options_.tie_tolerance, loops_in_use());
   };
   // Of scores from outside nobody says how large they are before the first tap.
   Pick picked = wish != nullptr ? pick(wish->scores, 0.0) : pick(scores(belief), acquisition_->prior_scale());

@@ -36,18 +36,18 @@ void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields)
   only("label.hyperparameters", options.label.hyperparameters == usual.label.hyperparameters);
   only("label.kernel", !options.label.kernel);
   only("label.fitting", !options.label.fitting);
-  only("posterior", options.posterior == usual.posterior);
-  only("lowrank.tolerance", options.lowrank.tolerance == usual.lowrank.tolerance);
+  only("engine.type", options.engine.type == usual.engine.type);
+  only("engine.tolerance", options.engine.tolerance == usual.engine.tolerance);
   only("fitting.type", options.fitting.type == usual.fitting.type);
   only("footprint.type", options.footprint.type == usual.footprint.type);
   only("fallback", options.fallback == usual.fallback);
   only("repeat", options.repeat == usual.repeat);
-  only("accuracy", options.accuracy == usual.accuracy);
+  only("engine.accuracy", options.engine.accuracy == usual.engine.accuracy);
   only("stop.max_standard_deviation", !options.stop.max_standard_deviation);
   only("stop.expected_rmse", !options.stop.expected_rmse);
   only("log.maps", options.log.maps == usual.log.maps);
   only("prior", !options.prior);
-  only("threads", options.threads == usual.threads);
+  only("engine.threads", options.engine.threads == usual.engine.threads);
 }
 
 }  // namespace
@@ -135,15 +135,27 @@ void LabelOptions::list(Fields& fields) {
                  "the labels are fitted with the heights when hyperparameters are shared; take it away, or choose own");
 }
 
-void LowrankOptions::list(Fields& fields) {
-  fields.real(tolerance,
-              Field("tolerance", "directions of a one-axis covariance below this share of its variance are left out")
-                  .above(0)
-                  .at_most(1)
-                  .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
-  // There was another one: all records have this key, and it enters their ids.
-  std::size_t precision = 0;
-  fields.choice(precision, Field("precision", "of the maps over the candidates"), {{"double", "the only one", {}}});
+void EngineOptions::list(Fields& fields) {
+  fields.choice(type, Field("type", "which engine keeps the posterior over the candidates"),
+                {{"auto", "the fastest that is exact enough: see accuracy", {}},
+                 {"dense", "any kernel; time and memory grow with taps times candidates", {}},
+                 {"grid", "as exact, memory grows with candidates alone; needs a separable kernel, such as rbf", {}},
+                 {"lowrank", "time grows with candidates alone, not with taps; needs a separable kernel", {}}});
+  fields.real(tolerance, Field("tolerance",
+                               "lowrank leaves out directions of a one-axis covariance below this share of its "
+                               "variance")
+                             .above(0)
+                             .at_most(1)
+                             .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
+  fields.real(accuracy, Field("accuracy",
+                              "`type: auto` takes no engine whose error beyond dense's may exceed this, or a tenth of "
+                              "tie_tolerance; in prior standard deviations, or prior variances")
+                            .at_least(0)
+                            .at_most(1));
+  fields.integer(threads, Field("threads", "number of threads that update the maps; the results are the same")
+                              .at_least(1)
+                              .at_most(64)
+                              .not_identifying());
 }
 
 void SideViewOptions::list(Fields& fields) {
@@ -244,12 +256,7 @@ void ExperimentOptions::list(Fields& fields) {
        {"implicit", "closed surfaces in space; for `scene.touch: any`, and only for that", {}}});
   if (surface == Surface::implicit && !space) space.emplace();
   fields.section(space, Field("space", "what is believed of `surface: implicit`").of_strategy());
-  fields.choice(posterior, Field("posterior", "engine of the posterior over the candidates").of_strategy(),
-                {{"auto", "the fastest that is exact enough: see accuracy", {}},
-                 {"dense", "any kernel; time and memory grow with taps times candidates", {}},
-                 {"grid", "as exact, memory grows with candidates alone; needs a separable kernel, such as rbf", {}},
-                 {"lowrank", "time grows with candidates alone, not with taps; needs a separable kernel", {}}});
-  fields.section(lowrank, Field("lowrank", "the posterior engine of that name").of_strategy());
+  fields.section(engine, Field("engine", "how the posterior over the candidates is computed").of_strategy());
   fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate").of_strategy().group());
   fields.plugin(fitting, Field("fitting", "how hyperparameters are chosen, shared by both GPs").of_strategy().group());
   fields.plugin(footprint,
@@ -267,21 +274,6 @@ void ExperimentOptions::list(Fields& fields) {
                   .at_least(0)
                   .at_most(1)
                   .from("rounding reaches 1e-12; below 1e-9 it decides taps at 1.7 cm"));
-  fields.real(accuracy,
-              Field("accuracy",
-                    "`posterior: auto` takes no engine whose error beyond dense's may exceed this, or a tenth "
-                    "of tie_tolerance; in prior standard deviations, or prior variances")
-                  .of_strategy()
-                  .at_least(0)
-                  .at_most(1));
-  fields.integer(threads, Field("threads", "that update the maps together; the results are the same")
-                              .of_run()
-                              .at_least(1)
-                              .at_most(64)
-                              .not_identifying());
-  fields.choice(instruction_set, Field("instruction_set", "of the loops that update the maps").of_run(),
-                {{"auto", "the fastest that this processor has", {}},
-                 {"baseline", "what every x86-64 has, for runs that are compared between machines", {}}});
   fields.section(stop, Field("stop", "reasons to stop before the budget is spent").of_strategy());
   fields.section(scene,
                  Field("scene", "what the world holds; a robot backend reads only area and desk").of_run().group());

@@ -64,9 +64,13 @@ struct LabelOptions : ProcessOptions {
   void list(Fields& fields) override;
 };
 
-/// Of the posterior engine `lowrank`.
-struct LowrankOptions : Options {
+/// How the posterior over the candidates is computed.
+struct EngineOptions : Options {
+  enum class Type { automatic, dense, grid, lowrank };
+  Type type = Type::automatic;
   double tolerance = 1e-15;
+  double accuracy = 1e-9;
+  std::int64_t threads = 1;
   void list(Fields& fields) override;
 };
 
@@ -106,10 +110,8 @@ struct LogOptions : Options {
 
 struct ExperimentOptions : Options {
   enum class Surface { single, two_part, implicit };
-  enum class Posterior { automatic, dense, grid, lowrank };
   enum class Fallback { uncertainty, none };
   enum class Repeat { forbid, allow };
-  enum class InstructionSet { automatic, baseline };
 
   std::int64_t complete = kRecordVersion;
   std::string name = "experiment";
@@ -123,17 +125,13 @@ struct ExperimentOptions : Options {
   std::optional<PriorOptions> prior;  ///< absent: nothing was seen before the first tap
   Surface surface = Surface::single;
   std::optional<SpaceOptions> space;  ///< of `surface: implicit`, always
-  Posterior posterior = Posterior::automatic;
-  LowrankOptions lowrank;
+  EngineOptions engine;
   PluginChoice acquisition{"acquisition", {}, nullptr};
   PluginChoice fitting{"fitting", "fixed", nullptr};
   PluginChoice footprint{"footprint", "gp_regression", nullptr};
   Fallback fallback = Fallback::uncertainty;
   Repeat repeat = Repeat::forbid;
   double tie_tolerance = 1e-8;
-  double accuracy = 1e-9;
-  std::int64_t threads = 1;
-  InstructionSet instruction_set = InstructionSet::automatic;
   StopOptions stop;
   SceneOptions scene;
   PluginChoice backend{"backend", {}, nullptr};

@@ -3,6 +3,7 @@
 
 #include "config/tree.hpp"
 #include "experiment/policy.hpp"
+#include "gp/instructions.hpp"
 
 #include <palpate/error.hpp>
 
@@ -26,12 +27,12 @@ namespace {
 
 PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   PosteriorSettings out;
-  out.engine = static_cast<PosteriorSettings::Kind>(options.posterior);
-  out.accuracy = std::min(options.accuracy, 0.1 * options.tie_tolerance);
-  out.tolerance = options.lowrank.tolerance;
+  out.engine = static_cast<PosteriorSettings::Kind>(options.engine.type);
+  out.accuracy = std::min(options.engine.accuracy, 0.1 * options.tie_tolerance);
+  out.tolerance = options.engine.tolerance;
   out.taps = static_cast<int>(options.taps);
-  out.machine.loops = &loops_of(options);
-  out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.threads));
+  out.machine.loops = &loops_in_use();
+  out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.engine.threads));
   return out;
 }
 
@@ -40,13 +41,6 @@ bool same(const PluginChoice& a, const PluginChoice& b) {
 }
 
 }  // namespace
-
-simd::Lanes lanes_of(const ExperimentOptions& options) {
-  const bool baseline = options.instruction_set == ExperimentOptions::InstructionSet::baseline;
-  return baseline ? simd::Lanes::sse2 : simd::widest();
-}
-
-const simd::Table& loops_of(const ExperimentOptions& options) { return simd::table_of(lanes_of(options)); }
 
 // The plugins are made at once, so that options which they refuse are refused before the first tap.
 TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& kernel, const PluginChoice& fitting,
@@ -63,8 +57,8 @@ TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& ker
   const std::string why = objection(posterior_, *model.kernel, candidates_);
   if (!why.empty()) {
     const char* const engine = posterior_.engine == PosteriorSettings::Kind::grid ? "grid" : "lowrank";
-    throw Error("posterior", fmt::format("{} cannot be used with the kernel {}, {}", engine, kernel.type, why),
-                "posterior: dense serves every kernel");
+    throw Error("engine.type", fmt::format("{} cannot be used with the kernel {}, {}", engine, kernel.type, why),
+                "engine: {type: dense} serves every kernel");
   }
   return model;
 }

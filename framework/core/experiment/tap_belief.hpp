@@ -22,10 +22,6 @@
 
 namespace palpate {
 
-/// The instructions that a config's instruction_set means on this processor, and the loops of them.
-simd::Lanes lanes_of(const ExperimentOptions& options);
-const simd::Table& loops_of(const ExperimentOptions& options);
-
 /// How a tap was made: whether the initial design chose it, by which motion, and what that adds to the noise of its
 /// height, metres.
 struct Manner {

@@ -4,7 +4,7 @@
 //
 //     simd::for_each(lanes_, n, [=](std::ptrdiff_t i) { out[i] = simd::exp(-0.5 * squares[i]); });
 //
-// Take `lanes_` from Context::lanes: a run with `instruction_set: baseline` then does without the wider ones.
+// Take `lanes_` from Context::lanes: a run with PALPATE_INSTRUCTIONS=baseline then does without the wider ones.
 //
 // The compiler turns the loop into vectors where the function can be seen as a whole and does not branch: arithmetic,
 // std::sqrt, std::abs, and what is offered here; a pointer is best taken into the function by value. Where it does not,

@@ -54,7 +54,7 @@ std::vector<std::string> texts_at(const Row& row, const std::string& name) {
 
 /// Whether a top-level key is one of those whose values decide what the jobs compute.
 bool decides_jobs(const std::string& key) {
-  return key != "name" && key != "log" && key != "threads" && key != "expect" && key != "complete";
+  return key != "name" && key != "log" && key != "engine.threads" && key != "expect" && key != "complete";
 }
 
 bool is_id(const std::string& text) { return text.size() == kIdLength && begins_with_id(text); }
