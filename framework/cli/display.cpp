@@ -5,6 +5,7 @@
 #include "config/scale.hpp"
 #include "reading/reading.hpp"
 #include "record/fields.hpp"
+#include "record/json.hpp"
 #include "record/tap_row.hpp"
 
 #include <fmt/format.h>
@@ -57,6 +58,16 @@ std::string relabelled_line(const Row& summary) {
                         one.on_object ? "object" : "desk", one.on_object ? "desk" : "object");
   }
   return line.empty() ? line : fmt::format("read again at the end: {}\n", line);
+}
+
+/// "suspected outliers: tap 8 (0.93), tap 12 (0.61)", "" of none.
+std::string outliers_line(const Row& row) {
+  const Scalar* const value = row.find("suspected_outliers");
+  const auto* const list = value != nullptr ? std::get_if<JsonList>(value) : nullptr;
+  std::string out;
+  for (const Row& one : list != nullptr ? rows_of(*list) : std::vector<Row>())
+    out += fmt::format("{} tap {} ({})", out.empty() ? "" : ",", one.cell("tap"), one.cell("probability"));
+  return out.empty() ? out : "suspected outliers:" + out + "\n";
 }
 
 }  // namespace
@@ -125,8 +136,7 @@ void print_summary(const RunReport& report) {
                       hit.empty() ? "the object was not found" : "first hit at tap " + hit);
   text += relabelled_line(row);
   text += error_line(row);
-  if (const std::string doubted = row.text("doubted"); !doubted.empty())
-    text += fmt::format("doubted: taps that may lie, each with the probability: {}\n", doubted);
+  text += outliers_line(row);
   text += numerics_line(row);
   print_text(text + record_line(report) + "\n");
 }

@@ -114,7 +114,12 @@ inline std::vector<Column> columns_of(const std::vector<Row>& rows) {
         } else {
           std::visit(
               [&](const auto& value) {
-                if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, std::monostate>) all.append(value);
+                using Value = std::decay_t<decltype(value)>;
+                if constexpr (std::is_same_v<Value, JsonList>) {
+                  all.append(py::module_::import("json").attr("loads")(value.text));
+                } else if constexpr (!std::is_same_v<Value, std::monostate>) {
+                  all.append(value);
+                }
               },
               *cell);
         }

@@ -169,29 +169,28 @@ TEST_F(Explain, TellsWhatTheFootprintRemarks) {
   EXPECT_THAT(explain(directory, 1), Not(HasSubstr("Its remark")));
 }
 
-TEST_F(Explain, SaysWhichTapsAreDoubtedSinceWhenAndWhy) {
+TEST_F(Explain, NamesSuspectedOutliersSinceWhenAndWhy) {
   // Some of these taps are of the air.
   const fs::path directory =
       ran("scene=l scene.placement=random seed=112 scene.effects=standard motion=gentle motion.confirm=false "
           "taps=30",
           config("default.yaml"));
   const json summary = json::parse(text_of(directory / "summary.json"));
-  ASSERT_TRUE(summary["doubted"].is_string());
-  std::istringstream doubted(summary["doubted"].get<std::string>());
+  ASSERT_TRUE(summary["suspected_outliers"].is_array());
   std::set<int> taps;
   int sure = 0;
-  for (std::string one; std::getline(doubted, one, ',');) {
-    const int tap = std::stoi(one);
-    const double doubt = std::stod(one.substr(one.find_last_of(' ')));
+  for (const json& one : summary["suspected_outliers"]) {
+    const int tap = one["tap"];
+    const double doubt = one["probability"];
     taps.insert(tap);
     sure += doubt >= 0.9 ? 1 : 0;
-    EXPECT_THAT(explain(directory, tap), ContainsRegex("By all 30 taps it may lie: " + printed("%.0f", 100 * doubt) +
+    EXPECT_THAT(explain(directory, tap), ContainsRegex("By all 30 taps it may be an outlier: " + printed("%.0f", 100 * doubt) +
                                                        " %, by (its height|where it is)"));
   }
   EXPECT_GE(sure, 1) << "a lie that all others contradict";
   for (int tap = 1; tap <= 30; tap += test::brief() ? 7 : 1) {
     if (taps.count(tap) == 0) {
-      EXPECT_THAT(explain(directory, tap), Not(HasSubstr("By all 30 taps it may lie")));
+      EXPECT_THAT(explain(directory, tap), Not(HasSubstr("By all 30 taps it may be an outlier")));
     }
   }
 }

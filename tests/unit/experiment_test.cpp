@@ -225,7 +225,7 @@ TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore)
                                        "acquisition={type: object_uncertainty}"};
   const Finished unbroken("default.yaml", words);
   ASSERT_GT(unbroken.experiment.counts().object_taps, 105);
-  ASSERT_FALSE(unbroken.taps.back().doubted->empty());
+  ASSERT_FALSE(unbroken.taps.back().suspected_outliers->empty());
   for (const std::size_t cut : {100U, 149U}) {
     Prepared rest("default.yaml", words);
     rest.experiment.resume(unbroken.past(cut));

@@ -173,8 +173,8 @@ TapBelief::Reading TapBelief::read(const Contact& contact, int motion) const {
   return {height, context_.scene.on_object(height) && height - desk_ > unsure};
 }
 
-std::vector<TapBelief::Doubted> TapBelief::doubted() const {
-  std::vector<Doubted> out;
+std::vector<TapBelief::SuspectedOutlier> TapBelief::suspected_outliers() const {
+  std::vector<SuspectedOutlier> out;
   for (std::size_t i = 0; i < static_cast<std::size_t>(doubt_.size()); ++i) {
     const double doubt = doubt_of(i);
     if (doubt >= kWorthALook)

@@ -133,12 +133,12 @@ class TapBelief final : public Belief {
   const FactorReport& factors_of_outliers() const { return doubted_.report(); }
   int variances_clamped() const { return is_judged() ? doubted_.variances_clamped() : 0; }
   /// Those of at least kWorthALook, by the numbers of their taps.
-  struct Doubted {
+  struct SuspectedOutlier {
     int tap = 0;
-    double doubt = 0.0;
+    double probability = 0.0;
     double by_label = 0.0;  ///< the part of it that the outlines account for, without a look at its height
   };
-  std::vector<Doubted> doubted() const;
+  std::vector<SuspectedOutlier> suspected_outliers() const;
   /// From which on a second look at the same place is worth a thought.
   static constexpr double kWorthALook = 0.1;
   /// The same of one contact; 0 where all are believed.

@@ -54,7 +54,7 @@ struct ModelState {
   std::optional<FootprintState> footprint;
   std::optional<Forecast> forecast;                        ///< where a stop rule asks for it
   std::optional<double> expected_rmse;                     ///< metres; of a tap for observers alone: see Watch
-  std::optional<std::vector<TapBelief::Doubted>> doubted;  ///< where contacts may lie
+  std::optional<std::vector<TapBelief::SuspectedOutlier>> suspected_outliers;  ///< where contacts may lie
   Errors errors;
 };
 

@@ -110,7 +110,7 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
     tap.probability = belief.probability()(tap.candidate);
     tap.footprint = state_of(*belief.footprint());
   }
-  if (options_.height.outlier_probability) tap.doubted = belief.doubted();
+  if (options_.height.outlier_probability) tap.suspected_outliers = belief.suspected_outliers();
   if (tap.uncertainty && tap.weight) tap.exploration = *tap.uncertainty * *tap.weight;
   if (const Truth* real = truth()) {
     tap.true_on_object = real->on(tap.candidate);
@@ -187,7 +187,7 @@ RunResult Watch::result(TapBelief& belief) {
   take(belief.label_gp(), out.label_gp);
   if (belief.two_part()) take(belief.surface_gp(), out.surface_gp);
   if (options_.height.outlier_probability) {
-    out.doubted = belief.doubted();
+    out.suspected_outliers = belief.suspected_outliers();
     if (belief.surface_gp()) {
       out.count(belief.factors_of_outliers());
       out.diagnostics["variance_clamped"] += belief.variances_clamped();

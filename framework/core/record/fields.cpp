@@ -9,6 +9,7 @@
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <charconv>
 #include <set>
 #include <sstream>
@@ -123,12 +124,14 @@ void add_footprint(Row& row, const std::optional<FootprintState>& state) {
   row.add("footprint.remark", if_any(state->remark));
 }
 
-/// "8 0.93, 12 0.61"
-std::string words(const std::vector<TapBelief::Doubted>& doubted) {
+/// Probabilities with two decimals; none for an empty list.
+std::optional<JsonList> list_of(const std::vector<TapBelief::SuspectedOutlier>& suspected) {
   std::string out;
-  for (const TapBelief::Doubted& one : doubted)
-    out += fmt::format("{}{} {:.2f}", out.empty() ? "" : ", ", one.tap, one.doubt);
-  return out;
+  for (const TapBelief::SuspectedOutlier& one : suspected) {
+    out += fmt::format("{}{{\"tap\": {}, \"probability\": {}}}", out.empty() ? "" : ", ", one.tap,
+                       csv_cell(std::round(100.0 * one.probability) / 100.0));
+  }
+  return out.empty() ? std::nullopt : std::optional(JsonList{"[" + out + "]"});
 }
 
 constexpr const char* kObject = "object";
@@ -171,13 +174,13 @@ void list_models(FieldList<Record>& list, bool reasons) {
                   "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
                   "how it came to them; only where `footprint` is not `gp_regression`",
                   [](Row& row, const Record& record) { add_footprint(row, record.footprint); });
-  list.add_family(
-      "doubted",
-      "the contacts that are thought to lie with a probability of 0.1 or more, each by the number of its "
-      "tap and that probability: `8 0.93, 12 0.61`; null if there is none; only with `height.outlier_probability`",
-      [](Row& row, const Record& record) {
-        if (record.doubted) row.add("doubted", if_any(words(*record.doubted)));
-      });
+  list.add_family("suspected_outliers",
+                  "contacts whose height or label is an outlier with a probability of 0.1 or more: a list of `tap` and "
+                  "`probability`; null if there is none; only with `height.outlier_probability`",
+                  [](Row& row, const Record& record) {
+                    if (record.suspected_outliers)
+                      row.add("suspected_outliers", list_of(*record.suspected_outliers));
+                  });
 }
 
 template <class T, class Member>

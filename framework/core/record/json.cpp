@@ -42,21 +42,28 @@ class RowReader final : public nlohmann::json_sax<Json> {
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
   bool binary(binary_t&) override { return false; }
-  bool start_array(std::size_t) override { return false; }
-  bool end_array() override { return false; }
+  bool start_array(std::size_t) override { return !prefixes_.empty() && open_in_list('['); }
+  bool end_array() override { return close_in_list(']'); }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
   bool start_object(std::size_t) override {
+    if (levels_ > 0) return open_in_list('{');
     if (prefixes_.size() == kMostLevels) return refuse(kTooDeep);
     prefixes_.push_back(prefixes_.empty() ? "" : name_ + ".");
     return true;
   }
   bool key(string_t& key) override {
+    if (levels_ > 0) {
+      separate();
+      list_.append(json_quoted(key)).append(": ");
+      return true;
+    }
     if (prefixes_.back().size() + key.size() > kMostNameBytes) return refuse("has a name of more than 1 KiB");
     name_.assign(prefixes_.back()).append(key);
     return true;
   }
   bool end_object() override {
+    if (levels_ > 0) return close_in_list('}');
     prefixes_.pop_back();
     return true;
   }
@@ -67,6 +74,14 @@ class RowReader final : public nlohmann::json_sax<Json> {
   template <class T>
   bool add(T value) {
     if (prefixes_.empty()) return false;
+    if (levels_ > 0) {
+      Row one;
+      one.add("", Scalar(std::move(value)));
+      const std::string text = to_json_line(one);  // {"": VALUE}
+      separate();
+      list_.append(text, 5, text.size() - 6);
+      return true;
+    }
     if (row_.fields.size() == kMostRowValues) return refuse("holds too many values: at most 4096");
     row_.fields.emplace_back(name_, std::move(value));
     return true;
@@ -75,8 +90,25 @@ class RowReader final : public nlohmann::json_sax<Json> {
     reason = why;
     return false;
   }
+  /// A comma, where another item of the list or member of its object stands before.
+  void separate() {
+    if (!list_.empty() && std::string_view("[{ ").find(list_.back()) == std::string_view::npos) list_ += ", ";
+  }
+  bool open_in_list(char bracket) {
+    if (prefixes_.size() + levels_ == kMostLevels) return refuse(kTooDeep);
+    separate();
+    list_ += bracket;
+    ++levels_;
+    return true;
+  }
+  bool close_in_list(char bracket) {
+    list_ += bracket;
+    return --levels_ > 0 || add(JsonList{std::exchange(list_, {})});
+  }
 
   Row& row_;
+  std::string list_;        ///< of the list at hand, as far as it was read
+  std::size_t levels_ = 0;  ///< open lists and objects within it; 0: none is at hand
   std::string name_;                   ///< of the value to come, dotted
   std::vector<std::string> prefixes_;  ///< of the names in the open objects: "a." in {"a": {...
 };
@@ -194,6 +226,15 @@ Row RowLines::read(const std::string& line) {
   if (number_ > kMostLines || values_ > kMostLineValues)
     throw Error(place(), "the file holds too much: at most 1.1 million lines and 20 million values", kDamaged);
   return std::move(*row);
+}
+
+std::vector<Row> rows_of(const JsonList& list) {
+  const Json parsed = Json::parse(list.text, nullptr, false);
+  std::vector<Row> out;
+  for (const Json& one : parsed.is_array() ? parsed : Json::array()) {
+    if (const std::optional<Row> row = parse_json_row(one.dump())) out.push_back(*row);
+  }
+  return out;
 }
 
 JsonLines read_json_lines(const std::filesystem::path& file) {

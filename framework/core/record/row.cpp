@@ -67,11 +67,17 @@ void append_scalar(std::string& out, const Scalar& value, const AppendText& appe
     append_number(out, *real);
   } else if (const auto* text = std::get_if<std::string>(&value)) {
     append_text(*text);
+  } else if (const auto* list = std::get_if<JsonList>(&value)) {
+    append_text(list->text);
   }
 }
 
 /// As csv_cell(), but as a value of JSON: null for null and for what is not a finite number.
 void append_json(std::string& out, const Scalar& value) {
+  if (const auto* list = std::get_if<JsonList>(&value)) {
+    out += list->text;
+    return;
+  }
   const std::size_t before = out.size();
   append_scalar(out, value, [&](const std::string& text) { append_quoted(out, text); });
   if (out.size() == before) out += "null";

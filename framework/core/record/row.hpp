@@ -12,8 +12,14 @@
 
 namespace palpate {
 
-/// null, truth value, whole number, real number or text.
-using Scalar = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
+/// A list, as JSON: `[{"tap": 8, "probability": 0.93}]`.
+struct JsonList {
+  std::string text;
+  bool operator==(const JsonList& other) const { return text == other.text; }
+};
+
+/// null, truth value, whole number, real number, text or list.
+using Scalar = std::variant<std::monostate, bool, std::int64_t, double, std::string, JsonList>;
 
 struct Row {
   std::vector<std::pair<std::string, Scalar>> fields;

@@ -20,6 +20,10 @@ template <>
 struct adl_serializer<std::monostate> {
   static void to_json(json& out, std::monostate /*null*/) { out = nullptr; }
 };
+template <>
+struct adl_serializer<palpate::JsonList> {
+  static void to_json(json& out, const palpate::JsonList& list) { out = json::parse(list.text); }
+};
 
 }  // namespace nlohmann
 

@@ -79,7 +79,7 @@ static std::vector<int> relabelled(const Moment& moment) {
   return out;
 }
 
-static void to_json(Json& out, const TapBelief::Doubted& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
+static void to_json(Json& out, const TapBelief::SuspectedOutlier& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
 static void to_json(Json& out, const Moment& moment) {
   const RunResult& result = moment.result;
@@ -99,7 +99,7 @@ static void to_json(Json& out, const Moment& moment) {
               {"most_weight", moment.most_weight},
               {"remark", result.footprint ? result.footprint->remark : ""},
               {"is_next_known", moment.is_next_known}});
-  if (result.doubted) out["doubted"] = *result.doubted;
+  if (result.suspected_outliers) out["suspected_outliers"] = *result.suspected_outliers;
   if (moment.next) {
     out["next"] = {{"x", moment.next->target.x},
                    {"y", moment.next->target.y},

@@ -266,14 +266,14 @@ class FromAboveExplained final : public Explanation {
   /// Whether the tap is believed, right after it and by all that came later.
   void explain_doubt() {
     if (!options_.height.outlier_probability || tap_.contact.outcome != Outcome::contact) return;
-    page_.heading("Whether it is believed");
+    page_.heading("Is it an outlier?");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
       playback_.from_above().choose_next();  // which has the models take in all taps
-      for (const TapBelief::Doubted& one : playback_.from_above().belief().doubted()) {
-        if (one.tap == number_) return "may lie: " + doubt_words(one);
+      for (const TapBelief::SuspectedOutlier& one : playback_.from_above().belief().suspected_outliers()) {
+        if (one.tap == number_) return "may be an outlier: " + doubt_words(one);
       }
-      return std::string("is believed");
+      return std::string("is not suspected");
     };
     const auto all = static_cast<int>(recording_.rows.size());
     page_.say(fmt::format("Right after it, it {}.", said(number_)));

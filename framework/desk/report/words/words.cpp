@@ -31,11 +31,11 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
   return value ? words(*value) : std::string();
 }
 
-std::string doubt_words(const TapBelief::Doubted& one) {
-  const char* const why = 2.0 * one.by_label > one.doubt
+std::string doubt_words(const TapBelief::SuspectedOutlier& one) {
+  const char* const why = 2.0 * one.by_label > one.probability
                               ? "by where it is: outlines that agree with the other taps have no object there"
                               : "by its height, which those of the other taps do not lead to";
-  return fmt::format("{:.0f} %, {}", 100.0 * one.doubt, why);
+  return fmt::format("{:.0f} %, {}", 100.0 * one.probability, why);
 }
 
 std::string counted(long count, const std::string& noun) {

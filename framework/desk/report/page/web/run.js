@@ -91,7 +91,7 @@ function story(data, moment, drawn) {
   } else {
     out.push(moment.is_next_known ? "No candidate is left." : "The next tap is chosen by a program, which is not started to show a record.");
   }
-  for (const one of moment.doubted ?? []) out.push(`Tap ${one.tap} may lie: ${one.words}.`);
+  for (const one of moment.suspected_outliers ?? []) out.push(`Tap ${one.tap} may be an outlier: ${one.words}.`);
   if (moment.remark) out.push(`The footprint, ${data.footprint}, says: ${moment.remark}.`);
   if (moment.least_weight < -1e-6 || moment.most_weight > 1 + 1e-6) {
     out.push(`w leaves [0, 1] here: ${shown(moment.least_weight, 3)} to ${shown(moment.most_weight, 3)}; its colours end at 0 and 1.`);

@@ -54,9 +54,9 @@ function markTrace(taps, name, marker, more = {}) {
 const kNextColour = "#e6007e";
 const edge = (color, width) => ({ color, width });
 
-/// The taps that are doubted at this moment; their hover says how much, and why.
-const doubtedOf = (data, moment) =>
-  (moment.doubted ?? []).map((one) => ({ ...data.taps[one.tap - 1], word: `tap ${one.tap} may lie: ${one.words}` }));
+/// The suspected outliers of this moment; their hover says how much, and why.
+const suspectedOf = (data, moment) =>
+  (moment.suspected_outliers ?? []).map((one) => ({ ...data.taps[one.tap - 1], word: `tap ${one.tap} may be an outlier: ${one.words}` }));
 
 /// Crosses that are seen on dark and on light.
 const deskMarks = (taps) => [
@@ -68,10 +68,10 @@ const deskMarks = (taps) => [
 /// doubted; a star is next.
 function marks(data, moment) {
   const [on, off, failed] = tapsUntil(data, moment.taps);
-  const doubted = doubtedOf(data, moment);
-  const ring = markTrace(doubted, "doubted", { symbol: "circle-open", size: 18, line: edge("#e8112d", 2.4) });
+  const suspected = suspectedOf(data, moment);
+  const ring = markTrace(suspected, "suspected outliers", { symbol: "circle-open", size: 18, line: edge("#e8112d", 2.4) });
   return [
-    ...(doubted.length > 0 ? [ring] : []),
+    ...(suspected.length > 0 ? [ring] : []),
     markTrace(on, "on the object", { symbol: "circle", size: 9, color: "#ffffff", line: edge("#000000", 1.6) }),
     ...deskMarks(off),
     markTrace(failed, "failed", { symbol: "square", size: 8, line: edge("#000000", 1), color: "#e69f00" }),
