@@ -57,19 +57,6 @@ struct SeveralByDefault : Options {
 
 constexpr const char* kGroup = "group: {width: 1 m}\n";
 
-struct Younger : Options {
-  double left = 1.0;
-  void list(Fields& fields) override {
-    fields.real(left, Field("left", "what is left"));
-    fields.gone("right", "write left");
-  }
-};
-
-TEST(Resolve, RefusesAKeyThatIsNoMoreAndSaysWhatToWrite) {
-  EXPECT_EQ(refusal<Younger>("{left: 2, right: 3}"), "c.yaml:1:11: option 'right' is no more, write left");
-  EXPECT_EQ(refusal<Younger>("{left: 2}"), "accepted");
-}
-
 TEST(Resolve, FillsEveryFieldFromTheConfig) {
   Everything all;
   resolved(

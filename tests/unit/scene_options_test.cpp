@@ -114,18 +114,5 @@ TEST(SceneOptions, NameThePluginsOfTheirShapes) {
   EXPECT_EQ(object_refusal("{type: mesh, fil: cup.stl, unit: 1 mm}"), "unknown option 'fil'");
 }
 
-TEST(SceneOptions, TakeTheOlderSpellingOfAPlugin) {
-  const std::string file = (source_folder() / "configs/scene/meshes/cup.stl").string();
-  const std::string options = "file: '" + file + "', unit: 1 mm";
-  EXPECT_EQ(scene_of({"{type: plugin, shape: {type: mesh, " + options + "}}"})->height(0.1, 0.1),
-            scene_of({"{type: mesh, " + options + "}"})->height(0.1, 0.1));
-  const std::string older =
-      "[{type: plugin, shape: {type: cone, diameter: 0.12 m, height: 0.08 m}, at: [0.115 m, 0.115 m], rotation: 0 rad, "
-      "tilt: 0 rad}]";
-  EXPECT_EQ(resolved("[{type: plugin, shape: {type: cone}}]"), to_yaml(parse_yaml(older, "resolved.yaml")));
-  EXPECT_EQ(object_refusal("{type: plugin, shape: {type: torus}}"), "no plugin shape/torus");
-  EXPECT_EQ(object_refusal("{type: plugin}"), "'objects.0.shape' is missing");
-}
-
 }  // namespace
 }  // namespace palpate::test

@@ -68,14 +68,6 @@ Tree MapReader::finish(const std::vector<std::string>& elsewhere) {
   return std::move(output_);
 }
 
-void MapReader::gone(const char* key, const char* instead) {
-  if (silent_) return;
-  for (const Tree::Entry& entry : input_.entries) {
-    if (entry.key == key && entry.value.layer >= type_layer_)
-      throw Error(entry.place.text(), fmt::format("option '{}' is no more", key), instead);
-  }
-}
-
 void MapReader::retired(const Field& field, const FixedValue& last) {
   if (silent_) return;
   const std::string text = constant_text(last, field.unit);

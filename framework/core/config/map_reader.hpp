@@ -32,7 +32,6 @@ class MapReader : public Fields {
   /// Refuses keys that no field has claimed, and gives away what was written. `elsewhere`: see resolve().
   Tree finish(const std::vector<std::string>& elsewhere = {});
 
-  void gone(const char* key, const char* instead) override;
   void retired(const Field& field, const FixedValue& last) override;
   void require(bool holds, const char* field, const std::string& reason) override;
 

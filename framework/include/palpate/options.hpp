@@ -193,8 +193,6 @@ class Fields {
   /// Another plugin, whose name and options stand among the fields at hand instead of in a group of their own: the
   /// needed `field` names it. Throws Error where one of its options has the name of a field beside it.
   virtual void adopt(PluginChoice& choice, const Field& field) = 0;
-  /// A key that earlier versions had: it is refused, and `instead` says what to write now.
-  virtual void gone(const char* /*key*/, const char* /*instead*/) {}
   /// An option that versions from 0.1.0 on had, whose default was `last`: that enters the id as if it were there, and a
   /// record may have this value. All else is refused, and `field.meaning` says what to write now.
   virtual void retired(const Field& /*field*/, const FixedValue& /*last*/) {}
