@@ -7,8 +7,8 @@
 # differ, and names the first jobs, taps and columns.
 #
 # What was renamed stands in tests/same_taps.csv, or in FILE, a line for each name: what,other,here.
-#   word,OLD,NEW     a whole word of a sweep, such as backend=paper: the other program is given OLD for NEW
-#   key,OLD,NEW      a name within a word, such as height.outlier_probability, or lies of a map in braces: the same
+#   word,OLD,NEW     a whole word of a sweep, such as motion=paper: the other program is given OLD for NEW
+#   key,OLD,NEW      a name within a word, such as height.outlier_probability, or min_object_height of a map in braces: the same
 #   column,OLD,NEW   a column of taps.csv, or what stands before a dot of it; without OLD it is new, without NEW it is gone
 # A column without a partner fails.
 set -eu
@@ -232,7 +232,7 @@ sweep default configs/default.yaml "scene=$objects" scene.placement=random "$ten
 sweep standard configs/default.yaml "scene=$objects" scene.placement=random scene.effects=standard "$tenth" || status=1
 sweep wrong configs/default.yaml scene=object_i,ring,two_blocks,cube scene.placement=random "scene.effects=$wrong" \
   "$tenth" || status=1
-sweep motion_paper configs/default.yaml scene=object_i,l,tall_cone scene.placement=random backend=paper \
+sweep motion_paper configs/default.yaml scene=object_i,l,tall_cone scene.placement=random motion=paper \
   scene.effects=standard "$tenth" || status=1
 sweep strategies configs/default.yaml strategy=random,grid,uncertainty,weighted,weighted_two_part scene=object_ii,ring \
   scene.placement=random scene.effects=standard "$tenth" || status=1

@@ -14,7 +14,7 @@ namespace {
 
 const char* const kAbove =
     "kernel: {type: rbf, length_scale: 3 cm}\nacquisition: {type: footprint_entropy}\nfitting: {type: fixed}\n"
-    "surface: two_part\nheight: {noise: 6 mm, lies: 0.03}\n"
+    "surface: two_part\nheight: {noise: 6 mm, outlier_probability: 0.03}\n"
     "backend: {type: simulator}\ntaps: 20\ncandidates: {count: 15}\n"
     "scene: {area: {width: 23 cm, depth: 23 cm}, min_object_height: 1 cm, objects: [{type: wave, at: [12 cm, 12 "
     "cm]}]}\n";

@@ -210,9 +210,9 @@ TEST_F(Compose, RefusesANameWithAPathInIt) {
 TEST_F(Compose, RefusesWhatIsNoConfigOrNamesNoGroupWithItsPlace) {
   const std::pair<const char*, const char*> cases[] = {
       {"defaults:\n  - kernl: rbf\n", "c.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?"},
-      {"defaults:\n  - posterior: dense\n",
-       "c.yaml:2:5: unknown group 'posterior', known: kernel, acquisition, fitting, footprint, scene, scene.effects, "
-       "backend, strategy, expect"},
+      {"defaults:\n  - engine: dense\n",
+       "c.yaml:2:5: unknown group 'engine', known: kernel, acquisition, fitting, footprint, scene, scene.effects, "
+       "backend, motion, strategy, expect"},
       {"defaults:\n  - scene: desc\n", "c.yaml:2:12: no file scene/desc.yaml, did you mean 'desk'?"},
       {"defaults: {kernel: rbf}\n", "c.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group a line"},
       {"defaults:\n  - rbf\n", "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'"},

@@ -102,7 +102,7 @@ ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& d
 /// What a finished run had come to earlier: the summary of `recording`, which ended well, at each of these occasions;
 /// none of one that has not come. Equal to that of a run whose budget ends there, in all that depends on the config
 /// alone: choosing a tap looks at no budget, and reading a model changes none. Only the engines are those that
-/// `posterior: auto` took for the run's own budget; where it would take another for less, numbers may differ as far as
+/// `engine: {type: auto}` took for the run's own budget; where it would take another for less, numbers may differ as far as
 /// `accuracy` lets them. Throws Error where the run knew the truth and that is lost, see Playback.
 ///
 /// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and

@@ -16,6 +16,7 @@ namespace palpate {
 struct JsonList {
   std::string text;
   bool operator==(const JsonList& other) const { return text == other.text; }
+  bool operator!=(const JsonList& other) const { return text != other.text; }
 };
 
 /// null, truth value, whole number, real number, text or list.
