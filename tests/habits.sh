@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What reviewers would otherwise have to look for: arrows between folders, headers that stand alone, clang-format and
-# clang-tidy. Of the last three only what changed since the commit before is looked at, and what is not committed;
+# What reviewers would otherwise have to look for: arrows between folders, retired names, long sentences, headers that
+# stand alone, clang-format and clang-tidy. Of the last three only what changed since the commit before is looked at, and what is not committed;
 # clang-tidy takes seconds for a file, so it reads the first ten of them, without its analyzer. With --all everything is
 # looked at, with the analyzer, which takes the better part of an hour. Ends with status 1 and a line a fault.
 #   sh tests/habits.sh [--all]
@@ -36,12 +36,151 @@ git grep -nE '\{:\.[0-9]f\} (cm|mm|m|s)\b|toFixed\(' -- 'framework/cli/*.cpp' 'f
   'framework/desk/report/*.cpp' 'framework/desk/report/page/web/*.js' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: fixes the decimals of a quantity, which is for config/scale.hpp or common.js|' >"$found/quantities" || true
 
+# Retired names, as whole words; a word that has another meaning, too, is listed with its key. Three lines a file are shown.
+# tests/same_taps.csv maps old names to new ones.
+git grep -nowIF --untracked -f - -- . ':!tests/habits.sh' ':!tests/same_taps.csv' <<'names' |
+"doubted"
+"handed_over"
+acquisition=foresight
+acquisition=inside
+acquisition=mixture
+acquisition=outline
+backend.motion
+backend.place
+backend=adaptive
+backend=chosen
+backend=continuous
+backend=gentle
+backend=paper
+backend=two_stage
+dead start
+dead starts
+desks.md
+exactness.md
+footprint.acceptance
+footprint.blur
+footprint.contradictions
+footprint.expected
+footprint.handed_over
+footprint.hollow
+footprint.largest
+footprint.left
+footprint.lies
+footprint.mistaken
+footprint.mistakes
+footprint.pieces
+footprint.pushed
+footprint.pushes
+footprint.smallest
+footprint: classifier
+footprint: regression
+footprint: shape
+footprint=classifier
+footprint=regression
+footprint=shape
+foresight
+gates.md
+haste
+height.lies
+height.systematic
+height_process
+height_refused
+instruction_set
+interventions
+lies: 0
+live start
+live starts
+lowrank.precision
+lowrank.tolerance
+missed_taps
+nearest_m
+off_surface
+off_surface_taps
+on_surface
+on_surface_above
+on_surface_probability
+on_surface_taps
+outline_and_fill
+plugins footprint/classifier
+plugins footprint/regression
+plugins footprint/shape
+posterior: auto
+posterior: dense
+posterior: grid
+posterior: lowrank
+posterior=auto
+posterior=dense
+posterior=grid
+posterior=lowrank
+rmse_on_surface
+rmse_on_surface_m
+set_aside
+space.compositions
+space.misfit
+surface_process
+true_on_surface
+type: classifier
+type: mixture
+type: regression
+type: shape
+ways_broken
+weight_process
+names
+  awk -F : '++count[$1] <= 3 { name = $0; sub(/^[^:]*:[^:]*:/, "", name); print $1 ":" $2 ": has the retired name " name }' >"$found/names"
+
+# words MODE PAGE...: reads the prose of pages: without code, HTML and addresses, each cell of a table by itself. MODE
+# `long` prints sentences of more than 35 words, `what` how often "what" and "who" occur in 1000 words of each page.
+words() {
+  mode=$1
+  shift
+  awk -v mode="$mode" '
+    function finish() {
+      if (mode == "long" && count > 35) print page ":" start ": has a sentence of " count " words, 35 are the limit"
+      count = 0
+    }
+    function report() {
+      if (mode == "what" && total) printf "%s%s %.1f", (reported++ ? ", " : ""), page, 1000 * asking / total
+      total = asking = 0
+    }
+    function read(text,    parts, n, i, word) {
+      n = split(text, parts, " ")
+      for (i = 1; i <= n; ++i) {
+        word = tolower(parts[i])
+        gsub(/^[^a-z0-9]+|[^a-z0-9]+$/, "", word)
+        if (word == "") continue
+        if (!count++) start = FNR
+        ++total
+        if (word ~ /^(what|who)(ever)?$/) ++asking
+        if (parts[i] ~ /[.?!][]"*)]*$/ && parts[i] !~ /^(e\.g|i\.e|cf|vs)\.$/) finish()
+      }
+    }
+    FNR == 1 { finish(); report(); page = FILENAME; fenced = 0; indented = 0; blank = 1 }
+    /^ *```/ { fenced = !fenced; finish(); blank = 1; next }
+    fenced { next }
+    /^ *$/ { finish(); blank = 1; next }
+    /^    / && (blank || indented) { indented = 1; blank = 0; next }
+    { indented = 0; blank = 0
+      if ($0 ~ /^ *([-*]|[0-9]+\.) / || $0 ~ /^ *[|#]/) finish()
+      gsub(/`[^`]*`/, "code"); gsub(/<[^>]*>/, ""); gsub(/\]\([^)]*\)/, "]")
+      if ($0 ~ /^ *\|/) {
+        cells = split($0, cell, "|")
+        for (c = 1; c <= cells; ++c) { read(cell[c]); finish() }
+      } else read($0)
+      if ($0 ~ /^ *#/) finish() }
+    END { finish(); report(); if (mode == "what") print "" }' "$@"
+}
+# The pages that keep to the limit; a page that comes to do so is added here.
+plain="CHANGELOG.md framework/docs/stability.md"
+# shellcheck disable=SC2086 # the names are to be split
+words long $plain >"$found/sentences"
+echo "habits: 'what' and 'who' in 1000 words: $(words what README.md framework/docs/*.md)" >&2
+
 if [ "${1:-}" = --all ]; then
   changed=$(git ls-files framework plugins tests)
   most=100000 analyzer=
 else
   changed=$(git diff --name-only --diff-filter=d HEAD~1 2>/dev/null || true; git ls-files --others --exclude-standard)
-  most=10 analyzer=-clang-analyzer-*
+  most=10 analyzer='-clang-analyzer-*'
 fi
 changed=$(echo "$changed" | grep -E '^(framework|plugins|tests)/.*\.[ch]pp$' | sort -u || true)
 
