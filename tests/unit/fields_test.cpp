@@ -68,7 +68,7 @@ TEST(Fields, OfAnErrorAreFoundAgainInTheirRow) {
   Row any_side;
   add_errors(any_side, {1.0, 2.0, {}, {}, 0.25, 0.75, 0.875, 0.125});
   EXPECT_EQ(any_side.fields.size(), error_fields().size());
-  EXPECT_EQ(errors_in(any_side).nearest, 0.25);
+  EXPECT_EQ(errors_in(any_side).surface_distance, 0.25);
   EXPECT_EQ(errors_in(any_side).f_score, 0.75);
   EXPECT_EQ(errors_in(any_side).coverage, 0.875);
   EXPECT_EQ(errors_in(any_side).volume_iou, 0.125);

@@ -81,9 +81,9 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
   EXPECT_EQ(height.settings().signal, 0.25);
   EXPECT_EQ(height.settings().mean, 0.125);
   EXPECT_EQ(height.settings().noise, 0.25 * 2e-3);
-  EXPECT_EQ(label.signal, 0.5) << "signals stay apart";
+  EXPECT_EQ(weight.signal, 0.5) << "signals stay apart";
   EXPECT_EQ(weight.mean, 0.25);
-  EXPECT_EQ(label.noise, 0.5 * 2e-3) << "the ratio of noise to signal is shared";
+  EXPECT_EQ(weight.noise, 0.5 * 2e-3) << "the ratio of noise to signal is shared";
 }
 
 TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {

@@ -198,7 +198,7 @@ TEST(LikeliestLies, DoNotDependOnTheOrderOfSignalsOfWhichSomeSetTapsAside) {
   ASSERT_EQ(judge(trial.testimony).report.redundant_taps, 0)
       << "the noise is larger than what is wrong with so small a signal";
   trial.testimony.signals = {1.0, 0.005};
-  EXPECT_LT((judge(trial.testimony).doubt - one.probability).lpNorm<Eigen::Infinity>(), 1e-12);
+  EXPECT_LT((judge(trial.testimony).doubt - one.doubt).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfSoMany, Lies, testing::Values(1, 2, 5, 8));

@@ -19,7 +19,7 @@ namespace {
 constexpr int kPlaces = 40;
 constexpr int kOutlines = 128;
 
-bool holds(const OutlineSample& sample, int outline, int place) {
+bool outline_holds(const OutlineSample& sample, int outline, int place) {
   return (sample.holds(outline / 64, place) >> static_cast<unsigned>(outline % 64) & 1U) != 0;
 }
 
@@ -31,7 +31,7 @@ WrittenBelief some_belief() {
   out.sample.count = kOutlines;
   out.sample.holds.setZero(kOutlines / 64, kPlaces);
   out.sample.to_find.resize(kPlaces);
-  Random random(5, "foresight test");
+  Random random(5, "variance reduction test");
   for (int k = 0; k < kOutlines; ++k) {
     bool on = random.uniform() < 0.4;
     for (int i = 0; i < kPlaces; ++i) {
@@ -50,7 +50,7 @@ double expected_square(const OutlineSample& sample, const std::vector<int>& outl
   double sum = 0.0;
   for (int place = 0; place < kPlaces; ++place) {
     double mean = 0.0;
-    for (const int k : outlines) mean += holds(sample, k, place) ? 1.0 / static_cast<double>(outlines.size()) : 0.0;
+    for (const int k : outlines) mean += outline_holds(sample, k, place) ? 1.0 / static_cast<double>(outlines.size()) : 0.0;
     sum += mean * (1.0 - mean);
   }
   return sum;
@@ -63,7 +63,7 @@ std::vector<double> expected_to_settle(const WrittenBelief& belief) {
   std::vector<double> out;
   for (int x = 0; x < kPlaces; ++x) {
     std::vector<int> with, without;
-    for (const int k : all) (holds(belief.sample, k, x) ? with : without).push_back(k);
+    for (const int k : all) (outline_holds(belief.sample, k, x) ? with : without).push_back(k);
     double gain = 0.0;
     if (!with.empty() && !without.empty()) {
       const double share = static_cast<double>(with.size()) / kOutlines;
