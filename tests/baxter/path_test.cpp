@@ -60,7 +60,7 @@ TEST(BaxterKinematics, AgreesWithFiveReferencePoses) {
 }
 
 TEST(Places, OfTheSceneGoToTheRobotsFrameAndBack) {
-  ScenePoseOptions scene_pose;
+  ScenePoseOptions place;
   place.corner[0] = 0.5;
   place.corner[1] = 0.1;
   place.height = -0.2;

@@ -139,7 +139,7 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
 }
 
 TEST(ATap, OutOfReachMovesNothing) {
-  Bench bench(with([](BaxterOptions& o) { o.place.corner[0] = 0.9; }));
+  Bench bench(with([](BaxterOptions& o) { o.scene_pose.corner[0] = 0.9; }));
   const Contact contact = bench.tap({0.23, 0.0});
   EXPECT_EQ(contact.outcome, Outcome::unreachable);
   EXPECT_THAT(contact.reason, StartsWith("no position of the joints"));
@@ -148,7 +148,7 @@ TEST(ATap, OutOfReachMovesNothing) {
 }
 
 TEST(ATap, ThatMeetsNothingEndsAboveTheFloor) {
-  Bench bench(with([](BaxterOptions& o) { o.place.height += 0.1; }));  // the desk lies lower than the config has it
+  Bench bench(with([](BaxterOptions& o) { o.scene_pose.height += 0.1; }));  // the desk lies lower than the config has it
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::no_contact);
   EXPECT_FALSE(contact.ends_run);
@@ -157,7 +157,7 @@ TEST(ATap, ThatMeetsNothingEndsAboveTheFloor) {
 
 TEST(ACalibrationTap, PutsTheZeroWhereTheDeskIs) {
   Bench bench(with([](BaxterOptions& o) {
-    o.place.height += 0.006;  // measured too high
+    o.scene_pose.height += 0.006;  // measured too high
     calibrate(o, 0.02, 0.02);
   }));
   bench.touch(kOnObject);

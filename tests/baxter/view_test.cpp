@@ -33,7 +33,7 @@ using visualization_msgs::MarkerArray;
 
 /// The corner at (0.5, 0.1, -0.2) of the robot's base, turned by a right angle: x of the scene is y of the base.
 std::unique_ptr<View> turned_view(baxter::Robot& robot) {
-  baxter::ScenePoseOptions scene_pose;
+  baxter::ScenePoseOptions place;
   place.corner[0] = 0.5;
   place.corner[1] = 0.1;
   place.height = -0.2;

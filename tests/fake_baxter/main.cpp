@@ -61,7 +61,7 @@ ResolvedConfig read_config(const Arguments& a, const PluginSource& plugins) {
 BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter, std::uint64_t seed) {
   BodyOptions out = a.body;
   out.tool = baxter.tool;
-  out.scene_pose = baxter.place;
+  out.scene_pose = baxter.scene_pose;
   out.hover = baxter.motion.hover;
   out.seed = seed;
   if (!a.start_at.empty()) out.start_at = Eigen::Vector3d(a.start_at.data());

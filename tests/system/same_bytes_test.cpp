@@ -34,13 +34,13 @@ TEST_F(ARun, GivesTheSameBytesUnderTheSameIdEachTimeAndOnAnyNumberOfThreads) {
 TEST_F(ARun, NamesTheInstructionSetOfItsLoopsInTheManifest) {
   EXPECT_THAT(part_of(ran(), "manifest"),
               HasSubstr(std::string("\"instruction_path\": \"") + simd::fastest().name + "\""));
-  const EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "baseline");
+  const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "baseline");
   EXPECT_THAT(part_of(ran("--runs baseline"), "manifest"), HasSubstr("\"instruction_path\": \"SSE2\""));
 }
 
 TEST_F(ARun, RejectsAnUnknownInstructionSet) {
-  const EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "avx");
-  EXPECT_THAT(refused({"run", config("paper/object_i.yaml").string()}),
+  const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "avx");
+  EXPECT_THAT(refused(Words{"run", config("paper/object_i.yaml")}),
               HasSubstr("PALPATE_INSTRUCTIONS: unknown value 'avx', write baseline, or unset it"));
 }
 

@@ -163,6 +163,7 @@ class Resolver final : public MapReader {
 
   void plugin(PluginChoice& choice, const Field& field) override {
     const Tree* tree = claim(field);
+    if (*field.beside != '\0') known_.emplace_back(field.beside);
     if (tree != nullptr ? tree->kind == Tree::Kind::null : choice.type.empty()) {
       return miss(field.name,
                   {tree != nullptr ? tree->place.text() : where(), fmt::format("no {} is chosen", choice.kind),
@@ -172,7 +173,6 @@ class Resolver final : public MapReader {
       output_.at(field.name) = read_plugin(choice, tree, field, field.name);
       return;
     }
-    known_.emplace_back(field.beside);
     const Tree input = with_beside(tree, field);
     Tree written = read_plugin(choice, &input, field, field.name);
     const Tree* const found = written.find(field.beside);
