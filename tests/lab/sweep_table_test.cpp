@@ -41,10 +41,10 @@ std::string table_of(const std::vector<std::string>& keys, const std::vector<std
 TEST(SweepTable, IsThisLetterByLetter) {
   EXPECT_EQ(
       table_of({"kernel", "seed"}, {{"rbf", "1"}, {"matern52", "1"}}, {0.021, 0.0152}),
-      "group     runs  without contact   found  object taps, with  object taps, all  rmse_m [mm]     footprint_iou\n"
-      "matern52     1             0.0%  100.0%            7 (7-7)           7 (7-7)   15 (15-15)  0.80 (0.80-0.80)\n"
-      "rbf          1             0.0%  100.0%            7 (7-7)           7 (7-7)   21 (21-21)  0.80 (0.80-0.80)\n"
-      "without contact: starts whose initial taps all missed the object; with: the other starts. Median (10 %-90 %).\n"
+      "group     runs  no contact   found  object taps, rest  object taps, all  rmse_m [mm]     footprint_iou\n"
+      "matern52     1        0.0%  100.0%            7 (7-7)           7 (7-7)   15 (15-15)  0.80 (0.80-0.80)\n"
+      "rbf          1        0.0%  100.0%            7 (7-7)           7 (7-7)   21 (21-21)  0.80 (0.80-0.80)\n"
+      "no contact: no initial tap was on the object; rest: the other starts. Median (10 %-90 %).\n"
       "The least rmse_m first.\n");
 }
 
@@ -73,7 +73,7 @@ TEST(SweepTable, KeepsItsNumbersToTheWidthOfAScreenThoughGroupsHaveLongNames) {
   const std::string table =
       table_of({"scene", "kernel", "kernel.length_scale", "kernel.alpha", "seed"},
                {{"object_i", "rational_quadratic", "2.5 cm", "0.5", "1"}, {"object_ii", "rbf", "1.7 cm", "", "1"}});
-  EXPECT_THAT(table, StartsWith("runs  without contact  "));
+  EXPECT_THAT(table, StartsWith("runs  no contact  "));
   std::istringstream lines(table);
   std::size_t at = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -99,20 +99,20 @@ std::string table_of_seeds(const std::string& status, const std::optional<int>& 
 }
 
 TEST(SweepTable, HasNoSharesOfAGroupInWhichNoJobIsDone) {
-  EXPECT_THAT(table_of_seeds("failed", 3), HasSubstr("\nall jobs     2            -      -       2 "));
+  EXPECT_THAT(table_of_seeds("failed", 3), HasSubstr("\nall jobs     2           -      -       2 "));
 }
 
-TEST(SweepTable, HasNoDeadStartsWhereNoConfigTellsWhichTapsWereInitial) {
+TEST(SweepTable, HasNoShareWithoutContactWhereNoConfigTellsWhichTapsWereInitial) {
   Row fields;
   fields.add("first_hit_tap", 2);
-  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall jobs     2         0.0%  100.0%  "));
-  EXPECT_THAT(table_of_seeds("done", std::nullopt, fields), HasSubstr("\nall jobs     2            -  100.0%  "));
+  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall jobs     2        0.0%  100.0%  "));
+  EXPECT_THAT(table_of_seeds("done", std::nullopt, fields), HasSubstr("\nall jobs     2           -  100.0%  "));
 }
 
 TEST(SweepTable, LeavesOutWhatIsNoNumber) {
   Row fields;
   for (const char* name : {"first_hit_tap", "object_taps", "rmse_m", "footprint_iou"}) fields.add(name, "x");
-  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall jobs     2       100.0%   0.0%  "));
+  EXPECT_THAT(table_of_seeds("done", 3, fields), HasSubstr("\nall jobs     2      100.0%   0.0%  "));
 }
 
 TEST(SweepTable, NamesAGroupOfJobsThatHaveNoneOfTheKeys) {

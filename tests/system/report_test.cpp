@@ -110,7 +110,7 @@ TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
   EXPECT_EQ(last, summary.at("footprint"));
   EXPECT_TRUE(data.at("moments").back().at("least_weight").is_null());
   const std::string remark = summary.at("footprint").at("remark");
-  EXPECT_THAT(data.at("warnings").dump(), HasSubstr("The footprint, shape, says: " + remark + "."));
+  EXPECT_THAT(data.at("warnings").dump(), HasSubstr("The footprint, primitives, says: " + remark + "."));
   const auto maps = csv_rows(text_of(directory / "maps/tap_030.csv"));
   EXPECT_EQ(maps.at(0).count("p"), 1U) << "the maps that log.maps keeps have it, too";
   EXPECT_EQ(maps.at(0).count("w"), 0U);

@@ -190,7 +190,7 @@ TEST_F(Compose, LetsAProcessInheritWhatItDoesNotSayOfTheSharedKernel) {
 
 TEST_F(Compose, ReadsAGroupForOneProcessAndGivesItNoKernelOfItsOwnUnasked) {
   EXPECT_EQ(value("defaults:\n  - kernel: rbf\nheight: {signal: 1 m}\n", "height.kernel"), "-");
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nweight:\n  kernel: rough\n", "label.kernel.type"), "matern");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nlabel:\n  kernel: rough\n", "label.kernel.type"), "matern");
   EXPECT_EQ(value("defaults:\n  - kernel: rbf\n", "label.kernel.nu", {"label.kernel=rough"}), "1.5");
 }
 

@@ -270,7 +270,10 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
                   "write key: value below it");
     }
     if (is_beside) {
-      content.at(beside_group).merge(entry.value);
+      Tree& slot = content.at(beside_group);
+      if (slot.kind == Tree::Kind::null) slot = Tree::map();
+      slot.place = entry.value.place;
+      slot.merge(entry.value);
     } else {
       check_beside(entry.value, group, beside_group);
       content.merge(entry.value);

@@ -52,8 +52,8 @@ class ConfigKeys::Reader final : public Fields {
   std::string path_;  ///< of the section at hand: empty at the top, else it ends with a dot
 
   void note(const Field& field) {
-    if (path_.empty()) note_owner(field);
     if (field.is_group) keys_.groups_.push_back(path_ + field.name);
+    if (path_.empty()) note_owner(field);
     if (*field.heir_of != '\0') keys_.heirs_.emplace_back(path_ + field.name, field.heir_of);
   }
   void note_plugin(const std::string& kind, const Field& field) {

@@ -28,7 +28,7 @@ struct SweepTableRow {
   int found = 0;
   int failed = 0;
   bool is_initial_known = false;
-  std::vector<double> object_taps_with, object_taps_all, rmse, iou;  ///< of the jobs that are done, ascending
+  std::vector<double> object_taps_rest, object_taps_all, rmse, iou;  ///< of the jobs that are done, ascending
 
   /// By which the rows of a scene are sorted: of what has no error it is more than any.
   double median_rmse() const { return rmse.empty() ? std::numeric_limits<double>::infinity() : quantile(rmse, 0.5); }
@@ -62,10 +62,10 @@ SweepTableRow row_of(const JobGroup& group, const std::function<std::optional<in
     add(out.object_taps_all, "object_taps");
     add(out.rmse, main_error());
     add(out.iou, "footprint_iou");
-    if (!is_without_contact) add(out.object_taps_with, "object_taps");
+    if (!is_without_contact) add(out.object_taps_rest, "object_taps");
   }
   out.is_initial_known = initial.has_value();
-  for (std::vector<double>* values : {&out.object_taps_with, &out.object_taps_all, &out.rmse, &out.iou})
+  for (std::vector<double>* values : {&out.object_taps_rest, &out.object_taps_all, &out.rmse, &out.iou})
     std::sort(values->begin(), values->end());
   return out;
 }
@@ -105,13 +105,13 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
   const Scale share{"", 1.0, 2};
   const Scale count{"", 1.0, 0};
   std::vector<std::vector<std::string>> lines{
-      {"group", "runs", "without contact", "found", any_failed ? "failed" : "", "object taps, with", "object taps, all",
+      {"group", "runs", "no contact", "found", any_failed ? "failed" : "", "object taps, rest", "object taps, all",
        medians.empty() ? "" : error.title(main_error()), any_iou ? "footprint_iou" : ""}};
   for (const SweepTableRow& row : rows) {
     const int done = row.runs - row.failed;
     const auto part = [&](int jobs) { return done > 0 ? fmt::format("{:.1f}%", 100.0 * jobs / done) : "-"; };
     lines.push_back({row.name, std::to_string(row.runs), row.is_initial_known ? part(row.without_contact) : "-",
-                     part(row.found), any_failed ? std::to_string(row.failed) : "", spread(row.object_taps_with, count),
+                     part(row.found), any_failed ? std::to_string(row.failed) : "", spread(row.object_taps_rest, count),
                      spread(row.object_taps_all, count), medians.empty() ? "" : spread(row.rmse, error),
                      any_iou ? spread(row.iou, share) : ""});
   }
@@ -122,7 +122,7 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
   }
   std::string out = aligned(lines, longest > kLongest ? "rrrrrrrrl" : "lrrrrrrrr");
   out +=
-      "without contact: starts whose initial taps all missed the object; with: the other starts. Median (10 %-90 %).\n";
+      "no contact: no initial tap was on the object; rest: the other starts. Median (10 %-90 %).\n";
   if (rows.size() < 2 || medians.empty()) return out;
   return out + fmt::format("The least {} first{}.\n", main_error(), places.size() > 1 ? ", scene by scene" : "");
 }
