@@ -43,15 +43,20 @@ class Keys {
     }
     for (const FieldDescription& field : Descriptions(out)) {
       if (field.beside.empty()) continue;
-      for (FieldDescription& option : options_of(field.kind, chosen_plugin(field, field.name))) {
-        if (option.name == field.beside) out.push_back(std::move(option));
-      }
+      FieldDescription option;
+      option.name = field.beside;
+      option.type = Type::section;
+      option.kind = field.kind;
+      option.group = true;
+      option.meaning = fmt::format("the {} of the {}", field.beside, field.name);
+      out.push_back(std::move(option));
     }
     return out;
   }
 
   /// What stands within the field at `path`.
   Descriptions within(const FieldDescription& field, const std::string& path) const {
+    if (field.type == Type::section && !field.kind.empty()) return of_option(field, path);
     if (field.type == Type::section) return beside(field.fields, path + ".");
     if (field.type == Type::plugin && !field.adopted) return of_plugin(field, path);
     const Tree* list = config_.find_path(path);
@@ -87,6 +92,15 @@ class Keys {
     Descriptions out;
     trouble_in([&] { out = describe_fields([&](Fields& fields) { host_.describe(kind, name, fields); }); });
     return out;
+  }
+
+  /// The fields of an option that stands beside its plugin, whose key is its kind: Field::with_beside().
+  Descriptions of_option(const FieldDescription& option, const std::string& path) const {
+    FieldDescription plugin;
+    for (const FieldDescription& one : options_of(option.kind, chosen_plugin(plugin, option.kind))) {
+      if (one.name == option.name) return beside(one.fields, path + ".");
+    }
+    return {};
   }
 
   Descriptions of_plugin(const FieldDescription& field, const std::string& path) const {

@@ -116,7 +116,7 @@ def scene_of(name, file, corners, up):
             f"  area: {{width: {side:.3f} m, depth: {side:.3f} m}}\n  desk: 0 cm\n  objects:\n    draw:\n      least: 1\n"
             f"      most: 1\n      of:\n        - {{type: mesh, file: '{quoted}', unit: {unit:g} m, up: {up}, "
             f"holes: allow,\n           at: [{side / 2:.4f} m, {side / 2:.4f} m], "
-            'rotation: "between(0 deg, 360 deg)"}\n')
+            'rotation: "uniform(0 deg, 360 deg)"}\n')
 
 
 def main():

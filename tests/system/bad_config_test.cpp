@@ -119,7 +119,7 @@ std::vector<Case> cases() {
            "10:24: kernel.length_scale: '3 s' is a time, not a length, write a length like '1.7 cm'"),
       line("UnknownUnit", "height: {noise: 1 nmm}", "10:17: height.noise: unknown unit 'nmm', did you mean 'mm'?"),
       line("UnitWhereNoneBelongs", "label: {noise: 1 mm}",
-           "10:17: label.noise: '1 mm' is not a plain number, this one has no unit"),
+           "10:16: label.noise: '1 mm' is not a plain number, this one has no unit"),
       line("DecimalComma", "kernel:\n  length_scale: 1,7 cm",
            "11:17: kernel.length_scale: '1,7 cm' has a decimal comma, write a point"),
       line("NegativeLength", "kernel: {length_scale: -1.7 cm}",
@@ -134,7 +134,7 @@ std::vector<Case> cases() {
            "10:7: seed: '010' has a leading zero, octal numbers are not read: write it without the zero"),
       line("NegativeSeed", "seed: -1", "10:7: seed: -1 is out of range, it must be at least 0"),
       line("SeedThatIsNotWhole", "seed: 1.5", "10:7: seed: '1.5' is not a whole number, write digits alone"),
-      line("YesForTrue", "label: {clip: yes}", "10:16: label.clip: 'yes' is not a truth value, write true or false"),
+      line("YesForTrue", "label: {clip: yes}", "10:15: label.clip: 'yes' is not a truth value, write true or false"),
 
       // Shapes
       line("ListWhereAValueBelongs", "seed: [1, 2]",
@@ -177,7 +177,7 @@ std::vector<Case> cases() {
       sweep("KeySweptTwice", "", {"taps=6", "seed=2", "taps=7"},
             "command line: taps is given twice, leave one of them out"),
       {"MotionThatTheBackendDoesNotKnow",
-       without("  - backend") + "backend: {type: process, command: tap}\n",
+       without("  - backend") + "backend: {type: process, command: sh}\n",
        {"run", "bad.yaml", "motion=per_tap"},
        "command line: motion.type: unknown value 'per_tap', known: paper, two_stage, continuous"},
       {"MotionOfABackendWithoutOne",
@@ -252,17 +252,17 @@ std::vector<Case> cases() {
            "lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",
-           "10:43: label.kernel: the labels have the heights' kernel when hyperparameters are shared; take it away, "
+           "10:42: label.kernel: the labels have the heights' kernel when hyperparameters are shared; take it away, "
            "or choose own"),
       line("LabelsOfTheirOwnFittingThatShare", "label: {hyperparameters: shared, fitting: {type: fixed}}",
-           "10:44: label.fitting: the labels are fitted with the heights when hyperparameters are shared; take it "
+           "10:43: label.fitting: the labels are fitted with the heights when hyperparameters are shared; take it "
            "away, or choose own"),
 
       // Plugins inside plugins, and how the surface is made
       line("UnknownSurface", "surface: two_parts",
            "10:10: surface: unknown value 'two_parts', did you mean 'two_part'?"),
       line("UnknownHyperparameters", "label: {hyperparameters: both}",
-           "10:27: label.hyperparameters: unknown value 'both', known: own, shared"),
+           "10:26: label.hyperparameters: unknown value 'both', known: own, shared"),
       line("NoKernelInASum", "kernel: {type: sum, kernels: []}", "10:30: kernel.kernels: needs at least one kernel"),
       line("SumWithoutKernels", "kernel: {type: sum}",
            "10:16: 'kernel.kernels' is missing, the parts, each {type: ..., ...}"),
@@ -312,7 +312,7 @@ std::vector<Case> cases() {
       typed("ManyNamesOfAGroup", {"acquisition=weighted,random"},
             "acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ManyValues", {"engine.type=dense,grid"},
-            "posterior has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "engine.type has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ManyWholeNumbers", {"seed=1,2"},
             "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
       typed("ARange", {"seed=range(0,5)"},

@@ -33,7 +33,7 @@ TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   EXPECT_THAT(ended.out, HasSubstr("\nThe seed is the unit: all jobs of a seed are drawn together, "
                                    "and count as one.\npair: two jobs that are equal in taps, seed.\n"));
   EXPECT_THAT(ended.out, HasSubstr("\nonly 6 seeds: "));
-  const fs::path file = directory / "compare_acquisition_on_surface_taps.csv";
+  const fs::path file = directory / "compare_acquisition_object_taps.csv";
   EXPECT_EQ(ended.err, "table: " + file.string() + "\n");
 
   // The same from results.csv, job by job and seed by seed.

@@ -91,7 +91,7 @@ TEST_F(Export, WritesTheNumbersOfTheRecordToTheLastBit) { expect_numbers_of_reco
 TEST_F(Export, WritesTheProbabilityOfTheFootprint) {
   const fs::path directory = ran({"surface=two_part", "footprint=primitives"});
   expect_numbers_of_record(directory);
-  EXPECT_THAT(text_of(directory / "summary.json"), HasSubstr("\"mistakes\": ")) << "it is not the weight";
+  EXPECT_THAT(text_of(directory / "summary.json"), HasSubstr("\"label_errors\": ")) << "it is not the weight";
 }
 
 TEST_F(Export, WritesContactsAsPointsAndNoFailedTaps) {

@@ -171,13 +171,13 @@ TEST_F(Figures, OfASweepShowWhatResultsCsvHas) {
   const auto distributions = blocks_of(directory / "figures/distributions.gnuplot");
   const std::vector<std::string> strategies{"weighted", "uncertainty"};
   const std::vector<std::string> scales{"1.7cm", "3cm"};
-  EXPECT_THAT(distributions.at("jobs_on_surface_taps"), SizeIs(20));
+  EXPECT_THAT(distributions.at("jobs_object_taps"), SizeIs(20));
   for (std::size_t a = 0; a < 2; ++a) {
     for (std::size_t s = 0; s < 2; ++s) {
       EXPECT_NEAR(heat.at(a).at(s), mean(groups.at({strategies[a], scales[s]})), 1e-6);
       std::vector<double> values = counts.at({strategies[a], scales[s]});
       std::sort(values.begin(), values.end());
-      EXPECT_EQ(distributions.at("boxes_on_surface_taps").at(2 * a + s).at(3), values.at(2)) << "the median of five";
+      EXPECT_EQ(distributions.at("boxes_object_taps").at(2 * a + s).at(3), values.at(2)) << "the median of five";
     }
   }
 }

@@ -16,7 +16,7 @@ namespace {
 using Sweeps = Shell;
 
 TEST_F(Sweeps, WriteOneRowAJobAndListTheirJobsBeforehand) {
-  const Words words = "acquisition=weighted,random kernel.length_scale=log(1cm,4cm,3) seed=range(0,2)";
+  const Words words = "acquisition=weighted,random kernel.length_scale=logspace(1cm,4cm,3) seed=range(0,2)";
   const Ended listed = sweep(words + "--list");
   EXPECT_EQ(lines(listed.out), 12);
   EXPECT_TRUE(left_nothing());
