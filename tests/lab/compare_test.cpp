@@ -58,6 +58,17 @@ TEST(Compare, MakesGroupsOfSeveralKeysAndAdjustsForAllPairs) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(*made.pairs[i].p_holm, adjusted[i]);
 }
 
+TEST(Compare, SortsGroupsByTheFirstKeyThenByTheSecondInTheOrderOfTheSweep) {
+  const auto names = [](const std::vector<std::string>& by) {
+    std::vector<std::string> out;
+    for (const ComparedGroup& one : MadeSweep(two_by_two(2)).by(by).groups) out.push_back(one.name);
+    return out;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names({"kernel", "acquisition"}), (Names{"rbf, a", "rbf, b", "matern, a", "matern, b"}));
+  EXPECT_EQ(names({"acquisition", "kernel"}), (Names{"a, rbf", "a, matern", "b, rbf", "b, matern"}));
+}
+
 TEST(Compare, NamesAGroupWhoseJobsLackAnOption) {
   const MadeSweep made({{"a", "", 1, 0.1}, {"b", "4", 1, 0.2}});
   const Comparison both = made.by({"acquisition", "kernel"}, "rmse_m", "a, (none)");

@@ -49,13 +49,30 @@ Values others(const Values& names, const Values& without) {
   return out;
 }
 
+/// The groups in the order of their keys: by the first, then the second, each in the order of the sweep.
+std::vector<JobGroup> by_keys(std::vector<JobGroup> groups) {
+  std::vector<std::map<std::string, std::size_t>> ranks;  // of the values of each key
+  for (const JobGroup& group : groups) {
+    ranks.resize(group.values.size());
+    for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i].emplace(group.values[i], ranks[i].size());
+  }
+  const auto comes_before = [&](const JobGroup& one, const JobGroup& other) {
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+      if (one.values[i] != other.values[i]) return ranks[i].at(one.values[i]) < ranks[i].at(other.values[i]);
+    }
+    return false;
+  };
+  std::sort(groups.begin(), groups.end(), comes_before);
+  return groups;
+}
+
 /// Sorts the jobs into groups and counts those that are left out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, const JobUnits& units, Comparison& out) {
   const JobCondition where(sweep, columns, query.where);
   const Values paired = others(sweep.keys, query.by);
   std::vector<Collected> groups;
-  for (const JobGroup& group : group_jobs(sweep, results, query.by)) {
+  for (const JobGroup& group : by_keys(group_jobs(sweep, results, query.by))) {
     groups.push_back({group.values, {}, 0});
     for (const JobResult& one : group.jobs) {
       const auto& [job, row] = one;

@@ -64,7 +64,7 @@ struct Comparison {
   std::vector<std::string> pairing;  ///< the other swept keys, if they vary: they are equal within a pair
   /// Of those keys the ones of which some compared groups have no value in common, so that they have no pairs.
   std::vector<std::string> apart;
-  std::vector<ComparedGroup> groups;  ///< in the order of the sweep
+  std::vector<ComparedGroup> groups;  ///< sorted by the first key, then the second, each in the order of the sweep
   std::vector<ComparedPair> pairs;    ///< each group with those before it, or with the baseline alone
   /// Of the groups that have one.
   std::vector<double> means() const;
