@@ -71,7 +71,10 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
   return config;
 }
 
-int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted, bool all_recorded) {
+/// `blocked`: some jobs could not begin, for a reason that is on stderr and that all others have, too.
+enum class Launched { submitted, ended, ended_unrecorded, blocked };
+
+int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted, Launched launched) {
   const Sweep& sweep = campaign.sweep;
   std::vector<Row> results = write_results(sweep);
   // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and the first of their
@@ -98,9 +101,14 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
   if (!end.failures.empty()) print_out("try them again: palpate resume --retry-failed {}\n", directory);
-  const bool open = interrupted || !end.open.empty() || !all_recorded;
+  const bool open = interrupted || !end.open.empty() || launched == Launched::ended_unrecorded;
   if (!open) name_record("record: " + directory);
-  print_out("{} {}\n", open ? "carry on: palpate resume" : "record:", directory);
+  const bool blocked = launched == Launched::blocked && !interrupted;
+  print_out("{} {}\n",
+            !open     ? "record:"
+            : blocked ? "stopped for the reason above; remove it, then: palpate resume"
+                      : "carry on: palpate resume",
+            directory);
   if (interrupted) return kInterrupted;
   // What is expected stands in every job's config, and is judged of all: the first that can be read will do.
   std::optional<ResolvedConfig> config;
@@ -137,8 +145,6 @@ void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
   print_out("stop: {}\n", launcher.stop_command());
 }
 
-enum class Launched { submitted, ended, ended_unrecorded };
-
 /// Has the launcher run what is open, and returns at the end of that, or, on a cluster without --wait, once it is
 /// submitted.
 Launched launch_open(const Campaign& campaign, const Standing& begun) {
@@ -161,9 +167,13 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   }
   SweepLine line(campaign.launch.quiet);
-  const bool all_recorded = conduct(*launcher, campaign.sweep, begun, program.interrupted,
-                                    [&](const SweepProgress& progress) { line.show(progress); });
-  return all_recorded ? Launched::ended : Launched::ended_unrecorded;
+  bool blocked = false;
+  const bool all_recorded =
+      conduct(*launcher, campaign.sweep, begun, program.interrupted, [&](const SweepProgress& progress) {
+        blocked = progress.blocked;
+        line.show(progress);
+      });
+  return blocked ? Launched::blocked : all_recorded ? Launched::ended : Launched::ended_unrecorded;
 }
 
 /// All that are not done, ascending.
@@ -209,9 +219,8 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   // A job whose files could not be written was not recorded whole; one of another build may never have them again.
   const Standing end = standing_of(sweep, jobs, Also::nothing);
   const bool interrupted = campaign.program.interrupted->load();
-  const bool all_recorded = launched == Launched::ended;
-  if (whole) return conclude_whole(campaign, end, interrupted, all_recorded);
-  return conclude_part(sweep, end, interrupted, all_recorded);
+  if (whole) return conclude_whole(campaign, end, interrupted, launched);
+  return conclude_part(sweep, end, interrupted, launched != Launched::ended_unrecorded);
 }
 
 /// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.

@@ -48,10 +48,11 @@ void SweepLine::show(const SweepProgress& progress) {
   const int tenth = 10 * ended / progress.jobs;
   if (terminal_ || is_followed()) {
     if (!progress.last && now - shown_ < std::chrono::milliseconds(100)) return;
-  } else if (tenth == tenth_) {
+  } else if (tenth == tenth_ && (!progress.last || running_ == 0)) {
     return;
   }
   tenth_ = tenth;
+  running_ = progress.running;
   shown_ = now;
   std::string line = fmt::format("{} of {} jobs done, {} running, {} failed", progress.done, progress.jobs,
                                  progress.running, progress.failed);

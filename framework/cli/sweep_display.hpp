@@ -16,7 +16,8 @@
 namespace palpate::cli {
 
 /// Prints a live line of a sweep on a terminal, else a line per tenth, on stderr: done, running, failed, rate, time
-/// left. To the process that is_followed() means it prints each state on a line.
+/// left, and at the end once more where the last line has jobs that ran. To the process that is_followed() means it
+/// prints each state on a line.
 class SweepLine {
  public:
   explicit SweepLine(bool quiet);
@@ -26,6 +27,7 @@ class SweepLine {
   bool quiet_;
   bool terminal_;
   int tenth_ = 0;
+  int running_ = 0;  ///< in the last line
   std::chrono::steady_clock::time_point begun_;
   std::chrono::steady_clock::time_point shown_;
 };

@@ -154,7 +154,15 @@ TEST_F(ProgramRun, ASweepWhoseProgramIsChangedStopsAndNoJobFailsByIt) {
   EXPECT_THAT(stopped.err, AllOf(HasSubstr("job 1: "), HasSubstr("put the program back that the run began with"),
                                  testing::Not(HasSubstr("job 2: "))));
   const fs::path sweep = directory();
+  const std::string last = "stopped for the reason above; remove it, then: palpate resume ";
+  EXPECT_THAT(stopped.out, AllOf(HasSubstr(last), testing::Not(HasSubstr("carry on"))));
   EXPECT_THAT(status_of(sweep).out, HasSubstr("4 jobs, 1 done, 0 running, 0 failed"));
+  const Ended again = palpate({"resume", sweep, "-j", "2"});
+  EXPECT_EQ(again.status, 1);
+  EXPECT_THAT(again.out, HasSubstr(last)) << "which would fail again as it is";
+  const auto running = again.err.rfind(" running");
+  ASSERT_NE(running, std::string::npos) << again.err;
+  EXPECT_EQ(again.err.substr(running - 3, 3), ", 0") << again.err;
   write("echo.sh", before);
   EXPECT_EQ(resume(sweep).status, 0) << "without --retry-failed";
   EXPECT_THAT(status_of(sweep).out, HasSubstr("4 jobs, 4 done"));

@@ -78,6 +78,7 @@ bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::
     }
     state = launcher.poll(kPollSeconds);
     counts.running = state.running;
+    counts.blocked = counts.blocked || state.blocked;
     counts.last = state.empty_handed();
     all_recorded = all_recorded && state.all_recorded;
     if (gone) continue;

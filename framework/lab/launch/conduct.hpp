@@ -19,7 +19,8 @@ struct SweepProgress {
   int done = 0;
   int failed = 0;
   int running = 0;
-  int before = 0;  ///< of done and failed: those that were so when it began
+  int before = 0;        ///< of done and failed: those that were so when it began
+  bool blocked = false;  ///< a job could not begin, for a reason that the others have, too: see Launcher::State
   bool last = false;
 };
 

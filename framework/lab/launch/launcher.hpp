@@ -24,6 +24,7 @@ class Launcher {
   struct State {
     std::vector<std::size_t> returned;  ///< jobs that it let go since the last call, in whatever state
     bool all_recorded = true;           ///< false where one of them could not record its end or write its files
+    bool blocked = false;               ///< a job could not begin, nor could the next, so that none is waiting now
     int running = 0;                    ///< jobs, as far as it knows
     int waiting = 0;                    ///< jobs
     bool empty_handed() const { return running == 0 && waiting == 0; }

@@ -141,6 +141,7 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State
   if (end == JobEnd::blocked && process.said() == kBlocked) {  // and the next job would be, too
     waiting_.clear();
     later_.clear();
+    state.blocked = true;
     return;
   }
   state.all_recorded = state.all_recorded && end != JobEnd::unrecorded;
