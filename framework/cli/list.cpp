@@ -7,12 +7,15 @@
 #include "reading/reading.hpp"
 #include "record/catalogue.hpp"
 #include "record/files.hpp"
+#include "record/run_directory.hpp"
 #include "report/words/words.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
 
 namespace palpate::cli {
 namespace {
@@ -59,8 +62,14 @@ int list_runs(Program&, const ListArguments& arguments) {
   }
   arguments.json ? print_json(rows) : print_text(runs_table(rows));
   if (all.records.empty()) mention(fmt::format("{}: holds no run and no sweep\n", folder.string()));
-  if (where && rows.empty() && !records.empty())
-    mention(fmt::format("command line: --where: leaves none of {}\n", records.size()));
+  if (where && rows.empty() && !records.empty()) {
+    const auto sweep = std::find_if(all.records.begin(), all.records.end(), is_sweep);
+    mention(fmt::format("command line: --where: leaves none of {}{}\n", records.size(),
+                        sweep == all.records.end()
+                            ? ""
+                            : fmt::format("; of a sweep it looks at the jobs in 'palpate list {} --where ...'",
+                                          (*sweep / "jobs").string())));
+  }
   mention_others(all, folder);
   return kDone;
 }

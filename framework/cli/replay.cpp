@@ -13,8 +13,9 @@ namespace palpate::cli {
 
 void check_one_run(const std::filesystem::path& directory) {
   if (!is_sweep(directory)) return;
+  const std::string jobs = (directory / "jobs").string();
   throw Error(directory.string(), "is a sweep of many runs",
-              "give one of them: " + (directory / "jobs" / "<id>").string());
+              fmt::format("give one of them: {0}/<id>; 'palpate list {0} --where \"seed == 3\"' shows which", jobs));
 }
 
 int replay(Program& program, const std::string& directory) {

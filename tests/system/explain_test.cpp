@@ -345,8 +345,10 @@ TEST_F(Explain, RefusesInOneLineWhatItCannotExplain) {
   EXPECT_THAT(refused("explain nowhere 1"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
   const fs::path sweep = swept("seed=1,2 taps=4");
   for (const Words& words : {Words{"explain", sweep, "1"}, Words{"replay", sweep}}) {
-    EXPECT_EQ(refused(words), sweep.string() + ": is a sweep of many runs, give one of them: " +
-                                  (sweep / "jobs" / "<id>").string() + "\n");
+    const std::string jobs = (sweep / "jobs").string();
+    EXPECT_EQ(refused(words), sweep.string() + ": is a sweep of many runs, give one of them: " + jobs +
+                                  "/<id>; 'palpate list " + jobs + " --where \"seed == 3\"' shows which\n");
+    EXPECT_THAT(palpate({"list", jobs, "--where", "seed == 2"}).out, HasSubstr(job_of(sweep, 1).filename().string()));
   }
   for (const fs::path& job : jobs_of(sweep)) EXPECT_THAT(explain(job, 4), HasSubstr("Tap 4 of 4, run object_i ("));
 }

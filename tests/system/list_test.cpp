@@ -67,6 +67,10 @@ TEST_F(List, OfAFolderWithoutRunsIsOneLine) {
   ran("taps=3");
   EXPECT_EQ(list({"--where", "taps > 3"}).err, "command line: --where: leaves none of 1\n");
   EXPECT_THAT(refused({"list", "--where", "tapps > 3"}), HasSubstr("'tapps' is not known, did you mean 'taps'?"));
+  const fs::path sweep = swept("name=many taps=3 seed=1,2");
+  EXPECT_THAT(list({"--where", "seed == 2", "runs/many"}).err,
+              AllOf(HasSubstr("leaves none of 1; of a sweep it looks at the jobs in 'palpate list runs/many/"),
+                    HasSubstr("/jobs --where ...'\n")));
 }
 
 TEST_F(List, NamesStandForARunOrASweepInEveryCommandThatTakesOne) {
