@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 4> kExtensions{".csv", ".png", ".pdf", ".svg"};
 
-/// The files to write: those that are named, else a picture and a table beside results.csv.
+/// The files to write: those that are named, else a picture and a table beside results.csv. A PDF comes last, because
+/// the script of a name draws the last picture of that name, and papers take the PDF.
 std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arguments,
                                   const std::vector<std::string>& by) {
   std::vector<fs::path> out(arguments.outputs.begin(), arguments.outputs.end());
@@ -40,6 +41,7 @@ std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arg
     if (!fs::is_directory(folder))
       throw Error("command line", fmt::format("-o: there is no folder '{}'", folder.string()), "make it first");
   }
+  std::stable_partition(out.begin(), out.end(), [](const fs::path& file) { return file.extension() != ".pdf"; });
   if (!out.empty()) return out;
   const std::string groups = by.empty() ? "all" : slug(fmt::format("{}", fmt::join(by, "_")));
   const std::string name = fmt::format("curves_{}_{}_{}{}", groups, slug(arguments.metric), arguments.against,

@@ -20,7 +20,7 @@ class CurvesOfGroups : public Shell {
                  config("default.yaml"));
   }
   Ended curves(const fs::path& sweep, const Words& more = {}) const {
-    const Ended ended = palpate(Words{"curves", sweep} + more);
+    Ended ended = palpate(Words{"curves", sweep} + more);
     EXPECT_EQ(ended.status, 0) << ended.err;
     return ended;
   }
@@ -117,6 +117,26 @@ std::vector<double> numbers_in(const std::string& text, const std::string& patte
   return out;
 }
 
+/// Where a text of an SVG begins, points from the upper left corner: below it stand its letters.
+struct Spot {
+  double x = -1;
+  double y = -1;
+};
+
+/// Of each text that begins so, in the order of the drawing.
+std::vector<Spot> spots_of(const std::string& svg, const std::string& text) {
+  constexpr double kPoint = 72.0 / 96.0;
+  const std::string before = "translate(";
+  std::vector<Spot> out;
+  for (auto at = svg.find("<text>" + text); at != std::string::npos; at = svg.find("<text>" + text, at + 1)) {
+    const auto place = svg.rfind(before, at) + before.size();
+    out.push_back({kPoint * std::stod(svg.substr(place)), kPoint * std::stod(svg.substr(svg.find(',', place) + 1))});
+  }
+  return out;
+}
+
+constexpr double kSample = 22 + 5;  ///< points from where a sample in the legend begins to its name
+
 /// A figure of a sweep on three scenes.
 class FigureOfCurves : public CurvesOfGroups {
  protected:
@@ -147,7 +167,7 @@ TEST_F(FigureOfCurves, FitsTheTextOfAPaperWithLettersOfEightPoints) {
     EXPECT_GE((256 * byte(18) + byte(19)) / (width / kCentimetresPerInch), 200.0) << "pixels per inch";
     // The lower edges of the panels: rows.
     std::set<double> rows;
-    for (const double one : numbers_in(text_of(here() / "a.gnuplot"), R"(set bmargin at screen ([\d.]+))"))
+    for (const double one : numbers_in(text_of(here() / "a.gnuplot"), R"(set bmargin at screen down\(([\d.]+))"))
       rows.insert(one);
     EXPECT_EQ(rows.size(), width < 10 ? 3U : 2U) << "one of them is the legend's";
   }
@@ -215,15 +235,17 @@ TEST_F(FigureOfCurves, TellsGroupsApartWithoutColourAndTheirLongNamesHaveRoom) {
   for (const std::string width : {"17.8 cm", "30 cm", "8.8 cm"}) {
     curves(directory, Words{"-o", "a.svg", "--width", width});
     const std::string script = text_of(here() / "a.gnuplot");
+    const std::string svg = text_of(here() / "a.svg");
     const double points = std::stod(width) / 2.54 * 72;
-    const std::vector<double> samples = numbers_in(script, "set arrow from screen ([\\d.]+)");
-    const std::vector<double> rows = numbers_in(script, "set arrow from screen [\\d.]+, screen ([\\d.]+)");
-    const std::vector<double> names = numbers_in(script, "set label '\\{type: rat[^']*' at screen ([\\d.]+)");
-    ASSERT_EQ(samples.size(), 4U);
+    std::vector<Spot> names = spots_of(svg, "{type: rat");
     ASSERT_EQ(names.size(), 2U);
+    for (const char* name : {"rbf", "matern32"}) {
+      ASSERT_EQ(spots_of(svg, name).size(), 1U);
+      names.push_back(spots_of(svg, name)[0]);
+    }
     for (std::size_t i = 0; i < 2 && width != "8.8 cm"; ++i) {
-      const double end = names[i] * points + kNameWidth;
-      EXPECT_LE(end, rows[i + 1] == rows[i] ? samples[i + 1] * points : points) << width << " " << i;
+      const double next = names[i + 1].y == names[i].y ? names[i + 1].x - kSample : points;
+      EXPECT_LE(names[i].x + kNameWidth, next) << width << " " << i;
     }
     std::set<std::string> dashes;
     std::set<std::string> marks;
@@ -235,6 +257,44 @@ TEST_F(FigureOfCurves, TellsGroupsApartWithoutColourAndTheirLongNamesHaveRoom) {
     EXPECT_EQ(dashes.size(), 4U);
     EXPECT_EQ(marks.size(), 4U);
   }
+}
+
+TEST_F(FigureOfCurves, HasRoomForNamesThatSomebodyChangesInItsScript) {
+  curves(three_scenes(), "-o a.svg");
+  const fs::path script = here() / "a.gnuplot";
+  const std::string before = text_of(here() / "a.svg");
+  const double lowest = spots_of(before, "taps").at(0).y;
+  std::string name = "weighted";
+  // As wide as a figure takes beside another name, and as it takes alone; an m is 7.8 points wide at eight.
+  for (const std::size_t letters : {std::size_t{40}, std::size_t{52}}) {
+    const std::string longer(letters, 'm');
+    replace(script, "name_1 = '" + name + "'", "name_1 = '" + longer + "'");
+    name = longer;
+    const Ended drawn = test::run_program({"/usr/bin/env", "LC_ALL=C", "/usr/bin/gnuplot", script.string()}, here());
+    ASSERT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_EQ(drawn.err, "") << "no warning of an encoding";
+    const std::string svg = text_of(here() / "a.svg");
+    const Spot first = spots_of(svg, name).at(0);
+    const Spot second = spots_of(svg, "random").at(0);
+    const Spot panel = spots_of(svg, "scene: ring").at(0);
+    if (letters == 40) {
+      EXPECT_EQ(second.y, first.y);
+      EXPECT_GE(second.x - kSample, first.x + 7.79 * static_cast<double>(letters));
+      EXPECT_EQ(panel.y, spots_of(before, "scene: ring").at(0).y);
+    } else {
+      EXPECT_NEAR(second.y, first.y + 11, 0.1);
+      EXPECT_GE(panel.y, second.y + 8) << "panels make room";
+    }
+    EXPECT_NEAR(spots_of(svg, "taps").at(0).y, lowest, 1.5);
+  }
+}
+
+TEST_F(FigureOfCurves, HasAScriptThatDrawsThePdfWhereOneIsAskedFor) {
+  curves(three_scenes(), "-o a.pdf -o a.png");
+  for (const char* file : {"a.pdf", "a.png"}) EXPECT_TRUE(fs::remove(here() / file));
+  ASSERT_EQ(test::run_program({"/usr/bin/gnuplot", "a.gnuplot"}, here()).status, 0);
+  EXPECT_TRUE(fs::exists(here() / "a.pdf"));
+  EXPECT_FALSE(fs::exists(here() / "a.png"));
 }
 
 TEST_F(FigureOfCurves, HasWordsOnItsAxesNoTitleAndItsScriptBesideIt) {

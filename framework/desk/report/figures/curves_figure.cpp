@@ -129,16 +129,24 @@ std::string block_of(const GroupCurve& curve, double axis, double factor) {
   return out;
 }
 
-/// The width of a line, in points. Advances of DejaVu Sans, of each class of letters the widest: no line is wider.
+// Advances of DejaVu Sans, of each class of letters the widest, in parts of the font's size: no line is wider.
+constexpr double kFont = 8;
+struct LetterClass {
+  const char* letters;
+  double width;
+};
+constexpr std::array<LetterClass, 3> kLetterClasses{
+    {{"fijlrtI .,:;'|!()[]/-", 0.42}, {"mMWO@%", 1.0}, {"wGQ+=<>~ABCDHKNPRSTUVXYZ", 0.84}}};
+constexpr double kOtherLetters = 0.65;
+
+/// The width of a line, in points.
 double width_of_line(const std::string& text) {
-  constexpr double kFont = 8;
   double out = 0.0;
   for (const char c : text) {
-    const auto is_in = [c](const char* letters) { return std::string_view(letters).find(c) != std::string_view::npos; };
-    out += kFont * (is_in("fijlrtI .,:;'|!()[]/-")      ? 0.42
-                    : is_in("mMWO@%")                   ? 1.0
-                    : is_in("wGQ+=<>~ABCDHKNPRSTUVXYZ") ? 0.84
-                                                        : 0.65);
+    const auto* const one = std::find_if(kLetterClasses.begin(), kLetterClasses.end(), [c](const LetterClass& letters) {
+      return std::string_view(letters.letters).find(c) != std::string_view::npos;
+    });
+    out += kFont * (one != kLetterClasses.end() ? one->width : kOtherLetters);
   }
   return out;
 }
@@ -158,28 +166,30 @@ std::vector<std::string> lines_within(const std::string& text, double width) {
   return out;
 }
 
-/// Where the name of a group stands in the legend, as many lines as it takes.
+/// The name of a group in the legend, in as many lines as it takes.
 struct LegendEntry {
-  double x = 0.0;
   std::size_t row = 0;
   std::vector<std::string> lines;
 };
 
-/// Names side by side; one that is longer than the figure is wide has rows of its own.
+constexpr double kNameGap = 5;  ///< between a sample and its name
+constexpr double kBetweenNames = 16;
+
+/// Names side by side; one that is longer than the figure is wide has rows of its own. draw_legend() has gnuplot do
+/// the same with names that somebody changed.
 std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width) {
-  constexpr double kBetween = 16;
   std::vector<LegendEntry> out;
   double x = left;
   std::size_t row = 0;
   for (const std::string& name : names) {
-    std::vector<std::string> lines = lines_within(name, width - left - kSampleLength - 5 - kEndRoom);
-    const double length = kSampleLength + 5 + width_of_line(lines.front());
+    std::vector<std::string> lines = lines_within(name, width - left - kSampleLength - kNameGap - kEndRoom);
+    const double length = kSampleLength + kNameGap + width_of_line(lines.front());
     if (x > left && (lines.size() > 1 || x + length > width - kEndRoom)) {
       x = left;
       ++row;
     }
-    out.push_back({x, row, lines});
-    x += length + kBetween;
+    out.push_back({row, lines});
+    x += length + kBetweenNames;
     if (lines.size() > 1) {
       x = left;
       row += lines.size();
@@ -188,31 +198,60 @@ std::vector<LegendEntry> place_names(const std::vector<std::string>& names, doub
   return out;
 }
 
-/// A place of the figure, points from its upper left corner, as gnuplot has it.
-std::string on_sheet(const Sheet& sheet, double x, double y) {
-  return fmt::format("screen {:.5f}, screen {:.5f}", x / sheet.width(), 1.0 - y / sheet.height());
+/// gnuplot's variable with a line of a name.
+std::string name_variable(std::size_t entry, std::size_t line) {
+  return fmt::format("name_{}", entry + 1) + (line > 0 ? fmt::format("_{}", line + 1) : "");
 }
 
-/// Bands, lines, marks and names of the groups.
-void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
-  std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
+/// The names, to be changed by whoever reads the script; how wide each is; and a height of the panels below them, which
+/// begin at `top` and have less room where changed names take more rows. Lengths are points from the upper left corner.
+std::string legend_variables(const Sheet& sheet, const std::vector<LegendEntry>& entries, double top) {
+  std::string out = "# The names in the legend; longer ones move those behind them.\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const LegendEntry& entry = entries[i];
-    const LineStyle style = line_style(i);
-    const double y = 4 + kLineHeight * (static_cast<double>(entry.row) + 0.5);
-    settings +=
-        fmt::format("set object rectangle from {} to {} fc rgb '{}' fs transparent solid 0.18 noborder\n",
-                    on_sheet(sheet, entry.x, y - 3.5), on_sheet(sheet, entry.x + kSampleLength, y + 3.5), style.colour);
-    settings += fmt::format("set arrow from {} to {} nohead {}\n", on_sheet(sheet, entry.x, y),
-                            on_sheet(sheet, entry.x + kSampleLength, y), style.line);
-    settings += fmt::format("set label '' at {} point {} lc rgb '{}' front\n",
-                            on_sheet(sheet, entry.x + 0.5 * kSampleLength, y), style.point, style.colour);
-    for (std::size_t line = 0; line < entry.lines.size(); ++line)
-      settings +=
-          fmt::format("set label {} at {} left\n", gnuplot_text(entry.lines[line]),
-                      on_sheet(sheet, entry.x + kSampleLength + 5, y + kLineHeight * static_cast<double>(line)));
+    for (std::size_t line = 0; line < entries[i].lines.size(); ++line)
+      out += fmt::format("{} = {}\n", name_variable(i, line), gnuplot_text(entries[i].lines[line]));
   }
+  out += fmt::format("wide(name) = {} * (sum [i=1:strlen(name)] (", kFont);
+  for (const LetterClass& one : kLetterClasses)
+    out += fmt::format("strstrt({}, name[i:i]) ? {} : ", gnuplot_text(one.letters), one.width);
+  out += fmt::format("{}))\nmore = 0\n", kOtherLetters);
+  return out + fmt::format("down(y) = 1 - (y + (y > {1:.2f} ? more * ({0} - y) / ({0} - {1:.2f}) : 0)) / {0}.0\n",
+                           sheet.height(), top);
+}
+
+/// Bands, lines, marks and names of the groups, which begin `left` of the left edge.
+void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries, double left) {
+  const double end = sheet.width() - kEndRoom;
+  const auto at = [&](const std::string& x, double y) {
+    return fmt::format("screen (at_x + {}) / {}.0, screen down(at_y + {})", x, sheet.width(), y);
+  };
+  const double sample = kSampleLength;
+  const std::string right = fmt::format("{}", sample);
+  std::string settings =
+      fmt::format("unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\nat_x = {}\nat_y = {}\n", left,
+                  4 + 0.5 * kLineHeight);
+  const std::string new_row = fmt::format("at_x = {}; at_y = at_y + {}", left, kLineHeight);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::vector<std::string>& lines = entries[i].lines;
+    const LineStyle style = line_style(i);
+    const std::string length = fmt::format("{} + wide({})", sample + kNameGap, name_variable(i, 0));
+    settings += lines.size() > 1
+                    ? fmt::format("if (at_x > {}) {{ {} }}\n", left, new_row)
+                    : fmt::format("if (at_x > {} && at_x + {} > {}) {{ {} }}\n", left, length, end, new_row);
+    settings += fmt::format("set object rectangle from {} to {} fc rgb '{}' fs transparent solid 0.18 noborder\n",
+                            at("0", -3.5), at(right, 3.5), style.colour);
+    settings += fmt::format("set arrow from {} to {} nohead {}\n", at("0", 0), at(right, 0), style.line);
+    settings += fmt::format("set label '' at {} point {} lc rgb '{}' front\n", at(fmt::format("{}", 0.5 * sample), 0),
+                            style.point, style.colour);
+    for (std::size_t line = 0; line < lines.size(); ++line)
+      settings += fmt::format("{}set label {} at {} left\n", line > 0 ? new_row + "\n" : "", name_variable(i, line),
+                              at(fmt::format("{}", sample + kNameGap), 0));
+    if (i + 1 == entries.size()) break;
+    settings += lines.size() > 1 ? new_row + "\n" : fmt::format("at_x = at_x + {} + {}\n", length, kBetweenNames);
+  }
+  const double last = 4 + kLineHeight * (static_cast<double>(entries.back().row + entries.back().lines.size()) - 0.5);
   sheet.plot({0, 0, 10, 10}, settings, "plot NaN");
+  sheet.then(fmt::format("more = at_y > {0} ? at_y - {0} : 0\n", last));
 }
 
 /// The panel's name: "scene: ring", without the keys where there is no room for them, in as many lines as it takes.
@@ -265,8 +304,9 @@ struct CurvesLayout {
   double height = 0.0;
 
   Box box(std::size_t panel) const {
+    const std::size_t row = panel / across;
     return {left + static_cast<double>(panel % across) * (panel_width + kPanelGap),
-            top + head + static_cast<double>(panel / across) * pitch, panel_width, panel_height};
+            top + head + static_cast<double>(row) * pitch, panel_width, panel_height};
   }
 };
 
@@ -353,9 +393,12 @@ std::string write_curves_figure(const GroupCurves& curves, const std::string& ti
 
   Sheet sheet(static_cast<int>(layout.width), static_cast<int>(layout.height));
   const auto label = [&](const std::string& text, double x, double y, const char* style) {
-    return fmt::format("set label {} at {} {}\n", gnuplot_text(text), on_sheet(sheet, x, y), style);
+    return fmt::format("set label {} at screen {:.5f}, screen {} {}\n", gnuplot_text(text), x / sheet.width(),
+                       sheet.height_at(y), style);
   };
-  draw_legend(sheet, layout.legend);
+  sheet.begin(legend_variables(sheet, layout.legend, layout.top));
+  sheet.place_by("down");
+  draw_legend(sheet, layout.legend, layout.left);
   for (std::size_t s = 0; s < layout.scenes.size(); ++s) {
     const Box box = layout.box(s);
     CurveClauses clauses;

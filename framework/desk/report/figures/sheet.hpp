@@ -89,6 +89,14 @@ class Sheet {
   /// Without terminal and output.
   std::string script() const;
 
+  /// Commands that stand before all data.
+  void begin(const std::string& commands) { begin_ += commands; }
+  /// From here on heights of panels are calls of gnuplot's function `name`, which is defined by begin(): of the
+  /// distance from the upper edge.
+  void place_by(const std::string& name) { height_function_ = name; }
+  /// A height at a distance of `y` from the upper edge, as a part of gnuplot's `screen`.
+  std::string height_at(double y) const;
+
   /// A named block of lines; "" makes none.
   void data(const std::string& name, const std::string& lines);
   /// The taps of a snapshot as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number") and the next one as
@@ -112,6 +120,8 @@ class Sheet {
   /// What the marks mean, from `x` on, its middle at `y`.
   void legend(double x, double y, bool failed, bool next = true);
 
+  /// Commands behind the panels so far.
+  void then(const std::string& commands) { panels_ += commands; }
   /// A plot of any kind: lines of settings, then the clauses of one plot command.
   void plot(const Box& box, const std::string& settings, const std::string& clauses);
 
@@ -125,6 +135,8 @@ class Sheet {
 
   int width_;
   int height_;
+  std::string height_function_;
+  std::string begin_;
   std::string data_;
   std::string texts_;
   std::string panels_;
