@@ -224,6 +224,7 @@ TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed)
   const fs::path own = ran(run, (here() / "curious/curious.yaml").string());
   EXPECT_THAT(text_of(own / "config.yaml"), HasSubstr("reads: \"uncertainty, object_probability\""));
   EXPECT_EQ(palpate({"replay", own}).status, 0);
+  EXPECT_THAT(text_of(own / "config.yaml"), HasSubstr("placement: random")) << "else 30 seeds are one place";
   EXPECT_EQ(refused({"new", "kernel", "--python", "mine"}),
             "command line: --python: a plugin of the kind kernel cannot be a function of Python, only an acquisition "
             "can; leave it out\n");
