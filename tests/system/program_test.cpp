@@ -220,6 +220,13 @@ TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed)
   EXPECT_THAT(made.out, HasSubstr("python3 curious/test_curious.py\n"));
   const Ended tested = test::run_program({python, "-B", "curious/test_curious.py"}, here());
   EXPECT_EQ(tested.status, 0) << tested.err;
+  const auto without = [&](const std::string& name) {
+    const std::string code = "from palpate_acquisition import Belief; Belief(seed=1)." + name;
+    return test::run_program({python, "-B", "-c", code}, here() / "curious").err;
+  };
+  EXPECT_THAT(without("hypotheses"),
+              HasSubstr("this belief was made without hypotheses: add hypotheses=... to its Belief(...)"));
+  EXPECT_THAT(without("random"), HasSubstr("made without random: add seed=1, tap=1 to its Belief(...)"));
   const Words run{"taps=6", "acquisition.command=" + python + " -B curious/curious.py"};
   const fs::path own = ran(run, (here() / "curious/curious.yaml").string());
   EXPECT_THAT(text_of(own / "config.yaml"), HasSubstr("reads: \"uncertainty, object_probability\""));

@@ -133,6 +133,7 @@ TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoes
               testing::MatchesRegex("acquisition/program: the program ended with exit status 1, its last words: 'no "
                                     "torch here', correct it, what it said is in .*/record/acquisition_"
                                     "[0-9a-f]{8}.stderr.txt"));
+  EXPECT_THAT(trouble("import numpy"), HasSubstr("Debian: apt install python3-numpy")) << "-S finds no packages";
   EXPECT_THAT(trouble("os.kill(os.getpid(), 9)"), HasSubstr("the program was ended by signal 9 (Killed)"));
   EXPECT_THAT(trouble("time.sleep(600)", ", deadline: 0.2 s, start: 0 s"),
               AllOf(StartsWith("acquisition/program: the program gave no scores in time, nor ever before"),
@@ -203,10 +204,19 @@ TEST_F(ProgramAcquisition, SaysWhatIsWrongWithItsOptionsBeforeAnythingStarts) {
   };
   EXPECT_EQ(refusal(command("")), "accepted");
   EXPECT_THAT(refusal(command("", "\"height\"")),
-              AllOf(HasSubstr("plugin.reads: has 'height', which is none of uncertainty, label_mean, ")));
+              AllOf(HasSubstr("plugin.command: reads=[...] in '"),
+                    HasSubstr("has 'height', which is none of uncertainty, label_mean, "),
+                    HasSubstr("contacts (from above); uncertainty, surface_std, ")))
+      << "the config has no reads";
+  EXPECT_THAT(refusal(command(""), ", reads: height"), HasSubstr("plugin.reads: has 'height', which is none of "));
   EXPECT_THAT(refusal(command("reads=['height_mean']")), HasSubstr("the program has several reads=[...]"));
   EXPECT_EQ(refusal(command("reads=['height_mean']"), ", reads: \"height_mean\""), "accepted");
   EXPECT_THAT(refusal("python3 -m mine"), HasSubstr("is not said, and 'python3 -m mine' names no file in"));
+  EXPECT_THAT(refusal("python3 -m mine"), HasSubstr("paths in it begin in the folder in which palpate is called"));
+  fs::create_directory(folder_.path() / "own");
+  folder_.write("own/own.py", "# reads=[\"uncertainty\"]\n");
+  EXPECT_THAT(refusal("python3 own/own.py", ", folder: " + yaml_quoted((folder_.path() / "own").string())),
+              HasSubstr("so call it in '" + folder_.path().string() + "'"));
   EXPECT_THAT(refusal(command("", "\"height_mean\", \"surface_std\"")),
               HasSubstr("names arrays of taps from above and arrays of taps from any side"));
   EXPECT_THAT(refusal("nobody-has-this x", ", reads: uncertainty"), HasSubstr("there is no program 'nobody-has-this'"));

@@ -34,13 +34,18 @@ class Belief:
     seed        of the run
     rows, columns  of the grid of candidates, row after row (taps from above): map.reshape(belief.rows, belief.columns)
     area, desk  {"width", "depth"}, and the desk's height, metres
+
+    A test makes one with what its function reads: Belief(uncertainty=numpy.ones(4), tap=5).
     """
 
     def __init__(self, **values):
         self.__dict__.update(values)
 
     def __getattr__(self, name):
-        raise AttributeError(f"the belief has no {name}: name it in reads=[...]")
+        if SERVED:
+            raise AttributeError(f"the belief has no {name}: name it in reads=[...]")
+        missing = "seed=1, tap=1" if name == "random" else f"{name}=..."
+        raise AttributeError(f"this belief was made without {name}: add {missing} to its Belief(...)")
 
     @property
     def random(self):

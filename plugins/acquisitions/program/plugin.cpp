@@ -72,10 +72,23 @@ std::set<std::string> declarations(const std::string& program) {
   return out;
 }
 
+/// "uncertainty, label_mean (from above); uncertainty, surface_std (from any side)", of all arrays.
 std::string all_names() {
-  std::string out;
-  for (const program::Map& one : program::maps()) out += (out.empty() ? "" : ", ") + std::string(one.name);
-  return out;
+  std::vector<const char*> above;
+  std::vector<const char*> any_side;
+  for (const program::Map& one : program::maps()) {
+    if (one.above != nullptr) above.push_back(one.name);
+    if (one.any_side != nullptr) any_side.push_back(one.name);
+  }
+  return fmt::format("{} (from above); {} (from any side)", fmt::join(above, ", "), fmt::join(any_side, ", "));
+}
+
+/// Returns whether a word of the command that names no file in `folder` names one in the folder above.
+bool lies_above(const std::vector<std::string>& words, const fs::path& folder) {
+  std::error_code none;
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return fs::is_regular_file(folder.parent_path() / word, none) && !fs::exists(folder / word, none);
+  });
 }
 
 /// The folder of palpate_acquisition.py: beside that of this library, in a build, a package and an installation of pip
@@ -121,10 +134,14 @@ struct ProgramOptions : Options {
     fields.text(reads, Field("reads",
                              "names of the arrays that are sent, separated by commas, or none; if absent, those of "
                              "reads=[...] in the program"));
-    fields.require(!words || !reads.empty(), "reads", unsaid(content.program, declared));
+    fields.require(!words || !reads.empty(), "reads",
+                   unsaid(words.value_or(std::vector<std::string>()), content.program, declared));
+    // A config seldom has names of its own: those of the program are corrected there.
+    const bool by_program = declared.size() == 1 && reads == *declared.begin();
     for (const std::string& name : names_in(reads)) {
-      fields.require(program::find_map(name) != nullptr, "reads",
-                     "has " + shown(name) + ", which is none of " + all_names());
+      fields.require(program::find_map(name) != nullptr, by_program ? "command" : "reads",
+                     (by_program ? "reads=[...] in " + shown(content.file) + " has " : "has ") + shown(name) +
+                         ", which is none of " + all_names());
     }
     fields.real(deadline, Field("deadline", "the run fails if scores take longer; it can be carried on")
                               .in(Unit::second)
@@ -139,9 +156,15 @@ struct ProgramOptions : Options {
                            .not_identifying());
   }
 
-  std::string unsaid(const std::string& program, const std::set<std::string>& declared) const {
+  std::string unsaid(const std::vector<std::string>& words, const std::string& program,
+                     const std::set<std::string>& declared) const {
+    if (program.empty() && lies_above(words, folder))
+      return "is not said, and " + shown(command) + " names no file in " + shown(folder) +
+             ": paths in it begin in the folder in which palpate is called, so call it in " +
+             shown(fs::path(folder).parent_path().string());
     if (program.empty())
-      return "is not said, and " + shown(command) + " names no file in " + shown(folder) + " that could say it";
+      return "is not said, and " + shown(command) + " names no file in " + shown(folder) +
+             " that could say it: paths in it begin in the folder in which palpate is called";
     return declared.empty() ? "is not said, neither here nor by reads=[...] in the program"
                             : "is not said here, and the program has several reads=[...]";
   }
@@ -209,6 +232,16 @@ class ProgramAcquisition final : public Acquisition {
     throw Error("", "the program " + what, remedy, Error::Kind::run);
   }
 
+  /// Fails with how the program ended, and where a module of Python is missing with what has it.
+  [[noreturn]] void fail_ended(const std::string& fate) const {
+    const std::string file = in_record(".stderr.txt");
+    if (fate.find("No module named 'numpy'") != std::string::npos)
+      fail(fate,
+           "install NumPy for the Python of acquisition.command (Debian: apt install python3-numpy, for "
+           "/usr/bin/python3)");
+    fail(fate, "correct it, what it said is in " + file);
+  }
+
   /// Sends what there is to read, and takes the scores.
   void exchange(const std::string& fields, const std::vector<std::string>& arrays, VectorOut out) const {
     if (context_.directory.empty())
@@ -269,7 +302,7 @@ class ProgramAcquisition final : public Acquisition {
       case Heard::line:
         return;
       case Heard::ended:
-        fail(child_->fate(), "correct it, what it said is in " + in_record(".stderr.txt"));
+        fail_ended(child_->fate());
       case Heard::late:
         fail(bytes.empty() ? std::string("gave no scores in time") +
                                  (answered_ ? "" : ", nor ever before: does it flush its output?")
