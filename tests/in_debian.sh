@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # What README promises of a machine with nothing but git, in a bare root of a Debian that is made for it and removed
-# again, with a clone of HEAD: run, its first command, which prints what README shows, and the plugin of
+# again, with a clone of HEAD: run, its first command, which prints the lines that README shows, and the plugin of
 # plugins/README.md; check, its second, which compares taps with runs/reference. Without either, both. As a user who
 # has sudo, as root, or as a user who has not, and then root installs the packages before. With ci, where CI=true.
 # Needs root, mmdebstrap, a network, and 5 GB in $TMPDIR.
@@ -44,7 +44,7 @@ done
 command -v mmdebstrap >/dev/null || refuse "the package mmdebstrap is missing"
 
 # What the READMEs show, so that it is they who are tested.
-both=$(sed -n '/^## Two commands/,/^## What one does most/s|^\(\./[^#]*[^# ]\)  *#.*|\1|p' "$root/README.md")
+both=$(sed -n '/^## Two commands/,/^## Next steps/s|^\(\./[^#]*[^# ]\)  *#.*|\1|p' "$root/README.md")
 capture=$(sed -n '/^ tap  source/,/^```/{/^```/d;p}' "$root/README.md")
 tutorial=$(sed -n '/^cmake --install/,/^```/{/^```/d;p}' "$root/plugins/README.md")
 [ "$(echo "$both" | wc -l)" = 2 ] && [ -n "$capture" ] && [ -n "$tutorial" ] || refuse "the READMEs show no commands"
@@ -72,7 +72,7 @@ echo "$capture" >"$share/capture"
   echo 'cd ~/palpate'
   case $what in *run* | pages)
     echo "$(echo "$both" | sed -n 1p) >~/printed"
-    echo 'diff ~/capture ~/printed'
+    echo 'awk -f ~/palpate/tests/shown.awk ~/capture ~/printed'
     ;;
   esac
   case $what in *run*)
