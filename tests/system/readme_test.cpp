@@ -52,6 +52,12 @@ struct Page {
   int compared;
 };
 
+/// Returns the words of a text, in their order.
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
 class Pages : public testing::TestWithParam<Page> {};
 
 bool wished(const char* variable) { return std::getenv(variable) != nullptr; }
@@ -105,7 +111,7 @@ const std::vector<Page> kPages{{"README.md", 0},
                                {"framework/docs/any_side.md", 4},
                                {"framework/docs/strategies.md", 0},
                                {"framework/docs/stability.md", 0},
-                               {"runs/reference/README.md", 9}};
+                               {"runs/reference/README.md", 11}};
 
 INSTANTIATE_TEST_SUITE_P(Every, Pages, ::testing::ValuesIn(kPages), [](const auto& one) {
   return one.param.name == std::string("runs/reference/README.md") ? "pictures"
@@ -115,6 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Pages, ::testing::ValuesIn(kPages), [](const aut
 TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
   const std::string readme = text_of(test::source_folder() / "README.md");
   EXPECT_LE(lines(readme), 200);
+  EXPECT_LE(words_of(readme).size(), 1000U);
   int pages = 0;
   for (const auto& entry : fs::directory_iterator(test::source_folder() / "framework/docs")) {
     ++pages;
@@ -225,22 +232,36 @@ std::string first_command(const std::string& readme) {
   return line.substr(0, line.find_last_not_of(' ', line.find('#') - 1) + 1);
 }
 
-TEST(Readme, TheCaptureIsWhatTheFirstCommandPrintsAndItsErrorFalls) {
+/// Returns the lines of README's log, without those that stand for others.
+std::vector<std::string> lines_of_log(const std::string& readme) {
+  const auto begin = readme.find("\n tap  source");
+  std::vector<std::string> out = lines_of(readme.substr(begin + 1, readme.find("\n```", begin) - begin));
+  out.erase(std::remove(out.begin(), out.end(), "..."), out.end());
+  return out;
+}
+
+TEST(Readme, TheFirstCommandPrintsTheLinesOfTheLogAndItsErrorFalls) {
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
   const std::string readme = text_of(test::source_folder() / "README.md");
   ASSERT_EQ(first_command(readme), "./palpate run configs/default.yaml");
   const test::Ended ended = test::run_program({"sh", "-c", first_command(readme)}, folder.path());
-  EXPECT_THAT(readme, HasSubstr("```\n" + ended.out + "```\n"));
+  const std::vector<std::string> shown = lines_of_log(readme);
+  EXPECT_EQ(shown.size(), 7U);
+  const std::vector<std::string> printed = lines_of(ended.out);
+  auto at = printed.begin();
+  for (const std::string& line : shown) {
+    at = std::find(at, printed.end(), line);
+    ASSERT_NE(at, printed.end()) << "not printed, or not in this order: " << line << "\n" << ended.out;
+  }
   // The picture of a report is of this run: runs/reference/README.md has what stands in it.
   const auto id = ended.out.rfind('/') + 1;
   EXPECT_THAT(text_of(test::source_folder() / "runs/reference/README.md"),
               HasSubstr("\n\"id " + ended.out.substr(id, 12) + ", seed 1, "));
-  // "40 mm while nothing is known, 3 mm after 30 taps"
-  std::vector<double> errors;  // behind tap, source, x, y, height, contact and expected error, millimetres
-  for (const std::string& line : lines_of(ended.out)) {
-    std::istringstream cells(line);
-    const std::vector<std::string> words{std::istream_iterator<std::string>(cells), {}};
+  EXPECT_THAT(readme, HasSubstr("The error falls from 40 mm to 3 mm."));
+  std::vector<double> errors;  // after tap, source, x, y, height, contact and expected error, millimetres
+  for (const std::string& line : printed) {
+    const std::vector<std::string> words = words_of(line);
     if (words.size() == 9 && std::isdigit(static_cast<unsigned char>(words[0][0])) != 0)
       errors.push_back(std::stod(words[7]));
   }
@@ -251,14 +272,96 @@ TEST(Readme, TheCaptureIsWhatTheFirstCommandPrintsAndItsErrorFalls) {
   EXPECT_NEAR(std::stod(ended.out.substr(ended.out.find(at_last) + at_last.size())), 2.6, 0.5);
 }
 
-TEST(Readme, SaysOfThePapersExperimentWhatComesOutOfIt) {
+TEST(Readme, GivesTheErrorOfThePapersExperiment) {
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
   const std::string readme = text_of(test::source_folder() / "README.md");
-  EXPECT_THAT(readme, HasSubstr("finds it at tap 8, and the rule takes over; its 17 taps leave an error of 32 mm."));
+  EXPECT_THAT(readme, HasSubstr("the paper's experiment, whose 17 taps leave an error of 32 mm"));
   const test::Ended ended = test::run_program({"sh", "-c", "./palpate run configs/paper/object_i.yaml"}, folder.path());
   EXPECT_THAT(ended.out, HasSubstr("first hit at tap 8\nerror: 32.0 mm over the scene"));
   EXPECT_THAT(ended.out, HasSubstr("\ndone: tap budget after 17 taps"));
+}
+
+/// Returns the cells of the first row that begins so, without blanks around them; none if there is no such row.
+std::vector<std::string> cells_of_row(const std::string& page, const std::string& beginning) {
+  std::vector<std::string> out;
+  for (const std::string& line : lines_of(page)) {
+    if (line.rfind(beginning, 0) != 0) continue;
+    std::istringstream cells(line.substr(1));
+    for (std::string cell; std::getline(cells, cell, '|');) {
+      const auto first = std::min(cell.find_first_not_of(' '), cell.size());
+      out.push_back(cell.substr(first, cell.find_last_not_of(' ') + 1 - first));
+    }
+    break;
+  }
+  return out;
+}
+
+TEST(Readme, TakesItsNumbersFromThePagesThatItLinks) {
+  const std::string readme = text_of(test::source_folder() / "README.md");
+  const std::string results = text_of(test::source_folder() / "framework/docs/results.md");
+  constexpr std::size_t kError = 7;     // columns of the table of results.md: rmse_m [mm],
+  constexpr std::size_t kSeconds = 11;  // and robot_seconds [s]
+  const auto row = [&](const std::string& strategy, int taps) {
+    std::vector<std::string> out =
+        cells_of_row(results, "| per_tap | " + strategy + " | standard | " + std::to_string(taps) + " |");
+    EXPECT_GT(out.size(), kSeconds) << strategy << ", " << taps << " taps";
+    out.resize(kSeconds + 1);
+    return out;
+  };
+  for (const char* strategy : {"default", "uncertainty", "weighted"}) {
+    const std::vector<std::string> shown = cells_of_row(readme, "| `" + std::string(strategy) + "`");
+    ASSERT_EQ(shown.size(), 4U) << strategy;
+    for (const auto& [column, taps] : {std::pair<std::size_t, int>{1, 17}, {2, 30}, {3, 60}})
+      EXPECT_EQ(shown[column], row(strategy, taps)[kError] + " mm") << strategy << ", " << taps << " taps";
+  }
+  const std::vector<std::string> few = row("default", 17);
+  EXPECT_THAT(readme, HasSubstr("17 of its taps, in " + few[kSeconds] + " s, "));
+  std::string least_seconds = "10000";
+  for (const char* strategy : {"random", "grid", "uncertainty", "weighted", "weighted_two_part"}) {
+    const std::vector<std::string> many = row(strategy, 60);
+    EXPECT_LT(std::stod(few[kError]), std::stod(many[kError])) << strategy;
+    if (std::stod(many[kSeconds]) < std::stod(least_seconds)) least_seconds = many[kSeconds];
+  }
+  EXPECT_THAT(readme, HasSubstr("in " + least_seconds + " s or more"));
+
+  const std::string comparing = text_of(test::source_folder() / "framework/docs/comparing.md");
+  const std::vector<std::pair<std::string, std::string>> words{{"uncertainty", "30 taps of `uncertainty` leave "},
+                                                               {"weighted", "of `weighted` "},
+                                                               {"footprint_then_height", "of the default "}};
+  for (const auto& [acquisition, before] : words) {
+    const std::vector<std::string> cells = cells_of_row(comparing, "| `" + acquisition + "` |");
+    ASSERT_EQ(cells.size(), 4U) << acquisition;
+    EXPECT_THAT(readme, HasSubstr(before + words_of(cells[3]).at(0) + " mm"));
+  }
+  const std::string scenes = text_of(test::source_folder() / "framework/docs/scenes.md");
+  EXPECT_THAT(readme, HasSubstr("needs [1.7 to 6.4 s](framework/docs/scenes.md#"));
+  EXPECT_THAT(scenes, HasSubstr("| 1.7 s |"));
+  EXPECT_THAT(scenes, HasSubstr("| 6.4 s |"));
+}
+
+TEST(Readme, TakesItsNextStepsFromThePagesThatItLinks) {
+  const std::string readme = text_of(test::source_folder() / "README.md");
+  const auto begin = readme.find("\n## Next steps\n");
+  ASSERT_NE(begin, std::string::npos);
+  std::string page;
+  int steps = 0;
+  bool is_command = false;
+  for (const std::string& line : lines_of(readme.substr(begin + 1, readme.find("\n## ", begin + 1) - begin))) {
+    static const std::regex link(R"(\]\(([\w/]+\.md))");
+    std::smatch found;
+    if (std::regex_search(line, found, link)) page = text_of(test::source_folder() / found[1].str());
+    if (is_command && line != "   ```") {
+      ++steps;
+      std::string rest = line.substr(3) + " && ";
+      for (std::size_t end = rest.find(" && "); end != std::string::npos; end = rest.find(" && ")) {
+        EXPECT_THAT("\n" + page, HasSubstr("\n" + rest.substr(0, end)));
+        rest.erase(0, end + 4);
+      }
+    }
+    if (line.rfind("   ```", 0) == 0) is_command = line == "   ```sh";
+  }
+  EXPECT_EQ(steps, 6);
 }
 
 using Reference = Shell;
