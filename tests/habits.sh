@@ -170,7 +170,7 @@ words() {
     END { finish(); report(); if (mode == "what") print "" }' "$@"
 }
 # The pages that keep to the limit; a page that comes to do so is added here.
-plain="CHANGELOG.md framework/docs/stability.md"
+plain="README.md CHANGELOG.md framework/docs/stability.md"
 # shellcheck disable=SC2086 # the names are to be split
 words long $plain >"$found/sentences"
 echo "habits: 'what' and 'who' in 1000 words: $(words what README.md framework/docs/*.md)" >&2
