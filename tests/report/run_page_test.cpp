@@ -61,8 +61,8 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
 }
 
 TEST_F(ReportedRun, SaysByWhichMotionATapWasMadeWhereThereAreSeveral) {
-  const auto story = [&](const std::string& backend) {
-    const fs::path directory = made(folder_, {"taps=3", "backend=" + backend, "--runs", backend});
+  const auto story = [&](const std::string& motion) {
+    const fs::path directory = made(folder_, {"taps=3", "motion=" + motion, "--runs", motion});
     report(directory);
     const Browsed seen = test::browse(directory / "report.html",
                                       {drawn(3), "return document.getElementById('story').textContent"}, true);
@@ -99,15 +99,16 @@ TEST_F(ReportedRun, MarksTapsAsTheyAreReadAtTheMomentThatIsShown) {
 }
 
 TEST_F(ReportedRun, ShowsTheExpectedErrorAndQuantitiesInTheirUnitsWithTheDigitsThatTheyDeserve) {
+  const std::string quantities =
+      "return [quantity('rmse_m', 3.24e-6), quantity('rmse_m', 1.5650845800732873e-2), "
+      "quantity('robot_seconds', 65.5), quantity('rmse_m', null), shown(1.23456e-9, 3)]";
   const fs::path directory = made(folder_, {"seed=4"});
   report(directory);
   const Browsed seen = test::browse(
       directory / "report.html",
       {drawn(17), "return [...document.querySelectorAll('.facts li')].map((one) => one.children[0].textContent)",
        "return document.getElementById('curve_0').data.map((curve) => [curve.name, curve.y.at(-1)])",
-       "return document.getElementById('curve_0').layout.yaxis.title.text",
-       "return [quantity('rmse_m', 3.24e-6), quantity('rmse_m', 1.5650845800732873e-2), "
-       "quantity('robot_seconds', 65.5), quantity('rmse_m', null), shown(1.23456e-9, 3)]"},
+       "return document.getElementById('curve_0').layout.yaxis.title.text", quantities},
       false);
   ASSERT_EQ(seen.trouble, "");
   const json summary = json::parse(text_of(directory / "summary.json"));

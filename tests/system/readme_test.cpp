@@ -354,7 +354,9 @@ TEST(Readme, TakesItsNextStepsFromThePagesThatItLinks) {
       ++steps;
       page = "\n" + text_of(test::source_folder() / found[1].str());
     }
-    if (is_command && line != "   ```") EXPECT_THAT(page, HasSubstr("\n" + line.substr(3) + "\n"));
+    if (is_command && line != "   ```") {
+      EXPECT_THAT(page, HasSubstr("\n" + line.substr(3) + "\n"));
+    }
     if (line.rfind("   ```", 0) == 0) is_command = line == "   ```sh";
   }
   EXPECT_EQ(steps, 6);
