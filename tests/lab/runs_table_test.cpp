@@ -99,6 +99,49 @@ TEST_F(RunsTable, SetsThoseOfANameApartByTheKeysInWhichTheyDiffer) {
   EXPECT_EQ(rows.at(2).text("apart"), "") << "the only one of its name";
 }
 
+TEST_F(RunsTable, SetsRunsApartBySceneBackendAndAcquisitionAndNotByWhatTheyShareOrBySweepsOfTheirName) {
+  const auto begun = [&](const std::string& id, const std::string& acquisition, const std::string& scene,
+                         const std::string& motion) {
+    const std::string effects = scene == "ring_arm" ? "  noise: 1 N  # c/scene/ring_arm.yaml:4:1\n" : "";
+    return list_record(folder_
+                           .write(id + "/config.yaml",
+                                  "complete: 1\nname: a\nseed: 1\ntaps: 17\nacquisition:\n  type: " + acquisition +
+                                      "  # c/acquisition/" + acquisition +
+                                      ".yaml:1:1\nscene:\n  desk: 0 m  # c/scene/ring.yaml:1:1\n" + effects +
+                                      "backend:\n  type: simulator  # c/backend/simulator.yaml:1:1\n  speed: " +
+                                      (motion == "paper" ? "1" : "2") + " m/s  # c/backend/" + motion + ".yaml:1:1\n")
+                           .parent_path());
+  };
+  std::vector<ListedRecord> records{begun("1", "weighted", "ring", "paper"),
+                                    begun("2", "weighted", "ring_arm", "continuous"),
+                                    begun("3", "uncertainty", "ring", "paper")};
+  Sweep sweep{folder_.path() / "many", {"seed"}, {{0, "000000000000", {"1"}}, {1, "000000000001", {"2"}}}};
+  const std::string config = "name: a\nacquisition: {type: weighted}\n";
+  folder_.write("many/config.yaml", config);
+  folder_.write("many/manifest.jsonl", manifest_text(sweep, sweep_id(parse_yaml(config, "config.yaml"), sweep)));
+  records.push_back(list_record(sweep.directory));
+  const std::vector<Row> rows = rows_of(std::move(records));
+  EXPECT_EQ(rows.at(0).text("apart"), "acquisition weighted, scene ring, backend paper");
+  EXPECT_EQ(rows.at(1).text("apart"), "scene ring_arm, backend continuous, acquisition weighted");
+  EXPECT_EQ(rows.at(2).text("apart"), "acquisition uncertainty, scene ring, backend paper");
+  EXPECT_EQ(rows.at(3).text("apart"), "seed (2)");
+}
+
+TEST_F(RunsTable, PutsTheSettingFirstThatSetsARunApartFromMostOthers) {
+  std::vector<ListedRecord> records;
+  for (const char* config : {"seed: 1\ntaps: 9\n", "seed: 1\ntaps: 9\nrepeat: allow\n", "seed: 1\ntaps: 12\n",
+                             "seed: 1\ntaps: 9\nkernel: {type: rbf}\n", "seed: 2\ntaps: 9\n"}) {
+    const std::string id = std::to_string(records.size());
+    records.push_back(list_record(folder_.write(id + "/config.yaml", std::string("name: a\n") + config).parent_path()));
+  }
+  const std::vector<Row> rows = rows_of(std::move(records));
+  EXPECT_EQ(rows.at(0).text("apart"), "seed 1, taps 9");
+  EXPECT_EQ(rows.at(1).text("apart"), "repeat allow, seed 1, taps 9");
+  EXPECT_EQ(rows.at(2).text("apart"), "taps 12, seed 1");
+  EXPECT_EQ(rows.at(3).text("apart"), "kernel.type rbf, seed 1, taps 9");
+  EXPECT_EQ(rows.at(4).text("apart"), "seed 2, taps 9");
+}
+
 TEST_F(RunsTable, TellsOfASweepWhatItSweepsAndOfWhichStrategyAndSceneItsJobsAre) {
   Sweep sweep{folder_.path() / "many", {"seed", "kernel.length_scale"}, {}};
   for (int job = 0; job < 4; ++job)

@@ -2,6 +2,7 @@
 #include "record/catalogue.hpp"
 
 #include "config/trouble.hpp"
+#include "record/distinctions.hpp"
 #include "record/files.hpp"
 #include "record/record_reader.hpp"
 #include "record/resolved.hpp"
@@ -87,24 +88,18 @@ Row known_settings(const fs::path& directory) {
 /// "a and 3 more, 'palpate list' shows them": of many the last ones, each with what sets it apart from those.
 Error several(const std::string& words, const std::string& base, std::vector<fs::path> records) {
   constexpr std::size_t kShown = 4;
-  constexpr std::size_t kKeys = 3;
   const std::size_t all = records.size();
   const auto sweeps = static_cast<std::size_t>(std::count_if(records.begin(), records.end(), is_sweep));
   const char* const noun = sweeps == all ? "sweeps" : sweeps == 0 ? "runs" : "runs and sweeps";
   std::reverse(records.begin(), records.end());
   records.resize(std::min(all, kShown));
-  std::vector<Row> configs;
-  for (const fs::path& one : records) configs.push_back(known_settings(one));
-  std::vector<std::string> keys = differing_keys(configs);
+  std::vector<RecordedSettings> configs;
+  for (const fs::path& one : records) configs.push_back({known_settings(one), recorded_groups(recorded_origins(one))});
+  const std::vector<std::vector<std::string>> settings = distinguishing_settings(configs);
   std::vector<std::string> shown;
   for (std::size_t i = 0; i < records.size(); ++i) {
     std::string apart = begun_text(records[i]);
-    std::size_t told = 0;
-    for (const std::string& key : keys) {
-      if (told == kKeys || configs[i].find(key) == nullptr) continue;
-      apart += fmt::format("{}{} {}", apart.empty() ? "" : ", ", key, configs[i].text(key));
-      ++told;
-    }
+    for (const std::string& one : settings[i]) apart += (apart.empty() ? "" : ", ") + one;
     shown.push_back(records[i].string() + (apart.empty() ? "" : " (" + apart + ")"));
   }
   if (all > kShown) shown.push_back(fmt::format("{} that were begun before", all - kShown));
@@ -168,7 +163,8 @@ std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
   std::unordered_set<std::string_view> seen;
   for (const Row& config : configs) {
     for (const auto& [key, value] : config.fields) {
-      if (!seen.insert(key).second) continue;
+      // The version of the record's form is no setting: a sweep's config has none.
+      if (key == "complete" || !seen.insert(key).second) continue;
       const auto same = [&, at = &key, there = &value](const auto& other) {
         const auto found = other.find(*at);
         return found != other.end() && *found->second == *there;

@@ -34,7 +34,7 @@ Row settings_of(const Tree& config);
 Row read_settings(const std::filesystem::path& directory);
 
 /// The keys at which configs, as of read_settings(), differ: the seed first, as it is what most runs of a name differ
-/// by.
+/// by; never `complete`, the version of the record's form.
 std::vector<std::string> differing_keys(const std::vector<Row>& configs);
 
 /// What a command can do something with; where that is there, the other is not meant.

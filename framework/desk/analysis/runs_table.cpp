@@ -95,6 +95,7 @@ Scalar text_or_null(const std::string& text) { return text.empty() ? Scalar() : 
 
 void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   const Origins origins = recorded_origins(directory);
+  out.config.groups = recorded_groups(origins);
   Row& row = out.row;
   row.add("name", text_or_null(config.text("name")));
   row.add("begun", text_or_null(begun_text(directory)));
@@ -148,7 +149,7 @@ ListedRecord list_record(const fs::path& directory) {
   const Row config = read_settings(directory);
   (is_sweep(directory) ? add_sweep : add_run)(out, directory, config);
   out.row.add("directory", directory.string());
-  out.config = config;
+  out.config.values = config;
   // Of the hundred thousand values that a config may have none is looked for one by one.
   std::unordered_set<std::string> known;
   for (const auto& field : out.beside.fields) known.insert(field.first);
@@ -185,20 +186,18 @@ std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Cond
 }
 
 void tell_apart(std::vector<ListedRecord>& records) {
-  constexpr std::size_t kMostKeys = 3;
-  std::map<std::string, std::vector<ListedRecord*>> named;
-  for (ListedRecord& one : records) named[one.row.text("name")].push_back(&one);
+  std::map<std::pair<std::string, bool>, std::vector<ListedRecord*>> named;
+  for (ListedRecord& one : records) {
+    const bool is_sweep = one.row.find("jobs") != nullptr;
+    named[{one.row.text("name"), is_sweep}].push_back(&one);
+  }
   for (const auto& [name, same] : named) {
-    std::vector<Row> configs;
+    std::vector<RecordedSettings> configs;
     for (ListedRecord* const one : same) configs.push_back(std::move(one->config));
-    const std::vector<std::string> keys = differing_keys(configs);
+    const std::vector<std::vector<std::string>> settings = distinguishing_settings(configs);
     for (std::size_t i = 0; i < same.size(); ++i) {
-      std::vector<std::string> words;
-      if (!same[i]->swept.empty()) words.push_back(same[i]->swept);
-      for (const std::string& key : keys) {
-        if (words.size() < kMostKeys && configs[i].find(key) != nullptr)
-          words.push_back(fmt::format("{} {}", key, configs[i].text(key)));
-      }
+      std::vector<std::string> words = settings[i];
+      if (!same[i]->swept.empty()) words.insert(words.begin(), same[i]->swept);
       same[i]->row.add("apart", text_or_null(fmt::format("{}", fmt::join(words, ", "))));
     }
   }

@@ -3,6 +3,7 @@
 // and summary are read, and no tap: there may be hundreds.
 #pragma once
 
+#include "record/distinctions.hpp"
 #include "record/row.hpp"
 #include "sweep/condition.hpp"
 
@@ -17,8 +18,8 @@ struct ListedRecord {
   /// `name`, `begun`, `strategy`, `scene`, of a run `taps`, errors and `state`; of a sweep `jobs` and how many are
   /// `jobs_done`, `jobs_failed` and `jobs_running`; `directory`. Null is what is not known.
   Row row;
-  Row beside;         ///< what else a condition may name: fields of the summary, then keys of the config
-  Row config;         ///< every value in its config
+  Row beside;  ///< what else a condition may name: fields of the summary, then keys of the config
+  RecordedSettings config;
   std::string swept;  ///< of a sweep, the swept keys: "seed (30), acquisition (2)"
 };
 
@@ -26,8 +27,9 @@ struct ListedRecord {
 /// they are made of: the type of the acquisition, the shapes of the objects. Throws Error for a damaged one.
 ListedRecord list_record(const std::filesystem::path& directory);
 
-/// Gives each row `apart`, what sets it apart from those of its name: what is swept, then up to three keys of the
-/// config that differ, the seed first; null where there is nothing. Takes the configs away.
+/// Gives each row `apart`, what sets it apart from those of its name: what is swept, then distinguishing_settings()
+/// among runs, or among sweeps, as the config of a sweep has no defaults; null where there is nothing. Takes the
+/// configs away.
 void tell_apart(std::vector<ListedRecord>& records);
 
 /// The rows of those of which `where` holds. A name that only others have is null, as everywhere in conditions. Throws
