@@ -255,6 +255,30 @@ TEST_F(SetUp, SaysHowLongALaterCommandIsBuilt) {
   EXPECT_THAT(call().err, Not(HasSubstr("steps")));
 }
 
+TEST_F(SetUp, SaysHowLongARebuildTakesWhereBuildFilesAreLookedAtEachTime) {
+  call();
+  program("nproc", "echo 2");
+  program("ninja", "exec /usr/bin/ninja \"$@\"");
+  // As CMake writes it for globs: what is looked at always and is found unchanged.
+  std::string text =
+      "rule look\n  command = true\n  restat = 1\n  generator = 1\n"
+      "rule compile\n  command = /usr/bin/touch $out\n  description = Building CXX object $out\n"
+      "build always: phony\nbuild globs: look always\nbuild build.ninja: look globs\n"
+      "build palpate_build_stamp: phony\nbuild palpate: compile";
+  std::string objects;
+  for (int i = 0; i < 29; ++i) {
+    text += " " + std::to_string(i) + ".o";
+    objects += "build " + std::to_string(i) + ".o: compile header.hpp\n";
+  }
+  write("build/release/header.hpp", "");
+  write("build/release/globs", "");
+  write("build/release/build.ninja", text + "\n" + objects);
+  EXPECT_THAT(call().err, HasSubstr("building what this command takes: 30 steps, about 2 minutes\n"));
+  EXPECT_EQ(call().err, "no package is missing\n");
+  write("build/release/header.hpp", "// changed");
+  EXPECT_THAT(call().err, HasSubstr("building what this command takes: 30 steps, about 2 minutes\n"));
+}
+
 TEST_F(SetUp, BuildsNothingMoreOnceItIsEnded) {
   waiting_program("ninja", "[ \"$3\" != -n ] || exit 0\necho $$ >'" + here().string() + "/pid'");
   Child child(script("palpate"), here(), environment());
