@@ -74,27 +74,32 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
 /// `blocked`: some jobs could not begin, for a reason that is on stderr and that all others have, too.
 enum class Launched { submitted, ended, ended_unrecorded, blocked };
 
+/// How many of a job's taps are initial ones, at most; nullopt where that depends on what a camera sees. A search, and
+/// a run from any side, goes on until it hits: its dead starts are those that never do.
+std::optional<int> initial_taps_of(const ExperimentOptions& options) {
+  if (options.space && options.space->view) return std::nullopt;
+  return static_cast<int>(options.initial.searches() || options.space ? options.taps : options.initial.count);
+}
+
 int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted, Launched launched) {
   const Sweep& sweep = campaign.sweep;
   std::vector<Row> results = write_results(sweep);
-  // How many taps are initial ones: jobs with the same strategy, design and budget have as many, and the first of their
-  // configs that can be read tells it for all of them.
+  // How many taps are initial ones: jobs with the same strategy, design, view and budget have as many, and the first of
+  // their configs that can be read tells it for all of them.
   const auto deciding = [&](const Job& job) {
     std::vector<std::string> values;
     for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
       const std::string first = first_key(sweep.keys[i]);
-      if (first == kStrategy || first == "initial" || first == "taps") values.push_back(job.values[i]);
+      if (first == kStrategy || first == "initial" || first == "taps" || first == "space" || first == "surface")
+        values.push_back(job.values[i]);
     }
     return values;
   };
   std::map<std::vector<std::string>, std::optional<int>> known;
   for (std::size_t job = 0; job < sweep.jobs.size(); ++job) {
-    std::optional<int>& taps = known[deciding(sweep.jobs[job])];
-    const std::optional<ResolvedConfig> config = taps ? std::nullopt : readable_config(campaign, job);
-    if (!config) continue;
-    // All taps until the first hit are the search's: its starts without contact are those that never hit.
-    const ExperimentOptions& options = config->options;
-    taps = static_cast<int>(options.initial.searches() ? options.taps : options.initial.count);
+    const std::vector<std::string> values = deciding(sweep.jobs[job]);
+    if (known.count(values) > 0) continue;
+    if (const auto config = readable_config(campaign, job)) known[values] = initial_taps_of(config->options);
   }
   const auto initial_taps = [&](std::size_t job) { return known[deciding(sweep.jobs[job])]; };
   print_text(sweep_table(sweep, std::exchange(results, {}), initial_taps));

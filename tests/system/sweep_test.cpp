@@ -114,6 +114,20 @@ TEST_F(Sweeps, CountAsStartsWithoutContactOfASearchWhatItNeverFound) {
   EXPECT_EQ(starts_without_contact(table, "default"), std::to_string(10 * never) + ".0%");
 }
 
+TEST_F(Sweeps, CountAsDeadStartsFromAnySideWhatNeverHitAndNoneWhereACameraLooked) {
+  const auto of = [&](const Words& more) {
+    return dead_starts(
+        sweep(Words("scene=any_bowl acquisition=random taps=6 seed=1,2 --quiet") + more, config("any_side.yaml")).out,
+        "all jobs");
+  };
+  EXPECT_EQ(of("space.moves=2"), "0.0%");
+  bool late = false;
+  for (const Cells& row : csv_rows(text_of(directory() / "results.csv")))
+    late = late || std::stoi(row.at("first_hit_tap")) > 3;
+  EXPECT_TRUE(late) << "else this tests nothing: its initial taps are more than initial.count";
+  EXPECT_EQ(of({"space.view={azimuth: 30 deg, rays: 100}", "name=view"}), "-");
+}
+
 TEST_F(Sweeps, CarryOnWithWhatIsMissing) {
   const fs::path directory = swept("seed=range(0,5)");
   const int before = lines(text_of(directory / "results.csv"));
