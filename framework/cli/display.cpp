@@ -108,7 +108,11 @@ std::string displayable(std::string_view text) {
   return std::string(clears ? kClearLine : "") + printable(text.substr(clears ? kClearLine.size() : 0));
 }
 
-void mention(const std::string& text) { std::fputs(displayable(text).c_str(), stderr); }
+void mention(const std::string& text) {
+  // In the order in which they were printed, also where both streams are one.
+  flush_output();
+  std::fputs(displayable(text).c_str(), stderr);
+}
 
 std::string record_line(const RunReport& report) {
   return fmt::format("{} {}", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());

@@ -33,6 +33,16 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
+TEST_F(Pareto, PrintsItsTableBeforeItsWordsAboutFilesWhereBothStreamsAreOne) {
+  const fs::path directory = settings();
+  std::string command = "'" + test::program_file().string() + "'";
+  for (const std::string& word : words(directory, "robot_seconds", "rmse_m")) command += " '" + word + "'";
+  const Ended ended = test::run_program({"/bin/sh", "-c", command + " 2>&1"}, here());
+  EXPECT_EQ(ended.status, 0) << ended.out;
+  EXPECT_THAT(ended.out, StartsWith("front  setting "));
+  EXPECT_LT(ended.out.find("misses the true mean"), ended.out.find("picture: ")) << ended.out;
+}
+
 TEST_F(Pareto, PrintsATableAndLeavesAPictureAndTheTableAsCsv) {
   const fs::path directory = settings();
   const Ended ended = pareto(directory);
