@@ -21,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -106,6 +107,21 @@ std::vector<std::tuple<std::string, std::string, std::string>> tap_fields() {
   return out;
 }
 
+/// A text of the program with the arguments of Python for its options: force=True for --force, but for those of a
+/// command in quotes.
+std::string in_python(const std::string& text) {
+  std::string out;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\'') quoted = !quoted;
+    const std::string_view option("--force");
+    const bool is_option = !quoted && text.compare(i, option.size(), option) == 0;
+    out += is_option ? "force=True" : std::string(1, text[i]);
+    if (is_option) i += option.size() - 1;
+  }
+  return out;
+}
+
 Array line(const Eigen::VectorXd& values) { return Array(values.size(), values.data()); }
 
 }  // namespace
@@ -125,10 +141,10 @@ PYBIND11_MODULE(_palpate, module) {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& trouble) {
       PyObject* const type = trouble.kind() == Error::Kind::usage ? input_error : error;
-      const py::object one = py::reinterpret_borrow<py::object>(type)(trouble.what());
+      const py::object one = py::reinterpret_borrow<py::object>(type)(in_python(trouble.what()));
       one.attr("place") = trouble.where();
       one.attr("reason") = trouble.reason();
-      one.attr("remedy") = trouble.hint();
+      one.attr("remedy") = in_python(trouble.hint());
       PyErr_SetObject(type, one.ptr());
     }
   });

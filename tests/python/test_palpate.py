@@ -213,6 +213,16 @@ class Module(InFolder):
                      lambda: experiment.tell(-0.02))
         experiment.tell(0.24)
 
+    def test_a_run_of_another_build_is_refused_with_the_argument_of_python_that_repeats_it(self):
+        directory = palpate.run(DEFAULT, "taps=3", runs=self.folder).directory
+        record = pathlib.Path(directory) / "record.jsonl"
+        text = record.read_text(encoding="utf-8")
+        record.write_text(re.sub(r'"build": "[0-9a-f]+"', '"build": "0123456789abcdef"', text), encoding="utf-8")
+        self.assertNotEqual(record.read_text(encoding="utf-8"), text)
+        self.refuses(directory, "another build", "force=True moves it aside and runs again",
+                     lambda: palpate.run(DEFAULT, "taps=3", runs=self.folder))
+        self.assertEqual(len(palpate.run(DEFAULT, "taps=3", runs=self.folder, force=True).taps), 3)
+
     def test_a_run_that_was_killed_goes_on_and_the_tap_that_nobody_told_is_unknown(self):
         script = ("import os, sys, palpate\n"
                   "e = palpate.Experiment(sys.argv[1], 'taps=6', runs=sys.argv[2])\n"
