@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -196,6 +197,44 @@ TEST(Documents, NameThePackagesThatTheirCommandsNeedBesideThoseOfCore) {
     }
   }
   EXPECT_GE(needed, 10);
+}
+
+TEST(Documents, NameTargetAndPackagesOfTheProgramsOfTestsThatTheyCall) {
+  static const std::regex program(R"(build/release/tests/(\w+)(?![\w/]))");
+  std::vector<std::string> names{"plugins/README.md"};
+  for (const Page& one : kPages) names.emplace_back(one.name);
+  std::set<std::string> programs;
+  for (const std::string& name : names) {
+    const std::string page = text_of(test::source_folder() / name);
+    for (std::sregex_iterator at(page.begin(), page.end(), program), end; at != end; ++at) {
+      const std::string target = (*at)[1];
+      programs.insert(target);
+      const std::regex built("(--target|ninja -C build/release)[^`]*\\b" + target + "\\b");
+      EXPECT_TRUE(std::regex_search(page, built)) << name << " does not say how " << target << " is built";
+      EXPECT_THAT(packages_of(page), HasSubstr("libgtest-dev")) << name << ": " << target;
+    }
+  }
+  EXPECT_GE(programs.size(), 5U);
+}
+
+TEST(Documents, ListInTheTablesOfPluginsThoseThatAreBuilt) {
+  const std::string page = text_of(test::source_folder() / "plugins/README.md");
+  std::map<std::string, std::set<std::string>> built;
+  for (const std::string& line : lines_of(text_of(test::program_file().parent_path() / "lib/palpate/plugins.txt")))
+    built[line.substr(0, line.find('/'))].insert(line.substr(line.find('/') + 1));
+  for (const char* kind : {"kernel", "acquisition", "footprint", "backend"}) {
+    std::set<std::string> listed;
+    const auto begin = page.find("\n| " + std::string(kind) + " | ");
+    ASSERT_NE(begin, std::string::npos) << kind;
+    std::istringstream rows(page.substr(begin + 1));
+    static const std::regex name("`(\\w+)`");
+    for (std::string row; std::getline(rows, row) && !row.empty();) {
+      const std::string cell = row.substr(0, row.find('|', 1));
+      for (std::sregex_iterator at(cell.begin(), cell.end(), name), end; at != end; ++at) listed.insert((*at)[1]);
+    }
+    EXPECT_EQ(listed, built.at(kind)) << kind;
+  }
+  for (const std::string& fitting : built.at("fitting")) EXPECT_THAT(page, HasSubstr("`" + fitting + "`"));
 }
 
 TEST(Documents, LinkToFilesThatAreThere) {
