@@ -32,6 +32,15 @@ TEST_F(CalibrateCommand, PrintsAFileThatAConfigTakesAsItsEffects) {
   EXPECT_THAT(resolved.out, HasSubstr("false_contacts:"));
 }
 
+TEST_F(CalibrateCommand, SaysWhichCountsAreExpectedAndHowMuchOfARateTheMotionsShow) {
+  const std::string file = palpate({"calibrate", tapped()}).out;
+  EXPECT_THAT(file, ContainsRegex("missed_contacts: .*# [0-9]+ of 30 taps came to nothing; [^ ]+ \\[.*\\] per tap, of "
+                                  "which these motions show [0-9]+ %\n"));
+  EXPECT_THAT(file,
+              ContainsRegex("false_contacts: .*# [0-9]+\\.[0-9] of [0-9]+ contacts are expected to be nowhere near "
+                            "the scene; [^ ]+ \\[.*\\] per tap, of which these motions show [0-9]+ %\n"));
+}
+
 TEST_F(CalibrateCommand, RefusesInOneLineWhatSaysTooLittle) {
   const fs::path run = tapped();
   EXPECT_THAT(refused({"calibrate", tapped("taps=5")}),

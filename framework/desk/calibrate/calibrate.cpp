@@ -123,7 +123,7 @@ class Calibrated {
     rate(line, "missed_contacts", failed, fmt::format("{:g} of {:g} taps came to nothing", sums_.failed, sums_.taps),
          [](const Twin::Made& made) { return made.failed; });
     rate(line, "false_contacts", fit_.false_share,
-         fmt::format("{:.2g} of {:g} contacts are nowhere near the scene",
+         fmt::format("{:.1f} of {:g} contacts are expected to be nowhere near the scene",
                      fit_.false_share.value * static_cast<double>(contacts_.size()), sums_.contacts),
          [](const Twin::Made& made) { return made.far_off; });
     for (const auto& [effect, value] : kAssumed) line(effect, value, "assumed");
@@ -200,7 +200,8 @@ class Calibrated {
     const auto rate_of = [&](double share) { return std::clamp((share - none) / (all - none), 0.0, 1.0); };
     const Estimated out{rate_of(seen.value), rate_of(seen.low), rate_of(seen.high)};
     line(effect, fmt::format("{{probability: {:.3g}}}", out.value),
-         fmt::format("{}; {}", what, words(out, 1.0, "a tap")));
+         fmt::format("{}; {}, of which these motions show {:.0f} %", what, words(out, 1.0, "per tap"),
+                     100.0 * (all - none)));
   }
 
   /// About what a tap is off, beyond what is assumed.
