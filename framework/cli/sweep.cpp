@@ -75,7 +75,7 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
 enum class Launched { submitted, ended, ended_unrecorded, blocked };
 
 /// How many of a job's taps are initial ones, at most; nullopt where that depends on what a camera sees. A search, and
-/// a run from any side, goes on until it hits: its dead starts are those that never do.
+/// a run from any side, goes on until it hits: its starts without contact are those that never do.
 std::optional<int> initial_taps_of(const ExperimentOptions& options) {
   if (options.space && options.space->view) return std::nullopt;
   return static_cast<int>(options.initial.searches() || options.space ? options.taps : options.initial.count);

@@ -59,7 +59,7 @@ TEST_F(Paper, ComparisonGivesTwelveTapsOnTheObjectForWeightedAndTwoForUncertaint
     EXPECT_EQ(runs[acquisition], count) << acquisition;
     const double share = static_cast<double>(live[acquisition].size()) / count;
     EXPECT_GE(share, 0.38);
-    EXPECT_LE(share, 0.5) << "about half of all random starts are dead";
+    EXPECT_LE(share, 0.5) << "about half of all random starts are without contact";
   }
   EXPECT_EQ(median(live["weighted"]), 12.0);
   EXPECT_EQ(median(live["uncertainty"]), 2.0);
