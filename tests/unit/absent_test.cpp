@@ -94,7 +94,7 @@ TEST_F(WithoutLibraries, AllOptionsAreListedAllTheSame) {
        describe_fields([&](Fields& list) { host_.describe("backend", "baxter", list); })) {
     names.push_back(field.name);
   }
-  EXPECT_THAT(names, ::testing::IsSupersetOf({"motion", "tool", "place", "calibration", "force_sign",
+  EXPECT_THAT(names, ::testing::IsSupersetOf({"motion", "tool", "scene_pose", "calibration", "force_sign",
                                               "inverse_kinematics", "dry_run", "bag"}));
 }
 

@@ -14,10 +14,31 @@ TEST(JsonRow, JoinsNestedNamesByDotsAndKeepsTheOrderOfItsFields) {
 }
 
 TEST(JsonRow, IsNoneForWhatIsNotOneFlatObject) {
-  for (const char* text : {"", "[1]", "1", "{\"a\": 1", "{\"a\": [1]}", "{\"a\": NaN}", "{\"a\": 1} {\"b\": 2}",
-                           "{'a': 1}", "{\"a\": \"\xff\"}"}) {
+  for (const char* text : {"", "[1]", "1", "{\"a\": 1", "{\"a\": [1}", "{\"a\": [1]", "{\"a\": NaN}",
+                           "{\"a\": 1} {\"b\": 2}", "{'a': 1}", "{\"a\": \"\xff\"}"}) {
     EXPECT_FALSE(parse_json_row(text)) << text;
   }
+}
+
+TEST(JsonRow, HasListsAsTheirText) {
+  for (const char* list : {"[]", "[1, -2, 0.5]", R"([{"tap": 8, "probability": 0.93}, {"tap": 12, "probability": 1}])",
+                           R"([null, true, "a, [b]", [[]], {}])"}) {
+    const std::string text = std::string(R"({"a": {"b": )") + list + "}, \"c\": 1}";
+    const auto row = parse_json_row(text);
+    ASSERT_TRUE(row) << text;
+    EXPECT_EQ(row->fields, (Row{{{"a.b", JsonList{list}}, {"c", 1}}}).fields);
+    EXPECT_EQ(to_json_line(*row), text);
+  }
+  EXPECT_EQ(csv_cell(JsonList{"[1, 2]"}), "\"[1, 2]\"");
+  EXPECT_FALSE(parse_json_row(R"({"a": )" + std::string(200, '[') + std::string(200, ']') + "}"));
+}
+
+TEST(JsonRow, ListsOfObjectsAreRows) {
+  const std::vector<Row> rows = rows_of({R"([{"tap": 8, "probability": 0.93}, {"tap": 12, "probability": 1}])"});
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].number("tap"), 8.0);
+  EXPECT_EQ(rows[1].number("probability"), 1.0);
+  EXPECT_TRUE(rows_of({"[]"}).empty());
 }
 
 TEST(JsonRow, IsNoneWhereEveryNameRepeatsWhatIsAroundIt) {
