@@ -92,6 +92,8 @@ run() {
   config=$root/configs/benchmark/$1
   shift
   while read -r word; do set -- "$@" "$word"; done <"$work/set"
+  # Each takes up to two minutes in the short form; whoever waits sees which.
+  echo "accuracy: $name, seeds 60000 to $((59999 + count))" >&2
   (cd "$root" && exec "$program" sweep "$config" "$@" "seed=range(60000,$((60000 + count)))" "name=$name" \
     log.surface=false --quiet --runs "$work/runs") >"$work/said" 2>&1 || {
     cat "$work/said" >&2

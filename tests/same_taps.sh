@@ -183,6 +183,7 @@ sweep() {
   name=$1
   case " $wanted " in "  " | *" $name "*) ;; *) return 0 ;; esac
   shift
+  echo "same_taps: $name" >&2
   for which in here other; do
     program=$here
     tree=$here_tree

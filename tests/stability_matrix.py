@@ -18,6 +18,7 @@ import math
 import subprocess
 import sys
 import tempfile
+import time
 
 NOISES = [0.0, 1e-12, 1e-10, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 6e-3, 5e-2]
 LENGTHS = [0.001, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 20.0]
@@ -84,6 +85,8 @@ def main():
              for noise in options.noise for length in options.length]
     from_any_side = "any_side" in options.config
     rows, missed = [], 0
+    told = time.monotonic()
+    print(f"{len(cells)} cells of {options.seeds * (1 if from_any_side else 2)} runs each", file=sys.stderr, flush=True)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         def outcomes(cell, lies):
             taps, noise, length = cell
@@ -109,6 +112,9 @@ def main():
             pairs = sum(a[0] == 0 and b[0] == 0 for a, b in zip(judged, believed))
             rows.append([*cell, pairs, *(f"{one:.6g}" for name in METRES + OVERLAPS for one in means[name]), silent,
                          len(failed), "misses: " + " ".join(inexact) if misses else "holds"])
+            if time.monotonic() - told > 15:
+                told = time.monotonic()
+                print(f"{len(rows)} of {len(cells)} cells", file=sys.stderr, flush=True)
             if misses or failed:
                 said = ", ".join(f"{name} {means[name][0]:.4g}, without outliers {means[name][1]:.4g}"
                                  for name in inexact or ["rmse_m"])

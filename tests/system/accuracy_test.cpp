@@ -144,6 +144,7 @@ TEST_F(Accuracy, OfARecordedRowThatNoJobMakesAndOfAJobWithoutARowFails) {
     const Ended ended = accuracy({mode});
     EXPECT_EQ(ended.status, 1) << mode;
     EXPECT_EQ(ended.err,
+              "accuracy: standard, seeds 60000 to 60029\n"
               "accuracy: short,standard_30_weighted is recorded, and no job makes it: give it up by --write "
               "--reason TEXT\n");
     EXPECT_EQ(table(), before);
