@@ -37,7 +37,7 @@ TEST(MeansTable, HasARowAGroupAndNumberOfTapsAndAColumnAMetric) {
             "| shy | 17 | 41.2 | - |\n"
             "| bold | 30 | 9.2 | 6.2 |\n"
             "| shy | 30 | 34.0 | 21.0 |\n"
-            "\nfirst_hit_tap: mean over the runs that have one (else the object was not found).\n");
+            "\nfirst_hit_tap: mean over the runs that have one (else no object was found).\n");
 }
 
 TEST(MeansTable, OfJobsAsTheyEndedHasNoTaps) {

@@ -37,6 +37,12 @@ class AnySide : public Shell {
   }
 };
 
+TEST_F(AnySide, TheLastLinesHaveNoFootprintWhichOnlyTapsFromAboveLeave) {
+  const Ended ended = palpate({"run", config(), "scene=any_bowl", "space.approaches=200", "space.moves=20", "taps=5"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(ContainsRegex("\nerror: .* on the object\n"), Not(HasSubstr("IoU -"))));
+}
+
 TEST_F(AnySide, ARunTellsOfEachTapWhereItBeganInWhichDirectionAndHowFarItWent) {
   const fs::path run = touched("taps=12");
   const std::vector<Row> rows = rows_of(run, "tap");

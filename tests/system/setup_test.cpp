@@ -309,6 +309,16 @@ TEST_F(SetUp, BuildsAllWhenItIsAskedTo) {
   EXPECT_EQ(ended.out, "");
 }
 
+TEST_F(SetUp, SaysWhatBuildDoesAndRejectsItsArgumentsWithoutBuilding) {
+  const Ended help = script_ended("palpate", "build --help");
+  EXPECT_EQ(help.status, 0) << help.err;
+  EXPECT_THAT(help.out, HasSubstr("build: builds both programs, all plugins"));
+  const Ended wrong = script_ended("palpate", "build kernel");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(wrong.err, "palpate build: unknown argument 'kernel', it takes none\n");
+  EXPECT_FALSE(fs::exists(here() / "build"));
+}
+
 TEST_F(SetUp, SaysBeforehandHowLongItWillBeAndWhatRoomItTakes) {
   installed("three");
   program("id", "echo 0");

@@ -63,6 +63,13 @@ TEST_F(Records, JobsDraftsLinksAndRunsMovedAsideAreNoneAndFoldersWithoutOneAreCo
   EXPECT_THAT(read_catalogue(aside).records, ElementsAre(aside)) << "who gives its path means it";
 }
 
+TEST_F(Records, AFolderWithoutOneThatHasAReadmeIsNotCounted) {
+  folder_.write("runs/reference/README.md", "");
+  folder_.write("runs/reference/table.csv", "");
+  folder_.write("runs/notes/text.md", "");
+  EXPECT_EQ(read_catalogue(runs()).strangers, 1);
+}
+
 TEST_F(Records, AreFoundFromAnyFolderAboveWhileThereIsOneBelow) {
   const fs::path only = run("first/000000000001", 1);
   for (const fs::path& words : {folder_.path(), runs(), runs() / "first", only}) EXPECT_EQ(found(words), only) << words;

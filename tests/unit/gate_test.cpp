@@ -62,7 +62,7 @@ TEST(Judge, ShowsAsManyDigitsAsItTakesToTellValueAndBoundApart) {
 TEST(Judge, SaysWhyThereIsNoValue) {
   EXPECT_EQ(judged("{rmse_m: <= 2 cm}", {run(0, 1, {})}), (Texts{"no no value: no truth is known"}));
   EXPECT_EQ(judged("{median(rmse_m): <= 2 cm}", {run(0, 1, {})}), (Texts{"no no value: no truth is known"}));
-  EXPECT_EQ(judged("{first_hit_tap: <= 3}", {run(0, 1, {})}), (Texts{"no no value: the object was not found"}));
+  EXPECT_EQ(judged("{first_hit_tap: <= 3}", {run(0, 1, {})}), (Texts{"no no value: no object was found"}));
 }
 
 TEST(Judge, AValueThatIsNotFiniteFulfilsNothing) {

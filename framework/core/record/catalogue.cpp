@@ -67,7 +67,8 @@ bool collect_records(const fs::path& folder, int levels, Catalogue& out) {
     if (hidden || fs::symlink_status(one, none).type() != fs::file_type::directory) continue;
     any = collect_records(one, levels - 1, out) || any;
   }
-  if (!any && levels == kLevels - 1) ++out.strangers;
+  // A folder that explains itself, as runs/reference of a clone does, surprises nobody.
+  if (!any && levels == kLevels - 1 && !is_there(folder / "README.md")) ++out.strangers;
   return any;
 }
 

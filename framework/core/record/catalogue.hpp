@@ -17,7 +17,7 @@ namespace palpate {
 struct Catalogue {
   std::vector<std::filesystem::path>
       records;          ///< directories of runs and sweeps, in the order in which they were begun
-  int strangers = 0;    ///< folders right in it with no record below
+  int strangers = 0;    ///< folders right in it with no record below and no README.md
   int moved_aside = 0;  ///< runs that --force moved out of the way: <id>.old-N
 };
 

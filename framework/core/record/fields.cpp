@@ -422,7 +422,7 @@ FieldList<Summary> make_summary_list() {
   list.add("failed_taps", "taps without a contact; missed ones are none of them", &Summary::failed_taps).less();
   list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)
       .less()
-      .absent("the object was not found")
+      .absent("no object was found")
       .called("first tap on an object");
   list.add("found", "whether there was one", [](const Summary& s) { return s.object_taps > 0; })
       .more()

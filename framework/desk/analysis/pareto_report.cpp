@@ -64,7 +64,7 @@ std::string pareto_table(const Pareto& pareto) {
   std::string out = aligned(lines, "rlrrrl");
   out += fmt::format(
       "{}, with its 95 % interval (Student's t); {} of {} is better; numbered: no other setting is at least as good in "
-      "both\n",
+      "both and better in one\n",
       pareto.by_seed ? fmt::format("mean over {}", seeds_words(pareto)) : "the seed is not swept: mean over jobs",
       pareto.more_is_better() ? "more" : "less", pareto.error.name);
   if (pareto.scenes.size() > 1) out += fmt::format("{} scenes, each with a front of its own\n", pareto.scenes.size());
