@@ -12,6 +12,7 @@
 #include "launch/children.hpp"
 #include "launch/job.hpp"
 #include "launch/mounts.hpp"
+#include "launch/slurm.hpp"
 #include "launch/slurm_launcher.hpp"
 #include "record/callers_run.hpp"
 #include "record/files.hpp"
@@ -269,6 +270,8 @@ std::size_t jobs_of_sweep(Program& program, const std::string& config) {
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
   check_sbatch_words(arguments.launch.sbatch);
+  // Before there is a folder that nobody would run.
+  if (arguments.launch.launcher != kLocal && !arguments.list) slurm::check_installed();
   bool one_at_a_time = false;
   std::vector<std::string> left_out;
   std::optional<SweepDraft> draft;

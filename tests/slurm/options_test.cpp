@@ -46,6 +46,16 @@ TEST(SlurmOptions, ThatMakeNoSenseAreRefused) {
   EXPECT_THAT(refusal({"sweep", paper(), "seed=1,2"}, {"--launcher", "pbs"}), HasSubstr("{local,slurm}"));
 }
 
+TEST(SlurmOptions, LeaveNoSweepBehindWhereSlurmIsNotInstalled) {
+  const test::TemporaryFolder folder;
+  const Ended ended =
+      test::run_program({test::program_file().string(), "sweep", paper(), "seed=1,2", "--launcher", "slurm"},
+                        folder.path(), {"PATH=/nowhere"});
+  EXPECT_EQ(ended.status, 2) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("sbatch: is not installed, or not on PATH"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(SlurmOptions, AreForSweepsOnlyAndChunksAreWhole) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(test::palpate({"run", paper(), "--quiet", "--runs", "single"}, folder.path()).status, 0);

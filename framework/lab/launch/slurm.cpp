@@ -122,6 +122,8 @@ std::string words_of(const std::string& output) {
   return out.empty() ? "failed and says nothing" : out;
 }
 
+void check_installed() { ask({"sbatch", "--version"}); }
+
 int most_tasks() { return parse_most_tasks(ask({"scontrol", "show", "config"})); }
 
 int most_cpus(const std::string& partition) {

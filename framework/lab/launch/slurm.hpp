@@ -37,6 +37,9 @@ std::optional<int> parse_array_id(const std::string& output);
 /// What a program of Slurm said, in one line without its name before each.
 std::string words_of(const std::string& output);
 
+/// Throws Error where Slurm's commands are not installed; asks no daemon.
+void check_installed();
+
 /// Asks the controller. Throws Error when Slurm is not installed or does not answer.
 int most_tasks();
 
