@@ -32,7 +32,7 @@ std::string error_line(const Row& summary) {
   if (!errors.rmse) return fmt::format("expected error: {} over the scene\n", error_words(*expected));
   return fmt::format("error: {} over the scene{}, {} on the object{}\n", error_words(*errors.rmse),
                      expected ? fmt::format(" (expected {})", error_words(*expected)) : "",
-                     errors.rmse_on_surface ? error_words(*errors.rmse_on_surface) : "-",
+                     errors.rmse_object ? error_words(*errors.rmse_object) : "-",
                      errors.footprint_iou ? "; footprint IoU " + share_text(errors.footprint_iou) : "");
 }
 
@@ -135,9 +135,9 @@ void print_summary(const RunReport& report) {
                       row.cell("taps"), seconds ? usual_scale(Unit::second).quantity(*seconds) : "-");
   const std::string hit = row.cell("first_hit_tap");
   const std::string missed =
-      row.find("missed_taps") != nullptr ? fmt::format(" {} that met nothing,", row.cell("missed_taps")) : "";
+      row.find("no_contact_taps") != nullptr ? fmt::format(" {} that met nothing,", row.cell("no_contact_taps")) : "";
   text += fmt::format("taps: {} on the object, {} on the desk,{} {} failed; {}\n", row.cell("object_taps"),
-                      row.cell("off_surface_taps"), missed, row.cell("failed_taps"),
+                      row.cell("desk_taps"), missed, row.cell("failed_taps"),
                       hit.empty() ? "no object was found" : "first hit at tap " + hit);
   text += relabelled_line(row);
   text += error_line(row);

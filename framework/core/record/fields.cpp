@@ -274,7 +274,7 @@ FieldList<TapRecord> make_tap_list() {
   const auto is_chosen = [](const Tap& t) { return t.expected_seconds.has_value(); };
   list.add_where(is_chosen, "motion",
                  "by which the tap was made: its index, from 0, in `motion.of`; only with "
-                 "`type: chosen`",
+                 "`type: per_tap`",
                  &Tap::motion);
   list.add_where(is_chosen, "expected_seconds", "the robot time that it was expected to take",
                  [](const Tap& t) { return t.expected_seconds; })
