@@ -9,7 +9,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
 echo "fitting: the runs take about half a minute on two cores" >&2
-"$root/palpate" sweep "$root/configs/sweep/fitting.yaml" instruction_set=baseline --runs "$scratch" --quiet >/dev/null
+PALPATE_INSTRUCTIONS=baseline "$root/palpate" sweep "$root/configs/sweep/fitting.yaml" --runs "$scratch" --quiet >/dev/null
 echo "| scene | surface | taps | nlpd fixed | nlpd fitted | difference | rmse fixed cm | rmse fitted cm | difference | coverage fixed | coverage fitted |"
 echo "|---|---|---|---|---|---|---|---|---|---|---|"
 awk -F, '

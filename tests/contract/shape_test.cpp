@@ -25,8 +25,7 @@ std::vector<PluginCase> plugin_cases() {
        "{file: '" + (source_folder() / "tests/data/heights/map.csv").string() + "', unit: 1 um, spacing: 1 cm}"},
       {"polygon", "polygon", "{outline: [[0 cm, 0 cm], [9 cm, 1 cm], [3 cm, 3 cm], [2 cm, 8 cm]]}"},
       {"compound", "compound",
-       "{parts: [{type: dome, at: [3 cm, 1 cm]}, {type: ring, at: [-5 cm, 0 cm]}, {type: slope, rotation: 20 deg}]}"},
-      {"older_spelling", "plugin", "{shape: {type: cone}}"}};
+       "{parts: [{type: dome, at: [3 cm, 1 cm]}, {type: ring, at: [-5 cm, 0 cm]}, {type: slope, rotation: 20 deg}]}"}};
   for (const std::string& name : plugins_under_contract("shape")) out.push_back({test_name(name), name, "{}"});
   return out;
 }
