@@ -7,6 +7,8 @@
 #include "support/testing.hpp"
 #include "sweep/sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <ctime>
 

@@ -55,7 +55,7 @@ class SetUp : public Shell {
     return test::run_program(script(name, more), here(), environment());
   }
   Ended call() const {
-    const Ended ended = script_ended("palpate", "--no-install status");
+    Ended ended = script_ended("palpate", "--no-install status");
     EXPECT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(ended.out, "handed over to status\n");
     return ended;

@@ -242,9 +242,9 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
     for (const std::string& clause : clauses) plot("$" + name + " using " + clause);
   };
   out += fmt::format("set title {} font ',14'\n", gnuplot_text(title));
-  out += fmt::format(
-      "set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
-      gnuplot_text("mean " + y.scale.title(pareto.error.name) + (pareto.more_is_better() ? " (more is better)" : "")));
+  out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
+                     gnuplot_text(fmt::format("mean {}{}", y.scale.title(pareto.error.name),
+                                              pareto.more_is_better() ? " (more is better)" : "")));
   if (x.logarithmic) out += "set logscale x\n";
   if (y.logarithmic) out += "set logscale y\n";
   out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
