@@ -116,7 +116,7 @@ TEST_F(Sweeps, CountAsStartsWithoutContactOfASearchWhatItNeverFound) {
 
 TEST_F(Sweeps, CountAsDeadStartsFromAnySideWhatNeverHitAndNoneWhereACameraLooked) {
   const auto of = [&](const Words& more) {
-    return dead_starts(
+    return starts_without_contact(
         sweep(Words("scene=any_bowl acquisition=random taps=6 seed=1,2 --quiet") + more, config("any_side.yaml")).out,
         "all jobs");
   };
