@@ -281,7 +281,7 @@ TEST_F(Slurm, WhatCannotBeSubmittedIsSaidInOneLineAndNothingIsLeftInTheQueue) {
 
   const Ended gone = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--quiet"}), {"PATH=/nonexistent"});
   EXPECT_EQ(gone.status, 2);
-  EXPECT_THAT(gone.err, AllOf(StartsWith("scontrol: is not installed, or not on PATH, "), HasSubstr("login node")));
+  EXPECT_THAT(gone.err, AllOf(StartsWith("sbatch: is not installed, or not on PATH, "), HasSubstr("login node")));
 }
 
 TEST_F(Slurm, AControllerThatDoesNotAnswerIsSaidInOneLine) {

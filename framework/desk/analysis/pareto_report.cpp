@@ -239,7 +239,7 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   const auto draw = [&](const std::string& name, const std::string& lines, const std::vector<std::string>& clauses) {
     if (lines.empty()) return;
     out += fmt::format("${} << END\n{}END\n", name, lines);
-    for (const std::string& clause : clauses) plot("$" + name + " using " + clause);
+    for (const std::string& clause : clauses) plot(fmt::format("${} using {}", name, clause));
   };
   out += fmt::format("set title {} font ',14'\n", gnuplot_text(title));
   out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
