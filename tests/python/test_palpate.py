@@ -2,6 +2,7 @@
 """The Python module against the program and its files. Where it is built: PALPATE_BUILD."""
 
 import csv
+import json
 import math
 import os
 import pathlib
@@ -54,6 +55,8 @@ class Module(InFolder):
                     self.assertEqual(str(bool(value)).lower(), row[name])
                 elif isinstance(value, str):
                     self.assertEqual(value, row[name])
+                elif isinstance(value, list):
+                    self.assertEqual(value, json.loads(row[name]), name)
                 elif value is None or math.isnan(value):
                     self.assertEqual("", row[name], name)
                 else:
