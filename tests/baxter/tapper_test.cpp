@@ -148,7 +148,8 @@ TEST(ATap, OutOfReachMovesNothing) {
 }
 
 TEST(ATap, ThatMeetsNothingEndsAboveTheFloor) {
-  Bench bench(with([](BaxterOptions& o) { o.scene_pose.height += 0.1; }));  // the desk lies lower than the config has it
+  Bench bench(
+      with([](BaxterOptions& o) { o.scene_pose.height += 0.1; }));  // the desk lies lower than the config has it
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::no_contact);
   EXPECT_FALSE(contact.ends_run);

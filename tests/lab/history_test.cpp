@@ -244,7 +244,8 @@ TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
 
 TEST(Warnings, TellWhatTheFootprintRemarksAndNothingOfWeights) {
   const std::vector<std::string> said = warnings("default.yaml", {"footprint.max_contradictions=0.01"});
-  EXPECT_THAT(said, Contains(AllOf(HasSubstr("The footprint, primitives, says: "), HasSubstr("has taken over at contact"))));
+  EXPECT_THAT(said,
+              Contains(AllOf(HasSubstr("The footprint, primitives, says: "), HasSubstr("has taken over at contact"))));
   EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("weight"))));
 }
 

@@ -39,13 +39,12 @@ std::string table_of(const std::vector<std::string>& keys, const std::vector<std
 }
 
 TEST(SweepTable, IsThisLetterByLetter) {
-  EXPECT_EQ(
-      table_of({"kernel", "seed"}, {{"rbf", "1"}, {"matern52", "1"}}, {0.021, 0.0152}),
-      "group     runs  no contact   found  object taps, rest  object taps, all  rmse_m [mm]     footprint_iou\n"
-      "matern52     1        0.0%  100.0%            7 (7-7)           7 (7-7)   15 (15-15)  0.80 (0.80-0.80)\n"
-      "rbf          1        0.0%  100.0%            7 (7-7)           7 (7-7)   21 (21-21)  0.80 (0.80-0.80)\n"
-      "no contact: no initial tap was on the object; rest: the other starts. Median (10 %-90 %).\n"
-      "The least rmse_m first.\n");
+  EXPECT_EQ(table_of({"kernel", "seed"}, {{"rbf", "1"}, {"matern52", "1"}}, {0.021, 0.0152}),
+            "group     runs  no contact   found  object taps, rest  object taps, all  rmse_m [mm]     footprint_iou\n"
+            "matern52     1        0.0%  100.0%            7 (7-7)           7 (7-7)   15 (15-15)  0.80 (0.80-0.80)\n"
+            "rbf          1        0.0%  100.0%            7 (7-7)           7 (7-7)   21 (21-21)  0.80 (0.80-0.80)\n"
+            "no contact: no initial tap was on the object; rest: the other starts. Median (10 %-90 %).\n"
+            "The least rmse_m first.\n");
 }
 
 TEST(SweepTable, KeepsTheGroupsOfASceneTogetherEachWithTheLeastErrorFirst) {

@@ -184,8 +184,9 @@ TEST_F(Explain, NamesSuspectedOutliersSinceWhenAndWhy) {
     const double doubt = one["probability"];
     taps.insert(tap);
     sure += doubt >= 0.9 ? 1 : 0;
-    EXPECT_THAT(explain(directory, tap), ContainsRegex("By all 30 taps it may be an outlier: " + printed("%.0f", 100 * doubt) +
-                                                       " %, by (its height|where it is)"));
+    EXPECT_THAT(explain(directory, tap),
+                ContainsRegex("By all 30 taps it may be an outlier: " + printed("%.0f", 100 * doubt) +
+                              " %, by (its height|where it is)"));
   }
   EXPECT_GE(sure, 1) << "a lie that all others contradict";
   for (int tap = 1; tap <= 30; tap += test::brief() ? 7 : 1) {

@@ -31,7 +31,8 @@ class SeveralSweeps : public Shell {
   /// A config of one's own, whose acquisition is not swept.
   std::string own() const {
     return write("own.yaml",
-                 "defaults: [{strategy: uncertainty}, {backend: simulator}, {motion: paper}]\nname: own\nscene: object_i\ntaps: 30\n")
+                 "defaults: [{strategy: uncertainty}, {backend: simulator}, {motion: paper}]\nname: own\nscene: "
+                 "object_i\ntaps: 30\n")
         .string();
   }
 };

@@ -50,7 +50,8 @@ double expected_square(const OutlineSample& sample, const std::vector<int>& outl
   double sum = 0.0;
   for (int place = 0; place < kPlaces; ++place) {
     double mean = 0.0;
-    for (const int k : outlines) mean += outline_holds(sample, k, place) ? 1.0 / static_cast<double>(outlines.size()) : 0.0;
+    for (const int k : outlines)
+      mean += outline_holds(sample, k, place) ? 1.0 / static_cast<double>(outlines.size()) : 0.0;
     sum += mean * (1.0 - mean);
   }
   return sum;

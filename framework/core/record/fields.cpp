@@ -9,8 +9,8 @@
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -178,8 +178,7 @@ void list_models(FieldList<Record>& list, bool reasons) {
                   "contacts whose height or label is an outlier with a probability of 0.1 or more: a list of `tap` and "
                   "`probability`; null if there is none; only with `height.outlier_probability`",
                   [](Row& row, const Record& record) {
-                    if (record.suspected_outliers)
-                      row.add("suspected_outliers", list_of(*record.suspected_outliers));
+                    if (record.suspected_outliers) row.add("suspected_outliers", list_of(*record.suspected_outliers));
                   });
 }
 

@@ -107,8 +107,8 @@ class RowReader final : public nlohmann::json_sax<Json> {
   }
 
   Row& row_;
-  std::string list_;        ///< of the list at hand, as far as it was read
-  std::size_t levels_ = 0;  ///< open lists and objects within it; 0: none is at hand
+  std::string list_;                   ///< of the list at hand, as far as it was read
+  std::size_t levels_ = 0;             ///< open lists and objects within it; 0: none is at hand
   std::string name_;                   ///< of the value to come, dotted
   std::vector<std::string> prefixes_;  ///< of the names in the open objects: "a." in {"a": {...
 };

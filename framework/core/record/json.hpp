@@ -17,8 +17,8 @@
 namespace palpate {
 
 /// One JSON object as a row: nested objects joined by dots, lists as their text. None, with `reason`, for anything that
-/// is not one valid object, that holds more than 4096 values, is nested deeper than 100 levels, or has a name of more than
-/// 1 KiB once it is joined.
+/// is not one valid object, that holds more than 4096 values, is nested deeper than 100 levels, or has a name of more
+/// than 1 KiB once it is joined.
 std::optional<Row> parse_json_row(const std::string& text, std::string* reason = nullptr);
 
 /// Returns the objects of a list; none of them for what is not a list of objects.

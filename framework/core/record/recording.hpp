@@ -102,8 +102,8 @@ ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& d
 /// What a finished run had come to earlier: the summary of `recording`, which ended well, at each of these occasions;
 /// none of one that has not come. Equal to that of a run whose budget ends there, in all that depends on the config
 /// alone: choosing a tap looks at no budget, and reading a model changes none. Only the engines are those that
-/// `engine: {type: auto}` took for the run's own budget; where it would take another for less, numbers may differ as far as
-/// `accuracy` lets them. Throws Error where the run knew the truth and that is lost, see Playback.
+/// `engine: {type: auto}` took for the run's own budget; where it would take another for less, numbers may differ as
+/// far as `accuracy` lets them. Throws Error where the run knew the truth and that is lost, see Playback.
 ///
 /// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and
 /// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody
