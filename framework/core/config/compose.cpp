@@ -2,6 +2,7 @@
 #include "config/compose.hpp"
 
 #include "config/quantity.hpp"
+#include "config/resolve.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "reading/reading.hpp"
@@ -123,15 +124,6 @@ void inherit_shared(Tree& tree, const ConfigKeys& keys) {
     merged.merge(*own);
     merged.place = own->place;
     tree.at_path(heir, own->place) = std::move(merged);
-  }
-}
-
-/// Refuses, within the group of a plugin, the options that stand beside it.
-void check_beside(const Tree& group, const std::string& name, const std::string& beside) {
-  for (const Tree::Entry& entry : group.entries) {
-    if (beside.empty() || entry.key != beside) continue;
-    throw Error(entry.place.text(), fmt::format("unknown option '{}' of {}", entry.key, name),
-                fmt::format("write {}: {{...}} beside {}, not within", beside, name));
   }
 }
 
@@ -389,8 +381,8 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   Tree own = load(file);
   own.set_layer(kGroupLayer);
   std::map<std::string, Tree> brought;
-  for (const std::string& key : keys_.brought()) {
-    if (const Tree* part = own.find(key); part != nullptr && part->is_map()) brought.emplace(key, *part);
+  for (const Tree::Entry& entry : own.entries) {
+    if (keys_.is_brought(entry.key) && entry.value.is_map()) brought.emplace(entry.key, entry.value);
   }
   std::vector<Choice> inner = take_defaults(own);
   const auto is_of_run = [&](const std::string& path) {
@@ -449,7 +441,6 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   lay_groups(tree, choices, beside, layer);
   tree.merge(own);
   tree.complete = own.complete;
-  for (const Tree::Entry& entry : tree.entries) check_beside(entry.value, entry.key, keys_.beside(entry.key));
   for (const auto& [key, part] : brought_) {
     if (tree.find(key) == nullptr) tree.at_path(key, part.place) = part;
   }

@@ -9,13 +9,9 @@ namespace palpate {
 std::string first_key(const std::string& path) { return path.substr(0, path.find('.')); }
 std::string last_key(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
-namespace {
-
 bool is_at_or_below(const std::string& path, const std::string& top) {
   return path.compare(0, top.size(), top) == 0 && (path.size() == top.size() || path[top.size()] == '.');
 }
-
-}  // namespace
 
 /// Visits keys for what they are, not for what they hold: every command begins with this, and descriptions are not made
 /// in a moment.
@@ -68,7 +64,6 @@ class ConfigKeys::Reader final : public Fields {
     if (field.owner == Owner::run) keys_.of_run_.insert(name);
     if (*field.beside == '\0') return;
     keys_.groups_.emplace_back(field.beside);
-    keys_.brought_.insert(field.beside);
     keys_.beside_.emplace(name, field.beside);
   }
 };
@@ -83,6 +78,10 @@ bool ConfigKeys::is_group(const std::string& path) const {
 }
 
 bool ConfigKeys::is_plugin(const std::string& path) const { return plugins_.count(last_key(path)) > 0; }
+
+bool ConfigKeys::is_brought(const std::string& key) const {
+  return std::any_of(beside_.begin(), beside_.end(), [&](const auto& one) { return one.second == key; });
+}
 
 std::string ConfigKeys::beside(const std::string& path) const {
   const auto found = beside_.find(path);

@@ -35,9 +35,7 @@ class ConfigKeys {
   /// Whether the value at a dotted path may come from a strategy. What no list knows may: it is refused later.
   bool is_of_strategy(const std::string& path) const;
   /// Whether a strategy brings a top-level key along only for runs that do not say it: Field::with_beside().
-  bool is_brought(const std::string& key) const { return brought_.count(key) > 0; }
-  /// These keys.
-  const std::set<std::string>& brought() const { return brought_; }
+  bool is_brought(const std::string& key) const;
   /// The key beside the plugin at a top-level path that has its options, "" for none: `motion` of `backend`.
   std::string beside(const std::string& path) const;
 
@@ -52,10 +50,12 @@ class ConfigKeys {
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< groups that are plugins: their names
   std::set<std::string> of_run_;
-  std::set<std::string> brought_;
   std::map<std::string, std::string> beside_;  ///< by the plugin's key
   std::vector<std::pair<std::string, std::string>> heirs_;
 };
+
+/// Whether a dotted path is `top` or leads to something within it.
+bool is_at_or_below(const std::string& path, const std::string& top);
 
 /// The first and the last key of a dotted path.
 std::string first_key(const std::string& path);

@@ -230,11 +230,7 @@ class Resolver final : public MapReader {
   /// What a config says of the plugin at `field`, with the options that stand beside it: see Field::with_beside().
   Tree with_beside(const Tree* tree, const Field& field) const {
     Tree out = tree != nullptr ? *tree : Tree::map();
-    for (const Tree::Entry& entry : out.entries) {
-      if (entry.key != field.beside) continue;
-      throw Error(entry.place.text(), fmt::format("unknown option '{}' of {}", entry.key, field.name),
-                  fmt::format("write {}: {{...}} beside {}, not within", field.beside, field.name));
-    }
+    check_beside(out, field.name, field.beside);
     for (const Tree::Entry& entry : input_.entries) {
       if (entry.key == field.beside) out.entries.push_back(entry);
     }
@@ -310,6 +306,14 @@ class Resolver final : public MapReader {
 };
 
 }  // namespace
+
+void check_beside(const Tree& group, const std::string& plugin, const std::string& option) {
+  for (const Tree::Entry& entry : group.entries) {
+    if (option.empty() || entry.key != option) continue;
+    throw Error(entry.place.text(), fmt::format("unknown option '{}' of {}", option, plugin),
+                fmt::format("write {}: {{...}} beside {}, not within", option, plugin));
+  }
+}
 
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
              const std::vector<std::string>& elsewhere) {

@@ -43,6 +43,10 @@ struct ResolveNotes {
   std::optional<Error> missing;  ///< the first needed option that is not there; resolve() throws it
 };
 
+/// Throws Error where `group`, the options of the plugin at the key `plugin`, holds the `option` that stands beside it:
+/// see Field::with_beside(). "" for none.
+void check_beside(const Tree& group, const std::string& plugin, const std::string& option);
+
 /// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first
 /// unknown key, wrong type, missing unit or value out of range, and only then of what is missing, which may stand under
 /// an unknown key. `elsewhere` are keys beside those of `options` that

@@ -37,10 +37,6 @@ bool contains(const PoolTexts& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_at_or_below(const std::string& path, const std::string& part) {
-  return path == part || path.compare(0, part.size() + 1, part + ".") == 0;
-}
-
 bool is_scene(const std::string& key) { return is_at_or_below(key, kScene); }
 
 /// Whether an option may change what a run computes. A folder is where a program begins.
