@@ -290,6 +290,28 @@ TEST(Plan, WritesAConfigThatNeedsNoGroupThatItDoesNotSweep) {
   is_made_again({file, {"seed=1,2", "acquisition=weighted,random"}});
 }
 
+TEST(Plan, WritesAConfigWhoseSweptBackendsBringTheMotionThatTheBaseLeavesToThem) {
+  const test::TemporaryFolder folder;
+  folder.write("there/backend/slow.yaml", "backend: simulator\nmotion: {type: continuous, speed: 1 cm/s}\n");
+  folder.write("there/backend/fast.yaml", "backend: simulator\nmotion: {type: continuous, speed: 9 cm/s}\n");
+  const std::string rest = "kernel: rbf\nacquisition: random\nfitting: fixed\nscene: object_i\n";
+  for (const std::string defaults : {"defaults: [backend: slow, motion: gentle]\n", "backend: slow\n"})
+    is_made_again({folder.write("there/c.yaml", defaults + rest), {"backend=slow,fast"}});
+}
+
+TEST(Plan, DoesNotAskTheConfigForTheMotionThatASweptBackendDecides) {
+  const std::string depends = " depends on 'backend', which is swept, sweep it too, or compare 'backend'";
+  EXPECT_EQ(refused({"backend=simulator,baxter", "sweep.where=motion.speed > 1 cm/s"}),
+            "command line: 'motion.speed'" + depends);
+  EXPECT_EQ(rows(plan_of({"backend=simulator", "sweep.where=backend == simulator"})).size(), 1U);
+}
+
+TEST(Plan, NamesASweepAlikeOnAnyNumberOfThreads) {
+  const auto directory = [](const char* threads) { return plan_of({"seed=1,2", threads}).sweep.directory; };
+  EXPECT_EQ(directory("engine.threads=1"), directory("engine.threads=2"));
+  EXPECT_NE(plan_of({"seed=1,2", "engine.accuracy=exact"}).sweep.directory, directory("engine.threads=1"));
+}
+
 TEST(Plan, WritesAConfigOfABaseThatIsNoneWithoutItsSweepOrLeavesOptionsOut) {
   const test::TemporaryFolder folder;
   const std::string rest = "fitting: fixed\nbackend: simulator\nscene: object_i\n";

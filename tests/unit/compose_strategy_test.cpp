@@ -112,6 +112,18 @@ TEST_F(ComposeStrategy, ABackendBringsItsMotionUnlessThatIsChosenAsLate) {
   EXPECT_EQ(value("defaults:\n  - motion: steps\n  - backend: arm\n", "motion"), steps);
   EXPECT_EQ(value("defaults:\n  - backend: arm\nmotion: {speed: 3 cm/s}\n", "motion"),
             of("{type: continuous, speed: 3 cm/s}"));
+  EXPECT_EQ(value("defaults:\n  - motion: steps\nbackend: arm\n", "motion"), steps) << "wherever the file says so";
+}
+
+TEST_F(ComposeStrategy, AMotionThatABackendReplacesIsNoLongerAGroupOfTheConfig) {
+  folder_.write("backend/arm.yaml", "backend: {type: baxter}\nmotion: {type: continuous, speed: 1 cm/s}\n");
+  folder_.write("motion/steps.yaml", "motion: {type: paper, step: 1 cm}\n");
+  const fs::path file = folder_.write("c.yaml", "defaults:\n  - backend: simulator\n  - motion: steps\n");
+  Composer composer("/nonexistent", config_keys());
+  composer.compose(file, {parse_override("backend=arm")});
+  std::vector<std::string> paths;
+  for (const Composer::Group& one : composer.groups()) paths.push_back(one.path);
+  EXPECT_EQ(paths, std::vector<std::string>{"backend"});
 }
 
 TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {

@@ -259,7 +259,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
     }
     if (!entry.value.is_map()) {
       throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", entry.key),
-                  "write key: value below it");
+                  is_beside ? "write key: value below it, a name is not read here" : "write key: value below it");
     }
     if (is_beside) {
       Tree& slot = content.at(beside_group);
@@ -341,17 +341,22 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
-  // What a group brings for the key beside it, as a backend its motion, counts unless that is chosen as late itself.
+  // What a group brings for the key beside it, as a backend its motion, counts unless that is chosen: by an override,
+  // or by the config that chooses the group, wherever it says so.
   const auto is_chosen = [&](const std::string& key, Layer since) {
-    return std::any_of(choices.begin(), choices.end(),
-                       [&](const Choice& one) { return one.path == key && one.value.layer >= since; });
+    return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) {
+      return one.path == key && (one.value.layer >= kSweepLayer || since < kSweepLayer);
+    });
   };
   const auto lay = [&](const Choice& choice) {
     Tree content = take_group(choice, beside, layer);
     layer += kLayersOfGroup;
     const std::string key = keys_.beside(choice.path);
     if (const Tree* const brought = key.empty() ? nullptr : content.find(key)) {
-      if (!is_chosen(key, choice.value.layer)) tree.at_path(key, brought->place) = *brought;
+      if (!is_chosen(key, choice.value.layer)) {
+        tree.at_path(key, brought->place) = *brought;
+        drop(groups_, [&](const Group& one) { return one.path == key; });
+      }
       content.erase(key);
     }
     Tree& slot = tree.at_path(choice.path, choice.value.place);

@@ -88,6 +88,11 @@ std::string ConfigKeys::beside(const std::string& path) const {
   return found != beside_.end() ? found->second : std::string();
 }
 
+bool ConfigKeys::is_decided(const std::string& path, const std::string& choice) const {
+  const std::string own = beside(choice);
+  return is_at_or_below(path, choice) || (!own.empty() && is_at_or_below(path, own));
+}
+
 bool ConfigKeys::is_part(const std::string& path) const {
   return path.find('.') != std::string::npos && is_group(path) && !is_plugin(path);
 }

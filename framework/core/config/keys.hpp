@@ -38,6 +38,8 @@ class ConfigKeys {
   bool is_brought(const std::string& key) const;
   /// The key beside the plugin at a top-level path that has its options, "" for none: `motion` of `backend`.
   std::string beside(const std::string& path) const;
+  /// Whether what is chosen at `choice`, a group, decides the value at a dotted path: within the group, or beside it.
+  bool is_decided(const std::string& path, const std::string& choice) const;
 
   /// Pairs of paths: what the first does not say, the second says.
   const std::vector<std::pair<std::string, std::string>>& heirs() const { return heirs_; }

@@ -237,7 +237,7 @@ bool SweepDescription::depends(const std::string& name, const std::string& choic
   if (!is_choice(choice)) return false;
   if (choice == kStrategy) return name != choice && config_keys().is_of_strategy(name);
   const std::string scope = config_keys().is_group(choice) ? choice : choice.substr(0, choice.rfind('.'));
-  return name != choice && is_below(name, scope);
+  return name != choice && name != scope && config_keys().is_decided(name, scope);
 }
 
 bool SweepDescription::wanted(const Combination& combination, const Condition::Values& base) const {

@@ -228,7 +228,7 @@ bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
     for (const std::string& heir : config_keys().heirs_of(key)) {
       if (first_key(heir) == top) return true;
     }
-    return first_key(key) == top && is_choice(key);
+    return is_choice(key) && config_keys().is_decided(top, first_key(key));
   });
 }
 
