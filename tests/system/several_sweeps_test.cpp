@@ -54,6 +54,13 @@ TEST_F(SeveralSweeps, AreComparedDrawnAndRankedAsTheOneSweepOfAllTheirJobs) {
   EXPECT_EQ(text_of(here() / "parts.csv"), text_of(here() / "whole.csv"));
 }
 
+TEST_F(SeveralSweeps, DoNotDifferInTheNumberOfThreads) {
+  const std::vector<fs::path> parts{named("earlier", "engine.threads=1"), named("later", "engine.threads=2")};
+  EXPECT_THAT(about("compare", parts, "--by name").err, Not(HasSubstr("differ")));
+  EXPECT_THAT(about("compare", {parts[0], named("other", "engine.accuracy=exact")}, "--by acquisition").err,
+              HasSubstr("differ in engine.accuracy"));
+}
+
 TEST_F(SeveralSweeps, GroupAnOptionThatOneSweepsAndTheOtherHasInItsConfig) {
   const fs::path swept = named("earlier", "acquisition=random,uncertainty height.noise=2mm");
   // The same acquisition and noise, in another unit, on seeds of which four are the same.

@@ -41,8 +41,8 @@ bool is_scene(const std::string& key) { return is_at_or_below(key, kScene); }
 
 /// Whether an option may change what a run computes. A folder is where a program begins.
 bool decides(const std::string& path) {
-  static const std::set<std::string> kNeutral{kName, "log", "engine.threads", "expect", "complete", "sweep"};
-  return kNeutral.count(first_key(path)) == 0 && last_key(path) != "folder";
+  static const std::set<std::string> kNeutral{kName, "log", "expect", "complete", "sweep"};
+  return kNeutral.count(first_key(path)) == 0 && last_key(path) != "folder" && path != kThreads;
 }
 
 /// A sweep or a run, which is a sweep of one job without keys.

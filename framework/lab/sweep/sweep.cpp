@@ -2,6 +2,7 @@
 #include "sweep/sweep.hpp"
 
 #include "config/hash.hpp"
+#include "config/keys.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
@@ -54,7 +55,7 @@ std::vector<std::string> texts_at(const Row& row, const std::string& name) {
 
 /// Whether a top-level key is one of those whose values decide what the jobs compute.
 bool decides_jobs(const std::string& key) {
-  return key != "name" && key != "log" && key != "engine.threads" && key != "expect" && key != "complete";
+  return key != "name" && key != "log" && key != "expect" && key != "complete";
 }
 
 bool is_id(const std::string& text) { return text.size() == kIdLength && begins_with_id(text); }
@@ -76,7 +77,9 @@ std::string sweep_id(const Tree& config, const Sweep& sweep) {
   Tree identity = Tree::map();
   // As it reads back: what is compared later is the file.
   for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
-    if (decides_jobs(entry.key)) identity.entries.push_back(std::move(entry));
+    if (!decides_jobs(entry.key)) continue;
+    if (entry.key == first_key(kThreads)) entry.value.erase(last_key(kThreads));
+    identity.entries.push_back(std::move(entry));
   }
   return hash_of(identity.canonical() + manifest_text(sweep, "")).substr(0, kIdLength);
 }

@@ -63,6 +63,8 @@ std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 
 /// What stands before the name of a field of the summary in results.csv where a swept key has that name.
 inline constexpr const char* kOfRun = "summary.";
+/// The option that changes no result: how many threads update the maps.
+inline constexpr const char* kThreads = "engine.threads";
 
 /// A row of results.csv: job, id, the swept keys, then the fields of the summary. A field with the name of a key stands
 /// as `summary.taps`, in the rows in which the two differ.
