@@ -10,6 +10,7 @@
 #include "cli/usage.hpp"
 #include "config/tree.hpp"
 #include "config/trouble.hpp"
+#include "gp/instructions.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/run_directory.hpp"
@@ -581,6 +582,7 @@ int run_main(int argc, char** argv) {
     mention(help_text(usage_of(app)));
     return kUsage;
   }
+  lanes_in_use();  // what is wrong with PALPATE_INSTRUCTIONS is said before anything begins
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

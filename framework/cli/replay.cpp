@@ -2,6 +2,8 @@
 #include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
+#include "gp/instructions.hpp"
+#include "record/record_reader.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
 
@@ -34,6 +36,11 @@ int replay(Program& program, const std::string& directory) {
               one.field, one.recorded, one.replayed);
   }
   if (report.differences.size() > kShown) print_out("... and {} more\n", report.differences.size() - kShown);
+  const std::optional<Tree> manifest = read_manifest(directory);
+  const Tree* const recorded = manifest ? manifest->find("instruction_path") : nullptr;
+  if (recorded != nullptr && recorded->text != loops_in_use().name)
+    print_out("the run used the instructions {}, this command {}: last digits may differ for that\n", recorded->text,
+              loops_in_use().name);
   return kFailed;
 }
 

@@ -109,6 +109,22 @@ TEST_F(Script, SetsTheSearchPathOfPluginsWhateverTheEnvironmentSays) {
   EXPECT_EQ(words_of({}, "0", {}, {"PALPATE_PLUGIN_PATH=/elsewhere"})[0], "/a b:/it's");
 }
 
+TEST_F(Script, SetsTheInstructionsOfTheProgramThatWroteIt) {
+  const auto instructions = [&] {
+    const fs::path script = folder_.write("task.sh", task_script("/usr/bin/env", directory_, "/dev/null", {}, {}));
+    std::string text = test::text_of(script);
+    text.erase(text.find("jobs=$("));
+    folder_.write("task.sh", text + "echo \"${PALPATE_INSTRUCTIONS-unset}\"\n");
+    const char* const other = "PALPATE_INSTRUCTIONS=other";
+    return test::run_program({"sh", script.string()}, folder_.path(), {other}).out;
+  };
+  {
+    const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "baseline");
+    EXPECT_EQ(instructions(), "baseline\n");
+  }
+  EXPECT_EQ(instructions(), "unset\n");
+}
+
 /// Programs by the names of Slurm's, which note how they were called and answer what the test says.
 class FakeSlurm : public ::testing::Test {
  protected:

@@ -55,6 +55,20 @@ TEST_F(Replay, NoticesANumberThatWasTamperedWithAndAFieldThatNoReplayHas) {
   EXPECT_THAT(tampered(field), HasSubstr("tap 17: invented: recorded 1, "));
 }
 
+TEST_F(Replay, NamesTheInstructionsOfARunThatUsedOthers) {
+  const fs::path directory = ran("seed=3");
+  const auto differing = [&](const std::string& part, const std::string& before, const std::string& after) {
+    std::string text = part_of(directory, part);
+    text.replace(text.find(before), before.size(), after);
+    test::write_part(directory, part, text);
+    return palpate({"replay", directory}).out;
+  };
+  EXPECT_THAT(differing("tap", "\"robot_seconds\": ", "\"invented\": 1, \"robot_seconds\": "),
+              Not(HasSubstr("instructions")));
+  EXPECT_THAT(differing("manifest", "\"instruction_path\": \"", "\"instruction_path\": \"old "),
+              HasSubstr("the run used the instructions old "));
+}
+
 TEST_F(Replay, OfARunThatEndedEarlyTakesTheEngineOfItsWholeBudget) {
   const fs::path directory = replayed({"taps=300", "stop.robot_time=100 s", "kernel.length_scale=6 cm"});
   EXPECT_THAT(text_of(directory / "summary.json"),

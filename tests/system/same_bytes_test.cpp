@@ -40,8 +40,11 @@ TEST_F(ARun, NamesTheInstructionSetOfItsLoopsInTheManifest) {
 
 TEST_F(ARun, RejectsAnUnknownInstructionSet) {
   const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "avx");
-  EXPECT_THAT(refused(Words{"run", config("paper/object_i.yaml")}),
-              HasSubstr("PALPATE_INSTRUCTIONS: unknown value 'avx', write baseline, or unset it"));
+  const std::string message = "PALPATE_INSTRUCTIONS: unknown value 'avx', write baseline, or unset it";
+  EXPECT_THAT(refused(Words{"run", config("paper/object_i.yaml")}), HasSubstr(message));
+  EXPECT_THAT(refused(Words{"sweep", config("paper/object_i.yaml"), "seed=1,2", "--runs", "swept"}),
+              HasSubstr(message));
+  EXPECT_FALSE(fs::exists(here() / "swept"));
 }
 
 }  // namespace

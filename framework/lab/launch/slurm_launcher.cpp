@@ -87,6 +87,9 @@ std::string task_script(const fs::path& program, const fs::path& directory, cons
       "# is none, plus the array's index. Jobs that are done or in other hands are left alone.\n";
   out += plugin_path ? fmt::format("export PALPATE_PLUGIN_PATH={}\n", shell_word(*plugin_path))
                      : "unset PALPATE_PLUGIN_PATH\n";
+  const char* const instructions = std::getenv("PALPATE_INSTRUCTIONS");
+  out += instructions != nullptr ? fmt::format("export PALPATE_INSTRUCTIONS={}\n", shell_word(instructions))
+                                 : "unset PALPATE_INSTRUCTIONS\n";
   out += fmt::format("jobs=$(sed -n \"$((${{1:-0}} + SLURM_ARRAY_TASK_ID + 1))p\" {})\n", shell_word(jobs.string()));
   out +=
       fmt::format("exec {} resume {} --jobs \"${{jobs:?there is no such task}}\" -j {} --attempts {} --quiet{}{}\n",
