@@ -43,13 +43,7 @@ class Keys {
     }
     for (const FieldDescription& field : Descriptions(out)) {
       if (field.beside.empty()) continue;
-      FieldDescription option;
-      option.name = field.beside;
-      option.type = Type::section;
-      option.kind = field.kind;
-      option.group = true;
-      option.meaning = fmt::format("the {} of the {}", field.beside, field.name);
-      out.push_back(std::move(option));
+      out.push_back(describe_beside(field));
     }
     return out;
   }

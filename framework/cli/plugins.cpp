@@ -3,6 +3,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/describe.hpp"
+#include "experiment/experiment_options.hpp"
 #include "record/json.hpp"
 
 #include <palpate/error.hpp>
@@ -15,7 +16,13 @@ namespace palpate::cli {
 namespace {
 
 std::vector<FieldDescription> options_of(const PluginHost& host, const PluginListing& row) {
-  return describe_fields([&](Fields& fields) { host.describe(row.kind, row.name, fields); });
+  std::vector<FieldDescription> out =
+      describe_fields([&](Fields& fields) { host.describe(row.kind, row.name, fields); });
+  const std::string beside = config_keys().beside(row.kind);
+  for (FieldDescription& one : out) {
+    if (!beside.empty() && one.name == beside) one.meaning += fmt::format("; written beside {}, not within", row.kind);
+  }
+  return out;
 }
 
 Tree row_tree(const PluginHost& host, const PluginListing& row) {

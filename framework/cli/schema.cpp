@@ -123,7 +123,8 @@ int schema(Program& program) {
   for (const FieldDescription& field : fields) {
     if (field.beside.empty()) continue;
     beside[field.kind].insert(field.beside);
-    properties.at(field.beside) = beside_schema(program.host, field.kind, field.beside);
+    Tree& option = properties.at(field.beside) = beside_schema(program.host, field.kind, field.beside);
+    option.at("description") = Tree::quote(describe_beside(field).meaning);
   }
   for (const Field& field : keys_beside_options()) properties.at(field.name) = of_type("string", field.meaning);
   defaults_schema(properties.at("defaults"));

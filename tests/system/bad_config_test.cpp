@@ -181,6 +181,12 @@ std::vector<Case> cases() {
        without("  - backend") + "backend: caller\n",
        {"run", "bad.yaml", "motion=gentle"},
        "command line: backend/caller has no motion, take 'motion' away"},
+      {"OptionOfAMotionOfABackendWithoutOne",
+       without("  - backend") + "backend: caller\nmotion: {type: paper}\n",
+       {"run", "bad.yaml", "motion.step=1cm"},
+       "command line: backend/caller has no motion, take 'motion' away"},
+      line("ListOfOneMotion", "motion: {type: per_tap, of: [{type: paper}]}",
+           "10:29: motion.of: names the motions to choose from, at least two"),
       line("MotionWithinTheBackend", "backend: {motion: {speed: 1 cm/s}}",
            "10:11: unknown option 'motion' of backend, write motion: {...} beside backend, not within"),
 

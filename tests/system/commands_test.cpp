@@ -104,6 +104,7 @@ TEST_F(Plugins, ListsEveryOneAndTheOptionsOfOne) {
               ContainsRegex("kernels +list of plugins of kind kernel +required +the parts"));
   EXPECT_THAT(palpate("plugins kernel/rbf").out,
               AllOf(HasSubstr("length_scale"), HasSubstr("> 0 m"), HasSubstr("0.017 m")));
+  EXPECT_THAT(palpate("plugins backend/simulator").out, HasSubstr("written beside backend, not within"));
   EXPECT_TRUE(is_json(palpate("plugins --json").out));
   EXPECT_EQ(refused("plugins kernel/rfb"), "no plugin kernel/rfb, did you mean 'rbf'?\n");
 }

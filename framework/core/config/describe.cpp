@@ -334,6 +334,16 @@ FieldDescription describe_key(const Field& field) {
   return out;
 }
 
+FieldDescription describe_beside(const FieldDescription& field) {
+  FieldDescription out;
+  out.name = field.beside;
+  out.type = Type::section;
+  out.kind = field.kind;
+  out.group = true;
+  out.meaning = fmt::format("the {} of the {}", field.beside, field.name);
+  return out;
+}
+
 std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list, const PluginCases& plugins) {
   Describer describer(plugins);
   list(describer);

@@ -51,6 +51,9 @@ struct FieldDescription::CaseDescription {
 /// Of a key that is no option and says nothing but what it is.
 FieldDescription describe_key(const Field& field);
 
+/// The option that stands beside the plugin at `field` (Field::with_beside()), its fields unknown.
+FieldDescription describe_beside(const FieldDescription& field);
+
 /// Every plugin of a kind, with its options.
 using PluginCases = std::function<std::vector<FieldDescription::CaseDescription>(const std::string& kind)>;
 

@@ -92,7 +92,10 @@ void MapReader::require(bool holds, const char* field, const std::string& reason
   if (holds) return;
   if (notes_.missing) throw Error(*notes_.missing);  // which may be why
   const Place place = input_.place_of(field);
-  throw Error(place.file ? place.text() : where(), fmt::format("{}{}: {}", path_, field, reason));
+  const std::string_view path = field;
+  const std::string key(path.substr(0, path.find('.')));
+  throw Error(place.file ? place.text() : where(),
+              fmt::format("{}{}: {}", path_of(key), path.substr(key.size()), reason));
 }
 
 std::string MapReader::shown(const Tree& tree) {
@@ -225,8 +228,10 @@ bool MapReader::is_known(const std::string& key) const {
 
 void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const {
   if (is_beside(entry.key)) {
-    throw Error(entry.place.text(), fmt::format("{} has no {}", plugin_, entry.key),
-                fmt::format("take '{}' away", path_of(entry.key)));
+    const Tree* last = &entry.value;  // who said any of it last
+    for_all(entry.value, [&](const Tree& one) { last = one.layer > last->layer ? &one : last; });
+    throw Error((last->layer > entry.value.layer ? last->place : entry.place).text(),
+                fmt::format("{} has no {}", plugin_, entry.key), fmt::format("take '{}' away", path_of(entry.key)));
   }
   const std::string reason = fmt::format("unknown option '{}'", entry.key);
   if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));

@@ -72,7 +72,6 @@ class MapReader : public Fields {
   // What enters the id (identity_text()):
   bool enters(const Field& field) const { return enters_id_ && field.enters_id; }
   std::string id_name(const Field& field) const;
-  std::string id_above_;  ///< as above_, for the id
   void identify(std::string path, std::string_view value) {
     notes_.identity.push_back(std::move(path.append("=").append(value)));
   }
@@ -96,6 +95,7 @@ class MapReader : public Fields {
   std::string plugin_;   ///< whose options these are; "" for none
   std::string beside_;   ///< the option of the plugin that stands beside it: Field::with_beside(); "" for none
   std::string above_;    ///< the path of what is around such a plugin
+  std::string id_above_;  ///< the same for the id
   bool silent_ = false;  ///< a plugin among these is: any key may be its
   std::string adopted_;  ///< whose options stand among them; "" for none
   ResolveNotes& notes_;

@@ -54,7 +54,10 @@ constexpr std::array kUnits{
 
 /// Whether `text` is a continuous range: config/expand.hpp.
 bool is_continuous_range(std::string_view text) {
-  return text.substr(0, 8) == "uniform(" || text.substr(0, 12) == "log_uniform(";
+  for (const std::string_view name : {"uniform(", "log_uniform("}) {
+    if (text.substr(0, name.size()) == name) return true;
+  }
+  return false;
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
