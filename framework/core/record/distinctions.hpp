@@ -4,7 +4,6 @@
 
 #include "record/row.hpp"
 
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>

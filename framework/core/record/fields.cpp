@@ -126,12 +126,10 @@ void add_footprint(Row& row, const std::optional<FootprintState>& state) {
 
 /// Probabilities with two decimals; none for an empty list.
 std::optional<JsonList> list_of(const std::vector<TapBelief::SuspectedOutlier>& suspected) {
-  std::string out;
-  for (const TapBelief::SuspectedOutlier& one : suspected) {
-    out += fmt::format("{}{{\"tap\": {}, \"probability\": {}}}", out.empty() ? "" : ", ", one.tap,
-                       csv_cell(std::round(100.0 * one.probability) / 100.0));
-  }
-  return out.empty() ? std::nullopt : std::optional(JsonList{"[" + out + "]"});
+  std::vector<Row> rows;
+  for (const TapBelief::SuspectedOutlier& one : suspected)
+    rows.push_back({{{"tap", std::int64_t{one.tap}}, {"probability", std::round(100.0 * one.probability) / 100.0}}});
+  return rows.empty() ? std::nullopt : std::optional(list_of(rows));
 }
 
 constexpr const char* kObject = "object";

@@ -75,11 +75,8 @@ class RowReader final : public nlohmann::json_sax<Json> {
   bool add(T value) {
     if (prefixes_.empty()) return false;
     if (levels_ > 0) {
-      Row one;
-      one.add("", Scalar(std::move(value)));
-      const std::string text = to_json_line(one);  // {"": VALUE}
       separate();
-      list_.append(text, 5, text.size() - 6);
+      list_ += json_value(Scalar(std::move(value)));
       return true;
     }
     if (row_.fields.size() == kMostRowValues) return refuse("holds too many values: at most 4096");

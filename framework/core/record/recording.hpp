@@ -103,7 +103,7 @@ ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& d
 /// none of one that has not come. Equal to that of a run whose budget ends there, in all that depends on the config
 /// alone: choosing a tap looks at no budget, and reading a model changes none. Only the engines are those that
 /// `engine: {type: auto}` took for the run's own budget; where it would take another for less, numbers may differ as
-/// far as `accuracy` lets them. Throws Error where the run knew the truth and that is lost, see Playback.
+/// far as `engine.accuracy` lets them. Throws Error where the run knew the truth and that is lost, see Playback.
 ///
 /// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and
 /// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody

@@ -188,6 +188,18 @@ std::string csv_cell(const Scalar& value) {
   return out;
 }
 
+std::string json_value(const Scalar& value) {
+  std::string out;
+  append_json(out, value);
+  return out;
+}
+
+JsonList list_of(const std::vector<Row>& rows) {
+  std::string out;
+  for (const Row& row : rows) out += (out.empty() ? "" : ", ") + to_json_line(row);
+  return {"[" + out + "]"};
+}
+
 std::string json_quoted(const std::string& text) {
   std::string out;
   append_quoted(out, text);

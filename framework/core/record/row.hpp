@@ -52,6 +52,12 @@ struct Row {
 /// for what is not a finite number, quoted where commas, quotes or line ends need it.
 std::string csv_cell(const Scalar& value);
 
+/// One scalar as a value of JSON: null for null and for what is not a finite number.
+std::string json_value(const Scalar& value);
+
+/// Rows as a list of objects.
+JsonList list_of(const std::vector<Row>& rows);
+
 /// Text quoted for CSV where it needs to be.
 std::string csv_text(const std::string& text);
 
