@@ -45,7 +45,7 @@ std::string numerics_line(const Row& row) {
   };
   add("jitter", "{}jitter was raised {} times");
   add("pivoted", "{}the covariance was pivoted {} times");
-  add("redundant_taps", "{}{} taps were set aside");
+  add("redundant_taps", "{}{} redundant taps were left out");
   add("fit_failed", "{}{} fits failed");
   return line.empty() ? line : fmt::format("numerics: {}; runs/README.md says what that means\n", line);
 }

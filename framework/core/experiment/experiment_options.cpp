@@ -266,7 +266,7 @@ void ExperimentOptions::list(Fields& fields) {
                  {"none", "tap the first candidate, as the paper's rule does: it stalls", {}}});
   fields.choice(
       repeat,
-      Field("repeat", "may a candidate be tapped twice; failed ones never are, doubted ones always").of_strategy(),
+      Field("repeat", "may a candidate be tapped twice; failed ones never are, suspected outliers always").of_strategy(),
       {{"forbid", "no", {}}, {"allow", "yes, with independent noise", {}}});
   fields.real(tie_tolerance,
               Field("tie_tolerance", "scores within this times (|best| + the score's prior scale) of the best are tied")

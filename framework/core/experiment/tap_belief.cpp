@@ -3,7 +3,7 @@
 
 #include "config/tree.hpp"
 #include "experiment/policy.hpp"
-#include "gp/instructions.hpp"
+#include "gp/simd/table.hpp"
 
 #include <palpate/error.hpp>
 
@@ -25,13 +25,13 @@ constexpr double kLevelAmongLies = 1.0;
 
 namespace {
 
-PosteriorSettings posterior_settings(const ExperimentOptions& options) {
+PosteriorSettings posterior_settings(const ExperimentOptions& options, simd::Lanes lanes) {
   PosteriorSettings out;
   out.engine = static_cast<PosteriorSettings::Kind>(options.engine.type);
   out.accuracy = std::min(options.engine.accuracy, 0.1 * options.tie_tolerance);
   out.tolerance = options.engine.tolerance;
   out.taps = static_cast<int>(options.taps);
-  out.machine.loops = &loops_in_use();
+  out.machine.loops = &simd::table_of(lanes);
   out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.engine.threads));
   return out;
 }
@@ -68,7 +68,7 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     : candidates_(candidates),
       context_(context),
       clock_(clock),
-      posterior_(posterior_settings(options)),
+      posterior_(posterior_settings(options, context.lanes)),
       desk_(context.scene.desk()),
       clip_(options.label.clip),
       two_part_(options.surface == ExperimentOptions::Surface::two_part),

@@ -114,7 +114,7 @@ void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
   }
   tell(out, diagnostics(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
   if (const int aside = diagnostics(last, "redundant_taps"); aside > 0)
-    out.push_back(fmt::format("{} set aside: the others already tell everything about {}, as far as numbers go.",
+    out.push_back(fmt::format("{} left out: to machine precision the other taps determine {}.",
                               counted(aside, "tap") + (aside == 1 ? " was" : " were"), aside == 1 ? "it" : "them"));
   if (const int clamped = diagnostics(last, "variance_clamped"); clamped > 0)
     out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; shown are the bounds.",
