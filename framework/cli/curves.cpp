@@ -31,7 +31,7 @@ constexpr std::array<const char*, 4> kExtensions{".csv", ".png", ".pdf", ".svg"}
 /// The files to write: those that are named, else a picture and a table beside results.csv. A PDF comes last, because
 /// the script of a name draws the last picture of that name, and papers take the PDF.
 std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arguments,
-                                  const std::vector<std::string>& by) {
+                                  const std::vector<std::string>& by, const std::string& metric) {
   std::vector<fs::path> out(arguments.outputs.begin(), arguments.outputs.end());
   for (const fs::path& file : out) {
     if (std::find(kExtensions.begin(), kExtensions.end(), file.extension().string()) == kExtensions.end())
@@ -44,7 +44,7 @@ std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arg
   std::stable_partition(out.begin(), out.end(), [](const fs::path& file) { return file.extension() != ".pdf"; });
   if (!out.empty()) return out;
   const std::string groups = by.empty() ? "all" : slug(fmt::format("{}", fmt::join(by, "_")));
-  const std::string name = fmt::format("curves_{}_{}_{}{}", groups, slug(arguments.metric), arguments.against,
+  const std::string name = fmt::format("curves_{}_{}_{}{}", groups, slug(metric), arguments.against,
                                        where_suffix(arguments.where.value_or("")));
   return {sweep.directory / (name + ".csv"), sweep.directory / (name + ".png")};
 }
@@ -66,19 +66,19 @@ double width_of(const CurvesArguments& arguments) {
 int curves(Program& program, const CurvesArguments& arguments) {
   const Sweep sweep = read_records(arguments.records, arguments.by);
   const std::vector<std::string> by = arguments.by.empty() ? curve_keys(sweep) : arguments.by;
-  const std::vector<fs::path> files = curve_files(sweep, arguments, by);
+  const std::vector<Row> results = sweep_results(sweep);
+  const std::string asked = arguments.metric.empty() ? main_error(results) : arguments.metric;
+  const std::vector<fs::path> files = curve_files(sweep, arguments, by, asked);
   const double width = width_of(arguments);
-  if (arguments.metric.find(',') != std::string::npos)
-    throw Error("command line",
-                fmt::format("--metric: '{}' names several columns, and a figure has one", arguments.metric),
+  if (asked.find(',') != std::string::npos)
+    throw Error("command line", fmt::format("--metric: '{}' names several columns, and a figure has one", asked),
                 "draw a figure for each");
   std::optional<Condition> where;
   if (arguments.where) where = Condition::of_command_line(*arguments.where);
-  const std::vector<Row> results = sweep_results(sweep);
   // What cannot be asked is found out before anything is computed.
   check_group_keys(sweep, by);
-  if (!results.empty()) find_metric(sweep, arguments.metric, columns_of(results));
-  const std::string metric = field_name(arguments.metric);
+  if (!results.empty()) find_metric(sweep, asked, columns_of(results));
+  const std::string metric = field_name(asked);
   std::vector<TapValues> values(sweep.jobs.size());
   const TapSummaries summaries(sweep, keep_values(values, {metric, arguments.against}));
   const bool all = compute_jobs(program, summaries.missing(), arguments.workers,

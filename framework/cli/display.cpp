@@ -28,9 +28,10 @@ std::string share_text(const std::optional<double>& value) { return value ? fmt:
 std::string error_line(const Row& summary) {
   const Errors errors = errors_in(summary);
   const std::optional<double> expected = summary.number(kExpectedError);
-  if (!errors.rmse && !expected) return {};
-  if (!errors.rmse) return fmt::format("expected error: {} over the scene\n", error_words(*expected));
-  return fmt::format("error: {} over the scene{}, {} on the object{}\n", error_words(*errors.rmse),
+  const std::optional<double> overall = errors.overall();
+  if (!overall && !expected) return {};
+  if (!overall) return fmt::format("expected error: {} over the scene\n", error_words(*expected));
+  return fmt::format("error: {} over the scene{}, {} on the object{}\n", error_words(*overall),
                      expected ? fmt::format(" (expected {})", error_words(*expected)) : "",
                      errors.rmse_object ? error_words(*errors.rmse_object) : "-",
                      errors.footprint_iou ? "; footprint IoU " + share_text(errors.footprint_iou) : "");
@@ -98,7 +99,7 @@ void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) 
   const std::string line = fmt::format(
       "{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}{}\n", tap.number, source_name(tap.source),
       place_text(tap.target.x), place_text(tap.target.y), touched ? place_text(tap.contact.height) : std::string("-"),
-      contact, error_text(tap.expected_rmse), error_text(tap.errors.rmse), share_text(tap.errors.footprint_iou),
+      contact, error_text(tap.expected_rmse), error_text(tap.errors.overall()), share_text(tap.errors.footprint_iou),
       touched ? "" : "  " + tap.contact.reason);
   print_text(line);
   flush_output();

@@ -55,7 +55,7 @@ struct CommandLine {
   ResumeArguments resume;
   ParetoArguments pareto;
   CompareArguments compare;
-  CurvesArguments curves{{}, {}, main_error(), "taps", {}, {}, {}, {}};
+  CurvesArguments curves;
   ReportArguments report;
   WatchArguments watch;
   ListArguments list;
@@ -352,9 +352,10 @@ void add_curves(CommandLine& line) {
       ->type_name("KEYS")
       ->delimiter(',')
       ->allow_extra_args(false);
-  sub->add_option("--metric", line.curves.metric, "a column of results.csv: footprint_iou")
-      ->type_name("COLUMN")
-      ->capture_default_str();
+  sub->add_option("--metric", line.curves.metric,
+                  "a column of results.csv: footprint_iou; if not given, rmse_m, or rms_surface_distance_m for runs "
+                  "from any side")
+      ->type_name("COLUMN");
   sub->add_option("--against", line.curves.against, "the axis: taps, or robot time")
       ->type_name("COLUMN")
       ->check(CLI::IsMember({"taps", "robot_seconds"}))

@@ -292,8 +292,9 @@ TEST(Plan, WritesAConfigThatNeedsNoGroupThatItDoesNotSweep) {
 
 TEST(Plan, WritesAConfigWhoseSweptBackendsBringTheMotionThatTheBaseLeavesToThem) {
   const test::TemporaryFolder folder;
-  folder.write("there/backend/slow.yaml", "backend: simulator\nmotion: {type: continuous, speed: 1 cm/s}\n");
-  folder.write("there/backend/fast.yaml", "backend: simulator\nmotion: {type: continuous, speed: 9 cm/s}\n");
+  const std::string simulator = "backend: {type: simulator}\n";
+  folder.write("there/backend/slow.yaml", simulator + "motion: {type: continuous, speed: 1 cm/s}\n");
+  folder.write("there/backend/fast.yaml", simulator + "motion: {type: continuous, speed: 9 cm/s}\n");
   const std::string rest = "kernel: rbf\nacquisition: random\nfitting: fixed\nscene: object_i\n";
   for (const std::string defaults : {"defaults: [backend: slow, motion: gentle]\n", "backend: slow\n"})
     is_made_again({folder.write("there/c.yaml", defaults + rest), {"backend=slow,fast"}});
@@ -307,9 +308,13 @@ TEST(Plan, DoesNotAskTheConfigForTheMotionThatASweptBackendDecides) {
 }
 
 TEST(Plan, NamesASweepAlikeOnAnyNumberOfThreads) {
-  const auto directory = [](const char* threads) { return plan_of({"seed=1,2", threads}).sweep.directory; };
-  EXPECT_EQ(directory("engine.threads=1"), directory("engine.threads=2"));
-  EXPECT_NE(plan_of({"seed=1,2", "engine.accuracy=exact"}).sweep.directory, directory("engine.threads=1"));
+  const test::TemporaryFolder folder;
+  const auto directory = [&](const std::string& engine) {
+    const fs::path file = folder.write("c.yaml", test::text_of(kPaper) + "engine: {" + engine + "}\n");
+    return planned(file, {"seed=1,2"}).plan.sweep.directory;
+  };
+  EXPECT_EQ(directory("type: auto, threads: 1"), directory("type: auto, threads: 2"));
+  EXPECT_NE(directory("type: dense, threads: 1"), directory("type: auto, threads: 1"));
 }
 
 TEST(Plan, WritesAConfigOfABaseThatIsNoneWithoutItsSweepOrLeavesOptionsOut) {

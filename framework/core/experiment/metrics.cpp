@@ -64,7 +64,7 @@ Truth truth_at(const Candidates& candidates, const Scene& scene) {
 void require_finite(const Errors& errors, int taps) {
   for (const std::optional<double>& one :
        {errors.rmse, errors.rmse_object, errors.rmse_height, errors.footprint_iou, errors.surface_distance,
-        errors.f_score, errors.coverage, errors.volume_iou}) {
+        errors.rms_surface_distance, errors.f_score, errors.coverage, errors.volume_iou}) {
     if (std::isfinite(one.value_or(0.0))) continue;
     throw Error("maps", fmt::format("their errors are not finite numbers after tap {}", taps),
                 "look for heights that no arm reports, or choose a larger height.noise", Error::Kind::run);

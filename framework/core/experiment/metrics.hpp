@@ -27,12 +27,16 @@ struct Errors {
   std::optional<double> rmse_object;    ///< metres, the same over the cells on an object
   std::optional<double> rmse_height;    ///< metres, the height mean itself over the cells on an object
   std::optional<double> footprint_iou;  ///< predicted against true cells on an object; 1 if both are empty
-  // From any side alone; then rmse is over the points of either surface, rmse_object over those of the true one.
+  // From any side alone; then there is no rmse, and rmse_object is over the points of the true surface.
   std::optional<double> surface_distance =
       std::nullopt;  ///< metres, mean distance from the points of either surface to the other
+  std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the same distances
   std::optional<double> f_score = std::nullopt;     ///< at 5 mm
   std::optional<double> coverage = std::nullopt;    ///< of the 95 % intervals of the surface from any side
   std::optional<double> volume_iou = std::nullopt;  ///< of what is solid; none if nothing is
+
+  /// Returns the root mean square error of the whole reconstruction, metres, from above or from any side.
+  std::optional<double> overall() const { return rmse ? rmse : rms_surface_distance; }
 };
 
 /// Throws Error (the run fails) where an error that is there is not a finite number; `taps` have been made.

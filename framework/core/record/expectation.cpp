@@ -71,7 +71,7 @@ std::vector<Clause> lines_of(const Tree& expect) {
   std::vector<Clause> lines;
   if (!expect.is_map() && expect.kind != Tree::Kind::null) {
     throw Error(expect.place.text(), "expect: is not a map of expectations",
-                fmt::format("write expect: {{object_taps: \">= 9\", {}: \"<= 2 cm\"}}", main_error()));
+                "write expect: {object_taps: \">= 9\", rmse_m: \"<= 2 cm\"}");
   }
   collect(expect, "", lines);
   return lines;

@@ -75,8 +75,9 @@ const std::vector<RecordField>& error_fields();
 /// of a summary.
 std::vector<Relabelled> relabelled_in(const Row& summary);
 
-/// The one that says in one number how good a surface is.
-inline const std::string& main_error() { return error_fields().front().name; }
+/// Returns the name of the root mean square error of whole reconstructions: `rmse_m`, or where summaries have only that,
+/// `rms_surface_distance_m`, the error from any side.
+const std::string& main_error(const std::vector<Row>& summaries);
 
 /// Adds the errors to a row, null where no truth is known; and finds them in one.
 void add_errors(Row& row, const Errors& errors);

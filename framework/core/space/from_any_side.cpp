@@ -166,7 +166,7 @@ Errors FromAnySide::errors() {
   const Cloud surface = knows_object() ? belief_.surface(bundle_, kSide) : Cloud();
   const CloudErrors errors = compare_clouds(surface, truth().cloud);
   Errors out;
-  out.rmse = errors.rms;
+  out.rms_surface_distance = errors.rms;
   out.rmse_object = errors.rms_of_truth;
   out.surface_distance = errors.mean;
   out.f_score = errors.f_score;

@@ -106,7 +106,8 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   // Only the taps of what has not ended are counted: of the rest the summary tells their number.
   const RunStatus status = summary ? read_ending(directory) : read_status(directory);
   row.add("taps", summary ? summary->number("taps").value_or(0.0) : status.taps);
-  for (const std::string& field : {main_error(), std::string(kOutline)})
+  const std::string& error = main_error(summary ? std::vector<Row>{*summary} : std::vector<Row>());
+  for (const std::string& field : {error, std::string(kOutline)})
     row.add(field, summary ? summary->number(field) : std::nullopt);
   row.add("state", state_name(status.state));
   if (summary) out.beside = *summary;
@@ -206,15 +207,21 @@ void tell_apart(std::vector<ListedRecord>& records) {
 std::string runs_table(const std::vector<Row>& rows) {
   if (rows.empty()) return {};
   std::vector<double> errors;
+  std::set<std::string> metrics;  // both where some runs are from above and some from any side
   for (const Row& row : rows) {
-    if (const auto error = row.number(main_error())) errors.push_back(*error);
+    const std::string& metric = main_error({row});
+    const std::optional<double> error = row.number(metric);
+    if (!error) continue;
+    errors.push_back(*error);
+    metrics.insert(metric);
   }
-  const Scale scale = readable_scale(unit_of_column(main_error()), errors);
-  std::vector<std::vector<std::string>> lines{{"name", "begun", "strategy", "scene", "taps", scale.title(main_error()),
+  const std::string title = metrics.size() > 1 ? "RMS error" : main_error(rows);
+  const Scale scale = readable_scale(unit_of_column(main_error(rows)), errors);
+  std::vector<std::vector<std::string>> lines{{"name", "begun", "strategy", "scene", "taps", scale.title(title),
                                                "IoU", "state", "set apart by", "directory"}};
   for (const Row& row : rows) {
     const auto text = [&](const char* name) { return one_line(row.text(name)); };
-    const std::optional<double> error = row.number(main_error());
+    const std::optional<double> error = row.number(main_error({row}));
     const std::optional<double> outline = row.number(kOutline);
     lines.push_back({text("name"), text("begun"), text("strategy"), text("scene"), row.cell("taps"),
                      error ? scale.number(*error) : "", outline ? fmt::format("{:.2f}", *outline) : "",

@@ -41,7 +41,8 @@ std::string spread(const std::vector<double>& values, const Scale& scale) {
                      scale.number(quantile(values, 0.9)));
 }
 
-SweepTableRow row_of(const JobGroup& group, const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
+SweepTableRow row_of(const JobGroup& group, const std::string& error,
+                     const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
   SweepTableRow out;
   std::optional<int> initial;  // taps of those that are done
   for (const auto& [job, row] : group.jobs) {
@@ -60,7 +61,7 @@ SweepTableRow row_of(const JobGroup& group, const std::function<std::optional<in
       if (const auto value = of->number(field)) values.push_back(*value);
     };
     add(out.object_taps_all, "object_taps");
-    add(out.rmse, main_error());
+    add(out.rmse, error);
     add(out.iou, "footprint_iou");
     if (!is_without_contact) add(out.object_taps_rest, "object_taps");
   }
@@ -79,8 +80,9 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
   std::map<std::string, std::size_t> places;
   std::vector<SweepTableRow> rows;
   std::size_t longest = 0;
+  const std::string& metric = main_error(results);
   for (const JobGroup& group : group_jobs(sweep, results, keys)) {
-    SweepTableRow row = row_of(group, initial_taps);
+    SweepTableRow row = row_of(group, metric, initial_taps);
     if (row.runs == 0) continue;
     const Job& first = *group.jobs.front().job;
     row.scene = places.emplace(key_words(sweep, first, scenes, true), places.size()).first->second;
@@ -101,12 +103,12 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
     any_failed = any_failed || row.failed > 0;
     any_iou = any_iou || !row.iou.empty();
   }
-  const Scale error = readable_scale(unit_of_column(main_error()), medians, 2);
+  const Scale error = readable_scale(unit_of_column(metric), medians, 2);
   const Scale share{"", 1.0, 2};
   const Scale count{"", 1.0, 0};
   std::vector<std::vector<std::string>> lines{
       {"group", "runs", "no contact", "found", any_failed ? "failed" : "", "object taps, rest", "object taps, all",
-       medians.empty() ? "" : error.title(main_error()), any_iou ? "footprint_iou" : ""}};
+       medians.empty() ? "" : error.title(metric), any_iou ? "footprint_iou" : ""}};
   for (const SweepTableRow& row : rows) {
     const int done = row.runs - row.failed;
     const auto part = [&](int jobs) { return done > 0 ? fmt::format("{:.1f}%", 100.0 * jobs / done) : "-"; };
@@ -123,7 +125,7 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
   std::string out = aligned(lines, longest > kLongest ? "rrrrrrrrl" : "lrrrrrrrr");
   out += "no contact: no initial tap was on the object; rest: the other starts. Median (10 %-90 %).\n";
   if (rows.size() < 2 || medians.empty()) return out;
-  return out + fmt::format("The least {} first{}.\n", main_error(), places.size() > 1 ? ", scene by scene" : "");
+  return out + fmt::format("The least {} first{}.\n", metric, places.size() > 1 ? ", scene by scene" : "");
 }
 
 }  // namespace palpate

@@ -60,6 +60,14 @@ def _table(columns):
     return out
 
 
+def _main_error(jobs):
+    """The name of the root mean square error of whole reconstructions in a sweep's table: `rmse_m`, or
+    `rms_surface_distance_m` where only runs from any side have ended."""
+    def has(name):
+        return name in jobs.dtype.names and jobs[name].dtype.kind == "f" and bool(_np.isfinite(jobs[name]).any())
+    return "rms_surface_distance_m" if has("rms_surface_distance_m") and not has("rmse_m") else "rmse_m"
+
+
 def _numbers(texts):
     """An array of numbers where all texts are numbers, else the texts."""
     for kind in (int, float):
@@ -110,11 +118,11 @@ class Run:
         return f"<palpate.Run {self.directory}: {len(self)} taps>"
 
     def _repr_html_(self):
-        shown = ("status", "stop_reason", "rmse_m", "rmse_object_m", "footprint_iou", "robot_seconds")
+        shown = ("status", "stop_reason", "rmse_m", "rms_surface_distance_m", "rmse_object_m", "footprint_iou", "robot_seconds")
         rows = [("run", self.directory), ("taps", len(self))]
         try:
             end = self.summary or {"status": "unfinished"}
-            rows += [(name, end[name]) for name in shown if name in end]
+            rows += [(name, end[name]) for name in shown if end.get(name) is not None]
             return _show.table(rows) + _show.image(self.surface, "surface")
         except Error as trouble:  # a run from any side has no maps; a damaged one may have nothing
             return _show.table([*rows, (trouble.place, trouble.reason)])
@@ -202,7 +210,7 @@ class Sweep:
         out = ""
         try:
             jobs = self.table
-            names = ["job", *self.keys, *(name for name in ("status", "taps", "rmse_m", "footprint_iou")
+            names = ["job", *self.keys, *(name for name in ("status", "taps", _main_error(jobs), "footprint_iou")
                                           if name in jobs.dtype.names and name not in self.keys)]
             ended = [int(job) for job in jobs["job"][jobs["status"] == "done"]]
             out = _show.table([(f"{len(ended)} of {len(jobs)} jobs done in {self.directory}",)])
@@ -213,10 +221,12 @@ class Sweep:
         except Error as trouble:  # runs from any side have no maps
             return out + _show.table([(trouble.place, trouble.reason)])
 
-    def plot(self, metric="rmse_m"):
+    def plot(self, metric=None):
         """A figure of matplotlib: a field of the table, of each finished job, in a column per setting (all keys that differ
-        but the seed), with its mean. Raises Error where matplotlib is missing."""
+        but the seed), with its mean. `metric` None: `rmse_m`, or `rms_surface_distance_m` for runs from any side. Raises
+        Error where matplotlib is missing."""
         jobs = self.table
+        metric = metric or _main_error(jobs)
         if metric not in jobs.dtype.names or jobs[metric].dtype.kind not in "biuf":
             raise _error("plot", f"the table has no numbers '{metric}'", "name a column of sweep.table")
         return _plotted(lambda: _show.draw_sweep(jobs, self.keys, metric))
@@ -254,7 +264,7 @@ class Sweep:
             columns.append(("status", [None] * len(self)))
         return _table((name, _numbers(values) if name in self.keys else values) for name, values in columns)
 
-    def curves(self, metric="rmse_m", *, by=None, against="taps", where=None, workers=None, progress=None) -> _np.ndarray:
+    def curves(self, metric=None, *, by=None, against="taps", where=None, workers=None, progress=None) -> _np.ndarray:
         """Groups of jobs over their taps, as `palpate curves` has them: a structured array of a row per point and group.
 
         Its fields: the swept keys of scene and group; `at`, taps or (`against="robot_seconds"`) seconds; `mean` with
@@ -266,7 +276,8 @@ class Sweep:
         keys = [by] if isinstance(by, str) else by
         with _tempfile.TemporaryDirectory() as folder:
             file = _os.path.join(folder, "curves.csv")
-            command = [_palpate.program, "curves", *self._directories, "--metric", metric, "--against", against, "-o", file]
+            command = [_palpate.program, "curves", *self._directories, "--against", against, "-o", file]
+            command += ["--metric", metric] if metric is not None else []
             command += ["--by", ",".join(keys)] if keys else []
             command += ["--where", where] if where is not None else []
             command += ["-j", str(_operator.index(workers))] if workers is not None else []

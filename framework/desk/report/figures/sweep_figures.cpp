@@ -105,7 +105,7 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   for (const Group& group : groups) longest = std::max(longest, std::min(group.name.size(), kLongestName));
   std::vector<std::string> metrics;
   for (const std::string& metric :
-       {std::string("object_taps"), main_error(), std::string("footprint_iou"), std::string("robot_seconds")}) {
+       {std::string("object_taps"), main_error(results), std::string("footprint_iou"), std::string("robot_seconds")}) {
     const bool present = std::any_of(groups.begin(), groups.end(),
                                      [&](const Group& one) { return !values_of(one.jobs, metric, kOption).empty(); });
     if (present) metrics.emplace_back(metric);
@@ -179,10 +179,11 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   const bool left_out = x.cut || y.cut;
   std::vector<std::vector<double>> cells(y.values.size(), std::vector<double>(x.values.size(), std::nan("")));
   std::vector<double> means;
+  const std::string& error = main_error(results);
   for (const JobGroup& group : group_jobs(sweep, results, {y.key, x.key})) {
     const std::size_t row = y.place(group.values[0]);
     const std::size_t column = x.place(group.values[1]);
-    const std::vector<double> values = values_of(group, main_error(), kOption);
+    const std::vector<double> values = values_of(group, error, kOption);
     if (row == y.values.size() || column == x.values.size() || values.empty()) continue;
     means.push_back(mean_of(values));
     cells[row][column] = means.back();
@@ -216,14 +217,13 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
                 std::max(120.0, 44 * static_cast<double>(y.values.size()))};
   Sheet sheet(static_cast<int>(std::max(560.0, box.left + box.width + 150)),
               static_cast<int>(box.top + box.height + below + 16));
-  sheet.data("mean_" + main_error(), matrix);
+  sheet.data("mean_" + error, matrix);
   sheet.data("numbers", numbers);
-  const Colours colours{Palette::viridis, least, most, scale.title("mean " + main_error())};
+  const Colours colours{Palette::viridis, least, most, scale.title("mean " + error)};
   std::vector<std::string> over;
   if (std::find(sweep.keys.begin(), sweep.keys.end(), "seed") != sweep.keys.end()) over.emplace_back("seed");
   over.insert(over.end(), keys.begin() + 2, keys.end());
-  std::string words =
-      over.empty() ? main_error() : fmt::format("{}, mean over {}", main_error(), fmt::join(over, ", "));
+  std::string words = over.empty() ? error : fmt::format("{}, mean over {}", error, fmt::join(over, ", "));
   if (left_out) words += fmt::format("; the first {} values of a key", kMostValues);
   sheet.text(sweep_name(sweep), 24, 14, 15);
   sheet.text(words, 24, 42, 11);
@@ -238,7 +238,7 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
                           (box.left + 0.5 * box.width) / sheet.width(), 14.0 / sheet.height());
   sheet.text(y.key, 24, box.top - 24, 11);
   sheet.plot(box, settings,
-             "plot $mean_" + main_error() +
+             "plot $mean_" + error +
                  " matrix using 1:2:3 with image pixels, \\\n"
                  "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
   sheet.bar({box.left + box.width + 20, box.top, 14, box.height}, colours);
@@ -249,15 +249,16 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
 std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row>& results) {
   if (!TapSummaries::any_kept(sweep)) return std::nullopt;
   std::vector<TapValues> values(sweep.jobs.size());
-  const TapSummaries summaries(sweep, keep_values(values, {main_error(), kAgainstTaps}));
-  const auto has_error = [](const TapValues& job) {
-    const auto error = job.find(main_error());
+  const std::string& metric = main_error(results);
+  const TapSummaries summaries(sweep, keep_values(values, {metric, kAgainstTaps}));
+  const auto has_error = [&](const TapValues& job) {
+    const auto error = job.find(metric);
     return error != job.end() &&
            std::any_of(error->second.begin(), error->second.end(), [](double one) { return std::isfinite(one); });
   };
   const bool drawn = summaries.missing().empty() && std::any_of(values.begin(), values.end(), has_error);
   if (!drawn) return std::nullopt;
-  return make_group_curves(sweep, results, values, {curve_keys(sweep), main_error(), kAgainstTaps, nullptr});
+  return make_group_curves(sweep, results, values, {curve_keys(sweep), metric, kAgainstTaps, nullptr});
 }
 
 }  // namespace

@@ -74,10 +74,10 @@ Json json_of_curves(const Sweep& sweep) {
   const std::vector<Row> results = sweep_results(sweep);
   const std::vector<std::vector<std::string>> keys = choices_of_keys(sweep);
   if (keys.empty()) return {};
-  std::vector<std::string> columns{main_error()};
+  std::vector<std::string> columns{main_error(results)};
   for (const RecordField& field : summary_fields()) {
     const bool swept = std::find(sweep.keys.begin(), sweep.keys.end(), field.name) != sweep.keys.end();
-    if (field.first_look && field.name != main_error() && field.name != kAgainstTime && !swept)
+    if (field.first_look && field.name != columns.front() && field.name != kAgainstTime && !swept)
       columns.push_back(field.name);
   }
   std::vector<std::string> read = columns;

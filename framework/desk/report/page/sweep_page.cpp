@@ -161,10 +161,10 @@ std::vector<double> interval_factors(std::size_t jobs) {
 }
 
 /// The fields that are worth a first look: the main error, and the others in the order of the summary.
-std::vector<std::string> first_looks() {
-  std::vector<std::string> names{main_error()};
+std::vector<std::string> first_looks(const std::vector<Row>& results) {
+  std::vector<std::string> names{main_error(results)};
   for (const RecordField& field : summary_fields()) {
-    if (field.first_look && field.name != main_error()) names.push_back(field.name);
+    if (field.first_look && field.name != names.front()) names.push_back(field.name);
   }
   return names;
 }
@@ -235,7 +235,7 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"jobs", jobs},
            {"units", json_of_units(sweep, results, shown)},
            {"columns", json_of_columns(results, shown)},
-           {"first_looks", first_looks()},
+           {"first_looks", first_looks(results)},
            {"factors", interval_factors(sweep.jobs.size())},
            {"scene_keys", scene_keys(sweep)},
            {"config", to_yaml(swept_config(sweep))}};
