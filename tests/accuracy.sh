@@ -82,12 +82,12 @@ run() {
   [ "$form" = short ] || count=$((5 * short))
   [ "$most" -eq 0 ] || [ "$most" -ge "$count" ] || count=$most
   name=$1
-  iou=footprint_iou
+  iou=footprint_iou error=rmse_m
   case $name in
     objects) set -- strategies.yaml motion=per_tap scene.effects=none strategy=default,weighted taps=17,30 ;;
     standard) set -- strategies.yaml motion=per_tap scene.effects=standard strategy=default,weighted taps=30 ;;
     clutter) set -- clutter.yaml strategy=default,weighted taps=60 ;;
-    any_side) set -- any_side.yaml acquisition=discovery taps=19; iou=volume_iou ;;
+    any_side) set -- any_side.yaml acquisition=discovery taps=19; iou=volume_iou error=rms_surface_distance_m ;;
   esac
   config=$root/configs/benchmark/$1
   shift
@@ -100,7 +100,7 @@ run() {
     echo "accuracy: not all jobs of $name are done" >&2
     return 1
   }
-  awk -F, -v name="$name" -v iou="$iou" '
+  awk -F, -v name="$name" -v iou="$iou" -v error="$error" '
     NR == 1 { for (i = NF; i >= 1; --i) at[$i] = i; next }
     {
       row = name "_" $at["taps"] "_" ("strategy" in at ? $at["strategy"] : $at["acquisition"])
@@ -108,9 +108,9 @@ run() {
       if (!(key in jobs)) keys[++n] = key
       ++jobs[key]
       # What is missing, or not a number, stays so.
-      if ($at["rmse_m"] !~ /^[0-9.]+(e[-+]?[0-9]+)?$/) bad[key] = 1
+      if ($at[error] !~ /^[0-9.]+(e[-+]?[0-9]+)?$/) bad[key] = 1
       if ($at[iou] !~ /^[0-9.]+(e[-+]?[0-9]+)?$/) bad[key] = 1
-      rmse[key] += $at["rmse_m"]
+      rmse[key] += $at[error]
       share[key] += $at[iou]
     }
     END {

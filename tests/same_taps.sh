@@ -9,7 +9,8 @@
 # What was renamed stands in tests/same_taps.csv, or in FILE, a line for each name: what,other,here.
 #   word,OLD,NEW     a whole word of a sweep, such as motion=paper: the other program is given OLD for NEW
 #   key,OLD,NEW      a name within a word, such as height.outlier_probability, or min_object_height of a map in braces: the same
-#   column,OLD,NEW   a column of taps.csv, or what stands before a dot of it; without OLD it is new, without NEW it is gone
+#   column,OLD,NEW   a column of taps.csv, or what stands before a dot of it; without OLD it is new, without NEW it is gone;
+#                    a table without NEW keeps OLD
 # A column without a partner fails.
 set -eu
 root=$(cd "$(dirname "$(readlink -f "$0")")/.." && pwd)
@@ -107,12 +108,13 @@ compared() {
     # What a column of the other program is called here; empty: it is gone.
     function renamed(name,    old) {
       for (old in new_of) {
-        if (name == old) return new_of[old]
+        if (name == old) return new_of[old] == "" || new_of[old] in at ? new_of[old] : name
         if (index(name, old ".") == 1) return new_of[old] == "" ? "" : new_of[old] substr(name, length(old) + 1)
       }
       return name
     }
     function is_new(name,    one) {
+      if (name in new_of) return 1  # renamed here, where it has another meaning
       for (one in added) if (name == one || index(name, one ".") == 1) return 1
       return 0
     }

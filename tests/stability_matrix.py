@@ -25,7 +25,8 @@ LENGTHS = [0.001, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 20.0]
 MORE_THAN_THE_OTHER = 2.0
 AND_METRES = 0.001
 AND_OVERLAP = 0.05
-METRES = ["rmse_m", "rmse_object_m", "rmse_height_m", "object_rmse_height_m", "surface_distance_m"]
+METRES = ["rmse_m", "rmse_object_m", "rmse_height_m", "object_rmse_height_m", "surface_distance_m",
+          "rms_surface_distance_m"]
 OVERLAPS = ["footprint_iou", "object_iou", "volume_iou", "f_score"]
 
 
@@ -42,16 +43,16 @@ def run(program, config, overrides):
     return 0, errors, ""
 
 
-def is_silent(one):
+def is_silent(one, main):
     """Whether a run ended with exit code 0 and without a finite RMSE, or with another error that is not finite."""
-    return one[0] == 0 and ("rmse_m" not in one[1] or not all(math.isfinite(error) for error in one[1].values()))
+    return one[0] == 0 and (main not in one[1] or not all(math.isfinite(error) for error in one[1].values()))
 
 
 def mean(values):
     return sum(values) / len(values) if values else math.nan
 
 
-def compare(judged, believed):
+def compare(judged, believed, main):
     """Returns the means of each error with and without outliers, and those names whose mean is too large."""
     means, inexact = {}, []
     for name in METRES + OVERLAPS:
@@ -60,7 +61,7 @@ def compare(judged, believed):
         alone = any((name in a[1]) != (name in b[1]) for a, b in zip(judged, believed) if a[0] == b[0] == 0)
         margin = AND_METRES if name in METRES else AND_OVERLAP
         within = means[name][0] <= MORE_THAN_THE_OTHER * means[name][1] + margin
-        if alone or (not within and (pairs or name == "rmse_m")):
+        if alone or (not within and (pairs or name == main)):
             inexact.append(name)
     return means, inexact
 
@@ -84,6 +85,7 @@ def main():
     cells = [(taps, noise, length) for taps in (int(float(one)) for one in options.taps.split(","))
              for noise in options.noise for length in options.length]
     from_any_side = "any_side" in options.config
+    main = "rms_surface_distance_m" if from_any_side else "rmse_m"
     rows, missed = [], 0
     told = time.monotonic()
     print(f"{len(cells)} cells of {options.seeds * (1 if from_any_side else 2)} runs each", file=sys.stderr, flush=True)
@@ -101,8 +103,8 @@ def main():
         for cell, judged, believed in waiting:
             judged, believed = [[one.result() for one in runs] for runs in (judged, believed)]
             failed = [said for code, _, said in judged if code != 0]
-            silent = sum(map(is_silent, judged + believed))
-            means, inexact = compare(judged, believed)
+            silent = sum(is_silent(one, main) for one in judged + believed)
+            means, inexact = compare(judged, believed, main)
             # A run may fail with exit code 1, but not where it holds without outliers, nor by a signal or a wrong
             # config.
             broken = any(code not in (0, 1) for code, _, _ in judged + believed)
@@ -117,7 +119,7 @@ def main():
                 print(f"{len(rows)} of {len(cells)} cells", file=sys.stderr, flush=True)
             if misses or failed:
                 said = ", ".join(f"{name} {means[name][0]:.4g}, without outliers {means[name][1]:.4g}"
-                                 for name in inexact or ["rmse_m"])
+                                 for name in inexact or [main])
                 print(f"{cell[0]} taps, noise {cell[1]:g} m, length scale {cell[2]:g} m: {said}; {silent} silent, "
                       f"{len(failed)} failed {failed[:1]}", flush=True)
     if options.csv:

@@ -296,8 +296,12 @@ TEST(Plan, WritesAConfigWhoseSweptBackendsBringTheMotionThatTheBaseLeavesToThem)
   folder.write("there/backend/slow.yaml", simulator + "motion: {type: continuous, speed: 1 cm/s}\n");
   folder.write("there/backend/fast.yaml", simulator + "motion: {type: continuous, speed: 9 cm/s}\n");
   const std::string rest = "kernel: rbf\nacquisition: random\nfitting: fixed\nscene: object_i\n";
-  for (const std::string defaults : {"defaults: [backend: slow, motion: gentle]\n", "backend: slow\n"})
-    is_made_again({folder.write("there/c.yaml", defaults + rest), {"backend=slow,fast"}});
+  for (const std::string defaults : {"defaults: [backend: slow, motion: gentle]\n", "backend: slow\n"}) {
+    const SweepPlan first = planned(folder.write("there/c.yaml", defaults + rest), {"backend=slow,fast"}).plan;
+    const SweepPlan again = planned(folder.write("there/again.yaml", to_yaml(first.config)), {}).plan;
+    EXPECT_EQ(ids(again), ids(first)) << to_yaml(first.config);
+    EXPECT_NE(ids(first).front(), ids(first).back()) << "each has the motion of its own backend";
+  }
 }
 
 TEST(Plan, DoesNotAskTheConfigForTheMotionThatASweptBackendDecides) {

@@ -106,7 +106,7 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
   EXPECT_FALSE(run.experiment.knows_object());
   const Errors errors = run.experiment.result().errors;
   constexpr double kRounding = 1e-12;  // of a mean of thousands of equal numbers
-  for (const std::optional<double>& one : {errors.surface_distance, errors.rmse, errors.rmse_object})
+  for (const std::optional<double>& one : {errors.surface_distance, errors.rms_surface_distance, errors.rmse_object})
     EXPECT_NEAR(one.value(), 0.1, kRounding);
   EXPECT_EQ(errors.f_score, 0.0);
   EXPECT_EQ(errors.volume_iou, 0.0);
