@@ -127,7 +127,7 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
     says(fmt::format("What was believed after {} tap", i));
     says("24 compositions of ");
     says("Expected, by the most probable composition: ");
-    says("Error of the surface: over the scene ");
+    says("Error of the surface: on the object ");
     if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; all of the way is free.");
     if (rows[i].text("source") == "initial") {
       says("anywhere through the region");
