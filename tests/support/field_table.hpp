@@ -16,11 +16,11 @@ template <class Record>
 std::string table_of(const FieldList<Record>& list) {
   std::string out = "| field | unit | meaning |\n|---|---|---|\n";
   for (const RecordField& field : list.fields(true)) {
-    const char* const better = field.better == RecordField::Better::less   ? "; less is better"
-                               : field.better == RecordField::Better::more ? "; more is better"
+    const char* const better = field.better == RecordField::Better::less   ? ". Less is better"
+                               : field.better == RecordField::Better::more ? ". More is better"
                                                                            : "";
     out += fmt::format("| `{}` | {} | {}{}{} |\n", field.name, unit_symbol(field.unit), field.meaning, better,
-                       field.when_null.empty() ? "" : "; null where " + field.when_null);
+                       field.when_null.empty() ? "" : ". Null where " + field.when_null);
   }
   return out;
 }

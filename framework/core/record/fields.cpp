@@ -29,66 +29,67 @@ struct ErrorField {
 const std::vector<ErrorField>& error_list() {
   static const std::vector<ErrorField> list{
       {RecordField("rmse_m",
-                   "reconstruction against truth over all candidate cells, desk included (root mean square); with "
-                   "`surface: two_part` the height of the object where the footprint's probability is >= 1/2, and the "
-                   "desk elsewhere; null from any side")
+                   "RMSE of the reconstruction over all candidate cells, desk included. With `surface: two_part` the "
+                   "reconstruction is the object's height where the footprint's probability is >= 1/2, and the desk "
+                   "elsewhere. From any side: null")
            .in(Unit::metre)
            .less()
            .called("over the scene")
            .headline(),
        &Errors::rmse},
       {RecordField("rmse_object_m",
-                   "the same over the cells that truly lie on an object; from any side over the points of the true "
-                   "surface")
+                   "RMSE of the reconstruction over the cells that truly lie on an object; from any side, over the "
+                   "points of the true surface")
            .in(Unit::metre)
            .less()
            .called("on the object")
            .headline(),
        &Errors::rmse_object},
-      {RecordField("rmse_height_m", "the height mean itself over those cells, whatever the footprint")
+      {RecordField("rmse_height_m",
+                   "RMSE of the mean height, without the footprint, over the cells that truly lie on an object")
            .in(Unit::metre)
            .less()
            .called("of the height mean on the object"),
        &Errors::rmse_height},
-      {RecordField("footprint_iou",
-                   "cells with a probability >= 1/2, by the config's footprint, against cells truly on an object: "
-                   "intersection over union")
+      {RecordField(
+           "footprint_iou",
+           "intersection over union of the cells with a footprint probability >= 1/2 and the cells truly on an object")
            .more()
            .called("footprint IoU")
            .headline(),
        &Errors::footprint_iou},
-      {RecordField("surface_distance_m",
-                   "from any side: mean distance from the points of the reconstructed surface to the nearest of the "
-                   "true one and back, over the points of both, each 10 cm at most, and before an object is known 10 "
-                   "cm. The true one is where lines from all sides first meet the scene; the reconstructed one where "
-                   "they meet the most probable composition, each point then moved along its normal by what the skin "
-                   "says. Of either there is a point in a cube of 1 mm; those that ask for the nearest are one in a "
-                   "cube of 3 mm")
+      {RecordField(
+           "surface_distance_m",
+           "from any side: mean distance from points of the reconstructed surface to the nearest true point and vice "
+           "versa, each at most 10 cm. It is 10 cm before an object is known. Points of the true surface are those "
+           "where lines from all sides first meet the scene. Reconstructed points are those where the lines meet the "
+           "most probable composition, then moved along its normal by the skin's mean. Each cloud has one point per "
+           "cube of 1 mm; the points whose distance counts are one per cube of 3 mm")
            .in(Unit::metre)
            .less()
            .called("to the nearest point"),
        &Errors::surface_distance, true},
-      {RecordField("rms_surface_distance_m", "from any side: root mean square of the distances of `surface_distance_m`")
+      {RecordField("rms_surface_distance_m",
+                   "from any side: root mean square of the distances whose mean is `surface_distance_m`")
            .in(Unit::metre)
            .less()
            .called("to the nearest point (RMS)")
            .headline(),
        &Errors::rms_surface_distance, true},
       {RecordField("f_score",
-                   "from any side: harmonic mean of the share of reconstructed points within 5 mm of the true surface "
-                   "and of true points within 5 mm of the reconstructed one")
+                   "from any side: harmonic mean of two shares, the reconstructed points within 5 mm of the true "
+                   "surface and the true points within 5 mm of the reconstructed surface")
            .more()
            .called("F-score at 5 mm"),
        &Errors::f_score, true},
-      {RecordField(
-           "surface_coverage_95",
-           "from any side: share of the reconstructed surface whose distance to the true one is within 1.96 of its "
-           "standard deviations: 0.95 where these are as large as they should be; left out before an object is known")
+      {RecordField("surface_coverage_95",
+                   "from any side: share of reconstructed points whose distance to the true surface is at most 1.96 of "
+                   "their standard deviations, best at 0.95. Absent before an object is known")
            .called("coverage of 95 % intervals"),
        &Errors::coverage, true},
       {RecordField("volume_iou",
-                   "from any side: what is solid as it is reconstructed against what truly is, hollows left out: "
-                   "intersection over union of cubes of 4 mm by their centres")
+                   "from any side: intersection over union of the reconstructed and the true solid volume, by the "
+                   "centres of cubes of 4 mm. Spaces that walls enclose belong to neither")
            .more()
            .called("volume IoU"),
        &Errors::volume_iou, true},
@@ -158,28 +159,27 @@ void list_models(FieldList<Record>& list, bool reasons) {
       if (reasons) row.add(std::string(name) + ".engine_reason", of ? std::optional(of->engine_reason) : std::nullopt);
     });
   };
-  process(
-      "height_gp",
-      "of the GP over heights: hyperparameters by the names of the options (`kernel.kernels.0.length_scale`), "
-      "`log_marginal_likelihood`, `jitter` (a variance), `condition` (an incremental estimate: a lower bound, most "
-      "often within a factor of 3), `engine` of the posterior and its `error_bound`: of what it adds to the rounding "
-      "of `dense`, to means in signals or to variances in signals squared, whichever is more. `fit.*` of the fit "
-      "after the latest tap, if one was due: `changed` (false: the old hyperparameters stay), `objective` (the fit's "
-      "own measure, larger is better), `evaluations`, `reason` (why it ended)",
-      &ModelState::height_gp);
-  process("label_gp", "the same of the GP over labels", &ModelState::label_gp);
-  process(
-      "surface_gp",
-      "the same for the heights of the taps on an object; only with `surface: two_part`, and only where a strategy, "
-      "a rule that ends the run or the backend reads the height itself",
-      &ModelState::surface_gp);
+  process("height_gp",
+          "state of the height GP: hyperparameters by the names of their options (`kernel.kernels.0.length_scale`), "
+          "`log_marginal_likelihood`, and `jitter` as a variance. `condition` is a lower bound of the condition "
+          "number, most often within a factor of 3. `engine` computes the posterior. `error_bound` limits the error "
+          "that `engine` adds to the rounding of `dense`: of means in signals or of variances in signals squared, "
+          "whichever is larger. `fit.*` describes the fit after the latest tap, if one was due: `changed` (false if "
+          "the old hyperparameters stay), `objective` (larger is better), `evaluations`, and `reason` for its end",
+          &ModelState::height_gp);
+  process("label_gp", "state of the label GP, with the same fields as `height_gp`", &ModelState::label_gp);
+  process("surface_gp",
+          "state of the GP over the heights of taps on an object, with the fields of `height_gp`. Present only with "
+          "`surface: "
+          "two_part`, and only if the strategy, a stop rule or the backend reads the height",
+          &ModelState::surface_gp);
   list.add_family("footprint.*",
-                  "what the footprint tells of itself: its numbers, and `remark`, where there is something to know of "
-                  "how it came to them; only where `footprint` is not `gp_regression`",
+                  "numbers that the footprint reports about itself, and `remark` if their computation needs a comment; "
+                  "absent with `footprint: gp_regression`",
                   [](Row& row, const Record& record) { add_footprint(row, record.footprint); });
   list.add_family("suspected_outliers",
-                  "contacts whose height or label is an outlier with a probability of 0.1 or more: a list of `tap` and "
-                  "`probability`; null if there is none; only with `height.outlier_probability`",
+                  "list of `tap` and `probability` of the contacts whose height or label is an outlier with a "
+                  "probability of 0.1 or more. Null if there are none; only with `height.outlier_probability`",
                   [](Row& row, const Record& record) {
                     if (record.suspected_outliers) row.add("suspected_outliers", list_of(*record.suspected_outliers));
                   });
@@ -198,108 +198,113 @@ std::optional<double> if_touched(const TapRecord& tap, double value) {
 FieldList<TapRecord> make_tap_list() {
   using Tap = TapRecord;
   FieldList<Tap> list;
-  list.add("tap", "number, from 1", &Tap::number);
-  list.add("source", "`initial`, `acquisition`, `fallback`, or `caller` where scores came from outside",
+  list.add("tap", "number of the tap, from 1", &Tap::number);
+  list.add("source",
+           "origin of the choice: `initial`, `acquisition`, `fallback`, or `caller` (scores of a calling program)",
            [](const Tap& t) { return source_name(t.source); });
-  list.add("why", "of a fallback, why", [](const Tap& t) { return if_any(t.why); });
-  list.add("x", "where", [](const Tap& t) { return t.target.x; }).in(Unit::metre);
-  list.add("y", "where", [](const Tap& t) { return t.target.y; }).in(Unit::metre);
+  list.add("why", "reason for the fallback, if there was one", [](const Tap& t) { return if_any(t.why); });
+  list.add("x", "x of the target", [](const Tap& t) { return t.target.x; }).in(Unit::metre);
+  list.add("y", "y of the target", [](const Tap& t) { return t.target.y; }).in(Unit::metre);
   const auto of_approach = [&](const char* name, const char* meaning, auto get, Unit unit) {
     list.add_where([](const Tap& t) { return t.approach.has_value(); }, name, meaning,
                    [get](const Tap& t) { return std::optional<double>(get(*t.approach)); })
         .in(unit);
   };
   of_approach(
-      "z", "where the tool starts, from any side; x and y, too", [](const Approach& a) { return a.line.origin.z(); },
-      Unit::metre);
+      "z", "from any side: z of the start of the tool, as are `x` and `y`",
+      [](const Approach& a) { return a.line.origin.z(); }, Unit::metre);
   of_approach(
-      "direction.x", "in which it goes, of unit length", [](const Approach& a) { return a.line.direction.x(); },
-      Unit::none);
+      "direction.x", "x of the unit vector along which the tool moves",
+      [](const Approach& a) { return a.line.direction.x(); }, Unit::none);
   of_approach(
-      "direction.y", "the same", [](const Approach& a) { return a.line.direction.y(); }, Unit::none);
+      "direction.y", "y of the same unit vector", [](const Approach& a) { return a.line.direction.y(); }, Unit::none);
   of_approach(
-      "direction.z", "the same", [](const Approach& a) { return a.line.direction.z(); }, Unit::none);
+      "direction.z", "z of the same unit vector", [](const Approach& a) { return a.line.direction.z(); }, Unit::none);
   list.add_where([](const Tap& t) { return !t.unreached.empty(); }, "unreached",
-                 "from any side, which of the lines that were drawn the backend refused, if any: in hex, a digit for "
-                 "four lines in their order, the first of them its bit of 8",
+                 "from any side: the drawn approaches that the backend rejected, if any, as hexadecimal digits. Each "
+                 "digit stands for four approaches in their order, its highest bit for the first",
                  [](const Tap& t) { return t.unreached; });
   of_approach(
-      "length", "how far it goes at most", [](const Approach& a) { return a.length; }, Unit::metre);
-  list.add_where([](const Tap& t) { return t.contact.along.has_value(); }, "along", "how far it went",
-                 [](const Tap& t) { return t.contact.along; })
+      "length", "largest distance that the tool may move along its approach",
+      [](const Approach& a) { return a.length; }, Unit::metre);
+  list.add_where([](const Tap& t) { return t.contact.along.has_value(); }, "along",
+                 "distance that the tool moved along its approach", [](const Tap& t) { return t.contact.along; })
       .in(Unit::metre);
-  list.add("outcome", "`contact`, `no_contact`, `unreachable`, `timeout`, `aborted`, `unknown`",
+  list.add("outcome", "result of the tap: `contact`, `no_contact`, `unreachable`, `timeout`, `aborted` or `unknown`",
            [](const Tap& t) { return outcome_name(t.contact.outcome); });
-  list.add("reason", "of a failed tap, why", [](const Tap& t) { return if_any(t.contact.reason); });
-  list.add(
-      "on_object",
-      "whether a contact was one with an object, as it was read when it was made; `relabelled` of the summary names "
-      "the taps that are read otherwise at the end",
-      &Tap::on_object);
-  list.add("height", "of a contact", [](const Tap& t) { return if_touched(t, t.contact.height); }).in(Unit::metre);
+  list.add("reason", "cause of the failure, if the tap failed", [](const Tap& t) { return if_any(t.contact.reason); });
+  list.add("on_object",
+           "whether a contact was classified as on an object right after the tap. `relabelled` in the summary lists "
+           "the taps that are classified differently at the end",
+           &Tap::on_object);
+  list.add("height", "height of the contact", [](const Tap& t) { return if_touched(t, t.contact.height); })
+      .in(Unit::metre);
   list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
-                 "the same less what motion and arm were thought, when it was made, to add to all heights; only with "
-                 "`height.offset`",
+                 "`height` minus the offset that motion and arm add to all heights, as estimated at the time of the "
+                 "tap; only with `height.offset`",
                  [](const Tap& t) { return t.corrected; })
       .in(Unit::metre);
-  list.add("force", "of a contact, the largest that was felt (in a scene without effects, the threshold)",
+  list.add("force", "largest force measured in a contact (the threshold, if the scene has no effects)",
            [](const Tap& t) { return if_touched(t, t.contact.force); })
       .in(Unit::newton);
   list.add_where([](const Tap& t) { return t.contact.peak.has_value(); }, "peak_force",
-                 "the largest force against the tool in all of the tap, of failed taps, too: the true one where a "
-                 "simulator knows it, else what was felt; only where a force is simulated or felt",
+                 "largest force against the tool during the whole tap, also of a failed tap: the true force from a "
+                 "simulator, else the measured one. Present only if forces are simulated or measured",
                  [](const Tap& t) { return t.contact.peak; })
       .in(Unit::newton);
   list.add("robot_seconds", "robot time of this tap: travel, rest, descent, contact, retreat",
            [](const Tap& t) { return t.contact.seconds; })
       .in(Unit::second);
 
-  list.add("score", "of the acquisition at the chosen place", &Tap::score);
-  list.add("u", "uncertainty at the chosen place, before the tap", &Tap::uncertainty);
-  list.add("w", "the weight there, never clipped", &Tap::weight);
-  list.add("e", "their product", &Tap::exploration);
+  list.add("score", "score of the chosen candidate", &Tap::score);
+  list.add("u", "relative variance u of the height GP at the chosen candidate, before the tap", &Tap::uncertainty);
+  list.add("w", "mean w of the label GP (the weight) at the chosen candidate, before the tap, not clipped",
+           &Tap::weight);
+  list.add("e", "product of `u` and `w`", &Tap::exploration);
   list.add_where([](const Tap& t) { return t.footprint.has_value(); }, "p",
-                 "the footprint's probability of an object there; only where `footprint` is not `gp_regression`, whose "
-                 "probability is the weight, clipped",
+                 "footprint's probability of an object at the chosen candidate. Absent with `footprint: "
+                 "gp_regression`, whose probability is the clipped `w`",
                  &Tap::probability);
-  list.add("ties", "how many candidates were tied with the best", &Tap::ties);
-  list.add("runner_up.x", "the best of the others", [](const Tap& t) { return part(t.runner_up, &Target::x); })
+  list.add("ties", "number of candidates tied for the best score, including the best", &Tap::ties);
+  list.add("runner_up.x", "x of the best other candidate", [](const Tap& t) { return part(t.runner_up, &Target::x); })
       .in(Unit::metre);
-  list.add("runner_up.y", "the same", [](const Tap& t) { return part(t.runner_up, &Target::y); }).in(Unit::metre);
-  list.add("runner_up.score", "its score", &Tap::runner_up_score);
-  list.add("max_standard_deviation", "of the height over the candidates, before the tap; of the height GP",
+  list.add("runner_up.y", "y of the best other candidate", [](const Tap& t) { return part(t.runner_up, &Target::y); })
+      .in(Unit::metre);
+  list.add("runner_up.score", "score of the best other candidate", &Tap::runner_up_score);
+  list.add("max_standard_deviation", "largest standard deviation of the height GP over the candidates, before the tap",
            &Tap::max_standard_deviation)
       .in(Unit::metre);
-  list.add("mean_standard_deviation", "the same", &Tap::mean_standard_deviation).in(Unit::metre);
-  list.add("min_weight", "over the candidates, before the tap, never clipped", &Tap::min_weight);
-  list.add("max_weight", "the same", &Tap::max_weight);
+  list.add("mean_standard_deviation", "mean standard deviation of the height GP over the candidates, before the tap",
+           &Tap::mean_standard_deviation)
+      .in(Unit::metre);
+  list.add("min_weight", "smallest `w` over the candidates, before the tap, not clipped", &Tap::min_weight);
+  list.add("max_weight", "largest `w` over the candidates, before the tap, not clipped", &Tap::max_weight);
   const auto is_chosen = [](const Tap& t) { return t.expected_seconds.has_value(); };
-  list.add_where(is_chosen, "motion",
-                 "by which the tap was made: its index, from 0, in `motion.of`; only with "
-                 "`type: per_tap`",
+  list.add_where(is_chosen, "motion", "index of the tap's motion in `motion.of`, from 0; only with `type: per_tap`",
                  &Tap::motion);
-  list.add_where(is_chosen, "expected_seconds", "the robot time that it was expected to take",
+  list.add_where(is_chosen, "expected_seconds", "expected robot time of the tap; only with `type: per_tap`",
                  [](const Tap& t) { return t.expected_seconds; })
       .in(Unit::second);
   const auto is_predicted = [](const Tap& t) { return t.predicted.has_value(); };
   list.add_where(is_predicted, "predicted.height",
-                 "what the models expected of the height there, in the frame of the scene; only where the backend asks "
-                 "for it (`adaptive_hover`)",
+                 "height that the models predicted at the target, in the frame of the scene; only if the backend "
+                 "requests it (`adaptive_hover`)",
                  [](const Tap& t) { return t.predicted->height; })
       .in(Unit::metre);
-  list.add_where(is_predicted, "predicted.standard_deviation", "its standard deviation",
+  list.add_where(is_predicted, "predicted.standard_deviation", "standard deviation of the predicted height",
                  [](const Tap& t) { return t.predicted->standard_deviation; })
       .in(Unit::metre);
-  list.add_where([](const Tap& t) { return t.predicted && t.predicted->probability; }, "predicted.probability",
-                 "the probability of an object there; only where the backend asks for it (`adaptive_hover.certainty`)",
-                 [](const Tap& t) { return t.predicted->probability; });
+  list.add_where(
+      [](const Tap& t) { return t.predicted && t.predicted->probability; }, "predicted.probability",
+      "predicted probability of an object at the target; only if the backend requests it (`adaptive_hover.certainty`)",
+      [](const Tap& t) { return t.predicted->probability; });
   list_models(list, false);
   list.add_where([](const Tap& t) { return t.forecast.has_value(); }, kExpectedError,
-                 "the RMSE over the scene that is expected of what is believed; only with `stop.expected_rmse`, "
-                 "null before the first hit",
+                 "RMSE over the scene that the models expect. Present only with `stop.expected_rmse`; null before the "
+                 "first contact with an object",
                  [](const Tap& t) { return t.forecast->rmse; })
       .in(Unit::metre);
-  list.add("true_on_object", "whether an object truly is there", &Tap::true_on_object).absent(kNoTruth);
+  list.add("true_on_object", "whether the target truly is on an object", &Tap::true_on_object).absent(kNoTruth);
   list.add_shared(error_fields(), [](Row& row, const Tap& t) { add_errors(row, t.errors); });
   return list;
 }
@@ -307,7 +312,7 @@ FieldList<TapRecord> make_tap_list() {
 /// The phases of a tap, in their order.
 constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fitting hyperparameters",
                                                           "updating the models", "scoring and choosing",
-                                                          "writing the record of the tap before"};
+                                                          "writing the record of the previous tap"};
 
 bool is_from_any_side(const Summary& summary) { return summary.config.options.scene.touch == SceneOptions::Touch::any; }
 
@@ -347,33 +352,34 @@ void list_objects(FieldList<Summary>& list) {
   const auto count = [&](const char* name, const char* meaning, auto holds) -> RecordField& {
     return list.add(name, meaning, [=](const Summary& s) { return count_objects(s, holds); }).absent(kNoTruth);
   };
-  count("objects", "how many the scene has", [](const ObjectResult&) { return true; });
-  count("objects_found", "those with a contact at a cell that truly is theirs, whatever the label said",
+  count("objects", "number of objects in the scene", [](const ObjectResult&) { return true; });
+  count("objects_found", "objects with a contact on a cell that truly is theirs, whatever its label",
         [](const ObjectResult& o) { return o.taps > 0; })
       .more();
   count("objects_merged",
-        "those that the footprint (cells with a probability >= 1/2 that share sides) has in one piece with another "
-        "object, across a gap, at least a fifth of the cells of each",
+        "objects that the footprint joins with another one across a gap. One component of cells that share sides, with "
+        "a probability >= 1/2, has at least a fifth of the cells of each",
         [](const ObjectResult& o) { return o.merged; })
       .less();
   count("objects_split",
-        "those of one piece that the footprint has in several, each with at least a fifth of the cells",
+        "connected objects that the footprint divides into several components, each with at least a fifth of the "
+        "object's cells",
         [](const ObjectResult& o) { return o.split; })
       .less();
   list.add("object_iou",
-           "mean over the objects of the intersection over union of one alone: its cells against those with a "
-           "probability >= 1/2 that are its own, or on no object and nearest to it",
+           "mean over the objects of each one's own intersection over union. The object's cells are compared with the "
+           "cells with a probability >= 1/2 that are its own, or that are on no object and nearest to it",
            [](const Summary& s) { return over_objects(s, &ObjectErrors::iou, mean_of); })
       .more()
       .absent(no_object);
-  list.add("object_iou_worst", "the least of these",
+  list.add("object_iou_worst", "smallest intersection over union of one object (see `object_iou`)",
            [](const Summary& s) {
              return over_objects(s, &ObjectErrors::iou,
                                  [](const auto& all) { return *std::min_element(all.begin(), all.end()); });
            })
       .more()
       .absent(no_object);
-  list.add("object_rmse_height_m", "mean over the objects of the error of the height mean over the cells of one",
+  list.add("object_rmse_height_m", "mean over the objects of the RMSE of the mean height over the cells of each",
            [](const Summary& s) { return over_objects(s, &ObjectErrors::rmse_height, mean_of); })
       .in(Unit::metre)
       .less()
@@ -382,78 +388,88 @@ void list_objects(FieldList<Summary>& list) {
 
 FieldList<ObjectRow> make_object_list() {
   FieldList<ObjectRow> list;
-  list.add("object", "its place in `scene.objects`, from 0", &ObjectRow::object);
-  list.add("type", "its shape", &ObjectRow::type);
-  list.add("cells", "candidates that are on it and not on a higher one", [](const ObjectRow& o) { return o.cells; });
-  list.add("taps", "contacts there", [](const ObjectRow& o) { return o.taps; });
-  list.add("first_tap", "number of the first of them", [](const ObjectRow& o) { return o.first_tap; })
-      .absent("there was none");
-  list.add("found", "whether there was one", [](const ObjectRow& o) { return o.taps > 0; });
-  list.add("merged", "with another object: see `objects_merged`", [](const ObjectRow& o) { return o.merged; });
-  list.add("split", "see `objects_split`", [](const ObjectRow& o) { return o.split; });
-  list.add("iou", "see `object_iou`", [](const ObjectRow& o) { return o.iou; }).absent("it has no cell");
-  list.add("rmse_height_m", "of the height mean over its cells", [](const ObjectRow& o) { return o.rmse_height; })
+  list.add("object", "index in `scene.objects`, from 0", &ObjectRow::object);
+  list.add("type", "type of the object's shape", &ObjectRow::type);
+  list.add("cells", "candidates that are on the object and not on a higher one",
+           [](const ObjectRow& o) { return o.cells; });
+  list.add("taps", "contacts on the object's cells", [](const ObjectRow& o) { return o.taps; });
+  list.add("first_tap", "number of the first tap with such a contact", [](const ObjectRow& o) { return o.first_tap; })
+      .absent("no tap touched the object");
+  list.add("found", "whether any tap touched the object", [](const ObjectRow& o) { return o.taps > 0; });
+  list.add("merged", "whether the footprint joins it with another object (see `objects_merged`)",
+           [](const ObjectRow& o) { return o.merged; });
+  list.add("split", "whether the footprint divides it (see `objects_split`)",
+           [](const ObjectRow& o) { return o.split; });
+  list.add("iou", "intersection over union of this object (see `object_iou`)", [](const ObjectRow& o) { return o.iou; })
+      .absent("the object has no cell");
+  list.add("rmse_height_m", "RMSE of the mean height over the object's cells",
+           [](const ObjectRow& o) { return o.rmse_height; })
       .in(Unit::metre)
-      .absent("it has no cell");
+      .absent("the object has no cell");
   return list;
 }
 
 FieldList<Summary> make_summary_list() {
   FieldList<Summary> list;
-  const char* const no_cell = "no truth is known, or no cell of the object was left untapped";
-  list.add("name", "of the config", [](const Summary& s) { return s.config.options.name; });
-  list.add("id", "a hash of all that decides what a run computes", [](const Summary& s) { return s.config.id; });
-  list.add("seed", "of all that is drawn at random", [](const Summary& s) { return s.config.options.seed; });
-  list.add("status", "`done` or `failed`", [](const Summary& s) { return s.failure.empty() ? "done" : "failed"; });
-  list.add(
-      "stop_reason",
-      "`tap budget`, `robot_time`, `max_standard_deviation`, `expected_rmse`, `no candidate is left`, or the error "
-      "(`backend/baxter: ...` where the backend could go on no more)",
-      [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
-  list.add("taps", "all of them; the next three, from any side four, add up to it", &Summary::taps).less().headline();
+  const char* const no_cell = "no truth is known, or every cell on an object was tapped";
+  list.add("name", "`name` of the config", [](const Summary& s) { return s.config.options.name; });
+  list.add("id", "hash of everything that decides the results of the run",
+           [](const Summary& s) { return s.config.id; });
+  list.add("seed", "`seed` of the config, from which all random numbers come",
+           [](const Summary& s) { return s.config.options.seed; });
+  list.add("status", "final state of the run: `done` or `failed`",
+           [](const Summary& s) { return s.failure.empty() ? "done" : "failed"; });
+  list.add("stop_reason",
+           "reason for the end: `tap budget`, `robot_time`, `max_standard_deviation`, `expected_rmse`, `no candidate "
+           "is left`, or the error (`backend/baxter: ...` if the backend could not continue)",
+           [](const Summary& s) { return s.failure.empty() ? s.stop_reason : s.failure; });
+  list.add("taps", "number of all taps: the sum of the next three counts, or four from any side", &Summary::taps)
+      .less()
+      .headline();
   list.add("object_taps",
-           "contacts with an object, as they are read at the end: with `height.offset`, and from any side, all "
-           "are read again after every tap",
+           "contacts with an object, as classified at the end. With `height.offset`, and from any side, every tap may "
+           "change the class of earlier contacts",
            &Summary::object_taps)
       .more()
       .called("taps on an object")
       .headline();
-  list.add("desk_taps", "contacts with the desk", &Summary::desk_taps).less().called("taps on the desk");
-  list.add_where(is_from_any_side, "no_contact_taps", "from any side: taps that met nothing, all of whose way is free",
+  list.add("desk_taps", "contacts with the desk, as classified at the end", &Summary::desk_taps)
+      .less()
+      .called("taps on the desk");
+  list.add_where(is_from_any_side, "no_contact_taps",
+                 "from any side: taps that touched nothing, so that their whole path is known to be free",
                  &Summary::no_contact_taps);
-  list.add("failed_taps", "taps without a contact; missed ones are none of them", &Summary::failed_taps).less();
-  list.add("first_hit_tap", "number of the first contact with an object", &Summary::first_hit_tap)
+  list.add("failed_taps", "taps that failed; `no_contact_taps` are not included", &Summary::failed_taps).less();
+  list.add("first_hit_tap", "number of the first tap that touched an object", &Summary::first_hit_tap)
       .less()
       .absent("no object was found")
       .called("first tap on an object");
-  list.add("found", "whether there was one", [](const Summary& s) { return s.object_taps > 0; })
+  list.add("found", "whether any tap touched an object", [](const Summary& s) { return s.object_taps > 0; })
       .more()
       .called("share of runs that found an object");
-  list.add_where(
-      is_read_again, "relabelled",
-      "the contacts that these counts take otherwise than `on_object` of their taps does, each by the number "
-      "of its tap and the label at the end: `5 object; 9 desk`; null if there is none; only with "
-      "`height.offset` and from any side",
-      [](const Summary& s) { return if_any(words(s.relabelled)); });
+  list.add_where(is_read_again, "relabelled",
+                 "taps whose class at the end differs from their `on_object`, each with its final class: `5 object; 9 "
+                 "desk`. Null if there are none; only with `height.offset` and from any side",
+                 [](const Summary& s) { return if_any(words(s.relabelled)); });
   list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
   list.add(kExpectedError,
-           "`rmse_m` as the final models expect it, for which no truth is needed: the root of the expected mean square "
-           "over the candidates",
+           "`rmse_m` as the final models expect it, without the truth: root of the expected mean square error over the "
+           "candidates",
            &Summary::expected_rmse)
       .in(Unit::metre)
       .less()
-      .absent("no object was found, nothing read the models of the surface, or the run is one from any side")
+      .absent("no object was found, nothing read the models of the surface, or taps come from any side")
       .called("over the scene, expected");
   list.add("nlpd",
-           "mean negative log predictive density of the true height (natural logarithm) over the cells on an object "
-           "that "
-           "were not tapped, noise included",
+           "mean negative log predictive density of the true height (natural logarithm), noise included, over the "
+           "untapped cells on an object",
            [](const Summary& s) { return s.calibration.nlpd; })
       .less()
       .absent(no_cell)
       .called("negative log predictive density")
       .headline();
-  list.add("coverage_95", "share of those cells whose true height lies in the central 95 % interval: best at 0.95",
+  list.add("coverage_95",
+           "share of the untapped cells on an object whose true height lies in the central 95 % interval, best at 0.95",
            [](const Summary& s) { return s.calibration.coverage_95; })
       .absent(no_cell)
       .called("95 % coverage")
@@ -462,9 +478,9 @@ FieldList<Summary> make_summary_list() {
   const auto seconds = [&](const std::string& name, const std::string& meaning, auto get) -> RecordField& {
     return list.add(name, meaning, get).in(Unit::second).less();
   };
-  seconds("robot_seconds", "robot time", &Summary::robot_seconds).called("robot time").headline();
-  seconds("wall_seconds", "of the process that ended the run", &Summary::wall_seconds).measured();
-  seconds("compute_seconds", "CPU time of that process", &Summary::compute_seconds)
+  seconds("robot_seconds", "robot time of all taps", &Summary::robot_seconds).called("robot time").headline();
+  seconds("wall_seconds", "wall time of the process that ended the run", &Summary::wall_seconds).measured();
+  seconds("compute_seconds", "CPU time of the process that ended the run", &Summary::compute_seconds)
       .measured()
       .called("CPU time")
       .headline();
@@ -473,29 +489,30 @@ FieldList<Summary> make_summary_list() {
             [i](const Summary& s) { return s.phases ? std::optional((*s.phases)[i]) : std::nullopt; })
         .measured();
   }
-  list.add("jitter_max", "largest jitter of the final models, a variance", &Summary::jitter_max).less();
+  list.add("jitter_max", "largest jitter of the final models, as a variance", &Summary::jitter_max).less();
   for (const auto& [name, meaning] : {
            std::pair{"fallback", "taps that the fallback chose"},
            std::pair{"fit_failed",
-                     "fits that came to no finite values and kept the old ones; heights and labels fitted "
-                     "together count once"},
+                     "fits that reached no finite values and kept the old ones. A joint fit of heights and labels "
+                     "counts once"},
            std::pair{"heights_rejected",
-                     "taps of which the backend reported no finite number, or, from any side, an end that is not on "
-                     "the way of the tool"},
-           std::pair{"jitter", "how often a factorisation needed jitter; the factorisations of every tap count"},
+                     "taps for which the backend reported a number that is not finite or, from any side, an end that "
+                     "is not on the tool's path"},
+           std::pair{"jitter",
+                     "number of times that jitter was added or increased, over the factorisations of all taps"},
            std::pair{"pivoted",
-                     "factorisations of all taps in which no jitter helped and rows were chosen by pivoting"},
-           std::pair{
-               "redundant_taps",
-               "taps that stay out of a final model because the others tell all about them; the most of any model"},
+                     "factorisations of all taps in which no jitter helped, so that pivoting chose independent rows"},
+           std::pair{"redundant_taps",
+                     "taps left out of a final model because the other taps already determine them; the largest number "
+                     "of any model"},
            std::pair{"variance_clamped",
-                     "candidates of the final models whose variance rounding took out of [0, prior]; "
-                     "they read as its ends"},
+                     "candidates of the final models whose variance left [0, prior] by rounding and was set to the "
+                     "nearer end"},
        }) {
     list.add(std::string("diagnostics.") + name, meaning, diagnostics(name)).less();
   }
   list.add_where(is_from_any_side, "diagnostics.violated_free_paths",
-                 "from any side: free ways in which the final surface is left", diagnostics("violated_free_paths"))
+                 "from any side: free paths that the final surface still crosses", diagnostics("violated_free_paths"))
       .less();
   list_models(list, true);
   list.add("peak_rss_bytes", "peak memory of the process", &Summary::peak_rss_bytes).less().measured();
@@ -504,14 +521,14 @@ FieldList<Summary> make_summary_list() {
 
 FieldList<TapTimes> make_timing_list() {
   FieldList<TapTimes> list;
-  list.add("tap", "number, from 1", &TapTimes::tap);
+  list.add("tap", "number of the tap, from 1", &TapTimes::tap);
   for (std::size_t i = 0; i < kPhases; ++i) {
     list.add(kPhaseNames[i], std::string("wall time ") + kPhaseMeanings[i],
              [i](const TapTimes& t) { return t.seconds[i]; })
         .in(Unit::second);
   }
   list.add_where([](const TapTimes& t) { return t.expected_rmse.has_value(); }, kExpectedError,
-                 "no time: the RMSE over the scene that was expected before the tap; only where `palpate run` or "
+                 "no time, but the RMSE over the scene that was expected before the tap; only if `palpate run` or "
                  "`resume` showed it",
                  [](const TapTimes& t) { return t.expected_rmse; })
       .in(Unit::metre);

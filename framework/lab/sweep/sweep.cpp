@@ -28,16 +28,16 @@ constexpr const char* kSweep = "sweep";  ///< the field with the id
 
 FieldList<JobLine> make_job_list() {
   FieldList<JobLine> list;
-  list.add("job", "number, from 0", [](const JobLine& line) { return line.job.index; });
-  list.add("id", "of its run", [](const JobLine& line) { return line.job.id; });
+  list.add("job", "number of the job, from 0", [](const JobLine& line) { return line.job.index; });
+  list.add("id", "id of the job's run", [](const JobLine& line) { return line.job.id; });
   // A dot in a key would nest it: the keys of a manifest stand flat, in the order of the sweep.
-  list.add_family("key_N", "a swept key, N from 0", [](Row& row, const JobLine& line) {
+  list.add_family("key_N", "swept key number N, from 0", [](Row& row, const JobLine& line) {
     for (std::size_t i = 0; i < line.keys.size(); ++i) {
       row.add(fmt::format("key_{}", i), line.keys[i]);
       row.add(fmt::format("value_{}", i), line.job.values[i]);
     }
   });
-  list.add_family("value_N", "what the job has there; empty where its plugin has no such option",
+  list.add_family("value_N", "value of that key in the job; empty if the job's plugin has no such option",
                   [](Row&, const JobLine&) {});
   list.add_where([](const JobLine& line) { return !line.sweep.empty(); }, kSweep, "id of the sweep", &JobLine::sweep);
   return list;
