@@ -101,7 +101,7 @@ TEST_F(Plugins, ListsEveryOneAndTheOptionsOfOne) {
   }
   EXPECT_EQ(lines(palpate("plugins kernel").out), 8);
   EXPECT_THAT(palpate("plugins kernel/sum").out,
-              ContainsRegex("kernels +list of plugins of kind kernel +required +the parts"));
+              ContainsRegex("kernels +list of plugins of kind kernel +required +list of the kernels to combine"));
   EXPECT_THAT(palpate("plugins kernel/rbf").out,
               AllOf(HasSubstr("length_scale"), HasSubstr("> 0 m"), HasSubstr("0.017 m")));
   EXPECT_THAT(palpate("plugins backend/simulator").out, HasSubstr("written beside backend, not inside it"));
