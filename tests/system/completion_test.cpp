@@ -196,7 +196,7 @@ TEST_F(Completion, InFishItselfHasWordsWithTheirMeaning) {
   };
   EXPECT_EQ(asked("palpate sta").out, "status\tShow the state of a run or sweep\n");
   EXPECT_EQ(asked("palpate run configs/default.yaml kernel=rb").out,
-            "kernel=rbf\tSquared exponential: very smooth surfaces, the paper's choice\n");
+            "kernel=rbf\tSquared exponential: very smooth surfaces, as in the paper\n");
   EXPECT_THAT(asked("palpate run configs/default.yaml ").out, HasSubstr("seed=\t"));
   EXPECT_EQ(asked("palpate nonsense ").out, "");
 }
