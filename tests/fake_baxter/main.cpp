@@ -118,9 +118,8 @@ int run(const Arguments& a) {
 
 int run_main(int argc, char** argv) {
   CLI::App app{
-      "fake_baxter: simulates the left arm of a Baxter in the scene of an experiment, on a ROS network. All noise is "
-      "drawn\n"
-      "from the config's seed; its backend sets the tool and the pose of the scene.",
+      "fake_baxter: simulates the left arm of a Baxter in the scene of an experiment, on a ROS network. All noise is\n"
+      "drawn from the config's seed; its backend sets the tool and the pose of the scene.",
       "fake_baxter"};
   Arguments a;
   CLI::Option* companion = app.add_option("--companion", a.companion, "");
@@ -157,7 +156,7 @@ int run_main(int argc, char** argv) {
                  "mass of the tool beyond the flange that the robot is configured with, kg")
       ->check(CLI::Range(0.0, 100.0));
   app.add_option("--fault", a.faults, "fault to simulate: NAME or NAME=VALUE; can be repeated")->take_all();
-  app.add_option("--at", a.at, "begin of the faults: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
+  app.add_option("--at", a.at, "start of the faults: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
   app.add_option("--trace", a.node.trace, "CSV file to write, with one row per period");
   app.footer("Faults; those marked * hold from the start, whatever --at says:\n" + describe_faults());
   try {
