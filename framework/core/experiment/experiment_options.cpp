@@ -155,7 +155,7 @@ void EngineOptions::list(Fields& fields) {
           .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
   fields.real(accuracy, Field("accuracy",
                               "maximum error of the engine that `type: auto` chooses, relative to dense, in prior "
-                              "standard deviations or prior variances; at most a tenth of tie_tolerance")
+                              "standard deviations or variances; also limited to tie_tolerance / 10")
                             .at_least(0)
                             .at_most(1));
   fields.integer(threads, Field("threads", "number of threads that update the maps; it does not change the results")
@@ -207,15 +207,15 @@ void StopOptions::list(Fields& fields) {
                                           .in(Unit::metre)
                                           .above(0));
   fields.real(expected_rmse, Field("expected_rmse",
-                                   "error of the reconstructed scene at which the run stops, if the error is probably "
-                                   "smaller and probably no object is left to find; needs a contact with an object")
+                                   "RMSE of the reconstructed scene, desk included: the run stops once it is probably "
+                                   "smaller, an object was touched, and probably no other is left to find")
                                  .in(Unit::metre)
                                  .above(0));
   fields.real(robot_time, Field("robot_time", "robot time after which the run stops").in(Unit::second).above(0));
   fields.integer(failed_in_a_row,
                  Field("failed_in_a_row",
-                       "number of consecutive failed taps at which the run fails; `unreachable` and, from any side, "
-                       "taps without contact do not count; not given: 3 if taps cannot be repeated, else no limit")
+                       "consecutive failed taps at which the run fails; `unreachable` and, from any side, taps without "
+                       "contact do not count; not given: 3 if taps cannot be repeated, else no limit")
                      .at_least(1)
                      .at_most(100000)
                      .from("an estimate: a healthy robot may fail one tap, but not three in a row"));
