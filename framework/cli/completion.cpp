@@ -194,7 +194,7 @@ std::vector<Completion> swept_keys(const fs::path& sweep) {
   for (std::string name; std::getline(names, name, ',');) {
     if (name == "job" || name == "id") continue;
     if (find_summary_field(name) != nullptr) break;  // what was swept comes first
-    out.push_back({name, "swept"});
+    out.push_back({name, "key that the sweep varies"});
   }
   return out;
 }

@@ -164,7 +164,7 @@ std::vector<Completion> values(const Program& program, const std::filesystem::pa
   if (field.type == Type::real || field.type == Type::integer) {
     std::string value = keys.value(field, path);
     value.erase(std::remove(value.begin(), value.end(), ' '), value.end());
-    if (!value.empty()) out.push_back({value, "as it is: " + meaning_of(field)});
+    if (!value.empty()) out.push_back({value, "current value: " + meaning_of(field)});
   }
   return out;
 }

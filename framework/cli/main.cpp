@@ -42,7 +42,7 @@ Need all_about(const std::string& directory) {
   };
 }
 
-constexpr const char* kMeantBy = ": its directory, a folder with one in it, its NAME in runs/, or NAME@latest";
+constexpr const char* kMeantBy = ": its directory, a folder that contains it, its NAME in runs/, or NAME@latest";
 
 /// The commands with what they are called with.
 struct CommandLine {
@@ -86,7 +86,7 @@ struct CommandLine {
 
   /// Arguments that say which sweeps and runs are taken as one sweep: see find_records().
   static void add_records(CLI::App* sub, std::vector<std::string>& words) {
-    sub->add_option("DIR", words, "the sweep, or several sweeps and runs, taken as one; each" + std::string(kMeantBy))
+    sub->add_option("DIR", words, "sweep, or several sweeps and runs that are pooled; each" + std::string(kMeantBy))
         ->type_name("SWEEP")
         ->required();
   }
@@ -105,12 +105,12 @@ struct CommandLine {
 };
 
 constexpr const char* kStepHelp =
-    "of a robot: show place, way and force limits of every tap before it is made; Enter taps, q ends, "
-    "'palpate resume' carries on";
+    "for a robot: show position, path and force limits before each tap and wait; Enter makes the tap, q ends the run "
+    "('palpate resume' continues it)";
 constexpr const char* kWatchHelp =
-    "serve a page that follows it, as 'palpate watch --until-left' does, and print its address";
-constexpr const char* kRunsHelp = "where run directories are made";
-constexpr const char* kJunitHelp = "write what held and what failed as JUnit XML to this file";
+    "serve a web page that follows the run or sweep, as 'palpate watch --until-left' does, and print its address";
+constexpr const char* kRunsHelp = "folder in which the run directories are made";
+constexpr const char* kJunitHelp = "file for the results of all runs and expectations, as JUnit XML";
 constexpr int kMany = 1000000;
 constexpr int kManyWorkers = 1024;
 
@@ -131,21 +131,23 @@ void add_run(CommandLine& line) {
     needs.config(line.run.config, line.run.overrides, false);
   };
   CLI::App* sub = line.add("run", "Run one experiment", takes, run, line.run);
-  sub->add_option("CONFIG", line.run.config, "the experiment, a YAML file")->type_name("CONFIG")->required();
+  sub->add_option("CONFIG", line.run.config, "YAML file of the experiment")->type_name("CONFIG")->required();
   sub->add_option("OVERRIDE", line.run.overrides,
-                  "override a value (kernel.length_scale=2cm) or a group (kernel=matern52)")
+                  "value of a key (kernel.length_scale=2cm) or name of a config group (kernel=matern52), in place of "
+                  "the config's")
       ->type_name("KEY=VALUE");
   sub->add_option("--runs", line.run.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
   sub->add_flag("--json", line.run.json, "print summary.json and nothing else");
   CLI::Option* quiet = sub->add_flag("--quiet", line.run.quiet, "print nothing");
-  sub->add_flag("--dry-run", line.run.dry_run, "say what would be run and where; move nothing");
-  sub->add_flag("--force", line.run.force, "move an earlier run of this id aside and run again");
+  sub->add_flag("--dry-run", line.run.dry_run, "print what would run and in which directory; move nothing");
+  sub->add_flag("--force", line.run.force, "move an existing run with the same id aside and run again");
   sub->add_flag("--step", line.run.step, kStepHelp)->excludes(quiet);
   sub->add_flag("--watch", line.run.watch, kWatchHelp);
   CLI::Option* print = sub->add_flag("--print-config", line.run.print_config, "print the resolved config and stop");
-  CLI::Option* origins =
-      sub->add_flag("--origins", line.run.origins, "with it, where each value came from")->needs(print);
-  sub->add_flag("--identity", line.run.identity, "with it, the text whose hash the id of the run begins")
+  CLI::Option* origins = sub->add_flag("--origins", line.run.origins,
+                                       "print the resolved values with the file or argument that set each of them")
+                             ->needs(print);
+  sub->add_flag("--identity", line.run.identity, "print the text whose hash becomes the id of the run")
       ->needs(print)
       ->excludes(origins);
   sub->add_option("--junit", line.run.junit, kJunitHelp)->type_name("FILE");
@@ -156,47 +158,51 @@ void add_run(CommandLine& line) {
 /// What `sweep` and `resume` say alike.
 void add_launch(CLI::App* sub, LaunchArguments& launch) {
   sub->add_option("-j", launch.workers,
-                  "jobs of a sweep at a time; if not given, the number of cores, in a task of Slurm 1")
+                  "number of jobs that a sweep runs at a time; default: number of cores, or 1 in a Slurm task")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
-  sub->add_option("--attempts", launch.attempts, "how often a job may be begun before it stays failed")
+  sub->add_option("--attempts", launch.attempts, "maximum number of starts of a job before it counts as failed")
       ->type_name("N")
       ->check(from(1, kMany))
       ->capture_default_str();
   sub->add_flag("--quiet", launch.quiet, "show no progress");
   sub->add_flag("--watch", launch.watch, kWatchHelp);
   sub->add_option("--junit", launch.junit, kJunitHelp)->type_name("FILE");
-  sub->add_option("--launcher", launch.launcher, "who runs the jobs: this machine, or a cluster under Slurm")
+  sub->add_option("--launcher", launch.launcher, "place where the jobs run: this machine, or a cluster under Slurm")
       ->type_name("NAME")
       ->check(CLI::IsMember(std::vector<std::string>(kLaunchers.begin(), kLaunchers.end())))
       ->capture_default_str();
   const char* group = "With --launcher slurm";
-  sub->add_option("--partition", launch.partition, "of the cluster; its default one if not given")
+  sub->add_option("--partition", launch.partition,
+                  "Slurm partition for the jobs; default: the cluster's default partition")
       ->type_name("NAME")
       ->group(group);
-  sub->add_option("--time", launch.time, "a task may take: as sbatch takes it, 1:30:00")
+  sub->add_option("--time", launch.time, "time limit of a Slurm task, in the format of sbatch: 1:30:00")
       ->type_name("TIME")
       ->group(group);
-  sub->add_option("--account", launch.account, "that pays for it")->type_name("NAME")->group(group);
-  sub->add_option("--sbatch", launch.sbatch, "any other option of sbatch, with its dashes: --sbatch=--mem=4G")
+  sub->add_option("--account", launch.account, "Slurm account that is charged for the jobs")
+      ->type_name("NAME")
+      ->group(group);
+  sub->add_option("--sbatch", launch.sbatch, "further option for sbatch, with its dashes: --sbatch=--mem=4G")
       ->type_name("OPTION")
       ->allow_extra_args(false)
       ->group(group);
-  sub->add_option("--jobs-per-task", launch.jobs_per_task, "jobs that a task runs, -j at a time; 1 if not given")
+  sub->add_option("--jobs-per-task", launch.jobs_per_task,
+                  "number of jobs per Slurm task, of which -j run at a time; default: 1")
       ->type_name("N")
       ->check(from(1, kMany))
       ->group(group);
-  sub->add_flag("--wait", launch.wait, "stay until all have ended; Ctrl-C cancels them")->group(group);
+  sub->add_flag("--wait", launch.wait, "wait until all jobs have ended; Ctrl-C cancels them")->group(group);
 }
 
 void add_sweep(CommandLine& line) {
-  CLI::App* sub = line.add("sweep", "Run many experiments: every combination of some values", &Needs::everything, sweep,
+  CLI::App* sub = line.add("sweep", "Run many experiments: all combinations of given values", &Needs::everything, sweep,
                            line.sweep);
-  sub->add_option("CONFIG", line.sweep.config, "the experiment, a YAML file, perhaps with a 'sweep:'")
+  sub->add_option("CONFIG", line.sweep.config, "YAML file of the experiment, optionally with a 'sweep:' block")
       ->type_name("CONFIG")
       ->required();
   sub->add_option("AXIS", line.sweep.axes,
-                  "what to vary: seed=range(0,10), acquisition=weighted,random, "
+                  "key and the values to vary: seed=range(0,10), acquisition=weighted,random, "
                   "kernel.length_scale=logspace(1cm,5cm,8)")
       ->type_name("KEY=VALUES");
   sub->add_option("--runs", line.sweep.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
@@ -211,12 +217,12 @@ void add_resume(CommandLine& line) {
     if (line.resume.launch.watch) needs.whole();
     needs.record(line.resume.directory);
   };
-  CLI::App* sub = line.add("resume", "Carry on a broken run or sweep", takes, resume, line.resume);
-  line.add_record(sub, "DIR", line.resume.directory, Wanted::any, "the run or the sweep");
-  sub->add_flag("--retry-failed", line.resume.options.retry_failed, "carry on what failed, too");
-  sub->add_flag("--force", line.resume.options.force, "carry on what another build began");
+  CLI::App* sub = line.add("resume", "Resume an interrupted run or sweep", takes, resume, line.resume);
+  line.add_record(sub, "DIR", line.resume.directory, Wanted::any, "run or sweep");
+  sub->add_flag("--retry-failed", line.resume.options.retry_failed, "resume failed runs, too");
+  sub->add_flag("--force", line.resume.options.force, "resume even if another build of palpate started the run");
   sub->add_option("--jobs", line.resume.jobs,
-                  "only these jobs of a sweep: 0-7,12; those that others hold are left to them")
+                  "numbers of the sweep's jobs to resume: 0-7,12; jobs that run elsewhere are skipped")
       ->type_name("NUMBERS");
   add_launch(sub, line.resume.launch);
   sub->add_flag("--step", line.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
@@ -224,75 +230,81 @@ void add_resume(CommandLine& line) {
 }
 
 void add_list(CommandLine& line) {
-  CLI::App* sub = line.add("list", "The runs and sweeps in a folder, in the order in which they were begun",
-                           &Needs::whole, list_runs, line.list);
-  sub->add_option("FOLDER", line.list.folder, "three folders deep: runs, runs/NAME, or what holds runs")
+  CLI::App* sub = line.add("list", "List the runs and sweeps in a folder, in the order of their start", &Needs::whole,
+                           list_runs, line.list);
+  sub->add_option("FOLDER", line.list.folder,
+                  "folder that is searched three levels deep: runs, runs/NAME, or a parent folder")
       ->type_name("FOLDER")
       ->capture_default_str();
   sub->add_option("--where", line.list.where,
-                  "list only those of which this holds, on columns, fields of the summary and keys of the config: "
-                  "\"rmse_m < 8 mm and kernel.type == rbf\"")
+                  "list only runs that satisfy a condition on columns, summary fields and config keys: \"rmse_m < 8 mm "
+                  "and kernel.type == rbf\"")
       ->type_name("CONDITION");
-  sub->add_flag("--json", line.list.json, "as JSON");
+  sub->add_flag("--json", line.list.json, "print the list as JSON");
   show(sub, {"palpate list", "palpate list runs/first --where \"rmse_m < 8 mm and seed > 3\""});
 }
 
 void add_rest(CommandLine& line) {
   CLI::App* sub = line.add(
-      "status", "Where a run or a sweep stands",
+      "status", "Show the state of a run or sweep",
       [&line](Needs& needs) {
         if (is_sweep(line.directory)) needs.whole();
       },
       status, line.directory);
-  line.add_record(sub, "DIR", line.directory, Wanted::any, "the run or the sweep");
+  line.add_record(sub, "DIR", line.directory, Wanted::any, "run or sweep");
   show(sub, {"palpate status runs/object_i/422cd70eb5f7", "palpate status runs/first/*"});
 
   sub = line.add(
-      "replay", "Send recorded taps through the same models and compare every number",
+      "replay", "Recompute a run from its recorded taps and compare every number",
       [&line](Needs& needs) { needs.record(line.directory); }, replay, line.directory);
-  line.add_record(sub, "DIR", line.directory, Wanted::run, "the run");
+  line.add_record(sub, "DIR", line.directory, Wanted::run, "run");
   show(sub, {"palpate replay runs/object_i/422cd70eb5f7", "palpate replay runs/first/*"});
 
   sub = line.add(
-      "validate", "Check configs, run nothing",
+      "validate", "Check configs without running them",
       [&line](Needs& needs) {
         for (const std::string& config : line.configs) needs.config(config, {}, true);
       },
       validate, line.configs);
-  sub->add_option("CONFIG", line.configs, "YAML files")->type_name("CONFIG")->required();
+  sub->add_option("CONFIG", line.configs, "YAML files of experiments")->type_name("CONFIG")->required();
   show(sub, {"palpate validate configs/default.yaml", "palpate validate configs/paper/*.yaml"});
 
   sub = line.add(
-      "plugins", "List plugins, or the options of one", [&line](Needs& needs) { needs.listing(line.plugin); }, plugins,
-      line.plugin, line.json);
-  sub->add_option("PLUGIN", line.plugin, "a kind (kernel) or a plugin (kernel/rbf)")->type_name("KIND[/NAME]");
-  sub->add_flag("--json", line.json, "as JSON");
+      "plugins", "List the plugins, or the options of one plugin",
+      [&line](Needs& needs) { needs.listing(line.plugin); }, plugins, line.plugin, line.json);
+  sub->add_option("PLUGIN", line.plugin, "plugin kind (kernel) or plugin (kernel/rbf)")->type_name("KIND[/NAME]");
+  sub->add_flag("--json", line.json, "print the list as JSON");
   show(sub, {"palpate plugins", "palpate plugins kernel/rbf"});
 
   sub = line.add(
-      "new", "Write a plugin to begin with, and an experiment with it", [](Needs&) {}, new_plugin, line.kind, line.to,
+      "new", "Create a starter plugin and an experiment that uses it", [](Needs&) {}, new_plugin, line.kind, line.to,
       line.python);
-  sub->add_option("KIND", line.kind, fmt::format("of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
+  sub->add_option("KIND", line.kind, fmt::format("kind of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
       ->type_name("KIND")
       ->required();
-  sub->add_option("NAME", line.to, "of the plugin, and of its folder, which is made here")
+  sub->add_option("NAME", line.to, "name of the plugin, and of the new folder for its files")
       ->type_name("NAME")
       ->required();
-  sub->add_flag("--python", line.python, "an acquisition as a function of Python with a test; nothing is compiled");
+  sub->add_flag("--python", line.python,
+                "create an acquisition as a Python function with a test, which needs no compilation");
   show(sub,
        {"palpate new kernel my_kernel", "palpate new acquisition curious", "palpate new acquisition --python curious"});
 
-  sub = line.add("pareto", "What accuracy costs: the settings of a sweep that none beats in both", &Needs::whole,
+  sub = line.add("pareto", "Show the settings of a sweep that are Pareto-optimal in cost and error", &Needs::whole,
                  pareto, line.pareto);
   line.add_records(sub, line.pareto.records);
-  sub->add_option("--cost", line.pareto.cost, "a column of results.csv: robot_seconds, compute_seconds, taps")
+  sub->add_option("--cost", line.pareto.cost,
+                  "column of results.csv that is the cost: robot_seconds, compute_seconds, taps")
       ->type_name("COLUMN")
       ->required();
-  sub->add_option("--error", line.pareto.error, "another, an error: footprint_iou")->type_name("COLUMN")->required();
+  sub->add_option("--error", line.pareto.error,
+                  "column of results.csv that is the error or the quality: rmse_m, footprint_iou")
+      ->type_name("COLUMN")
+      ->required();
   sub->add_option("--within", line.pareto.within,
-                  "print the cheapest setting whose 95 % interval of the error keeps to this, as a config: 5mm")
+                  "print the config of the cheapest setting whose 95 % interval of the error is within this bound: 5mm")
       ->type_name("VALUE");
-  sub->add_option("--where", line.pareto.where, "only jobs of which this holds: \"scene == ring\"")
+  sub->add_option("--where", line.pareto.where, "use only jobs that satisfy this condition: \"scene == ring\"")
       ->type_name("CONDITION");
   show(sub, {"palpate pareto runs/many/* --cost robot_seconds --error rmse_m",
              "palpate pareto runs/many/* --cost taps --error rmse_m --within 5mm"});
@@ -303,39 +315,40 @@ void add_rest(CommandLine& line) {
 
 void add_compare(CommandLine& line) {
   CLI::App* sub = line.add(
-      "compare", "Groups of a sweep's jobs, with intervals and paired tests",
+      "compare", "Compare groups of a sweep's jobs, with intervals and paired tests",
       [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
       compare, line.compare);
   line.add_records(sub, line.compare.records);
   const auto list = [&](const char* name, auto& values, const char* of, const char* help) {
     return sub->add_option(name, values, help)->type_name(of)->delimiter(',')->allow_extra_args(false);
   };
-  list("--by", line.compare.by, "KEYS", "the swept keys that make the groups: acquisition or acquisition,kernel")
+  list("--by", line.compare.by, "KEYS", "swept keys that define the groups: acquisition or acquisition,kernel")
       ->required();
-  list("--metric", line.compare.metrics, "COLUMNS", "the columns of results.csv to compare: object_taps,footprint_iou")
+  list("--metric", line.compare.metrics, "COLUMNS", "columns of results.csv to compare: object_taps,footprint_iou")
       ->required();
-  sub->add_option("--where", line.compare.where, "compare only jobs of which this holds: \"first_hit_tap <= 3\"")
+  sub->add_option("--where", line.compare.where,
+                  "compare only jobs that satisfy this condition: \"first_hit_tap <= 3\"")
       ->type_name("CONDITION");
-  sub->add_option("--baseline", line.compare.baseline, "compare all groups with this one only: uncertainty")
+  sub->add_option("--baseline", line.compare.baseline, "group with which every other group is compared: uncertainty")
       ->type_name("GROUP");
-  CLI::Option* at = list("--at", line.compare.at, "NUMBERS",
-                         "the jobs as they were after so many taps: 17 or 17,30; computed from the recorded taps, "
-                         "and kept")
-                        ->check(from(1, kMany));
+  CLI::Option* at =
+      list("--at", line.compare.at, "NUMBERS",
+           "numbers of taps after which the jobs are compared: 17 or 17,30; computed once from the recorded taps")
+          ->check(from(1, kMany));
   sub->add_option("--until", line.compare.until,
-                  "the jobs as they were once a field of the summary was as good as that: rmse_m=8mm; one that never "
-                  "was counts as it ended")
+                  "value of a summary field at which each job is compared: rmse_m=8mm; a job that never reaches the "
+                  "value counts as it ended")
       ->type_name("COLUMN=VALUE")
       ->excludes(at);
-  sub->add_flag("--ratio", line.compare.ratio, "of every pair also the ratio of the means");
-  sub->add_option(
-         "--format", line.compare.format,
-         "what is printed: text for people, which also leaves CSV files beside results.csv; csv or json, groups "
-         "and pairs; latex, a table for booktabs with means, intervals and n; markdown, a table of the means")
+  sub->add_flag("--ratio", line.compare.ratio, "print the ratio of the means of each pair, too");
+  sub->add_option("--format", line.compare.format,
+                  "output format: text (also writes CSV files beside results.csv), csv and json (groups and pairs), "
+                  "latex (booktabs table of means, intervals and n), markdown (table of means)")
       ->type_name("NAME")
       ->check(CLI::IsMember({"text", "markdown", "csv", "json", "latex"}))
       ->capture_default_str();
-  sub->add_option("-j", line.compare.workers, "with --at or --until, jobs at a time; if not given, the number of cores")
+  sub->add_option("-j", line.compare.workers,
+                  "number of jobs computed at a time with --at or --until; default: number of cores")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate compare runs/many/* --by acquisition --metric object_taps",
@@ -343,38 +356,36 @@ void add_compare(CommandLine& line) {
 }
 
 void add_curves(CommandLine& line) {
-  CLI::App* sub = line.add("curves", "Groups of a sweep's jobs over their taps, as a figure with bands, and as CSV",
-                           &Needs::everything, curves, line.curves);
+  CLI::App* sub =
+      line.add("curves", "Draw curves of groups of a sweep's jobs over the taps, with bands, and write them as CSV",
+               &Needs::everything, curves, line.curves);
   line.add_records(sub, line.curves.records);
   sub->add_option("--by", line.curves.by,
-                  "the swept keys that make the groups: acquisition or acquisition,kernel; if not given, all that vary "
-                  "but the seed and the scene, which has a panel of its own for each value")
+                  "swept keys that define the groups: acquisition or acquisition,kernel; default: all varied keys "
+                  "except the seed and the scene; each scene has its own panel")
       ->type_name("KEYS")
       ->delimiter(',')
       ->allow_extra_args(false);
   sub->add_option("--metric", line.curves.metric,
-                  "a column of results.csv: footprint_iou; if not given, rmse_m, or rms_surface_distance_m for runs "
+                  "column of results.csv to draw: footprint_iou; default: rmse_m, or rms_surface_distance_m for runs "
                   "from any side")
       ->type_name("COLUMN");
-  sub->add_option("--against", line.curves.against, "the axis: taps, or robot time")
+  sub->add_option("--against", line.curves.against, "quantity on the horizontal axis: number of taps, or robot time")
       ->type_name("COLUMN")
       ->check(CLI::IsMember({"taps", "robot_seconds"}))
       ->capture_default_str();
-  sub->add_option("--where", line.curves.where, "draw only jobs of which this holds: \"first_hit_tap <= 3\"")
+  sub->add_option("--where", line.curves.where, "draw only jobs that satisfy this condition: \"first_hit_tap <= 3\"")
       ->type_name("CONDITION");
-  sub->add_option(
-         "-o", line.curves.outputs,
-         "write this file, by its ending as .png, .pdf, .svg or .csv; may be given more than once; if not given, "
-         "a PNG and a CSV beside results.csv")
+  sub->add_option("-o", line.curves.outputs,
+                  "output file that ends in .png, .pdf, .svg or .csv; default: a PNG and a CSV beside results.csv")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  sub->add_option(
-         "--width", line.curves.width,
-         "of pictures in print, with its unit: 8.8cm for a column; panels that do not fit side by side go into "
-         "rows; if not given 17.8 cm, the text of a page with two columns")
+  sub->add_option("--width", line.curves.width,
+                  "printed width of the figure, with unit: 8.8cm for one column; default: 17.8 cm, two columns; panels "
+                  "that do not fit side by side wrap into rows")
       ->type_name("LENGTH");
   sub->add_option("-j", line.curves.workers,
-                  "jobs at a time whose taps are replayed; if not given, the number of cores; done once, and kept")
+                  "number of jobs replayed at a time; default: number of cores; each job is replayed only once")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate curves runs/many/*",
@@ -383,18 +394,19 @@ void add_curves(CommandLine& line) {
 }
 
 void add_watch(CommandLine& line) {
-  CLI::App* sub = line.add("watch", "Serve a page that follows a run or a sweep while it goes on",
+  CLI::App* sub = line.add("watch", "Serve a web page that follows a run or sweep while it runs",
                            all_about(line.watch.directory), watch, line.watch);
-  line.add_record(sub, "DIR", line.watch.directory, Wanted::any, "the run or the sweep");
+  line.add_record(sub, "DIR", line.watch.directory, Wanted::any, "run or sweep");
   constexpr int kMostPort = 65535;
-  sub->add_option("--port", line.watch.port, "of the address; if not given, any that is free")
+  sub->add_option("--port", line.watch.port, "port of the web page; default: any free port")
       ->type_name("N")
       ->check(from(1, kMostPort));
-  sub->add_option("--bind", line.watch.bind, "a number; others than this machine may look with one that they reach")
+  sub->add_option("--bind", line.watch.bind,
+                  "numeric IP address to serve at; other machines can open the page if they reach this address")
       ->type_name("ADDRESS")
       ->capture_default_str();
   sub->add_flag("--until-left", line.watch.until_left,
-                "end two minutes after the run has ended and the last page was closed, not by Ctrl-C alone");
+                "end two minutes after the run has ended and the last page was closed; otherwise only Ctrl-C ends it");
   show(sub, {"palpate watch runs/object_i/422cd70eb5f7", "palpate watch many@latest --port 8000"});
 }
 
@@ -403,39 +415,39 @@ void add_about_one(CommandLine& line) {
     needs.whole();
     for (const std::string& directory : line.report.directories) needs.record(directory);
   };
-  CLI::App* sub = line.add("report", "A run or a sweep as one HTML page, and as pictures; several runs side by side",
-                           all_of_them, report, line.report);
-  line.add_record(sub, "DIR", line.report.directories, Wanted::any, "the run or the sweep, or several runs; each");
-  sub->add_flag("--figures", line.report.figures, "PNG of the same panels, too, by gnuplot");
-  sub->add_flag("--paper", line.report.paper, "laid out as the figures of the paper");
+  CLI::App* sub =
+      line.add("report", "Write an HTML page, and figures, of a run or sweep; or a page of several runs side by side",
+               all_of_them, report, line.report);
+  line.add_record(sub, "DIR", line.report.directories, Wanted::any, "run or sweep, or several runs; each");
+  sub->add_flag("--figures", line.report.figures, "draw the panels as PNG files, too, with gnuplot");
+  sub->add_flag("--paper", line.report.paper, "draw figures in the layout of the paper's figures");
   sub->add_option("--to", line.report.to,
-                  "write into this folder; if not given, into the record, and what is of several runs into the folder "
-                  "that has them all")
+                  "output folder; default: the record's own folder, or the folder that contains all of several runs")
       ->type_name("FOLDER");
   show(sub, {"palpate report runs/object_i/422cd70eb5f7 --figures", "palpate report runs/first/* runs/second/*"});
 
-  sub = line.add("explain", "Why a run made a tap where it made it, in words", all_about(line.directory), explain,
+  sub = line.add("explain", "Explain in words why a run made a tap at its position", all_about(line.directory), explain,
                  line.directory, line.tap);
-  line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
-  sub->add_option("TAP", line.tap, "the number of the tap, from 1")->type_name("N")->required();
+  line.add_record(sub, "RUN", line.directory, Wanted::run, "run");
+  sub->add_option("TAP", line.tap, "number of the tap, counted from 1")->type_name("N")->required();
   show(sub, {"palpate explain runs/object_i/422cd70eb5f7 9", "palpate explain runs/first/* 9"});
 
-  sub = line.add("calibrate", "Effects with which the simulator errs as the arm of recorded taps, as a file",
+  sub = line.add("calibrate",
+                 "Estimate the effects of a real arm from its recorded taps, as an effects file for the simulator",
                  &Needs::everything, calibrate, line.runs);
   line.add_record(sub, "RUN", line.runs, Wanted::run,
-                  "runs whose scenes stood as their configs say, a bare desk, a block; each");
+                  "runs whose scenes stood exactly as configured, such as a bare desk or a block; each");
   show(sub, {"palpate calibrate runs/bare_desk/*", "palpate calibrate runs/bare_desk/* runs/block/*"});
 
-  sub = line.add("export", "Write the surface and the taps of a run for other programs", all_about(line.directory),
+  sub = line.add("export", "Export the surface and the taps of a run for other programs", all_about(line.directory),
                  export_run, line.directory, line.format, line.to);
-  line.add_record(sub, "RUN", line.directory, Wanted::run, "the run");
+  line.add_record(sub, "RUN", line.directory, Wanted::run, "run");
   sub->add_option("--format", line.format,
-                  "ply, for programs that show meshes; or csv, the parts of the record as tables: taps, timings, "
-                  "objects, attempts")
+                  "file format: ply, for mesh viewers, or csv, for tables of the taps, timings, objects and attempts")
       ->type_name("NAME")
       ->check(CLI::IsMember({"ply", "csv"}))
       ->capture_default_str();
-  sub->add_option("--to", line.to, "the folder to write into; if not given, export/ of the run")->type_name("FOLDER");
+  sub->add_option("--to", line.to, "output folder; default: export/ in the run's folder")->type_name("FOLDER");
   show(sub, {"palpate export runs/first/*", "palpate export runs/first/* --to surfaces",
              "palpate export runs/first/* --format csv"});
 }
@@ -561,12 +573,12 @@ int complete(const CLI::App& app, int argc, char** argv) {
 
 int run_main(int argc, char** argv) {
   CLI::App app{
-      "palpate: experiments in active touch. A robot arm, or a simulated one, taps an unknown object; Gaussian\n"
-      "processes say where to tap next.",
+      "palpate: experiments in active touch. A robot arm, real or simulated, taps an unknown object; Gaussian\n"
+      "processes choose the next tap.",
       "palpate"};
   app.require_subcommand(1);
   app.formatter(std::make_shared<Help>());  // before there are commands, which take it over
-  app.set_help_flag("-h,--help", "print this and stop");
+  app.set_help_flag("-h,--help", "print this help and stop");
   app.set_version_flag(
       "--version", [] { return build_text(find_installation()); }, "print version, commit and build, and stop");
   show(&app, {"palpate run configs/default.yaml scene=ring", "palpate plugins kernel"});

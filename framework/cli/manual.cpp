@@ -59,13 +59,13 @@ std::string examples_part(const Command& command) {
 /// What holds for all commands: the exit statuses are those of commands.hpp.
 constexpr const char* kCommon =
     ".SH EXIT STATUS\n"
-    ".TP\n.B 0\ndone\n"
-    ".TP\n.B 1\nthe run failed, or an expectation of its config did\n"
-    ".TP\n.B 2\nwrong usage or config: one line on stderr has place, reason and remedy\n"
-    ".TP\n.B 75\nnot now: another process holds that run or its arm, or its program is not as it was\n"
+    ".TP\n.B 0\nsuccess\n"
+    ".TP\n.B 1\nfailure of the run, or of an expectation in its config\n"
+    ".TP\n.B 2\ninvalid usage or config: one line on stderr names the place, the reason and the remedy\n"
+    ".TP\n.B 75\ntemporary failure: another process holds the run or its arm, or the external program has changed\n"
     ".TP\n.B 130\ninterrupted\n"
     ".SH ENVIRONMENT\n"
-    ".TP\n.B PALPATE_PLUGIN_PATH\nfolders of plugins beside the shipped ones, separated by colons\n";
+    ".TP\n.B PALPATE_PLUGIN_PATH\nfolders with additional plugins, separated by colons\n";
 
 std::string program_page(const Usage& usage) {
   std::string out = title("palpate", "experiments in active touch");

@@ -20,7 +20,8 @@ std::vector<FieldDescription> options_of(const PluginHost& host, const PluginLis
       describe_fields([&](Fields& fields) { host.describe(row.kind, row.name, fields); });
   const std::string beside = config_keys().beside(row.kind);
   for (FieldDescription& one : out) {
-    if (!beside.empty() && one.name == beside) one.meaning += fmt::format("; written beside {}, not within", row.kind);
+    if (!beside.empty() && one.name == beside)
+      one.meaning += fmt::format("; written beside {}, not inside it", row.kind);
   }
   return out;
 }

@@ -39,7 +39,7 @@ Tree any_of(std::vector<Tree> schemas) { return Tree::map({{"anyOf", Tree::list(
 /// `beside`: the options that stand beside a plugin of this kind (Field::with_beside()) and are left out.
 Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set<std::string>& beside) {
   std::vector<Tree> any{of_type("string")};
-  any.front().at("description") = Tree::quote("the name of a group file or of a plugin");
+  any.front().at("description") = Tree::quote("name of a group file or of a plugin");
   for (const FieldDescription::CaseDescription& one : plugins_of(host, kind)) {
     Tree plugin = schema_of(one.fields);
     for (const std::string& option : beside) plugin.at("properties").erase(option);
@@ -54,7 +54,7 @@ Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set
 /// What may stand beside a plugin of this kind: the name of a group file, or the options of one of the plugins.
 Tree beside_schema(const PluginHost& host, const std::string& kind, const std::string& option) {
   std::vector<Tree> any{of_type("string")};
-  any.front().at("description") = Tree::quote("the name of a group file");
+  any.front().at("description") = Tree::quote("name of a group file");
   std::set<std::string> seen;
   for (const FieldDescription::CaseDescription& one : plugins_of(host, kind)) {
     Tree plugin = schema_of(one.fields);
@@ -91,21 +91,22 @@ void sweep_schema(Tree& sweep) {
   sweep.at("type") = Tree::quote("object");
   sweep.at("additionalProperties") = Tree::scalar("false");
   Tree& blocks = sweep.at("properties");
-  blocks.at("grid") = of_type("object", "every value with every other; lists, range(0,10), logspace(1cm,5cm,8)");
-  blocks.at("zip") = of_type("object", "side by side: values of equal number");
-  blocks.at("list") = of_type("array", "settings one after the other, each a little grid");
+  blocks.at("grid") =
+      of_type("object", "keys whose values are combined each with each: lists, range(0,10), logspace(1cm,5cm,8)");
+  blocks.at("zip") = of_type("object", "keys whose lists have equal length and are combined item by item");
+  blocks.at("list") = of_type("array", "list of settings, each of which is a grid of its own");
   blocks.at("list").at("items") = of_type("object");
-  Tree& sobol = blocks.at("sobol") = of_type("object", "quasi-random points of continuous ranges");
+  Tree& sobol = blocks.at("sobol") = of_type("object", "points of a Sobol sequence in continuous ranges");
   sobol.at("additionalProperties") = Tree::scalar("false");
   sobol.at("required") = Tree::list({Tree::quote("samples"), Tree::quote("keys")});
-  Tree& samples = sobol.at("properties").at("samples") = of_type("integer", "how many points");
+  Tree& samples = sobol.at("properties").at("samples") = of_type("integer", "number of points");
   samples.at("minimum") = Tree::scalar("1");
   samples.at("maximum") = Tree::scalar("100000");
   Tree& keys = sobol.at("properties").at("keys") =
-      of_type("object", "ranges: uniform(0.1 mm, 1 mm), log_uniform(1 cm, 10 cm)");
+      of_type("object", "keys with continuous ranges: uniform(0.1 mm, 1 mm), log_uniform(1 cm, 10 cm)");
   keys.at("additionalProperties") = of_type("string");
-  const char* const condition = "combinations for which it does not hold are dropped: taps >= 12 and not kernel == rbf";
-  Tree several = of_type("array", "all of which have to hold");
+  const char* const condition = "condition on the combinations that are run: taps >= 12 and not kernel == rbf";
+  Tree several = of_type("array", "list of conditions, all of which must hold");
   several.at("items") = of_type("string");
   blocks.at("where") = any_of({of_type("string", condition), several});
 }

@@ -77,11 +77,11 @@ std::string head_of(const Argument& argument) {
 
 std::string words_of(const Argument& argument) {
   std::vector<std::string> notes;
-  if (!argument.by_place && argument.required) notes.emplace_back("has to be given");
+  if (!argument.by_place && argument.required) notes.emplace_back("required");
   if (!argument.choices.empty()) notes.push_back(fmt::format("{}", fmt::join(argument.choices, " or ")));
   if (!argument.limits.empty()) notes.push_back(argument.limits);
-  if (!argument.default_value.empty()) notes.push_back(argument.default_value + " if not given");
-  if (!argument.by_place && argument.repeated) notes.emplace_back("may be given again");
+  if (!argument.default_value.empty()) notes.push_back("default: " + argument.default_value);
+  if (!argument.by_place && argument.repeated) notes.emplace_back("can be repeated");
   if (!argument.only_with.empty()) notes.push_back(fmt::format("only with {}", fmt::join(argument.only_with, " and ")));
   if (!argument.never_with.empty()) notes.push_back(fmt::format("not with {}", fmt::join(argument.never_with, " or ")));
   if (notes.empty()) return argument.meaning;
@@ -92,7 +92,7 @@ std::string help_text(const Usage& usage) {
   std::string out = fmt::format("{}\n\nUsage: {}\n\nCommands:\n", usage.program.summary, synopsis(usage.program));
   for (const Command& command : usage.commands) out += entry(command.name, command.summary);
   return out + arguments_text(usage.program) + examples_text(usage.program) +
-         "\n'palpate COMMAND --help' tells what a command takes.\n";
+         "\n'palpate COMMAND --help' shows the arguments and options of a command.\n";
 }
 
 std::string help_text(const Command& command) {

@@ -9,12 +9,11 @@ namespace palpate::acquisitions {
 struct DiscoveryOptions : Options {
   double travel_cost_exponent = 0.0;
   void list(Fields& fields) override {
-    fields.real(travel_cost_exponent,
-                Field("travel_cost_exponent",
-                      "power of the way that the tool is expected to go, by which what is expected of a "
-                      "tap is divided: 0 is most a tap, 1 most a metre")
-                    .at_least(0)
-                    .at_most(1));
+    fields.real(travel_cost_exponent, Field("travel_cost_exponent",
+                                            "exponent of the tool's expected path length, by which the score is "
+                                            "divided: 0 maximises the gain per tap, 1 the gain per metre")
+                                          .at_least(0)
+                                          .at_most(1));
   }
 };
 
@@ -41,6 +40,7 @@ class Discovery final : public Acquisition {
   Options options_;
 };
 
-PALPATE_PLUGIN(Acquisition, Discovery, "discovery", "from any side, tap where most is expected to be found")
+PALPATE_PLUGIN(Acquisition, Discovery, "discovery",
+               "expected discovery of new surface plus reduction of uncertainty, for taps from any side")
 
 }  // namespace palpate::acquisitions

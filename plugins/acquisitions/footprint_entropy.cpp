@@ -22,6 +22,6 @@ class FootprintEntropy final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, FootprintEntropy, "footprint_entropy",
-               "tap where it is least sure whether there is an object")
+               "entropy of the footprint: tap where the presence of an object is least certain")
 
 }  // namespace palpate::acquisitions

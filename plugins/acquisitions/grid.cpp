@@ -11,10 +11,11 @@ struct GridOptions : Options {
   std::int64_t count = 4;
 
   void list(Fields& fields) override {
-    fields.integer(count, Field("count", "points per side of the first lattice; each further one has twice as many")
-                              .at_least(1)
-                              .at_most(1000)
-                              .from("4 x 4 covers an area within the 14 taps of the paper, nearly"));
+    fields.integer(
+        count, Field("count", "points per side of the first lattice; each further lattice has twice as many per side")
+                   .at_least(1)
+                   .at_most(1000)
+                   .from("4 x 4 covers an area within the 14 taps of the paper, nearly"));
   }
 };
 
@@ -51,6 +52,6 @@ class GridSearch final : public Acquisition {
   std::int64_t count_;
 };
 
-PALPATE_PLUGIN(Acquisition, GridSearch, "grid", "tap a lattice row by row, a control")
+PALPATE_PLUGIN(Acquisition, GridSearch, "grid", "points of a lattice, row by row, as a baseline")
 
 }  // namespace palpate::acquisitions

@@ -19,6 +19,6 @@ class ObjectUncertainty final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, ObjectUncertainty, "object_uncertainty",
-               "tap where the height is unknown and an object is probable")
+               "standard deviation of the height times the probability of an object")
 
 }  // namespace palpate::acquisitions

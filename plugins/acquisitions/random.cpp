@@ -26,6 +26,6 @@ class RandomSearch final : public Acquisition {
   std::uint64_t seed_;
 };
 
-PALPATE_PLUGIN(Acquisition, RandomSearch, "random", "tap anywhere, a control")
+PALPATE_PLUGIN(Acquisition, RandomSearch, "random", "random candidates, as a baseline")
 
 }  // namespace palpate::acquisitions

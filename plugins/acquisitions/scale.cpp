@@ -11,8 +11,8 @@ struct ScaleOptions : Options {
   double factor = 1.0;
   PluginChoice acquisition{"acquisition", {}, nullptr};
   void list(Fields& fields) override {
-    fields.real(factor, Field("factor", "that the score is multiplied by").above(0).needed());
-    fields.plugin(acquisition, Field("acquisition", "whose score it is").needed());
+    fields.real(factor, Field("factor", "factor by which the score is multiplied").above(0).needed());
+    fields.plugin(acquisition, Field("acquisition", "acquisition whose score is multiplied").needed());
   }
 };
 
@@ -34,6 +34,6 @@ class Scale final : public Acquisition {
   std::shared_ptr<Acquisition> part_;
 };
 
-PALPATE_PLUGIN(Acquisition, Scale, "scale", "the score of another acquisition times a factor")
+PALPATE_PLUGIN(Acquisition, Scale, "scale", "score of another acquisition times a factor")
 
 }  // namespace palpate::acquisitions

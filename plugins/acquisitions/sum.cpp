@@ -11,7 +11,8 @@ namespace palpate::acquisitions {
 struct MixtureOptions : Options {
   std::vector<PluginChoice> acquisitions;
   void list(Fields& fields) override {
-    fields.plugins(acquisitions, "acquisition", Field("acquisitions", "the parts, each {type: ..., ...}").needed());
+    fields.plugins(acquisitions, "acquisition",
+                   Field("acquisitions", "list of the acquisitions to add, each {type: ..., ...}").needed());
     fields.require(!acquisitions.empty(), "acquisitions", "needs at least one acquisition");
   }
 };

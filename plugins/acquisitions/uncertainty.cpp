@@ -25,6 +25,6 @@ class Uncertainty final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, Uncertainty, "uncertainty",
-               "tap where the height, or from any side the surface along its normal, is least known")
+               "variance of the height or, from any side, of the surface along its normal")
 
 }  // namespace palpate::acquisitions

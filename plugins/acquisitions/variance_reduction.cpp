@@ -125,11 +125,10 @@ std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
 struct ForesightOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {
-    fields.real(new_object_weight,
-                Field("new_object_weight",
-                      "what the extent of something new is worth on 23 cm x 23 cm, beside as much that is "
-                      "settled of what is known; on a larger desk more, as its sides are longer")
-                    .at_least(0));
+    fields.real(new_object_weight, Field("new_object_weight",
+                                         "weight of finding new objects relative to settling known outlines, for an "
+                                         "area of 23 cm x 23 cm; larger areas raise it in proportion to their sides")
+                                       .at_least(0));
   }
 };
 
@@ -192,6 +191,6 @@ class VarianceReduction final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, VarianceReduction, "variance_reduction",
-               "tap where most is learnt of all outlines together")
+               "expected reduction of the footprint's variance by one tap, plus discovery of new objects")
 
 }  // namespace palpate::acquisitions

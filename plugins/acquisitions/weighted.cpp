@@ -27,6 +27,6 @@ class Weighted final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, Weighted, "weighted",
-               "tap where the height is unknown and the object is likely, the paper's rule")
+               "variance of the height times the label GP's mean: the acquisition of the paper")
 
 }  // namespace palpate::acquisitions

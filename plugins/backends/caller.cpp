@@ -19,24 +19,25 @@ struct CallerOptions : Options {
 
   void list(Fields& fields) override {
     fields.real(hover,
-                Field("hover", "height above the desk at which the caller's arm travels: higher contacts are rejected")
+                Field("hover", "height above the desk at which the caller's arm travels; higher contacts are rejected")
                     .in(Unit::metre)
                     .above(0)
                     .from("as motion.hover of the other backends"));
     fields.real(overrun,
                 Field("overrun",
-                      "how far below the desk the caller's arm goes at most: contacts more than 1 cm below that "
-                      "are rejected")
+                      "maximum depth of the caller's arm below the desk; contacts more than 1 cm deeper are rejected")
                     .in(Unit::metre)
                     .at_least(0)
                     .from("as motion.overrun of the other backends"));
-    fields.flag(scene_is_truth, Field("scene_is_truth",
-                                      "the caller taps the objects of `scene`, as in a simulation of his own: so the "
-                                      "errors of each tap are known")
-                                    .neutral(false));
+    fields.flag(
+        scene_is_truth,
+        Field(
+            "scene_is_truth",
+            "whether the caller taps the objects of `scene`, as in a simulation; errors are then computed for each tap")
+            .neutral(false));
     fields.text(
         label,
-        Field("label", "name of the caller's strategy: runs with different labels are different runs").neutral(""));
+        Field("label", "name of the caller's strategy; runs with different labels are different runs").neutral(""));
   }
 };
 
@@ -57,7 +58,6 @@ class Caller final : public Backend {
   bool scene_is_truth_;
 };
 
-PALPATE_PLUGIN(Backend, Caller, "caller",
-               "taps that a program of one's own makes, which asks where and tells what came of it")
+PALPATE_PLUGIN(Backend, Caller, "caller", "taps by your own program, which asks for positions and reports the results")
 
 }  // namespace palpate::backends

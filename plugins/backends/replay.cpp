@@ -27,13 +27,15 @@ struct ReplayOptions : Options {
 
   void list(Fields& fields) override {
     fields.text(record, Field("record",
-                              "a run directory, or a CSV file with the columns x, y, outcome, height (m), and "
-                              "if known tap, force, robot_seconds")
+                              "run directory, or CSV file with the columns x, y, outcome, height (m) and optionally "
+                              "tap, force, robot_seconds")
                             .needed());
-    fields.real(tolerance,
-                Field("tolerance", "how far from a target the recorded tap may lie").in(Unit::metre).at_least(0));
+    fields.real(
+        tolerance,
+        Field("tolerance", "maximum distance between a target and the recorded tap").in(Unit::metre).at_least(0));
     fields.flag(scene_is_truth,
-                Field("scene_is_truth", "the scene of the config is what was recorded: compute the errors"));
+                Field("scene_is_truth",
+                      "whether the recorded taps are of the scene of the config, so that errors can be computed"));
   }
 };
 
@@ -206,6 +208,6 @@ class Replay final : public Backend {
   std::vector<Recorded> taps_;
 };
 
-PALPATE_PLUGIN(Backend, Replay, "replay", "answers from a recorded run or table")
+PALPATE_PLUGIN(Backend, Replay, "replay", "recorded taps, from a run or a table")
 
 }  // namespace palpate::backends

@@ -14,6 +14,6 @@ class Fixed final : public Fitting {
   FitSummary fit(FitProblem&, Random&) const override { return {false, false, 0.0, 0, "hyperparameters are fixed"}; }
 };
 
-PALPATE_PLUGIN(Fitting, Fixed, "fixed", "keep the hyperparameters of the config, as the paper does")
+PALPATE_PLUGIN(Fitting, Fixed, "fixed", "fixed hyperparameters from the config, as in the paper")
 
 }  // namespace palpate::fitting

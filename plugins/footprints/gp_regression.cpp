@@ -16,6 +16,6 @@ class Regression final : public Footprint {
   void probability(const PointsView&, VectorOut out) override { out.setZero(); }
 };
 
-PALPATE_PLUGIN(Footprint, Regression, "gp_regression", "the label GP, the paper's")
+PALPATE_PLUGIN(Footprint, Regression, "gp_regression", "regression of the labels by the label GP, as in the paper")
 
 }  // namespace palpate::footprints

@@ -15,7 +15,8 @@ struct PartsOptions : Options {
   std::vector<PluginChoice> kernels;
 
   void list(Fields& fields) override {
-    fields.plugins(kernels, "kernel", Field("kernels", "the parts, each {type: ..., ...}").needed());
+    fields.plugins(kernels, "kernel",
+                   Field("kernels", "list of the kernels to combine, each {type: ..., ...}").needed());
     fields.require(!kernels.empty(), "kernels", "needs at least one kernel");
   }
 };

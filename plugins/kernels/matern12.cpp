@@ -16,6 +16,6 @@ struct Matern12Shape : PlainShape {
 };
 
 using Matern12 = Stationary<Matern12Shape>;
-PALPATE_PLUGIN(Kernel, Matern12, "matern12", "Matern 1/2: rough surfaces, without a slope anywhere")
+PALPATE_PLUGIN(Kernel, Matern12, "matern12", "Matern 1/2: rough surfaces, continuous but nowhere differentiable")
 
 }  // namespace palpate::kernels

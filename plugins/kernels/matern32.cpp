@@ -25,6 +25,6 @@ struct Matern32Shape : PlainShape {
 };
 
 using Matern32 = Stationary<Matern32Shape>;
-PALPATE_PLUGIN(Kernel, Matern32, "matern32", "Matern 3/2: surfaces with a slope everywhere, but rough")
+PALPATE_PLUGIN(Kernel, Matern32, "matern32", "Matern 3/2: surfaces that are differentiable once, but rough")
 
 }  // namespace palpate::kernels

@@ -38,6 +38,7 @@ class Product final : public Composed<Multiply> {
   }
 };
 
-PALPATE_PLUGIN(Kernel, Product, "product", "product of kernels: alike only where every part says so")
+PALPATE_PLUGIN(Kernel, Product, "product",
+               "product of kernels: points are correlated only if every factor correlates them")
 
 }  // namespace palpate::kernels

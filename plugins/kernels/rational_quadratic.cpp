@@ -12,8 +12,9 @@ struct RationalQuadraticOptions : StationaryOptions {
 
   void list(Fields& fields) override {
     StationaryOptions::list(fields);
-    fields.real(alpha,
-                Field("alpha", "small mixes many length scales, large comes near to rbf").at_least(1e-4).at_most(1e4));
+    fields.real(alpha, Field("alpha", "shape parameter: small values mix many length scales, large values approach rbf")
+                           .at_least(1e-4)
+                           .at_most(1e4));
   }
 };
 
@@ -53,6 +54,6 @@ class RationalQuadraticShape {
 
 using RationalQuadratic = Stationary<RationalQuadraticShape>;
 PALPATE_PLUGIN(Kernel, RationalQuadratic, "rational_quadratic",
-               "rational quadratic: a mixture of smooth surfaces of many length scales")
+               "rational quadratic: smooth surfaces with a mixture of length scales")
 
 }  // namespace palpate::kernels

@@ -15,6 +15,6 @@ struct RbfShape : PlainShape {
 };
 
 using Rbf = Stationary<RbfShape>;
-PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared exponential: very smooth surfaces, the paper's choice")
+PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared exponential: very smooth surfaces, as in the paper")
 
 }  // namespace palpate::kernels

@@ -19,14 +19,15 @@ struct StationaryOptions : Options {
 
   void list(Fields& fields) override {
     fields.real(length_scale,
-                Field("length_scale", "distance over which heights stay alike")
+                Field("length_scale", "length scale: distance over which heights are correlated")
                     .in(Unit::metre)
                     .above(0)
                     .from("Sun and Min 2021 give 'sigma^2 = 0.017' without unit; 1.7 cm reproduces their counts"));
-    fields.real(length_scale_y,
-                Field("length_scale_y", "the same along y, where it differs; length_scale is then that along x")
-                    .in(Unit::metre)
-                    .above(0));
+    fields.real(
+        length_scale_y,
+        Field("length_scale_y", "length scale along y, if it differs from length_scale, which is then that along x")
+            .in(Unit::metre)
+            .above(0));
   }
 };
 

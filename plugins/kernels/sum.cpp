@@ -16,6 +16,6 @@ struct Add {
 };
 
 using Sum = Composed<Add>;
-PALPATE_PLUGIN(Kernel, Sum, "sum", "sum of kernels: surfaces that add up")
+PALPATE_PLUGIN(Kernel, Sum, "sum", "sum of kernels: sum of independent surfaces")
 
 }  // namespace palpate::kernels

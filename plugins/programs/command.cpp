@@ -48,8 +48,8 @@ std::optional<std::vector<std::string>> split_command(const std::string& text) {
 
 std::optional<std::vector<std::string>> list_command(std::string& command, Fields& fields) {
   fields.text(command, Field("command",
-                             "the program and its arguments, split at blanks; 'single' or \"double\" quotes keep "
-                             "blanks together, nothing else is interpreted, no shell")
+                             "program and its arguments, split at blanks; 'single' or \"double\" quotes keep blanks; "
+                             "no shell interprets the text")
                            .needed()
                            .not_identifying());
   auto words = split_command(command);
@@ -59,8 +59,8 @@ std::optional<std::vector<std::string>> list_command(std::string& command, Field
 
 void list_checksum(std::string& checksum, Fields& fields) {
   fields.text(checksum, Field("checksum",
-                              "of the command, with the content of the program in place of its name: of the first "
-                              "word, or of what an interpreter runs; if absent, that of the program as it is"));
+                              "checksum of the command and of the content of its program (or of the script that an "
+                              "interpreter runs); not given: computed from the files"));
 }
 
 namespace {

@@ -16,11 +16,12 @@ struct PartOptions : Options {
     fields.adopt(shape, Field("type", "shape of the part").needed());
     fields.reals(at, 2,
                  Field("at",
-                       "along and across, of the centre of the rectangle that bounds the part's outline "
-                       "before its rotation; the rectangle around all parts is centred at the object's "
-                       "`at`")
+                       "x, y of the centre of the rectangle around the part's outline before its rotation; the "
+                       "rectangle around all parts is centred at the object's `at`")
                      .in(Unit::metre));
-    fields.real(rotation, Field("rotation", "counter-clockwise about the vertical through `at`").in(Unit::radian));
+    fields.real(rotation,
+                Field("rotation", "rotation of the part about the vertical through its `at`, counter-clockwise")
+                    .in(Unit::radian));
   }
 };
 
@@ -29,8 +30,10 @@ struct CompoundOptions : Options {
 
   void list(Fields& fields) override {
     fields.sections(
-        parts, Field("parts", "each {type: ..., at: [...], rotation: ...}; where two overlap, the higher one counts")
-                   .needed());
+        parts,
+        Field("parts",
+              "list of parts, each {type: ..., at: [...], rotation: ...}; where parts overlap, the highest one counts")
+            .needed());
     fields.require(!parts.empty(), "parts", "needs at least one part");
   }
 };
@@ -101,6 +104,6 @@ class Compound final : public Shape {
   std::vector<Part> parts_;
 };
 
-PALPATE_PLUGIN(Shape, Compound, "compound", "several shapes that move as one")
+PALPATE_PLUGIN(Shape, Compound, "compound", "several shapes that form one object")
 
 }  // namespace palpate::shapes

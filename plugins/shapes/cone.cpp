@@ -24,6 +24,6 @@ class Cone final : public Round {
   double radius_;
 };
 
-PALPATE_PLUGIN(Shape, Cone, "cone", "cone with its apex up")
+PALPATE_PLUGIN(Shape, Cone, "cone", "upright cone")
 
 }  // namespace palpate::shapes

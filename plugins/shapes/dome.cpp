@@ -34,6 +34,6 @@ class Dome final : public Round {
   double rim_, ball_;
 };
 
-PALPATE_PLUGIN(Shape, Dome, "dome", "cap of a ball")
+PALPATE_PLUGIN(Shape, Dome, "dome", "cap of a sphere")
 
 }  // namespace palpate::shapes

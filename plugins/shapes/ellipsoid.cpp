@@ -25,6 +25,6 @@ class Ellipsoid final : public Round {
   Vector3d half_;
 };
 
-PALPATE_PLUGIN(Shape, Ellipsoid, "ellipsoid", "whole ellipsoid, resting on the desk")
+PALPATE_PLUGIN(Shape, Ellipsoid, "ellipsoid", "whole ellipsoid that rests on the desk")
 
 }  // namespace palpate::shapes

@@ -13,6 +13,6 @@ class L final : public Prism {
       : Prism({{0, 0}, {o.length, 0}, {o.length, b}, {b, b}, {b, o.width}, {0, o.width}}, {}, o.height) {}
 };
 
-PALPATE_PLUGIN(Shape, L, "l", "two bars that meet at their ends")
+PALPATE_PLUGIN(Shape, L, "l", "L of two bars that meet at their ends")
 
 }  // namespace palpate::shapes

@@ -86,12 +86,14 @@ struct PolygonOptions : Options {
   void list(Fields& fields) override {
     fields.table(
         outline,
-        Field("outline", "corners in their order, along and across; the rectangle around them is centred at `at`")
+        Field("outline", "x, y of the corners of the outline, in order; the rectangle around them is centred at `at`")
             .in(Unit::metre)
             .needed());
     const std::string trouble = trouble_of_outline(outline);
     fields.require(trouble.empty(), "outline", trouble);
-    fields.table(hole, Field("hole", "corners of a hole within the outline; [] for none").in(Unit::metre));
+    fields.table(
+        hole,
+        Field("hole", "x, y of the corners of a hole within the outline, in order; [] for no hole").in(Unit::metre));
     if (trouble.empty() && !hole.empty()) {
       std::string hole_trouble = trouble_of_outline(hole);
       if (hole_trouble.empty()) hole_trouble = trouble_of_hole(outline, hole);
@@ -106,6 +108,6 @@ struct Polygon final : Prism {
   Polygon(const Options& o, const Context&) : Prism(o.outline, o.hole, o.height) {}
 };
 
-PALPATE_PLUGIN(Shape, Polygon, "polygon", "any outline, raised")
+PALPATE_PLUGIN(Shape, Polygon, "polygon", "prism over any polygon")
 
 }  // namespace palpate::shapes

@@ -65,8 +65,8 @@ struct BarsOptions : Options {
 
   void list(Fields& fields) override {
     fields.real(length, Field("length", "outer extent along the first bar").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "outer extent across it").in(Unit::metre).above(0));
-    fields.real(thickness, Field("thickness", "of either bar, seen from above").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "outer extent across the first bar").in(Unit::metre).above(0));
+    fields.real(thickness, Field("thickness", "thickness of both bars, seen from above").in(Unit::metre).above(0));
     list_height(height, fields);
     fields.require(thickness < length && thickness < width, "thickness",
                    "is not less than length and width, nothing would be left of the second bar");

@@ -15,13 +15,19 @@ struct RandomOutlineOptions : Options {
   std::int64_t number = 0;
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "the longer side of the rectangle around it").in(Unit::metre).at_least(0.05));
-    fields.real(height, Field("height", "of the top above the desk over the middle of that rectangle, but for its wave")
-                            .in(Unit::metre)
-                            .at_least(0.02));
-    fields.real(roughness,
-                Field("roughness", "of the outline: 0 is a bent ellipse, 1 has deep lobes").at_least(0).at_most(1));
-    fields.integer(number, Field("number", "which of the outlines of the run's seed").at_least(0));
+    fields.real(length,
+                Field("length", "longer side of the rectangle around the outline").in(Unit::metre).at_least(0.05));
+    fields.real(
+        height,
+        Field("height",
+              "height of the top above the desk, without its wave, in the middle of the rectangle around the outline")
+            .in(Unit::metre)
+            .at_least(0.02));
+    fields.real(
+        roughness,
+        Field("roughness", "roughness of the outline: 0 is a bent ellipse, 1 has deep lobes").at_least(0).at_most(1));
+    fields.integer(number,
+                   Field("number", "number of the outline in the sequence that the run's seed generates").at_least(0));
   }
 };
 
@@ -235,6 +241,6 @@ class RandomOutline final : public Shape {
   Point slope_{}, wave_{};
 };
 
-PALPATE_PLUGIN(Shape, RandomOutline, "random_outline", "smooth random outline and top, from the seed")
+PALPATE_PLUGIN(Shape, RandomOutline, "random_outline", "smooth random outline and top, drawn from the seed")
 
 }  // namespace palpate::shapes

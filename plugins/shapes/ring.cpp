@@ -10,7 +10,7 @@ struct RingOptions : Options {
   double height = 0.05;
 
   void list(Fields& fields) override {
-    fields.real(outer, Field("outer", "diameter of the outline").in(Unit::metre).above(0));
+    fields.real(outer, Field("outer", "outer diameter, seen from above").in(Unit::metre).above(0));
     fields.real(inner, Field("inner", "diameter of the hole").in(Unit::metre).above(0));
     list_height(height, fields);
     fields.require(inner < outer, "inner", "is not less than the outer diameter");

@@ -47,7 +47,7 @@ struct Interval {
 
 /// The option of all that has one height.
 inline void list_height(double& height, Fields& fields) {
-  fields.real(height, Field("height", "of the top above the desk, upright").in(Unit::metre).above(0));
+  fields.real(height, Field("height", "height of the top above the desk, without tilt").in(Unit::metre).above(0));
 }
 
 /// The options of what is round, seen from above.
@@ -56,7 +56,7 @@ struct RoundOptions : Options {
   RoundOptions(double across, double up) : diameter(across), height(up) {}
 
   void list(Fields& fields) override {
-    fields.real(diameter, Field("diameter", "of the outline").in(Unit::metre).above(0));
+    fields.real(diameter, Field("diameter", "outer diameter, seen from above").in(Unit::metre).above(0));
     list_height(height, fields);
   }
 };
@@ -67,8 +67,8 @@ struct ExtentOptions : Options {
   ExtentOptions(double along, double across, double up) : length(along), width(across), height(up) {}
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
+    fields.real(length, Field("length", "extent along x, before the rotation").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "extent along y, before the rotation").in(Unit::metre).above(0));
     list_height(height, fields);
   }
 };

@@ -9,8 +9,10 @@ struct RationalOptions : Options {
   double alpha = 1.0;
 
   void list(Fields& fields) override {
-    fields.real(length_scale, Field("length_scale", "distance over which heights stay alike").in(Unit::metre).above(0));
-    fields.real(alpha, Field("alpha", "small mixes many length scales").at_least(0.01).at_most(1e6));
+    fields.real(length_scale,
+                Field("length_scale", "distance over which heights are correlated").in(Unit::metre).above(0));
+    fields.real(alpha,
+                Field("alpha", "shape parameter: small values mix many length scales").at_least(0.01).at_most(1e6));
   }
 };
 

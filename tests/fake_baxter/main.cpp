@@ -118,41 +118,46 @@ int run(const Arguments& a) {
 
 int run_main(int argc, char** argv) {
   CLI::App app{
-      "fake_baxter: the left arm of a Baxter over the scene of an experiment, on a ROS network. All noise comes from\n"
-      "the config's seed, tool and place from its backend.",
+      "fake_baxter: simulates the left arm of a Baxter in the scene of an experiment, on a ROS network. All noise is\n"
+      "drawn from the config's seed; its backend sets the tool and the pose of the scene.",
       "fake_baxter"};
   Arguments a;
   CLI::Option* companion = app.add_option("--companion", a.companion, "");
   companion->group("");
-  app.add_option("CONFIG", a.config, "the experiment, a YAML file");
-  app.add_option("OVERRIDE", a.overrides, "override a value or a group, as palpate takes them")->type_name("KEY=VALUE");
-  app.add_option("--rate", a.node.rate, "seconds of the robot's time in a second, told on /clock; 0: real time")
+  app.add_option("CONFIG", a.config, "YAML file of the experiment");
+  app.add_option("OVERRIDE", a.overrides, "value of a key or name of a config group, as for 'palpate run'")
+      ->type_name("KEY=VALUE");
+  app.add_option("--rate", a.node.rate, "robot time per second of real time, published on /clock; 0: real time")
       ->check(CLI::Range(0.0, 1000.0));
-  app.add_option("--patience", a.node.patience, "seconds that /clock waits for a driver that was sending")
+  app.add_option("--patience", a.node.patience, "seconds that /clock waits for a driver that was sending commands")
       ->check(CLI::Range(0.0, 60.0));
-  app.add_option("--start-at", a.start_at, "x,y,z of the tip in the scene's frame, metres")
+  app.add_option("--start-at", a.start_at, "initial x,y,z of the tip in the frame of the scene, metres")
       ->expected(3)
       ->delimiter(',');
-  app.add_option("--speed-ratio", a.body.speed_ratio, "what another program has set and left, of set_speed_ratio")
+  app.add_option("--speed-ratio", a.body.speed_ratio,
+                 "speed ratio (set_speed_ratio) that another program has set before")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--command-timeout", a.body.command_timeout, "likewise of joint_command_timeout, seconds")
+  app.add_option("--command-timeout", a.body.command_timeout,
+                 "command timeout (joint_command_timeout) that another program has set before, seconds")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));
   using Arm = MechanicsOptions::Type;
   app.add_option("--arm", a.body.mechanics.type,
-                 "lagged (joints without mass), springs (rigid bodies, by KDL) or mujoco")
+                 "model of the arm: lagged (joints without mass), springs (rigid bodies, by KDL) or mujoco")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Arm>{{"lagged", Arm::lagged}, {"springs", Arm::springs}, {"mujoco", Arm::mujoco}}));
-  app.add_option("--friction", a.body.mechanics.friction, "of every joint of springs and mujoco, Nm")
+  app.add_option("--friction", a.body.mechanics.friction,
+                 "friction of every joint in the models springs and mujoco, Nm")
       ->check(CLI::Range(0.0, 5.0));
   app.add_option("--gripper", a.node.gripper,
-                 "the product that the robot has recognised at its flange; none if absent");
-  app.add_option("--tool-mass", a.node.tool_mass, "kilograms that the robot has been told of, beyond its flange")
+                 "product name of the gripper that the robot recognises at its flange; not given: no gripper");
+  app.add_option("--tool-mass", a.node.tool_mass,
+                 "mass of the tool beyond the flange that the robot is configured with, kg")
       ->check(CLI::Range(0.0, 100.0));
-  app.add_option("--fault", a.faults, "what goes wrong: NAME or NAME=VALUE; may be given again")->take_all();
-  app.add_option("--at", a.at, "when: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
-  app.add_option("--trace", a.node.trace, "a CSV file with a row for every period");
+  app.add_option("--fault", a.faults, "fault to simulate: NAME or NAME=VALUE; can be repeated")->take_all();
+  app.add_option("--at", a.at, "start of the faults: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
+  app.add_option("--trace", a.node.trace, "CSV file to write, with one row per period");
   app.footer("Faults; those marked * hold from the start, whatever --at says:\n" + describe_faults());
   try {
     app.parse(argc, argv);

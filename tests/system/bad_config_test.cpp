@@ -227,13 +227,13 @@ std::vector<Case> cases() {
       line("PluginWithoutType", "height: {kernel: }",
            "10:10: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
       whole("NoScene", without("  - scene"),
-            "1:1: 'scene.area' is missing, the rectangle of the desk in which taps may fall"),
+            "1:1: 'scene.area' is missing, rectangle of the desk in which taps are allowed"),
       line("ObjectWithoutType", "scene: {objects: [{height: 5 cm}]}",
            "10:19: 'scene.objects.0.type' is missing, shape of the object"),
 
       // Laws between options
       whole("BothCountAndSpacing", without("candidates") + "candidates: {count: 8, spacing: 5 mm}\n",
-            "9:33: candidates.spacing: give either count or spacing; the word none takes the other away"),
+            "9:33: candidates.spacing: give either count or spacing, and set the other to none"),
       whole("TooFineASpacing", without("candidates") + "candidates: {spacing: 1 um}\n",
             "9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 a side are possible"),
       line("FewerTapsThanInitialOnes", "initial: {count: 6}",
@@ -268,7 +268,7 @@ std::vector<Case> cases() {
            "10:26: label.hyperparameters: unknown value 'both', known: own, shared"),
       line("NoKernelInASum", "kernel: {type: sum, kernels: []}", "10:30: kernel.kernels: needs at least one kernel"),
       line("SumWithoutKernels", "kernel: {type: sum}",
-           "10:16: 'kernel.kernels' is missing, the parts, each {type: ..., ...}"),
+           "10:16: 'kernel.kernels' is missing, list of the kernels to combine, each {type: ..., ...}"),
       line("SumOfSomethingElse", "kernel: {type: sum, kernels: rbf}",
            "10:30: kernel.kernels: expects a list, write [{type: ...}, {type: ...}]"),
       line("NameWhereAKernelBelongs", "kernel: {type: sum, kernels: [rbf, matern32]}",
@@ -283,7 +283,7 @@ std::vector<Case> cases() {
       line("FactorOfZero", "kernel: {type: scale, factor: 0, kernel: {type: rbf}}",
            "10:31: kernel.factor: 0 is out of range, it must be at least 1e-12"),
       line("ScaleOfNothing", "kernel: {type: scale}",
-           "10:16: 'kernel.kernel' is missing, what is multiplied, {type: ..., ...}"),
+           "10:16: 'kernel.kernel' is missing, kernel that is multiplied, {type: ..., ...}"),
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 

@@ -101,10 +101,10 @@ TEST_F(Plugins, ListsEveryOneAndTheOptionsOfOne) {
   }
   EXPECT_EQ(lines(palpate("plugins kernel").out), 8);
   EXPECT_THAT(palpate("plugins kernel/sum").out,
-              ContainsRegex("kernels +list of plugins of kind kernel +required +the parts"));
+              ContainsRegex("kernels +list of plugins of kind kernel +required +list of the kernels to combine"));
   EXPECT_THAT(palpate("plugins kernel/rbf").out,
               AllOf(HasSubstr("length_scale"), HasSubstr("> 0 m"), HasSubstr("0.017 m")));
-  EXPECT_THAT(palpate("plugins backend/simulator").out, HasSubstr("written beside backend, not within"));
+  EXPECT_THAT(palpate("plugins backend/simulator").out, HasSubstr("written beside backend, not inside it"));
   EXPECT_TRUE(is_json(palpate("plugins --json").out));
   EXPECT_EQ(refused("plugins kernel/rfb"), "no plugin kernel/rfb, did you mean 'rbf'?\n");
 }
@@ -122,9 +122,9 @@ TEST_F(CommandLine, HelpGoesToStdoutWithStatus0) {
 TEST_F(CommandLine, HelpSaysWhatItTakesWithNamesThatEveryVersionOfItsLibraryAccepts) {
   // CLI11 2.4 refuses names of positional arguments with '=' or '/' in them before it has read any.
   EXPECT_THAT(palpate("run --help").out, AllOf(ContainsRegex("Usage: palpate run .* CONFIG \\[OVERRIDE\\.\\.\\.\\]\n"),
-                                               ContainsRegex("\n +OVERRIDE KEY=VALUE \\.\\.\\. +override a value")));
-  EXPECT_THAT(palpate("sweep --help").out, ContainsRegex("\n +AXIS KEY=VALUES \\.\\.\\. +what to vary"));
-  EXPECT_THAT(palpate("plugins --help").out, ContainsRegex("\n +PLUGIN KIND\\[/NAME\\] +a kind"));
+                                               ContainsRegex("\n +OVERRIDE KEY=VALUE \\.\\.\\. +value of a key")));
+  EXPECT_THAT(palpate("sweep --help").out, ContainsRegex("\n +AXIS KEY=VALUES \\.\\.\\. +key and the values to vary"));
+  EXPECT_THAT(palpate("plugins --help").out, ContainsRegex("\n +PLUGIN KIND\\[/NAME\\] +plugin kind"));
 }
 
 TEST_F(CommandLine, WrongUsageIsOneLineWithStatus2) {

@@ -48,7 +48,8 @@ class Completion : public Shell {
 TEST_F(Completion, OfCommandsAndOptionsSaysWhatTheyAreFor) {
   EXPECT_THAT(offered({"re"}), UnorderedElementsAre(Key("resume"), Key("replay"), Key("report")));
   EXPECT_THAT(offered({""}), Contains(Pair("run", "Run one experiment")));
-  EXPECT_THAT(offered({"run", "--dry"}), Contains(Pair("--dry-run", "say what would be run and where; move nothing")));
+  EXPECT_THAT(offered({"run", "--dry"}),
+              Contains(Pair("--dry-run", "print what would run and in which directory; move nothing")));
   EXPECT_THAT(offered({"resume", "x", "--launcher", ""}), UnorderedElementsAre(Key("local"), Key("slurm")));
   EXPECT_THAT(offered({"resume", "x", "--launcher=s"}), UnorderedElementsAre(Key("--launcher=slurm")));
   EXPECT_THAT(offered({"nonsense", ""}), IsEmpty());
@@ -193,9 +194,9 @@ TEST_F(Completion, InFishItselfHasWordsWithTheirMeaning) {
         {"/usr/bin/fish", "--no-config", "-c", "source '" + script("palpate.fish") + "'; complete -C '" + line + "'"},
         here(), {path(), "HOME=" + here().string()});
   };
-  EXPECT_EQ(asked("palpate sta").out, "status\tWhere a run or a sweep stands\n");
+  EXPECT_EQ(asked("palpate sta").out, "status\tShow the state of a run or sweep\n");
   EXPECT_EQ(asked("palpate run configs/default.yaml kernel=rb").out,
-            "kernel=rbf\tSquared exponential: very smooth surfaces, the paper's choice\n");
+            "kernel=rbf\tSquared exponential: very smooth surfaces, as in the paper\n");
   EXPECT_THAT(asked("palpate run configs/default.yaml ").out, HasSubstr("seed=\t"));
   EXPECT_EQ(asked("palpate nonsense ").out, "");
 }

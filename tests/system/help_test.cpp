@@ -50,7 +50,7 @@ TEST_F(HelpOf, EveryCommandIsInPlainWords) {
     for (const std::string& word : Words(help(command))) out += word + " ";
     return out;
   };
-  EXPECT_THAT(flat("resume"), AllOf(HasSubstr("local or slurm; local if not given"), HasSubstr("1 to 1024")));
+  EXPECT_THAT(flat("resume"), AllOf(HasSubstr("local or slurm; default: local"), HasSubstr("1 to 1024")));
   EXPECT_THAT(flat("run"), AllOf(HasSubstr("not with --quiet"), HasSubstr("only with --print-config")));
 }
 

@@ -205,9 +205,9 @@ Tree group_schema(const std::vector<FieldDescription>& fields) {
 Tree section_schema(const FieldDescription& field) {
   Tree group = group_schema(field.fields);
   if (!field.optional && !field.group) return group;
-  const Tree name =
-      Tree::map({{"type", Tree::quote("string")},
-                 {"description", Tree::quote(fmt::format("a name: NAME reads {}/NAME.yaml", field.name))}});
+  const Tree name = Tree::map(
+      {{"type", Tree::quote("string")},
+       {"description", Tree::quote(fmt::format("name of a config group: NAME reads {}/NAME.yaml", field.name))}});
   const Tree none = Tree::map({{"const", Tree::quote("none")}});
   return Tree::map({{"anyOf", Tree::list({field.group ? name : none, std::move(group)})}});
 }
@@ -340,7 +340,7 @@ FieldDescription describe_beside(const FieldDescription& field) {
   out.type = Type::section;
   out.kind = field.kind;
   out.group = true;
-  out.meaning = fmt::format("the {} of the {}", field.beside, field.name);
+  out.meaning = fmt::format("{} of the {}", field.beside, field.name);
   return out;
 }
 

@@ -54,41 +54,44 @@ void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields)
 
 void InitialOptions::list(Fields& fields) {
   const auto counted = [this](Fields& inner) {
-    inner.integer(count, Field("count", "how many").at_least(1).from("Sun and Min 2021: 3"));
+    inner.integer(count, Field("count", "number of initial taps").at_least(1).from("Sun and Min 2021: 3"));
   };
   const auto until_hit = [this](Fields& inner) {
-    inner.real(smallest, Field("smallest", "least width of the object that is looked for").in(Unit::metre).above(0));
+    inner.real(smallest, Field("smallest", "minimum width of the object to search for").in(Unit::metre).above(0));
   };
-  fields.choice(design, Field("design", "how the first taps are spread; always over different candidates"),
-                {{"random", "uniformly, from the seed alone", counted},
-                 {"sobol", "by a Sobol sequence, shifted by the seed", counted},
-                 {"grid", "on a square lattice", counted},
-                 {"search", "to find an object in the fewest taps: as many as the first hit takes", until_hit}});
+  fields.choice(
+      design, Field("design", "design of the initial taps, each of which is at a different candidate"),
+      {{"random", "uniformly random positions, which depend on the seed alone", counted},
+       {"sobol", "Sobol sequence with a random shift from the seed", counted},
+       {"grid", "square lattice", counted},
+       {"search", "search for an object in as few taps as possible, until the first contact with one", until_hit}});
 }
 
 void CandidateOptions::list(Fields& fields) {
-  fields.real(spacing, Field("spacing", "side of a cell, instead of count").in(Unit::metre).above(0));
+  fields.real(spacing, Field("spacing", "side length of a grid cell; replaces count").in(Unit::metre).above(0));
   // The default belongs into the resolved config, unless spacing takes its place.
   if (!spacing && !count) count = kPaperCount;
-  fields.integer(count, Field("count", "cells per side").at_least(1).at_most(kMaxCellsPerSide));
-  fields.require(!(count && spacing), "spacing", "give either count or spacing; the word none takes the other away");
+  fields.integer(count, Field("count", "number of grid cells per side").at_least(1).at_most(kMaxCellsPerSide));
+  fields.require(!(count && spacing), "spacing", "give either count or spacing, and set the other to none");
 }
 
 void ProcessOptions::list_plugins(Fields& fields) {
-  fields.plugin(kernel, "kernel", Field("kernel", "its own kernel, instead of the shared one").inherits("kernel"));
-  fields.plugin(fitting, "fitting", Field("fitting", "its own fitting, instead of the shared one").inherits("fitting"));
+  fields.plugin(kernel, "kernel",
+                Field("kernel", "kernel of this GP alone; the top-level kernel if not given").inherits("kernel"));
+  fields.plugin(fitting, "fitting",
+                Field("fitting", "fitting of this GP alone; the top-level fitting if not given").inherits("fitting"));
 }
 
 void OffsetOptions::list(Fields& fields) {
-  fields.real(offset, Field("offset", "prior standard deviation of what is added to every height")
+  fields.real(offset, Field("offset", "prior standard deviation of the constant height offset")
                           .in(Unit::metre)
                           .above(0)
                           .from("6 mm: absolute errors of Baxter's tip are 2 to 10 mm"));
-  fields.real(drift, Field("drift", "the same of what comes to it over time")
+  fields.real(drift, Field("drift", "prior standard deviation of the drift of the height offset over time")
                          .in(Unit::metre_per_second)
                          .above(0)
                          .from("1 mm/min: an arm that warms up, an estimate"));
-  fields.real(noise, Field("noise", "standard deviation of the height of one contact with the desk")
+  fields.real(noise, Field("noise", "standard deviation of the measured height of one contact with the desk")
                          .in(Unit::metre)
                          .above(0)
                          .from("2 mm: pose and moment of detection of an arm like Baxter"));
@@ -100,17 +103,18 @@ void HeightOptions::list(Fields& fields) {
                           .at_least(kLeastSignal)
                           .at_most(kMostSignal)
                           .from("Sun and Min 2021: unit signal variance"));
-  fields.real(
-      noise,
-      Field("noise", "standard deviation of the noise of one tap").in(Unit::metre).at_least(0).at_most(kMostSignal));
+  fields.real(noise, Field("noise", "standard deviation of the height noise of one tap")
+                         .in(Unit::metre)
+                         .at_least(0)
+                         .at_most(kMostSignal));
   fields.real(outlier_probability, Field("outlier_probability",
-                                         "prior probability that the height of a contact is an outlier, unrelated to "
-                                         "the surface; not given, no contact is; for surface: two_part")
+                                         "prior probability that a contact's height is an outlier; not given: no "
+                                         "outliers; only with surface: two_part")
                                        .above(0)
                                        .at_most(0.5));
   fields.section(offset, Field("offset",
-                               "estimate the offset that motion and arm add to all heights from taps on the desk, "
-                               "whose height is known, and subtract it; not given, heights are used as measured"));
+                               "estimation of the height offset of motion and arm from taps on the desk; not given: "
+                               "heights are used as measured"));
   list_plugins(fields);
 }
 
@@ -118,15 +122,14 @@ void LabelOptions::list(Fields& fields) {
   fields.real(signal,
               Field("signal", "prior standard deviation of the label").at_least(kLeastSignal).at_most(kMostSignal));
   fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0).at_most(kMostSignal));
-  fields.real(prior_mean, Field("prior_mean", "of the label where nothing is known").from("Sun and Min 2021: 0"));
-  fields.flag(clip, Field("clip", "let the acquisitions see the weight clipped to [0, 1]"));
-  fields.choice(
-      hyperparameters, Field("hyperparameters", "what a fit chooses for the labels"),
-      {{"own", "the labels' own kernel and noise", {}},
-       {"shared",
-        "those of the heights, noise in signals included, fitted to heights and labels together; signals stay "
-        "apart",
-        {}}});
+  fields.real(prior_mean, Field("prior_mean", "prior mean of the label").from("Sun and Min 2021: 0"));
+  fields.flag(clip, Field("clip", "whether acquisitions read the weight (the label GP's mean) clipped to [0, 1]"));
+  fields.choice(hyperparameters, Field("hyperparameters", "hyperparameters that a fit gives to the label GP"),
+                {{"own", "kernel and noise fitted to the labels alone", {}},
+                 {"shared",
+                  "kernel and noise-to-signal ratio of the height GP, fitted to heights and labels together; signals "
+                  "stay separate",
+                  {}}});
   list_plugins(fields);
   const bool shared = hyperparameters == Hyperparameters::shared;
   fields.require(!shared || !kernel, "kernel",
@@ -136,23 +139,26 @@ void LabelOptions::list(Fields& fields) {
 }
 
 void EngineOptions::list(Fields& fields) {
-  fields.choice(type, Field("type", "which engine keeps the posterior over the candidates"),
-                {{"auto", "the fastest that is exact enough: see accuracy", {}},
-                 {"dense", "any kernel; time and memory grow with taps times candidates", {}},
-                 {"grid", "as exact, memory grows with candidates alone; needs a separable kernel, such as rbf", {}},
-                 {"lowrank", "time grows with candidates alone, not with taps; needs a separable kernel", {}}});
-  fields.real(tolerance, Field("tolerance",
-                               "lowrank leaves out directions of a one-axis covariance below this share of its "
-                               "variance")
-                             .above(0)
-                             .at_most(1)
-                             .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
+  fields.choice(
+      type, Field("type", "engine that computes the posterior over the candidates"),
+      {{"auto", "fastest engine whose error is within `accuracy`", {}},
+       {"dense", "engine for any kernel; time and memory grow with taps times candidates", {}},
+       {"grid", "as exact as dense; memory grows with candidates alone; needs a separable kernel, such as rbf", {}},
+       {"lowrank",
+        "time per tap grows with candidates alone, not with taps; needs a separable kernel, such as rbf",
+        {}}});
+  fields.real(
+      tolerance,
+      Field("tolerance", "share of the variance below which lowrank drops a direction of the covariance along one axis")
+          .above(0)
+          .at_most(1)
+          .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
   fields.real(accuracy, Field("accuracy",
-                              "`type: auto` takes no engine whose error beyond dense's may exceed this, or a tenth of "
-                              "tie_tolerance; in prior standard deviations, or prior variances")
+                              "maximum error of the engine that `type: auto` chooses, relative to dense, in prior "
+                              "standard deviations or variances; also limited to tie_tolerance / 10")
                             .at_least(0)
                             .at_most(1));
-  fields.integer(threads, Field("threads", "number of threads that update the maps; the results are the same")
+  fields.integer(threads, Field("threads", "number of threads that update the maps; it does not change the results")
                               .at_least(1)
                               .at_most(64)
                               .not_identifying());
@@ -161,124 +167,146 @@ void EngineOptions::list(Fields& fields) {
 void SideViewOptions::list(Fields& fields) {
   constexpr double kUpright = 3.14159265358979323846 / 2;
   fields.real(azimuth, Field("azimuth",
-                             "where the camera is, seen from the middle of the area, counter-clockwise from x; not "
-                             "given, drawn from the seed")
+                             "azimuth of the camera seen from the middle of the area, counter-clockwise from x; not "
+                             "given: drawn from the seed")
                            .in(Unit::radian));
-  fields.real(elevation, Field("elevation", "how far it is above the horizon, seen from there")
-                             .in(Unit::radian)
-                             .at_least(0)
-                             .at_most(kUpright * (1 + 1e-12)));
-  fields.integer(
-      rays, Field("rays", "of its picture, a square: the square number that is nearest").at_least(16).at_most(40000));
+  fields.real(elevation,
+              Field("elevation", "elevation of the camera above the horizon, seen from the middle of the area")
+                  .in(Unit::radian)
+                  .at_least(0)
+                  .at_most(kUpright * (1 + 1e-12)));
+  fields.integer(rays, Field("rays", "number of camera rays, rounded to a square number").at_least(16).at_most(40000));
 }
 
 void SpaceOptions::list(Fields& fields) {
-  fields.integer(
-      approaches,
-      Field("approaches", "among which the next is chosen, drawn anew before every tap").at_least(1).at_most(100000));
-  fields.integer(
-      particles,
-      Field("particles", "of simple solids that are kept, each about equally probable").at_least(2).at_most(1000));
-  fields.integer(
-      moves, Field("moves", "of each, after a tap, by which it is fitted to the touches").at_least(0).at_most(100000));
-  fields.real(
-      model_discrepancy,
-      Field("model_discrepancy", "by how much objects are off the simple solids").in(Unit::metre).at_least(1e-6));
+  fields.integer(approaches,
+                 Field("approaches", "number of approaches drawn before every tap, among which the next one is chosen")
+                     .at_least(1)
+                     .at_most(100000));
+  fields.integer(particles,
+                 Field("particles", "number of hypotheses (assemblies of simple solids), each about equally probable")
+                     .at_least(2)
+                     .at_most(1000));
+  fields.integer(moves,
+                 Field("moves", "number of Monte Carlo moves per hypothesis after a tap, which fit it to the contacts")
+                     .at_least(0)
+                     .at_most(100000));
+  fields.real(model_discrepancy,
+              Field("model_discrepancy", "standard deviation of the objects' surfaces from the simple solids")
+                  .in(Unit::metre)
+                  .at_least(1e-6));
   fields.section(view, Field("view",
-                             "what a camera 60 cm away sees of the scene, from one side, before the first tap; for "
-                             "backend: simulator; not given, nothing"));
+                             "view of a camera at 60 cm distance, taken before the first tap; only with backend: "
+                             "simulator; not given: no view"));
 }
 
 void StopOptions::list(Fields& fields) {
-  fields.real(max_standard_deviation,
-              Field("max_standard_deviation",
-                    "stop when no candidate's height is less certain than this, all taps seen; builds the height GP")
-                  .in(Unit::metre)
-                  .above(0));
-  fields.real(
-      expected_rmse,
-      Field("expected_rmse",
-            "stop when the error of the reconstructed scene, desk included, is most probably below this and, where "
-            "the footprint knows of such things, most probably no object is left to find; never before one is "
-            "touched; builds what the reconstruction needs")
-          .in(Unit::metre)
-          .above(0));
-  fields.real(robot_time, Field("robot_time", "stop when the robot has been busy that long").in(Unit::second).above(0));
-  fields.integer(
-      failed_in_a_row,
-      Field(
-          "failed_in_a_row",
-          "the run fails, for somebody to look at the arm, when so many taps in a row came to nothing; "
-          "`unreachable` is none of them, nor, from any side, one that met nothing; not given, 3 where taps cannot be "
-          "repeated, else never")
-          .at_least(1)
-          .at_most(100000)
-          .from("an estimate: a robot that is well misses a tap, not three"));
+  fields.real(max_standard_deviation, Field("max_standard_deviation",
+                                            "maximum standard deviation of the height over all candidates at which the "
+                                            "run stops; adds the height GP to the models")
+                                          .in(Unit::metre)
+                                          .above(0));
+  fields.real(expected_rmse, Field("expected_rmse",
+                                   "RMSE of the reconstructed scene, desk included: the run stops once it is probably "
+                                   "smaller, an object was touched, and probably no other is left to find")
+                                 .in(Unit::metre)
+                                 .above(0));
+  fields.real(robot_time, Field("robot_time", "robot time after which the run stops").in(Unit::second).above(0));
+  fields.integer(failed_in_a_row,
+                 Field("failed_in_a_row",
+                       "consecutive failed taps at which the run fails; `unreachable` and, from any side, taps without "
+                       "contact do not count; not given: 3 if taps cannot be repeated, else no limit")
+                     .at_least(1)
+                     .at_most(100000)
+                     .from("an estimate: a healthy robot may fail one tap, but not three in a row"));
 }
 
 void LogOptions::list(Fields& fields) {
-  fields.choice(sync, Field("sync", "when the record is forced to disk"),
-                {{"auto", "around each tap where a tap cannot be repeated, else never", {}},
-                 {"tap", "after each tap, and before it where it cannot be repeated", {}},
+  fields.choice(sync, Field("sync", "times at which the record is forced to disk"),
+                {{"auto", "before and after each tap if taps cannot be repeated, else never", {}},
+                 {"tap", "after each tap, and also before it if taps cannot be repeated", {}},
                  {"none", "never", {}}});
-  fields.flag(maps, Field("maps", "write the maps that each choice was made from: maps/tap_NNN.csv"));
-  fields.flag(surface, Field("surface", "write surface.csv; false by default in a sweep"));
+  fields.flag(maps, Field("maps", "whether to write the maps behind each choice of a tap to maps/tap_NNN.csv"));
+  fields.flag(surface, Field("surface", "whether to write surface.csv; false by default in a sweep"));
 }
 
 void ExperimentOptions::list(Fields& fields) {
   fields.integer(complete, Field("complete",
-                                 "version of a record whose config.yaml has every option; one that it lacks is not at "
-                                 "its default but at what it was before there was such an option")
+                                 "record version; palpate writes it into config.yaml, where a missing option then "
+                                 "means the behaviour before that option existed")
                                .of_run()
                                .at_least(1)
                                .at_most(kRecordVersion)
                                .not_identifying());
-  fields.text(name,
-              Field("name", "of the experiment; the folder of its runs is a slug of it").of_run().not_identifying());
+  fields.text(name, Field("name", "name of the experiment; the folder of its runs has this name as a slug")
+                        .of_run()
+                        .not_identifying());
   fields.integer(seed, seed_field());
-  fields.integer(taps, Field("taps", "budget of taps, the initial ones included").of_run().at_least(1).at_most(100000));
+  fields.integer(
+      taps, Field("taps", "maximum number of taps, the initial taps included").of_run().at_least(1).at_most(100000));
   fields.section(initial,
-                 Field("initial", "the first taps, drawn from the candidates without replacement").of_strategy());
-  fields.section(candidates,
-                 Field("candidates", "the places among which the next tap is chosen: cell centres of a grid").of_run());
-  fields.plugin(kernel, Field("kernel", "shape of the covariance, shared by both GPs").of_strategy().group());
-  fields.section(height, Field("height", "the GP of the heights above the desk").of_strategy());
+                 Field("initial", "initial taps, drawn from the candidates without replacement").of_strategy());
   fields.section(
-      label,
-      Field("label", "the GP of the labels: 1 on an object, 0 on the desk; its mean is the weight w of the paper")
-          .of_strategy());
-  fields.section(prior, Field("prior", "what a camera saw before the first tap; not given, nothing").of_run());
+      candidates,
+      Field("candidates", "positions among which the next tap is chosen: the cell centres of a grid").of_run());
+  fields.plugin(kernel,
+                Field("kernel", "covariance kernel, shared by the height GP and the label GP").of_strategy().group());
+  fields.section(height, Field("height", "GP of the heights above the desk").of_strategy());
+  fields.section(
+      label, Field("label", "GP of the labels, 1 on an object and 0 on the desk; its mean is the weight w of the paper")
+                 .of_strategy());
+  fields.section(prior, Field("prior", "view of a depth camera before the first tap; not given: no view").of_run());
   fields.choice(
       surface,
-      Field("surface", "how the surface is reconstructed; no shipped strategy's taps depend on it").of_strategy(),
+      Field("surface", "method of surface reconstruction; the taps of the shipped strategies do not depend on it")
+          .of_strategy(),
       {{"single", "one GP for the heights of object and desk, as in the paper", {}},
-       {"two_part", "heights from the taps on an object alone, where the footprint is at least 1/2; else desk", {}},
-       {"implicit", "closed surfaces in space; for `scene.touch: any`, and only for that", {}}});
+       {"two_part",
+        "GP of the heights of taps on objects where the footprint is at least 1/2, desk height elsewhere",
+        {}},
+       {"implicit", "closed surfaces in space; for `scene.touch: any` only", {}}});
   if (surface == Surface::implicit && !space) space.emplace();
-  fields.section(space, Field("space", "what is believed of `surface: implicit`").of_strategy());
-  fields.section(engine, Field("engine", "how the posterior over the candidates is computed").of_strategy());
-  fields.plugin(acquisition, Field("acquisition", "how much one wants to tap each candidate").of_strategy().group());
-  fields.plugin(fitting, Field("fitting", "how hyperparameters are chosen, shared by both GPs").of_strategy().group());
+  fields.section(space, Field("space", "model settings of `surface: implicit`").of_strategy());
+  fields.section(engine,
+                 Field("engine", "engine settings: computation of the posterior over the candidates").of_strategy());
+  fields.plugin(acquisition,
+                Field("acquisition", "acquisition function: score of a tap at each candidate").of_strategy().group());
+  fields.plugin(fitting, Field("fitting", "choice of the hyperparameters, shared by the height GP and the label GP")
+                             .of_strategy()
+                             .group());
   fields.plugin(footprint,
-                Field("footprint", "where the objects are, as a probability at every place").of_strategy().group());
-  fields.choice(fallback, Field("fallback", "what to do when every score is equal or none is positive").of_strategy(),
-                {{"uncertainty", "tap where the height is least known", {}},
-                 {"none", "tap the first candidate, as the paper's rule does: it stalls", {}}});
+                Field("footprint", "footprint: probability of an object at every position").of_strategy().group());
+  fields.choice(fallback,
+                Field("fallback", "choice of the tap if all scores are equal or none is positive").of_strategy(),
+                {{"uncertainty", "candidate with the most uncertain height", {}},
+                 {"none", "first candidate, as in the paper; the search then stalls", {}}});
   fields.choice(
       repeat,
-      Field("repeat", "may a candidate be tapped twice; failed ones never are, suspected outliers always").of_strategy(),
-      {{"forbid", "no", {}}, {"allow", "yes, with independent noise", {}}});
-  fields.real(tie_tolerance,
-              Field("tie_tolerance", "scores within this times (|best| + the score's prior scale) of the best are tied")
-                  .of_strategy()
-                  .at_least(0)
-                  .at_most(1)
-                  .from("rounding reaches 1e-12; below 1e-9 it decides taps at 1.7 cm"));
-  fields.section(stop, Field("stop", "reasons to stop before the budget is spent").of_strategy());
-  fields.section(scene,
-                 Field("scene", "what the world holds; a robot backend reads only area and desk").of_run().group());
-  fields.plugin(backend, Field("backend", "what is tapped").of_run().with_beside("motion").group());
-  fields.section(log, Field("log", "what is written").of_run().not_identifying());
+      Field(
+          "repeat",
+          "rule for tapping a candidate twice; failed candidates are never repeated, suspected outliers always may be")
+          .of_strategy(),
+      {{"forbid", "each candidate is tapped at most once", {}},
+       {"allow", "candidates may be tapped again, with independent noise", {}}});
+  fields.real(
+      tie_tolerance,
+      Field("tie_tolerance",
+            "relative tolerance of ties: scores within this times (|best| + the score's prior scale) of the best are "
+            "tied")
+          .of_strategy()
+          .at_least(0)
+          .at_most(1)
+          .from(
+              "rounding errors reach 1e-12; with tolerances below 1e-9 they decide taps at a length scale of 1.7 cm"));
+  fields.section(stop, Field("stop", "conditions that stop a run before its tap budget is spent").of_strategy());
+  fields.section(
+      scene,
+      Field("scene", "scene: area, desk and objects; a robot backend reads only area and desk").of_run().group());
+  fields.plugin(backend, Field("backend", "backend that makes the taps: a simulator, a robot or a program")
+                             .of_run()
+                             .with_beside("motion")
+                             .group());
+  fields.section(log, Field("log", "settings of the record that a run writes").of_run().not_identifying());
   fields.require(
       initial.searches() || initial.count <= taps, "taps",
       fmt::format("the budget is smaller than the {} initial taps, raise it or lower initial.count", initial.count));
@@ -308,17 +336,22 @@ void ExperimentOptions::list(Fields& fields) {
                              initial.count, columns * rows));
 }
 
-Field seed_field() { return Field("seed", "fixes everything that is drawn").at_least(0).of_run(); }
+Field seed_field() { return Field("seed", "seed of all random draws").at_least(0).of_run(); }
 
 std::vector<Field> keys_beside_options() {
   return {
-      Field("defaults", "groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries win, then this file")
+      Field("defaults",
+            "list of config groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries override earlier ones, and "
+            "this file overrides all")
           .of_strategy(),
-      Field(kStrategy, "what decides where to tap and what is believed, by name: strategy/NAME.yaml, or a whole config")
+      Field(kStrategy,
+            "strategy (choice of taps and models) by the name NAME of strategy/NAME.yaml, or by a whole config file")
           .of_strategy()
           .group(),
-      Field("sweep", "what 'palpate sweep' varies; its blocks multiply with each other in their order").of_run(),
-      Field("expect", "what the summary must say, for example first_hit_tap: '<= 9'; of a sweep, median(taps): '<= 17'")
+      Field("sweep", "keys and values that 'palpate sweep' varies; blocks are combined with each other in their order")
+          .of_run(),
+      Field("expect",
+            "expected results in the summary, for example first_hit_tap: '<= 9'; of a sweep, median(taps): '<= 17'")
           .of_run()
           .group()};
 }

@@ -28,9 +28,9 @@ struct DrawOptions : Options {
 
   void list(Fields& fields) override {
     constexpr double kMost = 1000;
-    fields.integer(least, Field("least", "fewest objects").at_least(0).at_most(kMost).needed());
-    fields.integer(most, Field("most", "most objects").at_least(0).at_most(kMost).needed());
-    fields.sections(of, Field("of", "objects, of which each is drawn").needed());
+    fields.integer(least, Field("least", "minimum number of objects").at_least(0).at_most(kMost).needed());
+    fields.integer(most, Field("most", "maximum number of objects").at_least(0).at_most(kMost).needed());
+    fields.sections(of, Field("of", "list of objects from which each object is drawn").needed());
     fields.require(least <= most, "most", fmt::format("is less than least, which is {}", least));
     fields.require(!of.empty(), "of", "is empty, name an object or more");
   }
@@ -39,7 +39,9 @@ struct DrawOptions : Options {
 /// What stands in the place of a list of objects.
 struct DrawnObjects : Options {
   DrawOptions draw;
-  void list(Fields& fields) override { fields.section(draw, Field("draw", "objects from the seed").needed()); }
+  void list(Fields& fields) override {
+    fields.section(draw, Field("draw", "random draw of the objects from the seed").needed());
+  }
 };
 
 /// Puts a number in the place of each range of an object, in their order: at a share of the way from its lower end to

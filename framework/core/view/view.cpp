@@ -70,34 +70,36 @@ Offset offset_of(const std::vector<double>& of_desk, double noise, double bias) 
 }  // namespace
 
 void ViewPose::list(Fields& fields) {
-  fields.real(x, Field("x", "where the origin of the points lies in the area").in(Unit::metre));
-  fields.real(y, Field("y", "likewise").in(Unit::metre));
-  fields.real(z, Field("z", "likewise, upwards").in(Unit::metre));
-  fields.real(roll, Field("roll", "about the area's x, first").in(Unit::radian));
-  fields.real(pitch, Field("pitch", "about its y, then").in(Unit::radian));
-  fields.real(yaw, Field("yaw", "about its z, at last").in(Unit::radian));
+  fields.real(x, Field("x", "x of the point cloud's origin in the area").in(Unit::metre));
+  fields.real(y, Field("y", "y of the point cloud's origin in the area").in(Unit::metre));
+  fields.real(z, Field("z", "z (upwards) of the point cloud's origin").in(Unit::metre));
+  fields.real(roll,
+              Field("roll", "rotation of the point cloud about the area's x axis, applied first").in(Unit::radian));
+  fields.real(pitch,
+              Field("pitch", "rotation of the point cloud about the area's y axis, applied second").in(Unit::radian));
+  fields.real(yaw, Field("yaw", "rotation of the point cloud about the area's z axis, applied last").in(Unit::radian));
 }
 
 void PriorOptions::list(Fields& fields) {
-  fields.text(
-      depth,
-      Field("depth",
-            "points that a depth camera saw, PLY; a relative path starts in the working folder or beside the config")
-          .needed()
-          .names_file()
-          .not_identifying());
-  fields.real(unit, Field("unit", "length of one unit of the file").in(Unit::metre).above(0));
-  fields.real(noise, Field("noise", "standard deviation of a height that it saw")
+  fields.text(depth, Field("depth",
+                           "PLY file with the points of a depth camera; a relative path starts in the working folder "
+                           "or beside the config")
+                         .needed()
+                         .names_file()
+                         .not_identifying());
+  fields.real(unit, Field("unit", "length of one unit of the PLY file").in(Unit::metre).above(0));
+  fields.real(noise, Field("noise", "standard deviation of a height measured by the camera")
                          .in(Unit::metre)
                          .at_least(0)
                          .from("3 mm: structured light at 1 m, an estimate"));
-  fields.real(bias, Field("bias", "standard deviation of what is added to all of them alike")
+  fields.real(bias, Field("bias", "standard deviation of the common offset of all heights measured by the camera")
                         .in(Unit::metre)
                         .at_least(0)
-                        .from("5 mm: where a camera is thought to stand, an estimate"));
-  fields.section(pose, Field("pose", "where the frame of the points lies; not given, it is the area's"));
+                        .from("5 mm: error of the camera's assumed position, an estimate"));
+  fields.section(pose,
+                 Field("pose", "pose of the point cloud in the frame of the area; not given: the frames are the same"));
   const auto trouble = trouble_in([&] { checksum = depth.empty() ? "" : hash_of(bytes_of(depth)); });
-  fields.text(checksum, Field("checksum", "of the file's content; if absent, that of the file as it is"));
+  fields.text(checksum, Field("checksum", "checksum of the file's content; not given: computed from the file"));
   // A record has the checksum, and is read without the file. The error has the place of the file, but not of who names
   // it.
   fields.require(!trouble || !checksum.empty(), "depth", trouble ? trouble->what() : "");

@@ -7,7 +7,7 @@
 //     struct RbfOptions : Options {
 //       double length_scale = 0.017;
 //       void list(Fields& fields) override {
-//         fields.real(length_scale, Field("length_scale", "distance over which heights stay alike")
+//         fields.real(length_scale, Field("length_scale", "distance over which heights are correlated")
 //                                       .in(Unit::metre).above(0));
 //       }
 //     };

@@ -120,9 +120,9 @@ struct ProgramOptions : Options {
   void list(Fields& fields) override {
     const auto words = programs::list_command(command, fields);
     if (words && folder.empty()) folder = fs::current_path().string();
-    fields.text(
-        folder,
-        Field("folder", "in which the program begins, a whole path; if absent, the current one").not_identifying());
+    fields.text(folder,
+                Field("folder", "working folder of the program, as an absolute path; not given: the current folder")
+                    .not_identifying());
     fields.require(folder.empty() || fs::path(folder).is_absolute(), "folder",
                    "is no whole path: whoever carries the run on may be elsewhere; write it from /");
     programs::Content content;
@@ -132,8 +132,8 @@ struct ProgramOptions : Options {
     const std::set<std::string> declared = declarations(content.program);
     if (declared.size() == 1) reads = *declared.begin();
     fields.text(reads, Field("reads",
-                             "names of the arrays that are sent, separated by commas, or none; if absent, those of "
-                             "reads=[...] in the program"));
+                             "names of the arrays that the program receives, separated by commas, or none; not given: "
+                             "taken from reads=[...] in the program"));
     fields.require(!words || !reads.empty(), "reads",
                    unsaid(words.value_or(std::vector<std::string>()), content.program, declared));
     // A config seldom has names of its own: those of the program are corrected there.
@@ -143,12 +143,13 @@ struct ProgramOptions : Options {
                      (by_program ? "reads=[...] in " + shown(content.file) + " has " : "has ") + shown(name) +
                          ", which is none of " + all_names());
     }
-    fields.real(deadline, Field("deadline", "the run fails if scores take longer; it can be carried on")
-                              .in(Unit::second)
-                              .above(0)
-                              .at_most(86400)
-                              .not_identifying());
-    fields.real(start, Field("start", "how much longer the deadline is for the first scores of a program")
+    fields.real(deadline,
+                Field("deadline", "time limit of the program's answer, after which the run fails; it can be resumed")
+                    .in(Unit::second)
+                    .above(0)
+                    .at_most(86400)
+                    .not_identifying());
+    fields.real(start, Field("start", "additional time before the deadline for the first scores of a program")
                            .in(Unit::second)
                            .at_least(0)
                            .at_most(86400)
@@ -339,6 +340,6 @@ class ProgramAcquisition final : public Acquisition {
   mutable bool answered_ = false;         ///< at least once, by any process of it
 };
 
-PALPATE_PLUGIN(Acquisition, ProgramAcquisition, "program", "scores of any program, in any language")
+PALPATE_PLUGIN(Acquisition, ProgramAcquisition, "program", "scores from a program of your own, in any language")
 
 }  // namespace palpate::acquisitions

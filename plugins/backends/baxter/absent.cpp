@@ -7,4 +7,4 @@
 #include <palpate/backend.hpp>
 
 PALPATE_ABSENT_PLUGIN(palpate::Backend, palpate::baxter::BaxterOptions, "baxter",
-                      "a Baxter over ROS 1, which this build does not have")
+                      "left arm of a Baxter robot, over ROS 1, which this build does not have")

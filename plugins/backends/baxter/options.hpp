@@ -36,15 +36,16 @@ struct ToolOptions : Options {
   double gripper = 0.025;           ///< left_gripper as the robot has it, from left_hand along z, metres
   void list(Fields& fields) override {
     const char* meaning =
-        "the point of the tool that touches, in the frame left_hand: x, y, and z away from the flange";
+        "touching point of the tool in the frame left_hand: x, y, z, with z pointing away from the flange";
     fields.reals(tip, 3, mandatory(Field("tip", meaning).in(Unit::metre).at_least(-0.6).at_most(0.6)));
-    fields.real(gripper, Field("gripper",
-                               "how far from left_hand the robot has its frame left_gripper, which is what it "
-                               "reports; checked at the start")
-                             .in(Unit::metre)
-                             .at_least(0)
-                             .at_most(0.6)
-                             .from("baxter.urdf: 2.5 cm; 0 without a gripper, more with an electric one"));
+    fields.real(
+        gripper,
+        Field("gripper",
+              "distance from left_hand to left_gripper, the frame whose pose the robot reports; checked at the start")
+            .in(Unit::metre)
+            .at_least(0)
+            .at_most(0.6)
+            .from("baxter.urdf: 2.5 cm; 0 without a gripper, more with an electric one"));
   }
 };
 
@@ -58,14 +59,17 @@ struct ScenePoseOptions : Options {
     return Eigen::Translation3d(corner[0], corner[1], height) * Eigen::AngleAxisd(rotation, Eigen::Vector3d::UnitZ());
   }
   void list(Fields& fields) override {
-    const char* corner_is = "the corner (0, 0) of the area in the robot's frame base: x forward, y to the left";
+    const char* corner_is = "x, y of the area's corner (0, 0) in the robot's frame base: x forward, y to the left";
     fields.reals(corner, 2, mandatory(Field("corner", corner_is).in(Unit::metre).at_least(-1.5).at_most(1.5)));
-    const char* height_is = "of the scene's zero, from which desk and heights count, in the frame base";
+    const char* height_is =
+        "height of the scene's zero in the robot's frame base; the desk and all heights are relative to it";
     fields.real(height, mandatory(Field("height", height_is).in(Unit::metre).at_least(-1).at_most(1)));
-    fields.real(rotation, Field("rotation", "of the scene about the vertical, from base's x axis to the scene's")
-                              .in(Unit::radian)
-                              .at_least(-6.3)
-                              .at_most(6.3));
+    fields.real(
+        rotation,
+        Field("rotation", "rotation of the scene about the vertical, from the x axis of base to that of the scene")
+            .in(Unit::radian)
+            .at_least(-6.3)
+            .at_most(6.3));
   }
 };
 
@@ -74,15 +78,18 @@ struct CalibrationOptions : Options {
   double at[2] = {0.0, 0.0};  ///< in the area, metres
   double tolerance = 0.01;    ///< how far the desk may be from where the config has it, metres
   void list(Fields& fields) override {
-    fields.reals(
-        at, 2,
-        Field("at", "where to tap, a place in the area at which nothing lies on the desk").in(Unit::metre).needed());
-    fields.real(tolerance,
-                Field("tolerance", "how far the desk may be from where `scene_pose` has it; farther ends the run")
-                    .in(Unit::metre)
-                    .above(0)
-                    .at_most(0.05)
-                    .from("Baxter's absolute accuracy is 2 to 10 mm"));
+    fields.reals(at, 2,
+                 Field("at", "position of the calibration tap in the area, where nothing lies on the desk")
+                     .in(Unit::metre)
+                     .needed());
+    fields.real(
+        tolerance,
+        Field("tolerance",
+              "maximum difference between the measured desk height and that of `scene_pose`; a larger one ends the run")
+            .in(Unit::metre)
+            .above(0)
+            .at_most(0.05)
+            .from("Baxter's absolute accuracy is 2 to 10 mm"));
   }
 };
 
@@ -110,40 +117,45 @@ struct BaxterOptions : Options {
   }
   ForceSign sign() const { return force_sign.value_or(calibration ? ForceSign::learn : ForceSign::negative); }
   void list(Fields& fields) override {
-    fields.section(motion, Field("motion", "the tapping motion"));
+    fields.section(motion, Field("motion", "motion of the arm in a tap"));
     for (std::size_t i = 0; i < motion.of.size(); ++i)
       require_gentle(fields, motion.of[i], "motion.of." + std::to_string(i) + ".");
     if (motion.of.empty()) require_gentle(fields, motion, "motion.");
-    fields.section(tool, Field("tool", "what is fixed to the flange of the left arm"));
+    fields.section(tool, Field("tool", "tool that is fixed to the flange of the left arm"));
     fields.section(scene_pose, Field("scene_pose", "pose of the scene in the robot's frame base"));
-    fields.section(calibration,
-                   Field("calibration", "begin with a tap on the bare desk, and take its height for the desk's"));
+    fields.section(
+        calibration,
+        Field("calibration",
+              "tap on the bare desk before the run, whose height then replaces the configured height of the desk"));
     ForceSign chosen = sign();
     fields.choice(
         chosen,
-        Field("force_sign", "of the force along z in endpoint_state when something presses the tool upwards")
-            .from("Rethink documents none; five public programs for Baxter take it to fall. With a calibration "
-                  "tap the default is learn"),
-        {{"negative", "it falls", {}},
-         {"positive", "it rises", {}},
-         {"learn", "until the first contact any change counts, and that contact shows it", {}}});
+        Field("force_sign", "sign of the force along z in endpoint_state when something presses the tool upwards")
+            .from("Rethink documents no sign; five public programs for Baxter expect a falling force. With a "
+                  "calibration tap the default is learn"),
+        {{"negative", "negative: the force falls", {}},
+         {"positive", "positive: the force rises", {}},
+         {"learn", "sign of the force at the first contact; until then a change in either direction counts", {}}});
     force_sign = chosen;
     fields.real(force_stop, Field("force_stop",
-                                  "change of the force since the tare at which an arm stops that touches nothing yet; "
-                                  "sideways, while it goes "
-                                  "up or down, half as much again")
+                                  "change of the force since the tare at which the arm stops if it is not in contact; "
+                                  "1.5 times as much sideways during vertical motion")
                                 .in(Unit::newton)
                                 .above(0)
                                 .at_most(kGreatestStop)
                                 .from("the arm's firmware stops it at 16 N"));
     for (int i = 0; i < motion.count(); ++i)
       fields.require(force_stop > motion.at(i).threshold, "force_stop", "must lie above motion.threshold");
-    fields.choice(inverse_kinematics, Field("inverse_kinematics", "who finds the joints for a pose"),
-                  {{"own", "this program", {}}, {"robot", "the robot's IKService, whose answers are checked", {}}});
-    fields.flag(dry_run, Field("dry_run", "connect, check and compute every pose of the whole area, but move nothing"));
-    fields.flag(view, Field("view", "publish the surface, its standard deviation and the taps, to be seen in RViz"));
-    fields.flag(
-        bag, Field("bag", "record what the robot says and is told in a rosbag in the run's folder").not_identifying());
+    fields.choice(
+        inverse_kinematics,
+        Field("inverse_kinematics", "solver of the inverse kinematics, from a pose to joint angles"),
+        {{"own", "solver of palpate", {}}, {"robot", "IKService of the robot, whose answers palpate checks", {}}});
+    fields.flag(dry_run, Field("dry_run",
+                               "whether to connect, check and compute every pose of the area without moving anything"));
+    fields.flag(view, Field("view", "whether to publish the surface, its standard deviation and the taps for RViz"));
+    fields.flag(bag,
+                Field("bag", "whether to record the messages and commands of the robot in a rosbag in the run's folder")
+                    .not_identifying());
   }
 
  private:

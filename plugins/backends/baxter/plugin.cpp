@@ -127,6 +127,6 @@ class Baxter final : public Backend {
   bool begun_ = false;          ///< with the first tap
 };
 
-PALPATE_PLUGIN(Backend, Baxter, "baxter", "the left arm of a Baxter, over ROS 1")
+PALPATE_PLUGIN(Backend, Baxter, "baxter", "left arm of a Baxter robot, over ROS 1")
 
 }  // namespace palpate::baxter

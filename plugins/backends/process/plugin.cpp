@@ -38,26 +38,26 @@ struct ProcessOptions : Options {
     const auto words = programs::list_command(command, fields);
     if (words && checksum.empty()) checksum = programs::content_of(*words).checksum;
     programs::list_checksum(checksum, fields);
-    fields.real(deadline, Field("deadline", "a tap that is not answered by then fails, and the program is ended")
+    fields.real(deadline, Field("deadline", "time after which an unanswered tap fails and the program is ended")
                               .in(Unit::second)
                               .above(0)
                               .at_most(86400)
-                              .from("longer than motion.timeout, which the program itself should tell"));
-    fields.real(start, Field("start", "how much longer the deadline is for a tap that has to start the program")
+                              .from("longer than motion.timeout, which the program itself should report"));
+    fields.real(start, Field("start", "additional time before the deadline for a tap that has to start the program")
                            .in(Unit::second)
                            .at_least(0)
                            .at_most(86400)
                            .from("an estimate: drivers of robots take seconds"));
     fields.flag(repeatable, Field("repeatable",
-                                  "a tap can be made again at no risk and is answered alike: taps are "
-                                  "not announced and synced before they move"));
-    fields.flag(restart,
-                Field("restart",
-                      "a program that ended, or had to be ended, is started again for the next tap though taps "
-                      "are not repeatable; else the run fails then, for somebody to look at the arm"));
-    fields.flag(scene_is_truth,
-                Field("scene_is_truth", "the scene of the config is what the program taps: compute the errors"));
-    fields.section(motion, Field("motion", "the tapping motion, sent along in SI units"));
+                                  "whether a tap can be repeated without risk and with the same answer; taps are then "
+                                  "not announced in the record before they move"));
+    fields.flag(restart, Field("restart",
+                               "whether a program that ended is started again for the next tap even if taps are not "
+                               "repeatable; otherwise the run fails"));
+    fields.flag(
+        scene_is_truth,
+        Field("scene_is_truth", "whether the program taps the scene of the config, so that errors can be computed"));
+    fields.section(motion, Field("motion", "motion of the arm in a tap, sent to the program in SI units"));
   }
 };
 
@@ -197,6 +197,6 @@ class Process final : public Backend {
   bool answered_ = false;  ///< at least once, by any process of it
 };
 
-PALPATE_PLUGIN(Backend, Process, "process", "any program, asked and answering in JSON lines")
+PALPATE_PLUGIN(Backend, Process, "process", "any program that answers requests for taps, in JSON lines")
 
 }  // namespace palpate::backends

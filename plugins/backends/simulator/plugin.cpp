@@ -3,6 +3,6 @@
 
 namespace palpate::backends {
 
-PALPATE_PLUGIN(Backend, Simulator, "simulator", "a simulated arm over the scene of the config")
+PALPATE_PLUGIN(Backend, Simulator, "simulator", "simulated arm in the scene of the config")
 
 }  // namespace palpate::backends

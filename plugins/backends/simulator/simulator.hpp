@@ -15,8 +15,8 @@ struct SimulatorOptions : Options {
   tapping::BackendMotion motion;
   double pace = 0.0;
   void list(Fields& fields) override {
-    fields.section(motion, Field("motion", "the tapping motion"));
-    fields.real(pace, Field("pace", "seconds of real time spent per second of robot time; 0 runs as fast as it can")
+    fields.section(motion, Field("motion", "motion of the arm in a tap"));
+    fields.real(pace, Field("pace", "real time per second of robot time, in seconds; 0 for the highest speed")
                           .at_least(0)
                           .not_identifying());
   }

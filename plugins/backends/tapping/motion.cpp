@@ -39,18 +39,24 @@ std::string touch(const MotionOptions& motion) {
 }  // namespace
 
 void AdaptiveHover::list(Fields& fields) {
-  fields.real(deviations,
-              Field("deviations", "standard deviations of the predicted height that the descent begins above it")
-                  .at_least(0)
-                  .from("2: the surface is higher in about 2 % of the taps"));
-  fields.real(clearance, positive("clearance", "and this much higher still; a contact on the way there backs off by it",
-                                  Unit::metre, "an estimate: several times the error of a good tap"));
-  fields.real(speed, positive("speed", "from the height of travel down to there", Unit::metre_per_second,
-                              "a third of travel_speed, since a wrong prediction is hit at this speed"));
+  fields.real(
+      deviations,
+      Field("deviations",
+            "distance of the slow descent's start from the predicted height, in standard deviations of that height")
+          .at_least(0)
+          .from("2: the surface is higher in about 2 % of the taps"));
+  fields.real(
+      clearance,
+      positive("clearance",
+               "additional distance of the slow descent's start; the arm also backs off by it after an earlier contact",
+               Unit::metre, "an estimate: several times the error of a good tap"));
+  fields.real(speed, positive("speed", "speed from the travel height down to the start of the slow descent",
+                              Unit::metre_per_second,
+                              "a third of travel_speed, as the arm hits a wrongly predicted surface at this speed"));
   fields.real(certainty,
               Field("certainty",
-                    "where an object is at least so probable the descent ends below it as it else does below the desk, "
-                    "and where none is, only the desk is expected; not given, an object is expected everywhere")
+                    "probability at which the descent relies on the footprint: with an object it ends below the "
+                    "object, without one it expects only the desk; not given: an object is expected everywhere")
                   .above(0.5)
                   .at_most(1));
 }
@@ -61,10 +67,10 @@ void MotionOptions::list(Fields& fields) {
 }
 
 void BackendMotion::list(Fields& fields) {
-  list_types(fields,
-             {{"per_tap", "for each tap the motion that gains most information per second", [this](Fields& inner) {
-                 inner.sections(of, Field("of", "the motions to choose from, each with options of its own"));
-               }}});
+  list_types(fields, {{"per_tap", "motion with the highest information gain per second, chosen for each tap",
+                       [this](Fields& inner) {
+                         inner.sections(of, Field("of", "list of motions to choose from, each with its own options"));
+                       }}});
   if (type != Type::per_tap) return list_rest(fields);
   fields.require(of.size() >= 2, "of", "names the motions to choose from, at least two");
   const auto same = [this](const MotionOptions& one) { return one.hover == of.front().hover; };
@@ -76,66 +82,70 @@ void MotionOptions::list_types(Fields& fields, const std::vector<Case>& more) {
     inner.real(pause, Field("pause", meaning).in(Unit::second).at_least(0).from("Sun and Min 2021: 0.5 s"));
   };
   std::vector<Case> types{
-      {"paper", "in steps with a pause after each, until the force rises; the height is read after that pause",
+      {"paper", "steps with a pause after each, until the force rises; the height is read after the last pause",
        [&, this](Fields& inner) {
-         inner.real(step, positive("step", "height of one step", Unit::metre, "Sun and Min 2021: 3 cm"));
-         pause_after(inner, "rest after each step");
+         inner.real(step, positive("step", "length of one downward step", Unit::metre, "Sun and Min 2021: 3 cm"));
+         pause_after(inner, "pause after each step");
        }},
-      {"two_stage", "at once until the force rises, a little back, and again more slowly and gently",
+      {"two_stage", "descent until the force rises, a short retreat, and a second, slower and gentler descent",
        [&, this](Fields& inner) {
-         inner.real(back_off, positive("back_off", "way up between the stages", Unit::metre,
-                                       "2 cm: the springs unwind, and a false contact shows"));
-         pause_after(inner, "rest before the second stage, with a new tare");
-         inner.real(fine_speed, positive("fine_speed", "of the second stage", Unit::metre_per_second,
+         inner.real(back_off, positive("back_off", "distance of the retreat between the two stages", Unit::metre,
+                                       "2 cm: the joint springs relax, and a false contact is noticed"));
+         pause_after(inner, "pause before the second stage, with a new tare");
+         inner.real(fine_speed, positive("fine_speed", "speed of the second stage", Unit::metre_per_second,
                                          "2 cm/s: 5 mm of set-point ahead of the arm at a lag of 0.3 s"));
-         inner.real(fine_threshold, positive("fine_threshold", "force at which the second stage ends", Unit::newton,
-                                             "6 N: four deviations of 1.5 N of noise"));
+         inner.real(fine_threshold, positive("fine_threshold", "force above the tare at which the second stage ends",
+                                             Unit::newton, "6 N: four deviations of 1.5 N of noise"));
        }},
-      {"continuous", "at constant speed until the force rises; the height is that where it began to rise",
+      {"continuous", "descent at constant speed until the force rises; the height is where the force began to rise",
        [this](Fields& inner) {
          inner.real(brake, Field("brake",
-                                 "at a contact the set-point goes so far above the arm: one that trails it "
-                                 "stops sooner, and presses less")
+                                 "height above the arm to which the set-point jumps at a contact, so that a lagging "
+                                 "arm stops sooner and presses less")
                                .in(Unit::metre)
                                .at_least(0)
-                               .from("0: the set-point is put where the arm is"));
+                               .from("0: the set-point jumps to the arm's position"));
          inner.flag(confirm, Field("confirm",
-                                   "believe a contact only if the force lasts for 0.1 s, and else go on: a "
-                                   "jerk is gone by then; a real arm always does"));
+                                   "whether a contact counts only if the force lasts for 0.1 s, which rules out jerks; "
+                                   "real arms always require it"));
        }}};
   types.insert(types.end(), more.begin(), more.end());
-  fields.choice(type, Field("type", "how the arm comes down"), types);
+  fields.choice(type, Field("type", "type of the tapping motion"), types);
 }
 
 void MotionOptions::list_rest(Fields& fields) {
   fields.real(
       speed,
-      positive("speed", "of the descent: of its steps, or of its first stage", Unit::metre_per_second,
-               "2.4 cm/s: with a lag of 0.35 s and 1500 N/m the paper's motion has its known 13 mm and 6.4 s a tap"));
+      positive(
+          "speed", "speed of the descent, of its steps (paper) or of its first stage (two_stage)",
+          Unit::metre_per_second,
+          "2.4 cm/s: with a lag of 0.35 s and 1500 N/m the paper's motion then has its known 13 mm and 6.4 s per tap"));
   fields.real(threshold, positive("threshold", "force above the tare at which contact is declared", Unit::newton,
                                   "10 N: used with Baxter, whose firmware stops the arm at 16 N"));
   fields.real(hover, positive("hover", "height above the desk at which the arm travels and the descent begins",
                               Unit::metre, "13.5 cm: 2.5 cm above the highest of the paper's objects"));
-  fields.section(adaptive_hover,
-                 Field("adaptive_hover", "begin the slow descent just above the predicted surface instead"));
-  fields.real(travel_speed, positive("travel_speed", "of the tool at the height of travel", Unit::metre_per_second,
+  fields.section(
+      adaptive_hover,
+      Field("adaptive_hover", "start of the slow descent just above the predicted surface; not given: at `hover`"));
+  fields.real(travel_speed, positive("travel_speed", "speed of the tool at travel height", Unit::metre_per_second,
                                      "30 cm/s: Baxter's default speed ratio is 0.3 of about 1 m/s"));
   fields.real(retreat_speed,
-              positive("retreat_speed", "of the tool on its way up", Unit::metre_per_second, "as travel_speed"));
-  fields.real(tare, Field("tare", "rest before the descent, in which the force is averaged: its zero")
-                        .in(Unit::second)
-                        .at_least(0)
-                        .from("20 samples at Baxter's 100 Hz: 1.5 N of noise become 0.3 N"));
-  fields.real(overrun, Field("overrun", "how far below the desk the descent goes before it ends without a contact")
+              positive("retreat_speed", "speed of the tool on its way up", Unit::metre_per_second, "as travel_speed"));
+  fields.real(tare,
+              Field("tare", "duration of the rest before the descent, in which the force is averaged to set its zero")
+                  .in(Unit::second)
+                  .at_least(0)
+                  .from("20 samples at Baxter's 100 Hz: 1.5 N of noise become 0.3 N"));
+  fields.real(overrun, Field("overrun", "depth below the desk at which a descent without contact ends")
                            .in(Unit::metre)
                            .at_least(0)
                            .from("3 cm: 1500 N/m reach 10 N after 0.7 cm, and a lag adds 1 cm"));
-  fields.real(timeout, positive("timeout", "a tap that takes longer fails", Unit::second,
-                                "ten times what the paper's motion takes")
+  fields.real(timeout, positive("timeout", "duration after which a tap fails", Unit::second,
+                                "ten times the duration of the paper's motion")
                            .at_most(3600));
   fields.real(force_limit, Field("force_limit",
-                                 "force that no tap is to exceed: at three quarters of it the arm stops "
-                                 "by itself, whatever of the contact is felt; not given, it does not")
+                                 "maximum force of a tap: the arm stops by itself at three quarters of it, even if it "
+                                 "feels no contact; not given: no limit")
                                .in(Unit::newton)
                                .above(0)
                                .from("16 N: where Baxter's firmware stops the arm"));

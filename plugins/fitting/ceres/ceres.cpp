@@ -321,6 +321,6 @@ class Ceres final : public Fitting {
 };
 
 PALPATE_PLUGIN(Fitting, Ceres, "ceres",
-               "fit kernel, signal and noise to the taps, by marginal likelihood or leave-one-out")
+               "fit of kernel, signal and noise to the taps, by marginal likelihood or leave-one-out")
 
 }  // namespace palpate::fitting

@@ -21,24 +21,24 @@ struct CeresOptions : Options {
   std::int64_t starts = 3;
 
   void list(Fields& fields) override {
-    fields.choice(objective, Field("objective", "what is maximised"),
+    fields.choice(objective, Field("objective", "objective that the fit maximises"),
                   {{"lml", "log marginal likelihood of the targets", {}},
-                   {"loo", "log predictive density of each target, given the others", {}}});
-    fields.choice(
-        priors, Field("priors", "what is expected of the hyperparameters before any tap"),
-        {{"touch",
-          "log-normal densities: length scales 1/12 of the area's longer side, within a factor of 1.5; "
-          "signal the largest deviation of a target from the mean, 1.35; noise 0.3 of the signal, or 0.05 where the "
-          "level of the surface is open, 1.5; other kernel parameters 1, 2.7; a fitted mean within the largest "
-          "deviation of the targets' own (a factor is one standard deviation of the logarithm)",
-          {}},
-         {"none", "nothing; needs more taps than hyperparameters", {}}});
-    fields.choice(mean, Field("mean", "of the prior"),
-                  {{"keep", "stays as the config says", {}}, {"fit", "one constant, fitted with the others", {}}});
-    fields.integer(every, Field("every", "fit after each so many taps").at_least(1).at_most(100000));
+                   {"loo", "leave-one-out log predictive density of the targets", {}}});
+    fields.choice(priors, Field("priors", "prior densities of the hyperparameters"),
+                  {{"touch",
+                    "log-normal, with median and factor of one standard deviation: length scales 1/12 of the area's "
+                    "longer side, 1.5; signal the largest deviation of a target from the mean, 1.35; noise 0.3 of the "
+                    "signal, or 0.05 if the level of the surface is unknown, 1.5; other kernel parameters 1, 2.7; a "
+                    "fitted mean is normal around the mean of the targets, within their largest deviation",
+                    {}},
+                   {"none", "no priors; the fit needs more taps than hyperparameters", {}}});
+    fields.choice(mean, Field("mean", "prior mean of the GP"),
+                  {{"keep", "mean that the config gives", {}},
+                   {"fit", "constant mean, fitted together with the other hyperparameters", {}}});
+    fields.integer(every, Field("every", "number of taps from one fit to the next").at_least(1).at_most(100000));
     fields.integer(starts, Field("starts",
-                                 "ascents: one from the present values or better ones near them, the others "
-                                 "from random places within the expectations")
+                                 "number of ascents: one starts at or near the present values, the others at random "
+                                 "values within the range of the priors")
                                .at_least(1)
                                .at_most(1000));
   }

@@ -6,6 +6,6 @@
 namespace palpate::footprints {
 
 PALPATE_PLUGIN(Footprint, Classifier, "gp_classifier",
-               "Gaussian process classification (Laplace's approximation, probit), for outlines of any form")
+               "Gaussian process classification (Laplace approximation, probit link), for outlines of any form")
 
 }  // namespace palpate::footprints

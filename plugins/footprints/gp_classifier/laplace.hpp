@@ -33,12 +33,12 @@ struct LaplaceOptions : Options {
   double prior_mean = -1.0;
 
   void list(Fields& fields) override {
-    fields.plugin(kernel, Field("kernel", "shape of the covariance of the classifier's latent function").needed());
+    fields.plugin(kernel, Field("kernel", "covariance kernel of the classifier's latent function").needed());
     fields.real(signal,
                 Field("signal", "prior standard deviation of the classifier's latent function").above(0).at_most(100));
     fields.real(prior_mean, Field("prior_mean",
-                                  "of the classifier's latent function; below 0 says that most of the area is desk: at "
-                                  "-1, with a signal of 2, a third of it is an object"));
+                                  "prior mean of the classifier's latent function; at -1, with a signal of 2, a third "
+                                  "of the area is expected to be object"));
   }
 };
 

@@ -24,17 +24,19 @@ struct PrimitivesOptions : LaplaceOptions {
   double max_contradictions = 4.0;
   std::int64_t particles = 384;
   void list(Fields& fields) override {
-    fields.real(min_width, Field("min_width", "least width of a primitive").in(Unit::metre).above(0));
-    fields.real(max_length, Field("max_length", "greatest length of a primitive").in(Unit::metre).above(0));
+    fields.real(min_width,
+                Field("min_width", "minimum width of a primitive (box or ellipse)").in(Unit::metre).above(0));
+    fields.real(max_length,
+                Field("max_length", "maximum length of a primitive (box or ellipse)").in(Unit::metre).above(0));
     fields.real(expected_count,
-                Field("expected_count",
-                      "mean number of boxes and ellipses on 23 cm x 23 cm; proportional to the area elsewhere")
+                Field("expected_count", "prior mean number of boxes and ellipses per 23 cm x 23 cm of the area")
                     .above(0)
                     .at_most(20));
-    fields.real(hole_probability,
-                Field("hole_probability", "probability that a primitive has a hole, itself a box or an ellipse")
-                    .at_least(0)
-                    .at_most(0.9));
+    fields.real(
+        hole_probability,
+        Field("hole_probability", "prior probability that a primitive has a hole, which is a box or an ellipse, too")
+            .at_least(0)
+            .at_most(0.9));
     fields.real(label_error_probability,
                 Field("label_error_probability", "probability that the label of a contact is wrong")
                     .at_least(1e-6)
@@ -42,7 +44,7 @@ struct PrimitivesOptions : LaplaceOptions {
     fields.real(
         false_contact_probability,
         Field("false_contact_probability",
-              "probability that a contact with the desk is labelled as an object; label_error_probability if not given")
+              "probability that a contact with the desk is labelled as an object; not given: label_error_probability")
             .at_least(1e-6)
             .at_most(0.4));
     fields.real(position_noise,
@@ -53,15 +55,16 @@ struct PrimitivesOptions : LaplaceOptions {
                 Field("push_probability", "probability that the objects are pushed between two contacts")
                     .at_least(0)
                     .at_most(0.5));
-    fields.flag(heights, Field("heights", "whether touches of unlike height speak for two pieces"));
-    fields.real(max_contradictions, Field("max_contradictions",
-                                          "mean number of wrong labels, beyond those that label_error_probability lets "
-                                          "expect, at which gp_classifier takes over")
-                                        .above(0));
-    fields.integer(particles,
-                   Field("particles", "outlines that stand for the belief; twice as many while something is new")
-                       .at_least(100)
-                       .at_most(100000));
+    fields.flag(heights, Field("heights", "whether contacts of different height count as evidence for two primitives"));
+    fields.real(
+        max_contradictions,
+        Field("max_contradictions",
+              "mean number of wrong labels, in excess of label_error_probability, at which gp_classifier takes over")
+            .above(0));
+    fields.integer(particles, Field("particles",
+                                    "number of outline hypotheses; twice as many for ten contacts after each discovery")
+                                  .at_least(100)
+                                  .at_most(100000));
     LaplaceOptions::list(fields);
     fields.require(min_width < max_length, "max_length", "is not larger than min_width");
   }
@@ -156,7 +159,8 @@ class Primitives final : public Footprint {
   int handed_over_at_ = 0;  ///< touches; 0: not yet
 };
 
-PALPATE_PLUGIN(Footprint, Primitives, "primitives",
-               "a belief over outlines of any number of boxes and ellipses, given up where the touches contradict it")
+PALPATE_PLUGIN(
+    Footprint, Primitives, "primitives",
+    "Bayesian inference of boxes and ellipses in any number; gp_classifier takes over if the contacts contradict them")
 
 }  // namespace palpate::footprints

@@ -29,14 +29,17 @@ struct HeightMapOptions : Options {
 
   void list(Fields& fields) override {
     fields.text(file, Field("file",
-                            "CSV, NPY or PNG (8 or 16 bits, grey); the first row is at the far side, as in an image; a "
-                            "relative path starts in the working folder or beside the config")
+                            "CSV, NPY or PNG file (8 or 16 bits, grey), with its first row at the far side; a relative "
+                            "path starts in the working folder or beside the config")
                           .needed()
                           .names_file()
                           .not_identifying());
-    fields.real(unit, Field("unit", "height that a value of 1 in the file means").in(Unit::metre).above(0).needed());
-    fields.real(spacing,
-                Field("spacing", "from one value to the next, along and across").in(Unit::metre).above(0).needed());
+    fields.real(unit,
+                Field("unit", "height that a value of 1 in the file stands for").in(Unit::metre).above(0).needed());
+    fields.real(spacing, Field("spacing", "distance between neighbouring values, along x and along y")
+                             .in(Unit::metre)
+                             .above(0)
+                             .needed());
     list_checksum(file, checksum, fields);
   }
 };
@@ -217,6 +220,6 @@ class HeightMap final : public Shape {
   double highest_ = 0.0, half_length_ = 0.0, half_width_ = 0.0;
 };
 
-PALPATE_PLUGIN(Shape, HeightMap, "height_map", "heights on a grid, from a table, an array of NumPy or an image")
+PALPATE_PLUGIN(Shape, HeightMap, "height_map", "heights on a grid, from a CSV table, a NumPy array or an image")
 
 }  // namespace palpate::shapes

@@ -185,6 +185,6 @@ class Mesh final : public Shape {
   std::shared_ptr<RTCSceneTy> scene_;
 };
 
-PALPATE_PLUGIN(Shape, Mesh, "mesh", "triangles from an STL, OBJ or PLY file")
+PALPATE_PLUGIN(Shape, Mesh, "mesh", "triangle mesh from an STL, OBJ or PLY file")
 
 }  // namespace palpate::shapes

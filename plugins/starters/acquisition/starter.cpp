@@ -9,7 +9,10 @@ struct MyAcquisitionOptions : Options {
   double trust = 0.5;
 
   void list(Fields& fields) override {
-    fields.real(trust, Field("trust", "in the outline: 0 taps wherever the height is unknown").at_least(0).at_most(10));
+    fields.real(trust,
+                Field("trust", "weight (exponent) of the object probability; 0 taps wherever the height is unknown")
+                    .at_least(0)
+                    .at_most(10));
   }
 };
 
@@ -30,4 +33,4 @@ class MyAcquisition final : public Acquisition {
   Options options_;
 };
 
-PALPATE_PLUGIN(Acquisition, MyAcquisition, "starter", "an acquisition of my own: unknown height, probable object")
+PALPATE_PLUGIN(Acquisition, MyAcquisition, "starter", "custom acquisition: height uncertainty times object probability")

@@ -12,8 +12,8 @@ struct MyBackendOptions : Options {
   double height = 0.05;
 
   void list(Fields& fields) override {
-    fields.real(radius, Field("radius", "of the dome").in(Unit::metre).above(0));
-    fields.real(height, Field("height", "of its top above the desk").in(Unit::metre).at_least(0));
+    fields.real(radius, Field("radius", "radius of the dome").in(Unit::metre).above(0));
+    fields.real(height, Field("height", "height of the top above the desk").in(Unit::metre).at_least(0));
   }
 };
 
@@ -41,4 +41,4 @@ class MyBackend final : public Backend {
   const Scene& scene_;
 };
 
-PALPATE_PLUGIN(Backend, MyBackend, "starter", "a backend of my own: a dome")
+PALPATE_PLUGIN(Backend, MyBackend, "starter", "custom backend: a simulated dome")

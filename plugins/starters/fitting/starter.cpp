@@ -11,7 +11,7 @@ struct MyFittingOptions : Options {
   std::int64_t every = 5;
 
   void list(Fields& fields) override {
-    fields.integer(every, Field("every", "taps from one fit to the next").at_least(1).at_most(1000));
+    fields.integer(every, Field("every", "number of taps from one fit to the next").at_least(1).at_most(1000));
   }
 };
 
@@ -44,4 +44,4 @@ class MyFitting final : public Fitting {
   Options options_;
 };
 
-PALPATE_PLUGIN(Fitting, MyFitting, "starter", "a fitting of my own: moments of the targets")
+PALPATE_PLUGIN(Fitting, MyFitting, "starter", "custom fitting: moments of the targets")

@@ -12,8 +12,10 @@ struct MyFootprintOptions : Options {
   double prior = 0.2;
 
   void list(Fields& fields) override {
-    fields.real(reach, Field("reach", "distance over which a touch tells of its neighbours").in(Unit::metre).above(0));
-    fields.real(prior, Field("prior", "probability of an object where nobody touched").at_least(0).at_most(1));
+    fields.real(
+        reach,
+        Field("reach", "distance over which a contact informs about its neighbourhood").in(Unit::metre).above(0));
+    fields.real(prior, Field("prior", "probability of an object far from all contacts").at_least(0).at_most(1));
   }
 };
 
@@ -43,4 +45,4 @@ class MyFootprint final : public Footprint {
   std::vector<Touch> touches_;
 };
 
-PALPATE_PLUGIN(Footprint, MyFootprint, "starter", "a footprint of my own: labels of the touches near by")
+PALPATE_PLUGIN(Footprint, MyFootprint, "starter", "custom footprint: weighted labels of the contacts nearby")

@@ -8,7 +8,9 @@ struct MyKernelOptions : Options {
   double length_scale = 0.02;
 
   void list(Fields& fields) override {
-    fields.real(length_scale, Field("length_scale", "distance over which heights stay alike").in(Unit::metre).above(0));
+    fields.real(
+        length_scale,
+        Field("length_scale", "length scale: distance over which heights are correlated").in(Unit::metre).above(0));
   }
 };
 
@@ -33,4 +35,4 @@ class MyKernel final : public Kernel {
   Options options_;
 };
 
-PALPATE_PLUGIN(Kernel, MyKernel, "starter", "a kernel of my own: tails that fall off slowly")
+PALPATE_PLUGIN(Kernel, MyKernel, "starter", "custom kernel: correlation that decays slowly with distance")

@@ -14,9 +14,9 @@ struct MyShapeOptions : Options {
   double height = 0.05;
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent along it").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "extent across it").in(Unit::metre).above(0));
-    fields.real(height, Field("height", "of its top above the desk").in(Unit::metre).above(0));
+    fields.real(length, Field("length", "extent along x, before the rotation").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "extent along y, before the rotation").in(Unit::metre).above(0));
+    fields.real(height, Field("height", "height of the top above the desk").in(Unit::metre).above(0));
   }
 };
 
@@ -42,4 +42,4 @@ class MyShape final : public Shape {
   Eigen::Vector3d half_;
 };
 
-PALPATE_PLUGIN(Shape, MyShape, "starter", "a shape of my own: an ellipsoid")
+PALPATE_PLUGIN(Shape, MyShape, "starter", "custom shape: an ellipsoid")
