@@ -127,8 +127,8 @@ std::string find_checked(const std::string& command, const std::vector<std::stri
                          const std::string& checksum) {
   const std::string found = content_of(words, folder).checksum;
   if (checksum == found) return find_program(words.front(), folder);
-  throw Error("checksum", "is not that of " + shown(command) + " with its program, which has " + found,
-              "put the program back that the run began with, or begin another run", Error::Kind::busy);
+  throw Error("checksum", "does not match " + shown(command) + " with its program, whose checksum is " + found,
+              "restore the program that the run started with, or start another run", Error::Kind::busy);
 }
 
 std::string shown(const std::string& text) {

@@ -20,7 +20,7 @@ struct WaveOptions : Options {
     fields.real(amplitude, Field("amplitude", "of the wave, with a crest at the centre").in(Unit::metre).at_least(0));
     fields.real(period, Field("period", "distance from crest to crest").in(Unit::metre).above(0));
     fields.require(amplitude <= height, "amplitude",
-                   "is larger than the mean height, the top would dip below the desk");
+                   "is larger than the mean height, so the top would be below the desk");
   }
 };
 

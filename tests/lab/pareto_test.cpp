@@ -248,11 +248,11 @@ TEST(Within, ReadsTheBoundInTheUnitOfTheError) {
   EXPECT_EQ(read_bound(made.pareto(), "5mm"), 0.005);
   EXPECT_EQ(read_bound(made.pareto("robot_seconds", "footprint_iou"), "0.8"), 0.8);
   EXPECT_EQ(made.refusal("robot_seconds", "rmse_m", "5"),
-            "command line: --within: '5' lacks its unit, write a length like '1.7 cm'");
+            "command line: --within: '5' has no unit, write a length like '1.7 cm'");
   EXPECT_EQ(made.refusal("robot_seconds", "rmse_m", "5 s"),
             "command line: --within: '5 s' is a time, not a length, write a length like '1.7 cm'");
   EXPECT_EQ(made.refusal("robot_seconds", "footprint_iou", "80 %"),
-            "command line: --within: '80 %' is not a plain number, this one has no unit");
+            "command line: --within: '80 %' is not a plain number, write it without a unit");
 }
 
 TEST(Pareto, RefusesColumnsThatCannotBeCompared) {

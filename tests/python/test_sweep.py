@@ -178,7 +178,7 @@ class Sweeps(InFolder):
         self.assertLess(sum(palpate.load_sweep("default@latest", runs=self.folder).table["status"] == "done"), 3)
 
     def test_what_is_wrong_with_a_sweep_is_said_with_place_reason_and_remedy(self):
-        self.refuses("command line", "lacks its ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
+        self.refuses("command line", "has no closing ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
         self.refuses("sweep", "workers", "at least 1", lambda: palpate.sweep(DEFAULT, seed=[1, 2], workers=0))
         self.refuses("nothing", "has that name", "palpate list", lambda: palpate.load_sweep("nothing", self.folder))
 

@@ -107,7 +107,7 @@ TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
   }
   EXPECT_GT(contacts, 5);
   EXPECT_THAT(refused({"run", config(), "--dry-run", "prior={depth: " + (run / "export/taps.ply").string() + "}"}),
-              testing::HasSubstr("prior: is of taps from above"));
+              testing::HasSubstr("prior: applies to taps from above"));
   EXPECT_THAT(refused({"export", run, "--to", run}), testing::HasSubstr("nothing is written over"));
 }
 
@@ -392,7 +392,7 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "acquisition=weighted"}),
               testing::HasSubstr("weighted scores taps from above alone, choose one that scores approaches"));
   EXPECT_THAT(refused({"run", config(), "scene.touch=top"}),
-              testing::HasSubstr("surface: implicit is for a scene with touch: any"));
+              testing::HasSubstr("surface: implicit needs a scene with touch: any"));
   EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side has it"));
   EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
               testing::HasSubstr("discovery scores approaches from any side alone"));
@@ -429,10 +429,10 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
                                 "engine.threads=2",
                                 "log.maps=true"}) {
     const std::string word(key);
-    EXPECT_THAT(refused({"run", config(), "--dry-run", word}),
-                testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),
-                               testing::HasSubstr(": is of taps from above and means nothing from any side, take it "
-                                                  "away")));
+    EXPECT_THAT(
+        refused({"run", config(), "--dry-run", word}),
+        testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),
+                       testing::HasSubstr(": applies to taps from above only, remove it or choose scene.touch: top")));
   }
   // Of a grid that is not read there.
   EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "tie_tolerance=1e-6", "candidates.count=47",
@@ -441,7 +441,7 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
             0);
   for (const char* const key : {"space.moves=5", "space.view={}"}) {
     EXPECT_THAT(refused({"run", paper(), "--dry-run", key}),
-                testing::HasSubstr("space: is of surface: implicit and means nothing from above, take it away"));
+                testing::HasSubstr("space: applies to surface: implicit only, remove it for taps from above"));
   }
 }
 

@@ -117,7 +117,7 @@ TEST_F(BadPlugin, ThatIsAFolderIsNoLibrary) {
 
 TEST_F(BadPlugin, ThatIsADanglingLinkSaysSo) {
   fs::create_symlink("nowhere.so", kernel("link"));
-  expect_broken(here(), "link", "opening: a link to a file that is not there");
+  expect_broken(here(), "link", "opening: a link to a missing file");
 }
 
 TEST_F(BadPlugin, ThatCannotBeReadSaysSo) {
@@ -161,7 +161,7 @@ TEST_F(BadPlugin, WithAFlippedBitIsListedOrListedPast) {
 TEST_F(BadPlugin, ThatTakesItsProcessDownIsListedWithHow) {
   for (const auto& [name, how] : std::vector<std::pair<std::string, std::string>>{
            {"crashes_when_loaded", "crashed, signal 11 (Segmentation fault)"},
-           {"hangs_when_loaded", "came to no end within 5 s"},
+           {"hangs_when_loaded", "did not finish within 5 s"},
            {"ends_when_loaded", "ended the program with status 0"}}) {
     const fs::path folder = test::bad_plugin_folder(name);
     search(folder);

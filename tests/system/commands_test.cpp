@@ -28,7 +28,7 @@ TEST_F(Groups, InAWorkingFolderThatOthersMayWriteAreNotTaken) {
   for (const fs::path& open : {here(), here() / "configs"}) {
     fs::permissions(open, fs::perms::others_write, fs::perm_options::add);
     EXPECT_THAT(refused("validate mine/x.yaml"),
-                HasSubstr("configs/backend/mine.yaml lies where others may put files"));
+                HasSubstr("configs/backend/mine.yaml is in a folder where other users can write"));
     fs::permissions(open, fs::perms::others_write, fs::perm_options::remove);
   }
 }

@@ -183,7 +183,7 @@ TEST_F(Pareto, RefusesWhatCannotBeComparedInOneLine) {
   EXPECT_THAT(refused(words(sweep, "robot_seconds", "rmse_m") + Words{"--within", ""}), HasSubstr("--within"))
       << "a variable that is not set";
   EXPECT_EQ(refused(words(sweep, "robot_seconds", "rmse_m") + "--within 5"),
-            "command line: --within: '5' lacks its unit, write a length like '1.7 cm'\n");
+            "command line: --within: '5' has no unit, write a length like '1.7 cm'\n");
   fs::create_directory(here() / "empty");
   EXPECT_THAT(refused(words(here() / "empty", "robot_seconds", "rmse_m")),
               EndsWith("is neither a run nor a sweep, it has no record of one\n"));

@@ -138,7 +138,7 @@ TEST_F(ProgramRun, AnotherProgramIsAnotherRunAndCarriesNoneOn) {
   cut_taps(first);
   const std::string other = echo("uncertainty", "true");
   EXPECT_THAT(refused({"resume", first, "--quiet"}, 75),
-              AllOf(HasSubstr("acquisition/program"), HasSubstr("put the program back that the run began with")));
+              AllOf(HasSubstr("acquisition/program"), HasSubstr("restore the program that the run started with")));
   const fs::path second = ran(few(other, "--runs other"));
   EXPECT_NE(first.filename(), second.filename());
   echo("uncertainty");
@@ -151,7 +151,7 @@ TEST_F(ProgramRun, ASweepWhoseProgramIsChangedStopsAndNoJobFailsByIt) {
   const std::string before = text_of(here() / "echo.sh");
   const Ended stopped = palpate(Words{"sweep", paper()} + few(acquisition, "seed=range(0,4) -j 1"));
   EXPECT_EQ(stopped.status, 1);
-  EXPECT_THAT(stopped.err, AllOf(HasSubstr("job 1: "), HasSubstr("put the program back that the run began with"),
+  EXPECT_THAT(stopped.err, AllOf(HasSubstr("job 1: "), HasSubstr("restore the program that the run started with"),
                                  testing::Not(HasSubstr("job 2: "))));
   const fs::path sweep = directory();
   const std::string last = "stopped for the reason above; remove it, then: palpate resume ";
@@ -175,7 +175,7 @@ TEST_F(ProgramRun, AProgramThatIsGoneFailsNoJobEither) {
   const fs::path run = ran(few("acquisition={type: program, command: ./echo.sh}"));
   cut_taps(run);
   fs::rename(here() / "echo.sh", here() / "away");
-  EXPECT_THAT(refused({"resume", run, "--quiet"}, 75), HasSubstr("put the program back that the run began with"));
+  EXPECT_THAT(refused({"resume", run, "--quiet"}, 75), HasSubstr("restore the program that the run started with"));
   fs::rename(here() / "away", here() / "echo.sh");
   EXPECT_EQ(resume(run).status, 0);
 }

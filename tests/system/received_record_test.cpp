@@ -140,7 +140,7 @@ TEST_F(Received, GroupsThatManyBuildOnAreComposedOnce) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("length_scale: 0.02 m"));
   for (int i = 12; i < 20; ++i) group(i, "defaults:\n" + next(i) + "kernel: {}\n");
-  EXPECT_THAT(refusal_of(words), HasSubstr("g15.yaml:2:13: groups build on each other more than 16 deep"));
+  EXPECT_THAT(refusal_of(words), HasSubstr("g15.yaml:2:13: groups are nested more than 16 levels deep"));
 }
 
 TEST_F(Received, TextThatIsPrintedMovesNoCursorAndTurnsNoLine) {

@@ -45,8 +45,8 @@ TEST_F(Record, OfVeryManyObjectsIsReadByEveryCommand) {
 TEST_F(Record, ThatCouldNotBeReadAgainIsNotBegun) {
   write("many.yaml", many_objects(7000));
   EXPECT_EQ(refused("run many.yaml"),
-            "many.yaml:1:1: too large with all that it leaves to defaults, at most 1 MiB and 100000 values in "
-            "config.yaml\n");
+            "many.yaml:1:1: too large after the defaults are filled in, reduce config.yaml to at most 1 MiB and 100000 "
+            "values\n");
   EXPECT_TRUE(left_nothing());
 }
 

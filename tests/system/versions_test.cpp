@@ -58,10 +58,10 @@ TEST_F(Versions, AnIdStaysWhereTheOptionsMeanWhatTheyDid) {
 
 TEST_F(Versions, WhatNoLongerExistsIsRefusedUnlessARecordHasItsLastDefault) {
   EXPECT_THAT(with_version(3, run_words("kernel.tolerance=1e-8")).err,
-              HasSubstr("option 'tolerance' is no more, nothing has taken its place"));
+              HasSubstr("option 'tolerance' no longer exists, nothing has taken its place"));
   ASSERT_EQ(with_version(1, run_words("kernel.tolerance=1e-7 --quiet")).status, 0);
   EXPECT_THAT(with_version(3, {"replay", directory().string()}).err,
-              HasSubstr("option 'tolerance' is no more, only records that have 1e-08 can be read"));
+              HasSubstr("option 'tolerance' no longer exists, only records with the value 1e-08 can be read"));
 }
 
 TEST_F(Versions, AConfigThatWasEditedIsFoundWhateverItsFolderIsCalled) {

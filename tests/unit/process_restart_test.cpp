@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Gone{"ClosedStdout", "os.close(1); time.sleep(60)", "the program closed its stdin or stdout"},
                     Gone{"Garbage", "print('moving', flush=True)", "the answer is not JSON: 'moving'"},
                     Gone{"AnotherTap", "print('{\"tap\": 7}', flush=True)",
-                         "the answer is not that to tap 2: '{\"tap\": 7}'"}),
+                         "the answer does not belong to tap 2: '{\"tap\": 7}'"}),
     [](const auto& one) { return one.param.name; });
 
 class ProgramLeftBehind : public ProcessBackend {

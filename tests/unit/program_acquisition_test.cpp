@@ -220,7 +220,7 @@ TEST_F(ProgramAcquisition, SaysWhatIsWrongWithItsOptionsBeforeAnythingStarts) {
   EXPECT_THAT(refusal(command("", "\"height_mean\", \"surface_std\"")),
               HasSubstr("names arrays of taps from above and arrays of taps from any side"));
   EXPECT_THAT(refusal("nobody-has-this x", ", reads: uncertainty"), HasSubstr("there is no program 'nobody-has-this'"));
-  EXPECT_THAT(refusal(command(""), ", checksum: other"), HasSubstr("put the program back that the run began with"));
+  EXPECT_THAT(refusal(command(""), ", checksum: other"), HasSubstr("restore the program that the run started with"));
 }
 
 TEST_F(ProgramAcquisition, BeginsInTheFolderThatTheConfigNames) {

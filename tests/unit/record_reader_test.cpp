@@ -282,8 +282,9 @@ TEST_F(Record, WhoseVersionIsNoNumberIsNotTakenForALaterOne) {
   const Sound sound;
   EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": "x"})")), ":1: has no version 'manifest'" + kPutBack);
   EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": 0})")), ":1: has no version 'manifest'" + kPutBack);
-  EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": 2})")),
-            ":1: is of a later version than this palpate reads, take a palpate as new as the one that wrote it");
+  EXPECT_EQ(
+      refusal(sound.instead(0, R"({"manifest": 2})")),
+      ":1: is of a later version than this palpate reads, use a palpate at least as new as the one that wrote it");
 }
 
 TEST_F(Record, NamesNoFileOutsideItsFolder) {

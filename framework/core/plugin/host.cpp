@@ -181,7 +181,7 @@ class PluginHost::Library {
  public:
   Library(const fs::path& from, const std::string& kind, const std::string& name) : file(from) {
     std::error_code trouble;
-    if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a file that is not there");
+    if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a missing file");
     if (!fs::is_regular_file(file, trouble)) refuse(file, "opening", "not a regular file");
     const std::string bytes = read_library(file);
     check_complete(file, bytes);

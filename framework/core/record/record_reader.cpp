@@ -178,7 +178,7 @@ void RecordReader::check_version(const Tree& manifest) const {
   if (wrong != std::errc() || end != text.data() + text.size() || version < 1) refuse("has no version 'manifest'");
   if (version <= kRecordVersion) return;
   throw Error(lines_.place(), "is of a later version than this palpate reads",
-              "take a palpate as new as the one that wrote it");
+              "use a palpate at least as new as the one that wrote it");
 }
 
 void RecordReader::check_attempt(const Row& row) {

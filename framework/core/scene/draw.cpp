@@ -31,8 +31,8 @@ struct DrawOptions : Options {
     fields.integer(least, Field("least", "fewest objects").at_least(0).at_most(kMost).needed());
     fields.integer(most, Field("most", "most objects").at_least(0).at_most(kMost).needed());
     fields.sections(of, Field("of", "objects, of which each is drawn").needed());
-    fields.require(least <= most, "most", fmt::format("is less than least, which is {}", least));
-    fields.require(!of.empty(), "of", "is empty, name an object or more");
+    fields.require(least <= most, "most", fmt::format("is less than 'least', which is {}", least));
+    fields.require(!of.empty(), "of", "is empty, name at least one object");
   }
 };
 

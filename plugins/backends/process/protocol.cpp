@@ -173,7 +173,7 @@ Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds)
   if (!json.is_object()) return refused(line, "is not a JSON object", false, false);
   const bool ends_run = wants_end(json);
   if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
-  if (json["tap"] != Json(tap)) return refused(line, "is not that to tap " + std::to_string(tap), false, ends_run);
+  if (json["tap"] != Json(tap)) return refused(line, "does not belong to tap " + std::to_string(tap), false, ends_run);
   Reader reader(json);
   Contact contact = read_contact(reader, bounds);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
