@@ -92,7 +92,7 @@ class Sweeps(InFolder):
             with experiment:
                 self.tap(experiment)
         self.assertEqual(list(sweep.table["status"]), ["done"] + [None] * 5)
-        self.assertIn("made by a program of somebody's own", program("resume", sweep.directory, code=2))
+        self.assertIn("made by the caller's own program", program("resume", sweep.directory, code=2))
         again = self.told(range(3))
         self.assertEqual(again.directory, sweep.directory)
         carried_on = []

@@ -390,14 +390,14 @@ TEST_F(AnySide, ARecordThatHasLostTheLineOfATapIsSaidToBeDamaged) {
 
 TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "acquisition=weighted"}),
-              testing::HasSubstr("weighted scores taps from above alone, choose one that scores approaches"));
+              testing::HasSubstr("weighted only scores taps from above, choose one that scores approaches"));
   EXPECT_THAT(refused({"run", config(), "scene.touch=top"}),
               testing::HasSubstr("surface: implicit needs a scene with touch: any"));
   EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side has it"));
   EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
-              testing::HasSubstr("discovery scores approaches from any side alone"));
+              testing::HasSubstr("discovery only scores approaches from any side"));
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
-              testing::HasSubstr("kernel: is not one of the distance alone"));
+              testing::HasSubstr("kernel: does not depend on the distance alone"));
   const fs::path run = touched("taps=4");
   EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, and --figures"));
   EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, and pages of several"));

@@ -289,11 +289,11 @@ std::vector<Case> cases() {
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
       line("GridPosteriorWithANonSeparableKernel", "engine: {type: grid}\nkernel: {type: matern32}",
-           "10:16: engine.type: grid cannot be used with the kernel matern32, which is not separable: no product of a "
-           "factor along x and one along y, engine: {type: dense} serves every kernel"),
+           "10:16: engine.type: grid cannot be used with the kernel matern32, which is not a product of a factor along "
+           "x and a factor along y, engine: {type: dense} serves every kernel"),
       line("LowrankPosteriorWithASum", "engine: {type: lowrank}\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
-           "10:16: engine.type: lowrank cannot be used with the kernel sum, which is not separable: no product of a "
-           "factor along x and one along y, engine: {type: dense} serves every kernel"),
+           "10:16: engine.type: lowrank cannot be used with the kernel sum, which is not a product of a factor along x "
+           "and a factor along y, engine: {type: dense} serves every kernel"),
       line("NoThreads", "engine: {threads: 0}", "10:19: engine.threads: 0 is out of range, it must be at least 1"),
       line("LowrankThatKeepsNothing", "engine: {tolerance: 0}",
            "10:21: engine.tolerance: 0 is out of range, it must be above 0"),

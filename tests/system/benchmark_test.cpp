@@ -208,7 +208,7 @@ TEST_F(Benchmark, NamesAJobWhoseRecordHasLostATap) {
   write(record, text.erase(fifth, text.find("{\"tap\": 6,") - fifth));
   const Ended ended = compare(directory, "--by strategy --metric rmse_m --at 8,7");
   EXPECT_NE(ended.status, 0);
-  EXPECT_THAT(ended.err, HasSubstr(record.string() + ":12: has tap 6 where tap 5 belongs: a line is missing"));
+  EXPECT_THAT(ended.err, HasSubstr(record.string() + ":12: has tap 6 instead of tap 5: a line is missing"));
 }
 
 TEST_F(Benchmark, ShowsRatiosOfPairsIfAskedFor) {
@@ -233,8 +233,8 @@ TEST_F(Benchmark, RefusesWhatCannotBeShown) {
   EXPECT_EQ(refusal("-j 2"), "command line: -j: there is nothing to compute without --at or --until\n");
   EXPECT_THAT(refusal("--at 4 --until rmse_m=15mm"), HasSubstr("--at excludes --until"));
   EXPECT_EQ(refusal("--until rmse=8mm"),
-            "command line: --until: 'rmse' is no field of the summary of which more or less is better, did you mean "
-            "'rmse_m'?\n");
+            "command line: --until: 'rmse' is not a field of the summary for which more or less is better, did you "
+            "mean 'rmse_m'?\n");
   EXPECT_THAT(refusal("--until rmse_m=8s"), HasSubstr("--until rmse_m"));
   EXPECT_EQ(refusal("--at 4,9"), "command line: --at: no job made 9 taps, the most are 8\n");
   EXPECT_THAT(refusal("--at 0"), HasSubstr("--at"));

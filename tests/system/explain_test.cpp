@@ -343,7 +343,8 @@ TEST_F(Explain, RefusesInOneLineWhatItCannotExplain) {
               "tap " + std::string(tap) + ": the run has 17 taps, ask for one of 1 to 17\n");
   }
   EXPECT_THAT(refused({"explain", directory, "x"}), HasSubstr("TAP"));
-  EXPECT_THAT(refused("explain nowhere 1"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
+  EXPECT_THAT(refused("explain nowhere 1"),
+              HasSubstr("nowhere: is not a folder, and runs contains no run or sweep of that name"));
   const fs::path sweep = swept("seed=1,2 taps=4");
   for (const Words& words : {Words{"explain", sweep, "1"}, Words{"replay", sweep}}) {
     const std::string jobs = (sweep / "jobs").string();

@@ -209,7 +209,8 @@ TEST_F(Export, RefusesInOneLineWhatItCannotExport) {
   const fs::path directory = ran();
   const Words words{"export", directory};
   EXPECT_THAT(refused(words + "--format obj"), HasSubstr("--format: obj not in {ply,csv}"));
-  EXPECT_THAT(refused("export nowhere"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
+  EXPECT_THAT(refused("export nowhere"),
+              HasSubstr("nowhere: is not a folder, and runs contains no run or sweep of that name"));
   EXPECT_FALSE(fs::exists(here() / "nowhere"));
   EXPECT_THAT(refused(words + Words{"--to", directory / "summary.json"}, 1), HasSubstr("cannot be made"));
   const fs::path sweep = swept("seed=1,2 taps=4");

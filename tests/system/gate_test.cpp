@@ -156,7 +156,7 @@ TEST_F(Expect, CountsRunsThatFailAgainstASweep) {
   const Ended worst = with(may_fail + Words{"expect.max(rmse_m)=<= 9 m"});
   EXPECT_EQ(worst.status, 1);
   EXPECT_EQ(worst.err,
-            "command line: expected max(rmse_m) <= 9 m, got no value: 1 of 3 runs have none and count as the worst "
+            "command line: expected max(rmse_m) <= 9 m, got no value: 1 of 3 runs have no value and count as the worst "
             "(job 2: the run failed)\n");
 }
 

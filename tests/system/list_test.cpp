@@ -97,14 +97,13 @@ TEST_F(List, ANameThatSeveralRunsHaveIsRefusedWithWhatSetsThemApart) {
   ran("taps=4 seed=2");
   for (const char* command : {"status", "resume", "replay", "report", "export", "calibrate"}) {
     EXPECT_THAT(refused({command, "object_i"}),
-                MatchesRegex("object_i: stands for 2 runs: runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 2, taps 4\\); "
+                MatchesRegex("object_i: matches 2 runs: runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 2, taps 4\\); "
                              "runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 1, taps 3\\), give the directory of one, or "
-                             "object_i@latest for the last\n"));
+                             "object_i@latest for the latest\n"));
   }
   EXPECT_EQ(palpate("status object_i@latest").out, "object_i: done after 4 of 4 taps: tap budget\n");
   EXPECT_EQ(refused("status object_j"),
-            "object_j: is no folder, and in runs nothing has that name, did you mean "
-            "'object_i'?\n");
+            "object_j: is not a folder, and runs contains no run or sweep of that name, did you mean 'object_i'?\n");
 }
 
 TEST_F(List, AFolderWithARecordWinsOverANameAndOneWithoutDoesNot) {

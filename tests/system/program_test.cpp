@@ -209,7 +209,7 @@ TEST_F(ProgramRun, FromAnySideAProgramScoresLinesAndIsReplayedByItsRecord) {
   EXPECT_THAT(palpate({"replay", own}).out, HasSubstr("all equal"));
   EXPECT_EQ(palpate({"explain", own, "9"}).status, 0);
   EXPECT_THAT(refused(Words{"run", config, "scene=any_bowl", echo("object_probability")}),
-              HasSubstr("program scores taps from above alone"));
+              HasSubstr("program only scores taps from above"));
 }
 
 TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed) {

@@ -113,7 +113,7 @@ TEST_F(Record, ThatIsDamagedIsMovedAsideAsItsErrorSays) {
   write(directory / "record.jsonl", record);
   const Ended refused = palpate({"run", paper()});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("or begin anew with 'palpate run --force'"));
+  EXPECT_THAT(refused.err, HasSubstr("or start again with 'palpate run --force'"));
   const Ended anew = palpate({"run", paper(), "--force"});
   EXPECT_EQ(anew.status, 0) << anew.err;
   EXPECT_THAT(status_of(directory).out, HasSubstr("done after 17 of 17 taps"));
@@ -124,8 +124,8 @@ TEST_F(Record, InAFolderWithTheIdOfAnotherSaysThatAndNotThatItWasChanged) {
   const fs::path directory = ran();
   const fs::path other = directory.parent_path() / "000000000000";
   fs::copy(directory, other, fs::copy_options::recursive);
-  EXPECT_EQ(palpate({"replay", other}).err, other.string() + ": holds the run " + directory.filename().string() +
-                                                ", and has the name of another, give the folder another name\n");
+  EXPECT_EQ(palpate({"replay", other}).err, other.string() + ": contains the run " + directory.filename().string() +
+                                                ", but has the name of another run, rename the folder\n");
 }
 
 class KilledBeforeItsSummary : public Shell, public testing::WithParamInterface<std::pair<std::string, Words>> {};

@@ -190,7 +190,7 @@ TEST_F(ARun, InterruptedInASimulationItEndsWith130AndResumedItEqualsTheUnbrokenO
   EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
   EXPECT_FALSE(fs::exists(directory() / "summary.json"));
   EXPECT_THAT(status_of(directory()).out, HasSubstr("unfinished after "));
-  EXPECT_THAT(refused(words), HasSubstr("'palpate resume' carries on"));
+  EXPECT_THAT(refused(words), HasSubstr("resume it with 'palpate resume'"));
   ASSERT_EQ(resume(directory()).status, 0);
   EXPECT_EQ(part_of(directory(), "tap"), part_of(ran("taps=4 --runs unbroken"), "tap"))
       << "the tap that was broken off was made again, as if nothing had happened";

@@ -157,7 +157,7 @@ TEST_F(SeveralSweeps, AreNamedByWordsThatNoFileInTheWorkingFolderHides) {
   EXPECT_THAT(both, AllOf(HasSubstr("\nrandom "), HasSubstr("\nuncertainty ")));
   write("tables/one.csv", "");
   write("tables/two.csv", "");
-  EXPECT_THAT(refused(Words("compare tables/one.csv tables/two.csv") + by), HasSubstr("no sweep and no run is named"));
+  EXPECT_THAT(refused(Words("compare tables/one.csv tables/two.csv") + by), HasSubstr("no sweep and no run is given"));
 }
 
 TEST_F(SeveralSweeps, MayBeOneRunAndAreNotMergedWhereTheSameRunMeasuredSomethingElse) {

@@ -148,7 +148,7 @@ TEST_F(StepRun, IsRefusedWhereTapsCanBeRepeated) {
   for (const Words& words : {robot("backend.repeatable=true"), Words{"run", paper()}}) {
     const std::unique_ptr<Terminal> terminal = at_terminal(words);
     EXPECT_EQ(terminal->wait(), 2);
-    EXPECT_THAT(terminal->screen(), HasSubstr("can be repeated, there is nothing to confirm, leave it out\r\n"));
+    EXPECT_THAT(terminal->screen(), HasSubstr("can be repeated and need no confirmation, leave it out\r\n"));
     EXPECT_EQ(lines(terminal->screen()), 1);
     EXPECT_TRUE(left_nothing());
   }

@@ -82,8 +82,8 @@ TEST_F(Recovery, ASweepWhoseDirectoryIsMovedOrRemovedStopsAndSaysWhatToDo) {
     const Ended ended = child->wait();
     EXPECT_EQ(ended.status, 1);
     EXPECT_EQ(ended.err, fs::relative(before, here()).string() +
-                             ": was moved or removed while its jobs were under way, where it was moved to, 'palpate "
-                             "resume' carries on; otherwise begin it again with 'palpate sweep'\n");
+                             ": was moved or removed while its jobs were running, run 'palpate resume' on its new "
+                             "path, or start it again with 'palpate sweep'\n");
     EXPECT_FALSE(fs::exists(before)) << "nothing grows in its place";
     if (moved) {
       EXPECT_EQ(palpate("resume moved --quiet").status, 0);

@@ -83,8 +83,8 @@ TEST_F(UrArm, ThatAnotherProcessHasInHandIsNotMoved) {
   const Ended ended = run_with("");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err,
-              StartsWith("backend/process: the arm UR " + host() + " is in the hands of process " +
-                         std::to_string(::getpid()) + "; wait until that has ended, or end it, then 'palpate resume"));
+              StartsWith("backend/process: the arm UR " + host() + " is used by process " + std::to_string(::getpid()) +
+                         "; wait until that process has ended, or end it, then 'palpate resume"));
   EXPECT_EQ(log(), "") << "nobody has even connected";
   other.reset();
   EXPECT_EQ(palpate({"resume", directory().string(), "--retry-failed", "--quiet"}).status, 0);

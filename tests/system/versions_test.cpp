@@ -84,11 +84,11 @@ TEST_F(Versions, AConfigThatWasEditedIsFoundWhateverItsFolderIsCalled) {
   EXPECT_THAT(palpate("replay mine").err, HasSubstr("config.yaml was changed"));
   fs::rename(here() / "mine", run);
   EXPECT_THAT(palpate(words).err,
-              HasSubstr("the run there is another one with the id " + run.filename().string() + ", give this one"));
+              HasSubstr("the folder contains another run with the id " + run.filename().string() + ", give this one"));
   // On a disk that tells no capital letters two names are one folder.
   boost::replace_first(record, "\"name\": \"object", "\"name\": \"Object");
   write(run / "record.jsonl", record);
-  EXPECT_THAT(palpate(words).err, HasSubstr(": the run there has the name 'Object"));
+  EXPECT_THAT(palpate(words).err, HasSubstr(": the folder contains a run with the name 'Object"));
 }
 
 }  // namespace

@@ -110,9 +110,8 @@ TEST(Expectation, RefusesWhatItDoesNotUnderstandInOneLine) {
        "c.yaml:1:17: expect.taps: is not a comparison, write a comparison like '>= 9', with >=, <=, >, < or =="},
       {"{found: yes}", "c.yaml:1:17: expect.found: 'yes' is not a truth value, write true or false"},
       {"{found: '>= 1'}", "c.yaml:1:17: expect.found: '>= 1' does not compare with >=, write true or false"},
-      {"{status: < done}",
-       "c.yaml:1:18: expect.status: '< done' does not compare with <, write the text that it has to be"},
-      {"{compute: {infer: < 1 s}, compute.infer: < 2 s}", "c.yaml:1:35: expect.compute.infer: stands there twice"},
+      {"{status: < done}", "c.yaml:1:18: expect.status: '< done' does not compare with <, write the expected text"},
+      {"{compute: {infer: < 1 s}, compute.infer: < 2 s}", "c.yaml:1:35: expect.compute.infer: is given twice"},
       {"\n  taps: >1\n  seed: <2",
        "c.yaml:2:9: expect.taps: has no value (one that begins with > needs quotes), write "
        "a comparison like '>= 9', with >=, <=, >, < or =="},

@@ -146,7 +146,7 @@ TEST_F(PluginFolder, AFolderWithoutPluginsIsNamedRatherThanANeighbour) {
   EXPECT_EQ(refusal_with(missing), begin + missing.string() + " does not exist, see PALPATE_PLUGIN_PATH");
   folder_.write("kernel.so", "");
   EXPECT_EQ(refusal_with(folder_.path()),
-            begin + folder_.path().string() + " holds no plugin, which is KIND/NAME.so in it, see PALPATE_PLUGIN_PATH");
+            begin + folder_.path().string() + " contains no plugin KIND/NAME.so, see PALPATE_PLUGIN_PATH");
   const fs::path file = folder_.path() / "kernel.so";
   EXPECT_EQ(refusal_with(file), begin + file.string() + " is a file, see PALPATE_PLUGIN_PATH");
 }

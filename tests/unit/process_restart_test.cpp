@@ -8,7 +8,7 @@
 namespace palpate::test {
 namespace {
 
-constexpr const char* kSeeToIt = "; see to the robot, then 'palpate resume --retry-failed' starts it again";
+constexpr const char* kSeeToIt = "; check the robot, then run 'palpate resume --retry-failed'";
 
 /// What a program does for its second tap, so that nobody knows what its arm does, and what is said of it.
 struct Gone {

@@ -238,7 +238,7 @@ TEST_F(ProgramAcquisition, AWaitForItsScoresIsBrokenOff) {
   const auto acquisition = open(command("for ask in asks(): time.sleep(600)\n"));
   interrupted_ = true;
   EXPECT_EQ(error_of([&] { scores(*acquisition); }),
-            "acquisition/program: the program was interrupted, 'palpate resume' carries on");
+            "acquisition/program: the program was interrupted, run 'palpate resume' to continue");
 }
 
 }  // namespace

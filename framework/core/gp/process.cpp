@@ -232,7 +232,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
     kernel_->set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
     summary.changed = false;
     summary.failed = true;
-    summary.reason = "a number that is not finite and positive was refused; " + summary.reason;
+    summary.reason = "a number that is not finite and positive was rejected; " + summary.reason;
     return summary;
   }
   ++generation_;

@@ -408,7 +408,7 @@ class Pool {
 }  // namespace
 
 PooledSweep read_pooled(const std::vector<fs::path>& records, const PoolTexts& by) {
-  if (records.empty()) throw Error("", "no sweep and no run is named", "name at least one");
+  if (records.empty()) throw Error("", "no sweep and no run is given", "name at least one");
   if (records.size() == 1 && is_sweep(records.front())) return {read_sweep(records.front()), {}};
   return Pool(records, by).take();
 }

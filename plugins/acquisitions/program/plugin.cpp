@@ -310,7 +310,7 @@ class ProgramAcquisition final : public Acquisition {
              "correct it, or give it longer by acquisition.deadline; 'palpate resume --retry-failed' asks it again");
       case Heard::too_long:
       case Heard::interrupted:
-        fail("was interrupted", "'palpate resume' carries on");
+        fail("was interrupted", "run 'palpate resume' to continue");
     }
   }
 

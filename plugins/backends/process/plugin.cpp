@@ -84,7 +84,7 @@ class Process final : public Backend {
     if (!answer.in_step) {
       child_.reset();
       if (answer.contact.ends_run)
-        answer.contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
+        answer.contact.reason += "; check the robot, then run 'palpate resume --retry-failed'";
     }
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);

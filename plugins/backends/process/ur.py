@@ -149,7 +149,7 @@ def connect(host, asks, force_limit):
     try:
         lock = hold_arm(f"UR {host}")
     except Held as held:
-        raise Fault(f"{held}; wait until that has ended, or end it, {RETRY}") from None
+        raise Fault(f"{held}; wait until that process has ended, or end it, {RETRY}") from None
     except OSError as error:
         raise Fault(f"the arm UR {host} cannot be locked: {error}; let Python make unix sockets, {RETRY}") from None
     try:
