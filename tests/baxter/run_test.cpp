@@ -313,7 +313,7 @@ TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
                                    "--quiet", "--runs", "swept"});
   EXPECT_EQ(sweep.status, 1);
   EXPECT_THAT(sweep.err, StartsWith("job 0: " + lab.environment().front() + ": the arm left of http://"));
-  EXPECT_THAT(sweep.out, HasSubstr("stopped for the reason above; remove it, then: palpate resume "));
+  EXPECT_THAT(sweep.out, HasSubstr("stopped for the reason above; correct it, then run: palpate resume "));
   EXPECT_THAT(sweep.out, Not(HasSubstr("--retry-failed"))) << "no job has failed";
   // Another machine has locks of its own, and so has another name of the robot.
   std::string master = lab.environment().front();

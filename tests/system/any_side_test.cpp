@@ -108,7 +108,7 @@ TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
   EXPECT_GT(contacts, 5);
   EXPECT_THAT(refused({"run", config(), "--dry-run", "prior={depth: " + (run / "export/taps.ply").string() + "}"}),
               testing::HasSubstr("prior: applies to taps from above"));
-  EXPECT_THAT(refused({"export", run, "--to", run}), testing::HasSubstr("nothing is written over"));
+  EXPECT_THAT(refused({"export", run, "--to", run}), testing::HasSubstr("files are never overwritten"));
 }
 
 TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
@@ -399,8 +399,8 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
               testing::HasSubstr("kernel: does not depend on the distance alone"));
   const fs::path run = touched("taps=4");
-  EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, and --figures"));
-  EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, and pages of several"));
+  EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, but --figures"));
+  EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, but pages of several"));
 }
 
 TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {

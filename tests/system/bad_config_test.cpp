@@ -314,13 +314,13 @@ std::vector<Case> cases() {
 
       typed("NameThatIsNotUtf8SoThatNoRecordCouldHoldIt", {"name=a\xff"}, "not UTF-8, write it in UTF-8"),
       typed("ManyNamesOfAGroup", {"acquisition=weighted,random"},
-            "acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "acquisition has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ManyValues", {"engine.type=dense,grid"},
-            "engine.type has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "engine.type has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ManyWholeNumbers", {"seed=1,2"},
-            "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "seed has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ARange", {"seed=range(0,5)"},
-            "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "seed has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ListThatIsOneValue", {"scene.objects.0.at=[3,4]"},
             "scene.objects.0.at: '3' has no unit, write a length like '1.7 cm'"),
 
@@ -339,7 +339,7 @@ std::vector<Case> cases() {
             "bad.yaml:11:3: unknown option 'gird' of sweep, did you mean 'grid'?"),
       sweep("NothingToSweep", "", {}, "bad.yaml: nothing to sweep, give KEY=V1,V2 or a 'sweep:' in the config"),
       sweep("SweepOfOneValueTwice", "", {"seed=1,1"},
-            "bad.yaml: jobs 0 and 1 of the sweep are the same run, a value stands twice: write it once"),
+            "bad.yaml: jobs 0 and 1 of the sweep are the same run, a value occurs twice: write it once"),
   };
 }
 

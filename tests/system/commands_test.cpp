@@ -140,10 +140,11 @@ TEST_F(CommandLine, ACommandThatThereIsNotIsToldTheNearest) {
 
 TEST_F(CommandLine, SeveralDirectoriesWhereACommandTakesOneAreOneLineWithARemedy) {
   for (const char* command : {"status", "resume", "replay", "export"}) {
-    EXPECT_THAT(refused({command, "runs/a/1", "runs/a/2"}),
-                MatchesRegex(std::string("command line: ") + command +
-                             " takes one (DIR|RUN), and 'runs/a/2' stands beside it, where a \\* stands for several, "
-                             "name one of them\n"));
+    EXPECT_THAT(
+        refused({command, "runs/a/1", "runs/a/2"}),
+        MatchesRegex(
+            std::string("command line: ") + command +
+            " takes one (DIR|RUN), but 'runs/a/2' is given as well, if a \\* matches several, name one of them\n"));
   }
   EXPECT_THAT(refused("explain runs/a/1 runs/a/2 3"), HasSubstr(" takes one RUN and one TAP, and "));
   EXPECT_THAT(refused("report runs/a/1 --fig"), Not(HasSubstr("takes one DIR"))) << "an option is no directory";

@@ -348,8 +348,8 @@ TEST_F(Explain, RefusesInOneLineWhatItCannotExplain) {
   const fs::path sweep = swept("seed=1,2 taps=4");
   for (const Words& words : {Words{"explain", sweep, "1"}, Words{"replay", sweep}}) {
     const std::string jobs = (sweep / "jobs").string();
-    EXPECT_EQ(refused(words), sweep.string() + ": is a sweep of many runs, give one of them: " + jobs +
-                                  "/<id>; 'palpate list " + jobs + " --where \"seed == 3\"' shows which\n");
+    EXPECT_EQ(refused(words), sweep.string() + ": is a sweep of many runs, name one run: " + jobs +
+                                  "/<id>; 'palpate list " + jobs + " --where \"seed == 3\"' finds it\n");
     EXPECT_THAT(palpate({"list", jobs, "--where", "seed == 2"}).out, HasSubstr(job_of(sweep, 1).filename().string()));
   }
   for (const fs::path& job : jobs_of(sweep)) EXPECT_THAT(explain(job, 4), HasSubstr("Tap 4 of 4, run object_i ("));

@@ -142,7 +142,7 @@ TEST_F(Figures, WithoutGnuplotTheScriptsStayAndOneLineSaysWhy) {
   environment_ = {"PATH=/nowhere"};
   const Ended ended = report(directory, "--figures");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, HasSubstr("was not drawn: gnuplot is not installed, the package gnuplot-nox has it, 'gnuplot "
+  EXPECT_THAT(ended.err, HasSubstr("was not drawn: gnuplot is not installed, install the package gnuplot-nox, 'gnuplot "
                                    "surface.gnuplot' in that folder draws it later\n"));
   EXPECT_EQ(lines(ended.err), 1) << ended.err;
   for (const char* name : {"surface", "maps", "curves"}) {

@@ -154,7 +154,7 @@ TEST_F(ProgramRun, ASweepWhoseProgramIsChangedStopsAndNoJobFailsByIt) {
   EXPECT_THAT(stopped.err, AllOf(HasSubstr("job 1: "), HasSubstr("restore the program that the run started with"),
                                  testing::Not(HasSubstr("job 2: "))));
   const fs::path sweep = directory();
-  const std::string last = "stopped for the reason above; remove it, then: palpate resume ";
+  const std::string last = "stopped for the reason above; correct it, then run: palpate resume ";
   EXPECT_THAT(stopped.out, AllOf(HasSubstr(last), testing::Not(HasSubstr("carry on"))));
   EXPECT_THAT(status_of(sweep).out, HasSubstr("4 jobs, 1 done, 0 running, 0 failed"));
   const Ended again = palpate({"resume", sweep, "-j", "2"});

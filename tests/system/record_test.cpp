@@ -69,7 +69,7 @@ TEST_F(Record, OfWhichTheEndWasCutOffIsNotTakenForTheWholeRun) {
     fs::resize_file(directory / "record.jsonl", cut);
     const Ended status = status_of(directory);
     EXPECT_THAT(status.out, HasSubstr("unfinished after 8 of 17 taps"));
-    EXPECT_THAT(status.err, HasSubstr("record.jsonl: was cut, as summary.json says that the run had ended"));
+    EXPECT_THAT(status.err, HasSubstr("record.jsonl: was cut short, because summary.json says that the run had ended"));
     EXPECT_EQ(resume(directory).status, 0);
     EXPECT_EQ(part_of(directory, "tap"), taps);
     EXPECT_EQ(status_of(directory).err, "");
@@ -91,7 +91,7 @@ TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
     const Ended ended = palpate(words);
     EXPECT_EQ(ended.status, 0) << ended.err;
     for (const char* name : {"taps.csv", "surface.csv", "summary.json"})
-      EXPECT_THAT(ended.out, HasSubstr(std::string("made again from the record: ") + name + "\n"));
+      EXPECT_THAT(ended.out, HasSubstr(std::string("rebuilt from the record: ") + name + "\n"));
     EXPECT_EQ(test::lasting_files(directory), whole);
     EXPECT_EQ(text_of(directory / "record.jsonl"), record) << "nothing is added";
   }
@@ -100,8 +100,9 @@ TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
   const std::size_t hash = record.find("\"hash\": \"", record.find("\"taps.csv\"")) + 9;
   write(directory / "record.jsonl", record.substr(0, hash) + std::string(4, 'x') + record.substr(hash + 4));
   fs::remove(directory / "taps.csv");
-  EXPECT_THAT(palpate({"run", paper()}).out,
-              HasSubstr("taps.csv is gone or damaged, and this build makes another one from the same taps\n"));
+  EXPECT_THAT(
+      palpate({"run", paper()}).out,
+      HasSubstr("taps.csv is missing or damaged, and this build computes a different one from the same taps\n"));
   EXPECT_FALSE(fs::exists(directory / "taps.csv"));
 }
 

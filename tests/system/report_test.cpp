@@ -158,10 +158,10 @@ TEST_F(Report, IsWrittenElsewhereWhereTheRecordMayNotBeTouched) {
 TEST_F(Report, OfSeveralRefusesWhatCannotStandSideBySide) {
   const fs::path run = ran("taps=4");
   const fs::path sweep = swept("taps=4 seed=1,2");
-  EXPECT_THAT(refused({"report", run, sweep}), HasSubstr("is a sweep, and several runs stand side by side"));
+  EXPECT_THAT(refused({"report", run, sweep}), HasSubstr("is a sweep, but a page of several runs needs single runs"));
   EXPECT_THAT(refused({"report", run, run, "--figures"}), HasSubstr("--figures and --paper draw one run or sweep"));
   const std::vector<std::string> nine{"report", run, run, run, run, run, run, run, run, run};
-  EXPECT_THAT(refused(nine), HasSubstr("9 runs are too many side by side"));
+  EXPECT_THAT(refused(nine), HasSubstr("9 runs are too many for one page"));
 }
 
 }  // namespace

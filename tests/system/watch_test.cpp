@@ -97,7 +97,7 @@ TEST_F(WatchedRun, HasAnAddressThatNobodyCanGuessOnThisMachineAlone) {
   const Address other = watch({directory, "--bind", "0.0.0.0"});
   EXPECT_NE(other.token(), one.token());
   EXPECT_EQ(other.listening(), std::vector<std::string>{"00000000"});
-  EXPECT_THAT(server_->err(), HasSubstr("whoever reaches 0.0.0.0 and knows this address sees the run"));
+  EXPECT_THAT(server_->err(), HasSubstr("anyone who can reach 0.0.0.0 and has this address can see the run"));
 }
 
 TEST_F(WatchedRun, IsShownToWhoHasTheAddressAndNothingElseIsToAnybody) {
