@@ -228,9 +228,9 @@ TEST(Description, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(refused(" {product: {}}"),
             "c.yaml:1:9: unknown option 'product' of sweep, known: grid, zip, list, sobol, where");
   EXPECT_EQ(refused(" {grid: [seed]}"),
-            "c.yaml:1:15: sweep.grid: expects a map of keys to values, write seed: range(0,10), a key a line");
+            "c.yaml:1:15: sweep.grid: expects a map of keys to values, write seed: range(0,10), one key per line");
   EXPECT_EQ(refused(" {zip: seed}"),
-            "c.yaml:1:14: sweep.zip: expects a map of keys to values, write seed: range(0,10), a key a line");
+            "c.yaml:1:14: sweep.zip: expects a map of keys to values, write seed: range(0,10), one key per line");
   const std::string how_to = ", write [{key: value}, {key: value, other: [value, value]}]";
   EXPECT_EQ(refused(" {list: {a: 1}}"), "c.yaml:1:15: sweep.list: expects a list of settings" + how_to);
   EXPECT_EQ(refused(" {list: [a]}"), "c.yaml:1:16: sweep.list: expects a map of keys to values" + how_to);

@@ -171,7 +171,7 @@ TEST(Plan, RefusesAnOptionThatNoJobHas) {
   EXPECT_EQ(refused({"acquisition=weighted,grid", "acquisition.cuont=1,2"}),
             "command line: no job of the sweep has an option 'acquisition.cuont', did you mean 'count'?");
   EXPECT_EQ(refused({"acquisition=weighted,random", "acquisition.beta=1,2"}),
-            "command line: no job of the sweep has an option 'acquisition.beta', take it away");
+            "command line: no job of the sweep has an option 'acquisition.beta', remove it");
   EXPECT_EQ(refused({"motion=paper,two_stage", "motion.spede=1cm/s,2cm/s"}),
             "command line: no job of the sweep has an option 'motion.spede', did you mean 'speed'?");
   EXPECT_NE(refused({"acquisition.beta=1,2"}).find("unknown option 'beta'"), std::string::npos);

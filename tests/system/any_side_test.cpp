@@ -393,7 +393,7 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
               testing::HasSubstr("weighted only scores taps from above, choose one that scores approaches"));
   EXPECT_THAT(refused({"run", config(), "scene.touch=top"}),
               testing::HasSubstr("surface: implicit needs a scene with touch: any"));
-  EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side has it"));
+  EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side sets"));
   EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
               testing::HasSubstr("discovery only scores approaches from any side"));
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),

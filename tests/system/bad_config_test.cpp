@@ -252,8 +252,8 @@ std::vector<Case> cases() {
       line("ObjectTooBigForRandomPlacement", "scene: {placement: random, objects: [{type: wave, length: 50 cm}]}",
            "10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
       line("HoverBelowTheObject", "motion: {hover: 5 cm}",
-           "10:17: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, raise it or "
-           "lower the object"),
+           "10:17: backend/simulator: motion.hover: an object is 11 cm high, but the arm travels at 5 cm, raise "
+           "motion.hover or lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",
            "10:42: label.kernel: the labels use the kernel of the heights when hyperparameters are shared; remove it, "

@@ -152,7 +152,8 @@ time.sleep(60)  # and does not care that its run is gone
   ASSERT_TRUE(test::running(std::stol(pid)));
   const Ended refused = retry();
   EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.err, HasSubstr("the program of an earlier attempt, process " + pid + ", still runs: end it"));
+  EXPECT_THAT(refused.err,
+              HasSubstr("the program of an earlier attempt, process " + pid + ", is still running: end it"));
   EXPECT_EQ(noted()["begin"], 1);
   EXPECT_TRUE(test::running(std::stol(pid)));
   ::kill(static_cast<pid_t>(std::stol(pid)), SIGKILL);

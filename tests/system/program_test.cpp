@@ -97,7 +97,7 @@ TEST_F(ProgramRun, BeginsInTheFolderThatTheConfigNamesAndIsFoundFromElsewhere) {
   EXPECT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_EQ(text_of(cut / "taps.csv"), text_of(run / "taps.csv"));
   EXPECT_THAT(refused(Words{"run", paper(), "acquisition={type: program, command: ./own, folder: mine}"}),
-              testing::HasSubstr("folder: is no whole path"));
+              testing::HasSubstr("folder: is not an absolute path"));
 }
 
 TEST_F(ProgramRun, WhoReadsARecordStartsNothingAndFindsTheRecordedChoices) {
@@ -183,9 +183,9 @@ TEST_F(ProgramRun, AProgramThatIsGoneFailsNoJobEither) {
 TEST_F(ProgramRun, AProgramThatDiesFailsTheRunInOneLineAndTheRunIsCarriedOn) {
   const std::string acquisition = echo("uncertainty", "[ -e well ] || { echo 'out of memory' >&2; exit 3; }");
   const std::string told = refused(Words{"run", paper(), "--quiet"} + few(acquisition), 1);
-  EXPECT_THAT(told, testing::MatchesRegex("acquisition/program: the program ended with exit status 3, its last words: "
-                                          "'out of memory', correct it, what it said is in runs/.*/acquisition_"
-                                          "[0-9a-f]{8}.stderr.txt\n"));
+  EXPECT_THAT(told, testing::MatchesRegex(
+                        "acquisition/program: the program ended with exit status 3, its last output: 'out of memory', "
+                        "correct it, its output is in runs/.*/acquisition_[0-9a-f]{8}.stderr.txt\n"));
   EXPECT_EQ(lines(part_of(directory(), "tap")), 3) << "the initial taps are kept";
   write("well", "");
   EXPECT_EQ(resume(directory(), "--retry-failed").status, 0);
@@ -253,9 +253,9 @@ TEST_F(ProgramRun, InPythonWhatGoesWrongIsTold) {
   EXPECT_THAT(trouble("return belief.uncertainty[1:]"),
               HasSubstr("score returned an array of shape (2208,), not (2209,)"));
   EXPECT_THAT(trouble("return belief.height_mean"),
-              HasSubstr("AttributeError: the belief has no height_mean: name it in reads=[...]"));
+              HasSubstr("AttributeError: the belief has no height_mean: add it to reads=[...]"));
   EXPECT_THAT(trouble("return belief.uncertainty", ", reads: height_mean"),
-              HasSubstr("the config says 'reads: height_mean', score has reads=['uncertainty']"));
+              HasSubstr("the config has 'reads: height_mean', but score has reads=['uncertainty']"));
   EXPECT_THAT(trouble("print('hello'); return belief.uncertainty / 0"), HasSubstr("which is not a finite number"));
 }
 

@@ -84,7 +84,7 @@ TEST_F(Versions, AConfigThatWasEditedIsFoundWhateverItsFolderIsCalled) {
   EXPECT_THAT(palpate("replay mine").err, HasSubstr("config.yaml was changed"));
   fs::rename(here() / "mine", run);
   EXPECT_THAT(palpate(words).err,
-              HasSubstr("the folder contains another run with the id " + run.filename().string() + ", give this one"));
+              HasSubstr("the folder contains another run with the id " + run.filename().string() + ", give this run"));
   // On a disk that tells no capital letters two names are one folder.
   boost::replace_first(record, "\"name\": \"object", "\"name\": \"Object");
   write(run / "record.jsonl", record);

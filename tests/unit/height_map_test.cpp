@@ -209,7 +209,8 @@ TEST_F(HeightMap, ThatIsNoneIsRefusedWithWhatIsWrong) {
   EXPECT_THAT(refusal("a.csv", "0,0\n0,0\n"), HasSubstr("is 0 everywhere"));
   EXPECT_THAT(refusal("a.csv", "1,2,3\n"),
               HasSubstr("has 1 x 3 values, but must have between 2 x 2 and 4000000 in all"));
-  EXPECT_THAT(refusal("a.csv", "3000000,3000000\n1,1\n"), HasSubstr("m large, at most 2 m are allowed, are unit and"));
+  EXPECT_THAT(refusal("a.csv", "3000000,3000000\n1,1\n"),
+              HasSubstr("m large, at most 2 m are allowed, check unit and"));
   EXPECT_THAT(refusal("a.txt", "1,2\n3,4\n"), HasSubstr("has no supported file extension"));
   const std::string whole = npy("<f8", false, kRows);
   for (std::size_t length = 1; length < whole.size(); length += 7)

@@ -89,7 +89,7 @@ std::vector<Odd> odd_answers() {
           "has a 'force' that is not a number", true),
       odd("NoReason", R"({"tap": 2, "outcome": "no_contact", "seconds": 1})", "lacks 'reason'", true),
       odd("BlankReason", R"({"tap": 2, "outcome": "no_contact", "seconds": 1, "reason": "\n"})",
-          "has no words in 'reason'", true),
+          "has no text in 'reason'", true),
       odd("MisspeltField", R"({"tap": 2, "outcome": "contact", "heigth": 0.07, "seconds": 1})",
           "has an unknown field 'heigth'", true),
       odd("EndAsText", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": 1, "ends_run": "no"})",
@@ -99,12 +99,13 @@ std::vector<Odd> odd_answers() {
       odd("EndWithoutReason", R"({"tap": 2, "outcome": "contact", "height": 0, "seconds": 1, "ends_run": true})",
           "lacks 'reason'", true),
       odd("EndForNoReason", R"({"tap": 2, "outcome": "aborted", "seconds": 1, "ends_run": true, "reason": "\t"})",
-          "has no words in 'reason'", true),
+          "has no text in 'reason'", true),
       {"NoText", std::string("\0\xff\x1b[2J\xc3", 7), said("is not JSON", "???[2J?"), false},
       {"BadUtf8InReason", "{\"tap\": 2, \"outcome\": \"no_contact\", \"seconds\": 1, \"reason\": \"\xff\"}",
        said("is not JSON", R"({"tap": 2, "outcome": "no_contact", "seconds": 1, "reason": "?"})"), false},
       {"Deep", deep, said("is not JSON", deep.substr(0, 80) + "..."), false},
-      {"TooLong", endless, "the program answered with an endless line: '" + endless.substr(0, 80) + "...'", false},
+      {"TooLong", endless, "the program answered with a line that is too long: '" + endless.substr(0, 80) + "...'",
+       false},
   };
 }
 

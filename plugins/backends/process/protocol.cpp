@@ -92,7 +92,7 @@ class Reader {
   /// Words for the record, at least one.
   std::string reason() {
     std::string words = plain_line(text("reason"));
-    if (words.find_first_not_of(' ') == std::string::npos) refuse("has no words in 'reason'");
+    if (words.find_first_not_of(' ') == std::string::npos) refuse("has no text in 'reason'");
     return words;
   }
 
@@ -125,7 +125,7 @@ Contact read_contact(Reader& reader, const HeightBounds& bounds) {
   }
   out.ends_run = reader.flag("ends_run");
   if (out.outcome != Outcome::contact || out.ends_run) out.reason = reader.reason();
-  if (const auto fault = find_fault(out, bounds)) reader.refuse("is refused, " + fault->reason + ", " + fault->remedy);
+  if (const auto fault = find_fault(out, bounds)) reader.refuse("is rejected, " + fault->reason + ", " + fault->remedy);
   return out;
 }
 
