@@ -123,23 +123,23 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
     const auto says = [&](const std::string& words) { EXPECT_THAT(text, testing::HasSubstr(words)) << i + 1; };
     says(fmt::format("from x {:.2f} cm, y {:.2f} cm, z {:.2f} cm, ", 100 * rows[i].number("x").value(),
                      100 * rows[i].number("y").value(), 100 * rows[i].number("z").value()));
-    says(fmt::format("What was believed after {} tap", i));
+    says(fmt::format("The belief after {} tap", i));
     says("24 compositions of ");
-    says("Expected, by the most probable composition: ");
+    says("Expected, by the most probable particle: ");
     says("Error of the surface: over the scene ");
-    if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; all of the way is free.");
+    if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; the whole path is free.");
     if (rows[i].text("source") == "initial") {
-      says("anywhere through the region");
+      says("through the region");
       continue;
     }
     says("The acquisition chose it: discovery");
-    says("Of one piece more than is believed, as far as no touch has contradicted it, the line is expected to find ");
+    says("Of one further solid that no contact contradicts, this line is expected to find ");
     says(fmt::format("Its score is {:.4g}, the best of 200 approaches", rows[i].number("score").value()));
     says("Runner-up: from x ");
     says(fmt::format("with a score of {:.4g}, ", rows[i].number("runner_up.score").value()));
-    const bool met = text.find("by the most probable composition: an object after") != std::string::npos;
-    says(met ? "the skin knows it along its normal with a standard deviation of "
-             : "By the most probable composition no object is there.");
+    const bool met = text.find("by the most probable particle: an object after") != std::string::npos;
+    says(met ? "the standard deviation along the surface normal is "
+             : "According to the most probable particle, no object is there.");
     places += met ? 1 : 0;
   }
   EXPECT_GT(places, 0);

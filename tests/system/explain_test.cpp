@@ -72,7 +72,7 @@ class Explain : public Shell {
     }
     expect_score(text, tap);
     if (tap["source"] == "fallback") {
-      EXPECT_THAT(text, HasSubstr("nothing to go by: " + tap["why"].get<std::string>() + "."));
+      EXPECT_THAT(text, HasSubstr("gave no usable scores: " + tap["why"].get<std::string>() + "."));
     } else {
       EXPECT_THAT(text, HasSubstr("The acquisition chose it: "));
     }
@@ -95,9 +95,8 @@ class Explain : public Shell {
   static void expect_maps(const std::string& text, const json& tap, const std::string& footprint) {
     const auto has = [&](const char* name) { return tap.contains(name) && !tap[name].is_null(); };
     if (!footprint.empty()) {
-      EXPECT_EQ(
-          text.find("(the probability that an object is there, by footprint/" + footprint + ")") != std::string::npos,
-          has("p"));
+      EXPECT_EQ(text.find("(probability of an object there, by footprint/" + footprint + ")") != std::string::npos,
+                has("p"));
       EXPECT_EQ(text.find("Footprint: " + footprint) != std::string::npos, has("p"));
       EXPECT_THAT(text, Not(HasSubstr("Label GP")));
     }
@@ -109,7 +108,7 @@ class Explain : public Shell {
         EXPECT_THAT(text, Not(ContainsRegex("[ ,]" + begin)));
       }
     }
-    EXPECT_EQ(text.find("This choice read no model.") == std::string::npos,
+    EXPECT_EQ(text.find("This choice used no model.") == std::string::npos,
               has("u") || has("w") || has("p") || has("max_standard_deviation"));
   }
 
@@ -227,10 +226,12 @@ TEST_F(Explain, SaysWhyTheFallbackHadToChoose) {
 }
 
 TEST_F(Explain, SaysThatAStalledRuleTapsTheSamePlaceForEver) {
-  EXPECT_THAT(explain(ran("fallback=none repeat=allow"), 7),
-              AllOf(HasSubstr("All of 2209 candidates are tied"),
-                    HasSubstr("No score is positive: such scores tell nothing, but the config has the rule stand"),
-                    HasSubstr("This place was tapped before: taps 4, 5, 6."), HasSubstr("No candidate is left out.")));
+  EXPECT_THAT(
+      explain(ran("fallback=none repeat=allow"), 7),
+      AllOf(
+          HasSubstr("All of 2209 candidates are tied"),
+          HasSubstr("No score is positive: such scores do not distinguish candidates, but the config uses no fallback"),
+          HasSubstr("This place was tapped before: taps 4, 5, 6."), HasSubstr("No candidate is left out.")));
 }
 
 TEST_F(Explain, SaysThatTheFallbackDidNotStepInWhereScoresAreAsGoodAsZeroButPositive) {
@@ -242,7 +243,7 @@ TEST_F(Explain, SaysThatTheFallbackDidNotStepInWhereScoresAreAsGoodAsZeroButPosi
     ++found;
     EXPECT_LE(tap["score"], 1e-12);
     const std::string text = explain(directory, tap["tap"]);
-    EXPECT_THAT(text, HasSubstr(", is as good as 0, but it is positive: so no fallback stepped in."));
+    EXPECT_THAT(text, HasSubstr(", is nearly 0 but positive, so the fallback was not used."));
     EXPECT_THAT(text, Not(HasSubstr("fallback: none")));
   }
   EXPECT_GT(found, 0);
