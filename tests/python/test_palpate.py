@@ -163,13 +163,13 @@ class Module(InFolder):
     def test_bad_scores_and_answers_are_refused_and_lose_nothing(self):
         experiment = self.begun("taps=3")
         self.refuses("scores", "has 3 values", "2209", lambda: experiment.ask([1, 2, 3]))
-        self.refuses("scores", "not a finite number", "0 is", lambda: experiment.ask(np.full(2209, np.nan)))
+        self.refuses("scores", "not a finite number", "use 0", lambda: experiment.ask(np.full(2209, np.nan)))
         self.refuses("tell", "no tap is pending", "call ask()", lambda: experiment.tell(0.0))
         experiment.ask()
         self.refuses("tell", "neither a height nor an outcome", "no_contact", experiment.tell)
         for name in ("missed", "unknown"):
             self.refuses("tell", f"unknown outcome '{name}'", "no_contact", lambda: experiment.tell(outcome=name))
-        self.refuses("tell", "belongs to a contact", "leave one", lambda: experiment.tell(0.1, outcome="timeout"))
+        self.refuses("tell", "is valid only with", "leave one", lambda: experiment.tell(0.1, outcome="timeout"))
         self.refuses("tap 1", "is pending", "call tell()", experiment.finish)
         experiment.tell(0.0)
         self.assertEqual(experiment.finish()["stop_reason"], "ended by the caller")
