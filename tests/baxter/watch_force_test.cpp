@@ -152,10 +152,10 @@ TEST(AnArmThatGoesUp, IsHeldByWhatPullsAndByNothingElse) {
 TEST(AnArmThatGoesUp, FollowsAZeroThatChangesWithThePoseAndNoSpring) {
   const Watch::Rise rise{1.0, -1.0, 6.0, Watch::Zero::follows};
   EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.05 * period; }), IsNothing()) << "5 N/s: 50 N/m at 10 cm/s";
-  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("something holds", Then::hold));
+  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("the tool is caught", Then::hold));
   EXPECT_THAT(rising(
                   -1.0, rise, [](int period) { return -0.06 * period; }, 0.0002),
-              IsFault("something holds", Then::hold))
+              IsFault("the tool is caught", Then::hold))
       << "300 N/m at 2 cm/s";
 }
 

@@ -145,7 +145,7 @@ TEST(GroupCurves, AreRefusedWhereThereIsNothingToDraw) {
               HasSubstr("none of the jobs to draw ended well"));
   EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {0.1}, 0.0}}), {}, "robot_seconds"),
               HasSubstr("--against: no job took any robot time"));
-  EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {0.1}}}), {"seed"}, "taps"), HasSubstr("makes no groups"));
+  EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {0.1}}}), {"seed"}, "taps"), HasSubstr("cannot form groups"));
   EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {kNone, kNone}}}), {}, "taps"), HasSubstr("no job has a value"));
 }
 

@@ -31,8 +31,8 @@ TEST(SlurmOptions, AreRefusedForThisMachine) {
         StartsWith("command line: " + name + " needs a cluster, but the launcher is 'local', add --launcher slurm"));
     std::vector<std::string> local = option;
     local.insert(local.end(), {"--launcher", "local"});
-    EXPECT_THAT(refusal(sweep, local), HasSubstr("is for a cluster"));
-    EXPECT_THAT(refusal({"resume", "./nowhere"}, option), HasSubstr("is for a cluster"));
+    EXPECT_THAT(refusal(sweep, local), HasSubstr("needs a cluster"));
+    EXPECT_THAT(refusal({"resume", "./nowhere"}, option), HasSubstr("needs a cluster"));
   }
 }
 

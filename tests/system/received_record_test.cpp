@@ -70,7 +70,7 @@ TEST_F(Received, ARecordWithAPipeOrADeviceInThePlaceOfAFileIsToldOfAtOnce) {
         all += ended.out + ended.err;
       }
       EXPECT_THAT(all, HasSubstr(std::string(name) + ": "));
-      EXPECT_THAT(all, HasSubstr(device ? "is a link" : "not a regular file")) << file;
+      EXPECT_THAT(all, HasSubstr(device ? "is a symbolic link" : "not a regular file")) << file;
     }
   }
 }
