@@ -82,7 +82,7 @@ void TapTable::clear_live_line() const {
 void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
     print_out("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm", "y cm",
-              "height cm", "contact", "expected mm", "error mm", "IoU", "(the last three before the tap)");
+              "height cm", "contact", "expected mm", "error mm", "IoU", "(last three columns: before the tap)");
     header_ = true;
   }
   if (!terminal_) return;

@@ -49,7 +49,7 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   if (!is_name(name)) throw Error("", fmt::format("'{}' is not the name of a plugin", name), kNameHint);
   const std::vector<std::string> taken = program.host.names(kind);
   if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
-    throw Error("", fmt::format("there is a plugin {}/{} already", kind, name), "take another name");
+    throw Error("", fmt::format("there is a plugin {}/{} already", kind, name), "choose another name");
   }
   if (python && kind != Acquisition::kKind) {
     throw Error("command line", fmt::format("--python: a plugin of the kind {} cannot be a function of Python", kind),
@@ -61,7 +61,7 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   const fs::path starters = program.installation.configs.parent_path() / "plugins" / "starters";
   std::error_code trouble;
   if (!fs::create_directory(name, trouble)) {
-    throw Error(name, trouble ? "cannot be made: " + trouble.message() : "is there already", "take another name");
+    throw Error(name, trouble ? "cannot be made: " + trouble.message() : "exists already", "choose another name");
   }
   const auto write = [&](const fs::path& from, const std::string& to) {
     std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;

@@ -321,8 +321,8 @@ TEST_F(Explain, ReadsARunThatIsNotDone) {
   fs::remove(directory / "summary.json");
   const std::string cut = explain(directory, 9);
   EXPECT_THAT(cut, HasSubstr("Tap 9 of 9 so far, run object_i ("));
-  EXPECT_EQ(cut.substr(cut.find("Why there"), cut.find("What it changed") - cut.find("Why there")),
-            whole.substr(whole.find("Why there"), whole.find("What it changed") - whole.find("Why there")));
+  EXPECT_EQ(cut.substr(cut.find("Why there"), cut.find("Effect of the tap") - cut.find("Why there")),
+            whole.substr(whole.find("Why there"), whole.find("Effect of the tap") - whole.find("Why there")));
   EXPECT_THAT(cut, HasSubstr("The record has no errors from before and after it")) << "no later tap has recorded it";
 }
 
@@ -341,7 +341,7 @@ TEST_F(Explain, RefusesInOneLineWhatItCannotExplain) {
   const fs::path directory = ran();
   for (const char* tap : {"0", "18", "-1"}) {
     EXPECT_EQ(refused({"explain", directory, tap}),
-              "tap " + std::string(tap) + ": the run has 17 taps, ask for one of 1 to 17\n");
+              "tap " + std::string(tap) + ": the run has 17 taps, choose one of 1 to 17\n");
   }
   EXPECT_THAT(refused({"explain", directory, "x"}), HasSubstr("TAP"));
   EXPECT_THAT(refused("explain nowhere 1"),

@@ -146,7 +146,7 @@ TEST_F(MeshFile, WhoseHeaderCountsNoRowsIsRefused) {
   for (const char* count : {"-5", "4e9", "9999999999", ""}) {
     std::string other = whole;
     other.replace(at, other.find('\n', at) - at, count);
-    EXPECT_THAT(refusal("a.ply", other), HasSubstr("its header does not say how many rows of 'vertex' follow"));
+    EXPECT_THAT(refusal("a.ply", other), HasSubstr("its header does not give the number of rows of 'vertex' follow"));
   }
 }
 

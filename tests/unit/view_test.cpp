@@ -97,7 +97,7 @@ TEST(PointFile, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(said("ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n"),
               HasSubstr("a property of type 'list'"));
   EXPECT_THAT(said("ply\nformat bits 1.0\nelement vertex 1\nend_header\n"), HasSubstr("the format 'bits'"));
-  EXPECT_THAT(said("ply\nelement vertex many\nend_header\n"), HasSubstr("how many vertices"));
+  EXPECT_THAT(said("ply\nelement vertex many\nend_header\n"), HasSubstr("number of vertices"));
   EXPECT_THAT(said("ply\nelement vertex 99999999999\nend_header\n"), HasSubstr("at most 20000000 are read"));
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string whole = ply(one, format);

@@ -20,7 +20,7 @@ struct Choice {
 
 Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
                    double error) {
-  if (settings.engine != Kind::automatic) return {settings.engine, "asked for"};
+  if (settings.engine != Kind::automatic) return {settings.engine, "chosen by engine.type"};
   if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
   if (!candidates.is_grid()) return {Kind::dense, "the candidates are not a product grid"};
   if (!(settings.accuracy > 0.0)) return {Kind::dense, "no error is allowed"};

@@ -89,7 +89,7 @@ class Reader {
     long out = -1;
     const auto read = std::from_chars(word.data(), word.data() + word.size(), out);
     if (read.ec != std::errc() || read.ptr != word.data() + word.size() || out < 0)
-      refuse("does not say how many vertices it has");
+      refuse("does not give its number of vertices");
     if (out > kMostPoints) {
       throw Error(file_, fmt::format("has {} points, at most {} are read", out, kMostPoints),
                   "reduce the number of points");

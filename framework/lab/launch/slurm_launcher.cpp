@@ -81,10 +81,9 @@ void check_sbatch_words(const std::vector<std::string>& words) {
 std::string task_script(const fs::path& program, const fs::path& directory, const fs::path& jobs,
                         const LaunchOptions& options, const std::optional<std::string>& plugin_path) {
   std::string out =
-      "#!/bin/sh\n"
-      "# A task of a Slurm array carries on the sweep's jobs on a line of a list: that of the first argument, 0 if "
-      "there\n"
-      "# is none, plus the array's index. Jobs that are done or in other hands are left alone.\n";
+      "#!/bin/sh\n# A task of a Slurm array resumes the jobs of the sweep that one line of a list names. The line "
+      "number is the first\n# argument, 0 if absent, plus the array index. Jobs that are done or held by another "
+      "process are skipped.\n";
   out += plugin_path ? fmt::format("export PALPATE_PLUGIN_PATH={}\n", shell_word(*plugin_path))
                      : "unset PALPATE_PLUGIN_PATH\n";
   const char* const instructions = std::getenv("PALPATE_INSTRUCTIONS");

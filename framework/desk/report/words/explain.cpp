@@ -49,10 +49,10 @@ class FromAboveExplained final : public Explanation {
                               counted(hits_before() + before().desk_taps, "contact"), hits_before()));
     if (recorded_quantities(row_) == Quantities()) page_.say("This choice used no model.");
     explain_models(page_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
-    page_.heading("What was expected and what was found");
+    page_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
-    page_.heading("What it changed");
+    page_.heading("Effect of the tap");
     // The errors after the tap are recorded with the next one, or at the end of the run.
     const bool last = number_ == static_cast<int>(recording_.rows.size());
     explain_errors("Error of the surface (rms)", row_,
@@ -290,7 +290,7 @@ std::string explain_tap(const Workshop& workshop, const Recording& recording, in
   const auto taps = static_cast<int>(recording.rows.size());
   if (tap < 1 || tap > taps) {
     throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),
-                taps == 1 ? "ask for tap 1" : fmt::format("ask for one of 1 to {}", taps));
+                taps == 1 ? "choose tap 1" : fmt::format("choose one of 1 to {}", taps));
   }
   if (recording.config.options.scene.touch == SceneOptions::Touch::any)
     return explain_approach(workshop, recording, tap);

@@ -54,10 +54,10 @@ class ApproachExplained final : public Explanation {
     page_.heading(fmt::format("The belief after {}, {} of them on an object", counted(number_ - 1, "tap"),
                               experiment_.counts().object_taps));
     explain_belief();
-    page_.heading("What was expected and what was found");
+    page_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
-    page_.heading("What it changed");
+    page_.heading("Effect of the tap");
     Row before;
     add_errors(before, experiment_.errors());
     playback_.advance_to(number_);
