@@ -129,7 +129,7 @@ TEST_F(Consumer, PluginIsFoundDescribedRunAndSound) {
 TEST_F(Consumer, EachKindHasAPluginToBeginWithThatBuildsRunsAndKeepsTheLaws) {
   const std::string refused = installed({"new", "kernel", "rbf"}).err;
   EXPECT_EQ(refused, "there is a plugin kernel/rbf already, choose another name\n");
-  EXPECT_THAT(installed({"new", "kernel", "a/b"}).err, HasSubstr("'a/b' is not the name of a plugin, "));
+  EXPECT_THAT(installed({"new", "kernel", "a/b"}).err, HasSubstr("'a/b' is not a valid name of a plugin, "));
   EXPECT_THAT(installed({"new", "kernels", "mine"}).err, HasSubstr("no plugin kind 'kernels', did you mean 'kernel'?"));
   for (const std::string& kind : PluginHost::kinds()) {
     const Ended made = installed({"new", kind, "my_" + kind});

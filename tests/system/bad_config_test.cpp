@@ -216,7 +216,8 @@ std::vector<Case> cases() {
             "2:13: '../rbf' is not a valid name in the group kernel, a name has letters, digits, '_' and '-', and no "
             "path"),
       line("PluginNameWithAPath", "kernel: {type: ../kernel/rbf}",
-           "10:16: '../kernel/rbf' is not the name of a plugin, a name has letters, digits, '_' and '-', and no path"),
+           "10:16: '../kernel/rbf' is not a valid name of a plugin, a name has letters, digits, '_' and '-', and no "
+           "path"),
       line("UnknownPlugin", "kernel: {type: matern53}", "10:16: no plugin kernel/matern53, did you mean 'matern52'?"),
       typed("UnknownPluginOnTheCommandLine", {"kernel=periodic"},
             "no plugin kernel/periodic, known: matern12, matern32, matern52, product, rational_quadratic, rbf, scale, "

@@ -233,9 +233,9 @@ TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed)
   EXPECT_EQ(palpate({"replay", own}).status, 0);
   EXPECT_THAT(text_of(own / "config.yaml"), HasSubstr("placement: random")) << "else 30 seeds are one place";
   EXPECT_EQ(refused({"new", "kernel", "--python", "mine"}),
-            "command line: --python: a plugin of the kind kernel cannot be a function of Python, only an acquisition "
-            "can; leave it out\n");
-  EXPECT_THAT(refused({"new", "acquisition", "--python", "a-b"}), HasSubstr("is not the name of a Python module"));
+            "command line: --python: a plugin of the kind kernel cannot be a function of Python, leave --python out; "
+            "only an acquisition can be one\n");
+  EXPECT_THAT(refused({"new", "acquisition", "--python", "a-b"}), HasSubstr("is not a valid name of a Python module"));
 }
 
 TEST_F(ProgramRun, InPythonWhatGoesWrongIsTold) {

@@ -153,7 +153,7 @@ TEST_F(PluginFolder, AFolderWithoutPluginsIsNamedRatherThanANeighbour) {
 
 TEST(PluginHost, RefusesNamesWithAPath) {
   for (const char* name : {"../kernel/rbf", "/etc/passwd", "rbf.so", ".", "", "a b"}) {
-    EXPECT_THAT(refusal_of("kernel", name), HasSubstr("is not the name of a plugin")) << name;
+    EXPECT_THAT(refusal_of("kernel", name), HasSubstr("is not a valid name of a plugin")) << name;
   }
 }
 

@@ -265,7 +265,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
   const std::lock_guard lock(mutex_);
   auto& slot = libraries_[{kind, name}];
   if (slot) return slot;
-  if (!is_name(name)) throw Error("", fmt::format("'{}' is not the name of a plugin", name), kNameHint);
+  if (!is_name(name)) throw Error("", fmt::format("'{}' is not a valid name of a plugin", name), kNameHint);
   std::vector<fs::path> found;
   for (const fs::path& folder : folders_) {
     std::error_code none;

@@ -53,8 +53,7 @@ class Visit {
       expect_all_heard(*link);
       return link;
     } catch (const Unreached& reason) {
-      throw trouble(network_.where(), fmt::format("the master does not answer any more: {}", reason.what()),
-                    "start it again");
+      throw trouble(network_.where(), fmt::format("the master no longer answers: {}", reason.what()), "start it again");
     }
   }
 
