@@ -145,7 +145,7 @@ install() {
   fi
   by_root="apt-get update && apt-get install --no-install-recommends $list"
   if [ "$no_install" = yes ]; then
-    say "packages are missing; as root: $by_root"
+    say "packages are missing; install them as root with: $by_root"
     return 0
   fi
   as_root=
@@ -155,19 +155,19 @@ install() {
     return 0
   fi
   if [ "$as_root" = none ]; then
-    say "packages are missing, which only root can install; going on without them. As root:"
+    say "packages are missing that only root can install; continuing without them. Run as root:"
     say "  $by_root"
     return 0
   fi
   log=update
-  told "asking which packages there are" "$root/build/$log.log" refresh && {
+  told "updating the list of packages" "$root/build/$log.log" refresh && {
     log=install
     say "installing $list"
     say "installing packages: a minute or two$(room)"
     told "installing packages" "$root/build/$log.log" fetch
   } || {
     tail -n 5 "$root/build/$log.log" >&2
-    say "installing failed, the whole story is in build/$log.log; going on with what is there"
+    say "installing failed, see build/$log.log; continuing with the installed packages"
   }
   look
 }
@@ -183,7 +183,7 @@ announce() {
   steps=$(printf '%s\n' "$plan" | sed -n 's|^\[[0-9]*/\([0-9]*\)\].*|\1|p' | tail -n 1)
   [ "${steps:-0}" -ge 10 ] || [ "$(printf '%s\n' "$plan" | grep -c 'Building CXX')" -ge 3 ] || return 0
   minutes=$((1 + steps / 12 / $(nproc 2>/dev/null || echo 2)))
-  say "building what this command takes: $steps steps, about $(minutes_words "$minutes")"
+  say "building the parts that this command needs: $steps steps, about $(minutes_words "$minutes")"
 }
 
 minutes_words() { if [ "$1" = 1 ]; then echo "1 minute"; else echo "$1 minutes"; fi; }
@@ -202,7 +202,7 @@ build() {
     [ "${CI:-}" != true ] || warnings=-DPALPATE_WERROR=ON
     if ! told "configuring preset $preset" "$log" cmake --preset "$preset" -S "$root" $warnings; then
       grep -A 4 -E 'CMake Error|Could NOT|: not found' "$log" >&2 || true
-      say "configuring failed, the whole story is in build/$preset.log"
+      say "configuring failed, see build/$preset.log"
       exit 1
     fi
     printf '%s\n' "$installed" >"$known"
@@ -222,7 +222,7 @@ build() {
   fi
   if ! NINJA_STATUS='[%f/%t] ' told "building preset $preset" "$log" ninja -C "$root/build/$preset" "$@"; then
     grep -v '^\[' "$log" | grep -m 10 -E 'error|FAILED' >&2 || true
-    say "building failed, the whole story is in build/$preset.log"
+    say "building failed, see build/$preset.log"
     exit 1
   fi
 }

@@ -10,7 +10,7 @@ namespace palpate::absent {
 
 constexpr const char* kReason =
     "this build has no " PALPATE_ABSENT "; 'sudo apt-get install --no-install-recommends " PALPATE_ABSENT_PACKAGES
-    "' installs it, then build again, as ./palpate does by itself";
+    "' installs it, then build again; ./palpate does both";
 
 /// As manifest_of() fills it for a plugin that is there.
 template <class Interface, class Options>

@@ -63,9 +63,8 @@ CompareExtent extent_of(const CompareArguments& arguments) {
   const bool pairs = arguments.format != "markdown" && arguments.format != "latex";
   for (const char* const option : {arguments.ratio ? "--ratio" : "", arguments.baseline ? "--baseline" : ""}) {
     if (!pairs && *option != '\0')
-      throw Error("command line",
-                  fmt::format("{}: a table as {} has groups alone, and no pairs", option, arguments.format),
-                  "'--format text', csv or json has both");
+      throw Error("command line", fmt::format("{}: the {} table has no pairs", option, arguments.format),
+                  "choose --format text, csv or json");
   }
   if (pairs) return CompareExtent::pairs;
   return arguments.format == "latex" ? CompareExtent::intervals : CompareExtent::means;

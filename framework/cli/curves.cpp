@@ -35,11 +35,12 @@ std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arg
   std::vector<fs::path> out(arguments.outputs.begin(), arguments.outputs.end());
   for (const fs::path& file : out) {
     if (std::find(kExtensions.begin(), kExtensions.end(), file.extension().string()) == kExtensions.end())
-      throw Error("command line", fmt::format("-o: '{}' does not end in what is written", file.string()),
-                  fmt::format("end it in one of {}", fmt::join(kExtensions, ", ")));
+      throw Error("command line", fmt::format("-o: '{}' has no supported file extension", file.string()),
+                  fmt::format("use one of {}", fmt::join(kExtensions, ", ")));
     const fs::path folder = fs::absolute(file).parent_path();
     if (!fs::is_directory(folder))
-      throw Error("command line", fmt::format("-o: there is no folder '{}'", folder.string()), "make it first");
+      throw Error("command line", fmt::format("-o: the folder '{}' does not exist", folder.string()),
+                  "create it first");
   }
   std::stable_partition(out.begin(), out.end(), [](const fs::path& file) { return file.extension() != ".pdf"; });
   if (!out.empty()) return out;
@@ -57,7 +58,7 @@ double width_of(const CurvesArguments& arguments) {
   const double width = read_quantity(parse_value(*arguments.width, "command line"), "--width", Unit::metre);
   if (width < kLeast || width > kMost)
     throw Error("command line", fmt::format("--width: {} is not between 5 cm and 1 m", *arguments.width),
-                "a column of a paper has 8.8 cm");
+                "use for example 8.8 cm for a column of a paper");
   return width;
 }
 
@@ -71,8 +72,8 @@ int curves(Program& program, const CurvesArguments& arguments) {
   const std::vector<fs::path> files = curve_files(sweep, arguments, by, asked);
   const double width = width_of(arguments);
   if (asked.find(',') != std::string::npos)
-    throw Error("command line", fmt::format("--metric: '{}' names several columns, and a figure has one", asked),
-                "draw a figure for each");
+    throw Error("command line", fmt::format("--metric: '{}' names several columns, but a figure shows one", asked),
+                "draw one figure per column");
   std::optional<Condition> where;
   if (arguments.where) where = Condition::of_command_line(*arguments.where);
   // What cannot be asked is found out before anything is computed.

@@ -48,7 +48,7 @@ std::string numerics_line(const Row& row) {
   add("pivoted", "{}the covariance was pivoted {} times");
   add("redundant_taps", "{}{} redundant taps were left out");
   add("fit_failed", "{}{} fits failed");
-  return line.empty() ? line : fmt::format("numerics: {}; runs/README.md says what that means\n", line);
+  return line.empty() ? line : fmt::format("numerics: {}; runs/README.md explains these terms\n", line);
 }
 
 /// Names the taps whose label at the end is another than their line of the table, and taps.csv, has; empty if there is
@@ -56,10 +56,10 @@ std::string numerics_line(const Row& row) {
 std::string relabelled_line(const Row& summary) {
   std::string line;
   for (const Relabelled& one : relabelled_in(summary)) {
-    line += fmt::format("{}tap {} is on the {} ({} when it was made)", line.empty() ? "" : ", ", one.tap,
+    line += fmt::format("{}tap {} is on the {} ({} at first)", line.empty() ? "" : ", ", one.tap,
                         one.on_object ? "object" : "desk", one.on_object ? "desk" : "object");
   }
-  return line.empty() ? line : fmt::format("read again at the end: {}\n", line);
+  return line.empty() ? line : fmt::format("relabelled at the end: {}\n", line);
 }
 
 /// "suspected outliers: tap 8 (0.93), tap 12 (0.61)", "" of none.
@@ -83,7 +83,7 @@ void TapTable::clear_live_line() const {
 void TapTable::announce(const TapRecord& tap) {
   if (!header_) {
     print_out("{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}  {}\n", "tap", "source", "x cm", "y cm",
-              "height cm", "contact", "expected mm", "error mm", "IoU", "(the last three before the tap)");
+              "height cm", "contact", "expected mm", "error mm", "IoU", "(last three columns: before the tap)");
     header_ = true;
   }
   if (!terminal_) return;
@@ -117,7 +117,8 @@ void mention(const std::string& text) {
 }
 
 std::string record_line(const RunReport& report) {
-  return fmt::format("{} {}", report.interrupted ? "carry on: palpate resume" : "record:", report.directory.string());
+  return fmt::format("{} {}",
+                     report.interrupted ? "resume with: palpate resume" : "record:", report.directory.string());
 }
 
 void print_summary(const RunReport& report) {
@@ -125,11 +126,11 @@ void print_summary(const RunReport& report) {
   // The live line of a tap that was broken off and is made again.
   std::string text = report.interrupted && ::isatty(STDOUT_FILENO) != 0 ? std::string(kClearLine) : "";
   if (report.already_done) {
-    text += fmt::format("already done, nothing was repeated: {}\n", report.directory.string());
+    text += fmt::format("already done, not run again: {}\n", report.directory.string());
   }
-  for (const std::string& name : report.restored.made) text += fmt::format("made again from the record: {}\n", name);
+  for (const std::string& name : report.restored.made) text += fmt::format("rebuilt from the record: {}\n", name);
   for (const std::string& name : report.restored.lost)
-    text += fmt::format("{} is gone or damaged, and this build makes another one from the same taps\n", name);
+    text += fmt::format("{} is missing or damaged, and this build computes a different one from the same taps\n", name);
   const std::optional<double> seconds = row.number("robot_seconds");
   text += fmt::format("{}: {} after {} taps and {} of robot time\n",
                       report.interrupted ? "interrupted" : row.cell("status"), row.cell("stop_reason"),

@@ -25,8 +25,8 @@ namespace {
   keep_parent();
   ::execv(whole.c_str(), pointers.data());
   const std::string reason = errno == ENOENT ? "is not built" : std::strerror(errno);
-  throw Error(whole, "has this command, and " + reason,
-              fmt::format("./palpate builds it, or 'cmake --build {} --target palpate_whole'",
+  throw Error(whole, "has this command but " + reason,
+              fmt::format("build it with ./palpate, or with 'cmake --build {} --target palpate_whole'",
                           program.installation.whole.parent_path().string()));
 }
 

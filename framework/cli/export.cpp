@@ -20,9 +20,9 @@ void mention_state(const fs::path& directory, std::size_t taps) {
   const RunStatus status = read_status(directory);
   if (status.state == RunStatus::State::done) return;
   std::string how = "is unfinished";
-  if (status.state == RunStatus::State::running) how = "is under way";
+  if (status.state == RunStatus::State::running) how = "is still running";
   if (status.state == RunStatus::State::failed) how = "failed: " + status.stop_reason;
-  mention(fmt::format("this run {}; what is written is what its first {} taps tell\n", how, taps));
+  mention(fmt::format("this run {}; the export uses its first {} taps\n", how, taps));
 }
 
 /// Makes the folder to write into. Throws Error where it is that of the record, which has files of these names.
@@ -30,7 +30,8 @@ fs::path folder_for(const fs::path& directory, const std::string& to) {
   if (to.empty()) return make_inner_folder(directory / "export");
   fs::path folder = make_folder(to);
   if (fs::equivalent(folder, directory))
-    throw Error(folder.string(), "is the folder of the record, where nothing is written over", "choose another folder");
+    throw Error(folder.string(), "is the folder of the record, whose files are never overwritten",
+                "choose another folder");
   return folder;
 }
 
@@ -43,7 +44,7 @@ void write_into(const fs::path& folder, const char* name, const std::string& tex
 int export_tables(const fs::path& directory, const std::string& to) {
   const RunRecord record = read_run_record(directory);
   if (!record.manifest)
-    throw Error(directory.string(), "holds no record", "begin the run first, or name another", Error::Kind::run);
+    throw Error(directory.string(), "contains no record", "start the run first, or name another run", Error::Kind::run);
   const fs::path folder = folder_for(directory, to);
   mention_state(directory, record.taps.size());
   write_into(folder, kTapsTable, to_csv(record.taps));
@@ -66,7 +67,7 @@ int export_run(Program& program, const std::string& directory, const std::string
   const std::string surface =
       any_side != nullptr ? surface_ply(*any_side, run) : surface_ply(reconstruct(playback.from_above()), run);
   if (playback.truth_lost())
-    mention(fmt::format("surface.ply is without true heights: {}\n", playback.truth_lost()->what()));
+    mention(fmt::format("surface.ply has no true heights: {}\n", playback.truth_lost()->what()));
   const fs::path folder = folder_for(recording.directory, to);
   mention_state(recording.directory, recording.taps.size());
   write_into(folder, "surface.ply", surface);

@@ -23,8 +23,8 @@ void check_junit(const std::string& junit) {
   if (junit.empty()) return;
   const fs::path folder = fs::absolute(junit).parent_path();
   if (fs::is_directory(junit)) throw Error(junit, "is a folder", "name a file for --junit");
-  if (!fs::is_directory(folder)) throw Error(junit, "its folder does not exist", "make it first");
-  if (::access(folder.c_str(), W_OK) != 0) throw Error(junit, "its folder cannot be written to");
+  if (!fs::is_directory(folder)) throw Error(junit, "its folder does not exist", "create it first");
+  if (::access(folder.c_str(), W_OK) != 0) throw Error(junit, "its folder is not writable");
 }
 
 void write_junit(const std::vector<Verdict>& verdicts, const std::vector<RunOutcome>& runs, const GateOutput& output) {

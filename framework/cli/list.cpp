@@ -40,7 +40,8 @@ void mention_others(const Catalogue& all, const fs::path& folder) {
 
 int list_runs(Program&, const ListArguments& arguments) {
   const fs::path folder = arguments.folder;
-  if (!is_there(folder)) throw Error(folder.string(), "is no folder", "'palpate run' makes runs/, or name another");
+  if (!is_there(folder))
+    throw Error(folder.string(), "is not a folder", "start a run, which creates runs/, or name another folder");
   std::error_code trouble_there;
   list_folder(folder, trouble_there);
   if (trouble_there) throw Error(folder.string(), trouble_there.message(), "name a folder with runs");
@@ -61,13 +62,13 @@ int list_runs(Program&, const ListArguments& arguments) {
     for (ListedRecord& one : records) rows.push_back(std::move(one.row));
   }
   arguments.json ? print_json(rows) : print_text(runs_table(rows));
-  if (all.records.empty()) mention(fmt::format("{}: holds no run and no sweep\n", folder.string()));
+  if (all.records.empty()) mention(fmt::format("{}: contains no runs and no sweeps\n", folder.string()));
   if (where && rows.empty() && !records.empty()) {
     const auto sweep = std::find_if(all.records.begin(), all.records.end(), is_sweep);
-    mention(fmt::format("command line: --where: leaves none of {}{}\n", records.size(),
+    mention(fmt::format("command line: --where: matches none of {}{}\n", records.size(),
                         sweep == all.records.end()
                             ? ""
-                            : fmt::format("; of a sweep it looks at the jobs in 'palpate list {} --where ...'",
+                            : fmt::format("; to filter the jobs of a sweep, use 'palpate list {} --where ...'",
                                           (*sweep / "jobs").string())));
   }
   mention_others(all, folder);

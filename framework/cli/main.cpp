@@ -478,9 +478,9 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
     const std::vector<std::string> rest = command->remaining();
     if (takes.empty() || rest.empty() || rest.front()[0] == '-') continue;
     throw Error("command line",
-                fmt::format("{} takes {}, and '{}' stands beside it", command->get_name(), fmt::join(takes, " and "),
+                fmt::format("{} takes {}, but '{}' is given as well", command->get_name(), fmt::join(takes, " and "),
                             rest.front()),
-                "where a * stands for several, name one of them");
+                "if a * matches several, name one of them");
   }
   const std::vector<CLI::App*> named = app.get_subcommands();
   throw Error("", trouble.what(), fmt::format("see palpate {}--help", named.empty() ? "" : named[0]->get_name() + " "));

@@ -46,22 +46,22 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
     throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
   }
-  if (!is_name(name)) throw Error("", fmt::format("'{}' is not the name of a plugin", name), kNameHint);
+  if (!is_name(name)) throw Error("", fmt::format("'{}' is not a valid name of a plugin", name), kNameHint);
   const std::vector<std::string> taken = program.host.names(kind);
   if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
-    throw Error("", fmt::format("there is a plugin {}/{} already", kind, name), "take another name");
+    throw Error("", fmt::format("there is a plugin {}/{} already", kind, name), "choose another name");
   }
   if (python && kind != Acquisition::kKind) {
     throw Error("command line", fmt::format("--python: a plugin of the kind {} cannot be a function of Python", kind),
-                "only an acquisition can; leave it out");
+                "leave --python out; only an acquisition can be one");
   }
   if (python && (name.find('-') != std::string::npos || std::isdigit(static_cast<unsigned char>(name.front())) != 0))
-    throw Error("", fmt::format("'{}' is not the name of a Python module", name),
-                "take letters, digits and _, first a letter");
+    throw Error("", fmt::format("'{}' is not a valid name of a Python module", name),
+                "use letters, digits and _, starting with a letter");
   const fs::path starters = program.installation.configs.parent_path() / "plugins" / "starters";
   std::error_code trouble;
   if (!fs::create_directory(name, trouble)) {
-    throw Error(name, trouble ? "cannot be made: " + trouble.message() : "is there already", "take another name");
+    throw Error(name, trouble ? "cannot be made: " + trouble.message() : "exists already", "choose another name");
   }
   const auto write = [&](const fs::path& from, const std::string& to) {
     std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;
@@ -69,7 +69,7 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
     replace_all(text, "KIND", kind);
     replace_all(text, "starter", name);
     std::ofstream out(fs::path(name) / to);
-    if (!(out << text).flush()) throw Error(name + "/" + to, "cannot be written", "check the space that is left");
+    if (!(out << text).flush()) throw Error(name + "/" + to, "cannot be written", "check the free disk space");
   };
   if (python) {
     for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {

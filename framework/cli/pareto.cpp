@@ -74,7 +74,8 @@ int pareto(Program&, const ParetoArguments& arguments) {
   const std::optional<double> bound = asked ? std::optional(read_bound(pareto, *arguments.within)) : std::nullopt;
   const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
   if (pareto.unfinished > 0) {
-    mention(fmt::format("{} of {} jobs have not ended, 'palpate resume' carries on\n", pareto.unfinished, pareto.jobs));
+    mention(
+        fmt::format("{} of {} jobs have not ended, run them with 'palpate resume'\n", pareto.unfinished, pareto.jobs));
   }
   asked ? mention(pareto_table(pareto)) : print_text(pareto_table(pareto));
   // First what was asked for: the directory may be one where nothing can be written.
@@ -82,10 +83,10 @@ int pareto(Program&, const ParetoArguments& arguments) {
   write_files(sweep, pareto, sweep_name(sweep), arguments.where.value_or(""), bound, chosen);
   if (!bound || chosen != nullptr) return kDone;
   const Setting* best = best_bounded(pareto);
-  throw Error("", fmt::format("no setting keeps to {} within {}", pareto.error.name, bound_words(pareto, *bound)),
+  throw Error("", fmt::format("no setting keeps {} within {}", pareto.error.name, bound_words(pareto, *bound)),
               best != nullptr
                   ? fmt::format("the nearest is {}: {}", best->name, error_words(pareto, *best))
-                  : "none has an interval: that takes two seeds or more whose values differ, and no failed job",
+                  : "no setting has an interval, which needs two or more seeds with different values and no failed job",
               Error::Kind::run);
 }
 

@@ -17,14 +17,15 @@ void check_one_run(const std::filesystem::path& directory) {
   if (!is_sweep(directory)) return;
   const std::string jobs = (directory / "jobs").string();
   throw Error(directory.string(), "is a sweep of many runs",
-              fmt::format("give one of them: {0}/<id>; 'palpate list {0} --where \"seed == 3\"' shows which", jobs));
+              fmt::format("name one run: {0}/<id>; 'palpate list {0} --where \"seed == 3\"' finds it", jobs));
 }
 
 int replay(Program& program, const std::string& directory) {
   constexpr std::size_t kShown = 10;
   check_one_run(directory);
   const ReplayReport report = replay_run(program, directory);
-  if (report.truth_lost) mention(fmt::format("what needs the truth is not compared: {}\n", report.truth_lost->what()));
+  if (report.truth_lost)
+    mention(fmt::format("numbers that need the truth are not compared: {}\n", report.truth_lost->what()));
   if (report.differences.empty()) {
     print_out("{} taps, {} numbers, all equal\n", report.taps, report.numbers);
     return kDone;
@@ -39,7 +40,7 @@ int replay(Program& program, const std::string& directory) {
   const std::optional<Tree> manifest = read_manifest(directory);
   const Tree* const recorded = manifest ? manifest->find("instruction_path") : nullptr;
   if (recorded != nullptr && recorded->text != loops_in_use().name)
-    print_out("the run used the instructions {}, this command {}: last digits may differ for that\n", recorded->text,
+    print_out("the run used the instruction set {}, this command uses {}: the last digits may differ\n", recorded->text,
               loops_in_use().name);
   return kFailed;
 }

@@ -55,11 +55,11 @@ void show(const Figures& figures) {
   for (const fs::path& picture : figures.pictures) print_out("{}\n", picture.string());
 }
 
-/// Throws Error for a run from any side, of which there is no `what`.
+/// Throws Error, with `what` in its reason, for a run from any side.
 void check_from_above(const Recording& recording, const std::string& what) {
   if (recording.config.options.scene.touch != SceneOptions::Touch::any) return;
-  throw Error(recording.directory.string(), "is a run from any side, and " + what + " of runs from above",
-              "'palpate report' with nothing else makes its page");
+  throw Error(recording.directory.string(), "is a run from any side, but " + what,
+              "use 'palpate report' without options for its page");
 }
 
 /// Says of a run whose truth is not known any more that its errors are those of the record.
@@ -69,7 +69,8 @@ void mention_lost(const History& history) {
 
 void report_run(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
   const Recording recording = read_recording(workshop, arguments.directories.front());
-  if (arguments.figures || arguments.paper) check_from_above(recording, "--figures and --paper are");
+  if (arguments.figures || arguments.paper)
+    check_from_above(recording, "--figures and --paper are only for runs from above");
   Patience patience("taps");
   const History history = make_history(workshop, recording, std::ref(patience));
   mention_lost(history);
@@ -91,17 +92,17 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
     throw Error("command line", reason, hint);
   };
   if (directories.size() > kMostRunsOnAPage)
-    refuse(fmt::format("{} runs are too many side by side", directories.size()),
-           fmt::format("give up to {}, or compare a sweep of them with 'palpate compare'", kMostRunsOnAPage));
+    refuse(fmt::format("{} runs are too many for one page", directories.size()),
+           fmt::format("give at most {}, or compare a sweep of them with 'palpate compare'", kMostRunsOnAPage));
   if (arguments.figures || arguments.paper)
-    refuse("--figures and --paper draw one run or sweep", "give one, or leave them out");
+    refuse("--figures and --paper draw one run or sweep", "give one, or leave the options out");
   std::vector<RunBeside> runs;
   std::string name = "side_by_side";
   for (const std::string& directory : directories) {
     if (is_sweep(directory))
-      refuse(directory + " is a sweep, and several runs stand side by side", "give its jobs: SWEEP/jobs/ID");
+      refuse(directory + " is a sweep, but a page of several runs needs single runs", "name its jobs: SWEEP/jobs/ID");
     Recording recording = read_recording(workshop, directory);
-    check_from_above(recording, "pages of several are");
+    check_from_above(recording, "pages of several runs are only for runs from above");
     History history = make_history(workshop, recording, Patience("taps"));
     mention_lost(history);
     name += "_" + recording.config.id;

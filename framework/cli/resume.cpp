@@ -22,12 +22,12 @@ void check_launch(const LaunchArguments& launch) {
                                              {"--wait", launch.wait}};
   for (const auto& [name, is_given] : given) {
     if (!is_given || on_cluster) continue;
-    throw Error("command line", fmt::format("{} is for a cluster, and the launcher is '{}'", name, launch.launcher),
+    throw Error("command line", fmt::format("{} needs a cluster, but the launcher is '{}'", name, launch.launcher),
                 "add --launcher slurm, or leave it out");
   }
   if (on_cluster && !launch.junit.empty() && !launch.wait) {
-    throw Error("command line", "--junit: there is no result before the jobs have ended",
-                "add --wait, or give it to 'palpate resume' afterwards");
+    throw Error("command line", "--junit: results exist only after all jobs have ended",
+                "add --wait, or use --junit with 'palpate resume' afterwards");
   }
   check_junit(launch.junit);
 }
@@ -36,11 +36,11 @@ int resume(Program& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
   if (is_sweep(arguments.directory)) return resume_sweep(program, arguments);
   if (!arguments.jobs.empty()) {
-    throw Error("command line", "--jobs: " + arguments.directory + " is no sweep", "leave it out");
+    throw Error("command line", "--jobs: " + arguments.directory + " is not a sweep", "leave it out");
   }
   if (arguments.launch.launcher != kLocal) {
     throw Error("command line",
-                fmt::format("--launcher {}: {} is no sweep", arguments.launch.launcher, arguments.directory),
+                fmt::format("--launcher {}: {} is not a sweep", arguments.launch.launcher, arguments.directory),
                 "leave it out");
   }
   make_room();

@@ -56,8 +56,8 @@ Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector
     if (!about || mentions("decimal comma")) continue;
     ValueCount count;
     if (parse_axis(texts[i], count).values.size() < 2) continue;
-    return Error(trouble.where(), fmt::format("{} has several values, and a run takes one", one.path),
-                 "'palpate sweep' runs all of them");
+    return Error(trouble.where(), fmt::format("{} has several values, but a run takes one", one.path),
+                 "run all of them with 'palpate sweep'");
   }
   return trouble;
 }
@@ -72,7 +72,7 @@ void print_models(const Program& program, const ResolvedConfig& config) {
     }
   });
   if (trouble) print_out("# this config cannot be run: {}\n", trouble->what());
-  if (!models.empty()) print_out("# models that taps are chosen from, and who reads them:\n");
+  if (!models.empty()) print_out("# models for the choice of taps, and the parts that read them:\n");
   for (const auto& [model, who] : models) print_out("#   {}: {}\n", model, who);
 }
 
@@ -89,7 +89,8 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
 void offer_the_rest(const Program& program) {
   if (::isatty(STDERR_FILENO) == 0 || is_there(program.installation.whole)) return;
   mention(
-      "sweeps, pages and the other plugins are built when a command first takes them; './palpate build' does it now\n");
+      "sweeps, pages and the other plugins are built when a command first needs them; './palpate build' builds them "
+      "now\n");
 }
 
 }  // namespace
@@ -107,7 +108,7 @@ int run(Program& program, const RunArguments& arguments) {
   });
   if (trouble) throw in_words_of_axes(overrides, arguments.overrides, *trouble);
   if (const Tree* sweep = composed.find("sweep"); sweep != nullptr && !arguments.quiet) {
-    mention(fmt::format("{}: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n",
+    mention(fmt::format("{}: sweep: is ignored by 'palpate run'; 'palpate sweep' runs all its jobs\n",
                         sweep->place.text()));
   }
   if (arguments.print_config) {

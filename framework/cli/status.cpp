@@ -27,7 +27,8 @@ int status(Program& program, const std::string& directory) {
   }
   if (status.cut) {
     mention((std::filesystem::path(directory) / kRecordFile).string() +
-            ": was cut, as summary.json says that the run had ended; 'palpate resume' makes what is missing again\n");
+            ": was cut short, because summary.json says that the run had ended; 'palpate resume' repeats the missing "
+            "part\n");
   }
   return kDone;
 }

@@ -32,8 +32,8 @@ std::string who_chose(const TapRecord& tap) {
 std::unique_ptr<Step> Step::when(bool wanted, const ExperimentOptions& options, const std::atomic<bool>* stopped) {
   if (!wanted) return nullptr;
   if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) {
-    throw Error("command line", "--step: there is no terminal to show a tap and to ask whether it may be made",
-                "stdin and stderr must be one");
+    throw Error("command line", "--step: needs a terminal to show each tap and to wait for Enter",
+                "connect stdin and stderr to a terminal");
   }
   return std::unique_ptr<Step>(new Step(options, stopped));
 }

@@ -112,14 +112,14 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
   const bool blocked = launched == Launched::blocked && !interrupted;
   print_out("{} {}\n",
             !open     ? "record:"
-            : blocked ? "stopped for the reason above; remove it, then: palpate resume"
-                      : "carry on: palpate resume",
+            : blocked ? "stopped for the reason above; correct it, then run: palpate resume"
+                      : "resume with: palpate resume",
             directory);
   if (interrupted) return kInterrupted;
   // What is expected stands in every job's config, and is judged of all: the first that can be read will do.
   std::optional<ResolvedConfig> config;
   for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(campaign, job);
-  if (!config) throw Error(sweep.directory.string(), "no job has a config.yaml that can be read", "put them back");
+  if (!config) throw Error(sweep.directory.string(), "no job has a readable config.yaml", "restore these files");
   const bool is_judged = !config->expectations.empty() || !campaign.launch.junit.empty();
   const bool all_hold = !is_judged || conclude(config->expectations, outcomes_of(sweep),
                                                {config->options.name, campaign.launch.junit, true});
@@ -146,8 +146,8 @@ LaunchOptions launch_options(const Campaign& campaign) {
 /// Says how to go on with what a cluster has in hand.
 void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
   const std::string directory = shell_word(std::filesystem::absolute(campaign.sweep.directory).string());
-  print_out("look: palpate status {}\n", directory);
-  print_out("carry on what is missing then: palpate resume {} --launcher {}\n", directory, campaign.launch.launcher);
+  print_out("watch progress with: palpate status {}\n", directory);
+  print_out("run missing jobs afterwards with: palpate resume {} --launcher {}\n", directory, campaign.launch.launcher);
   print_out("stop: {}\n", launcher.stop_command());
 }
 
@@ -213,11 +213,11 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   if (is_on_cluster(campaign) || !whole) check_shared_locks(sweep.directory);
   listen_for_interrupts();
   outlive_reader();
-  name_record("carry on: palpate resume " + sweep.directory.string());
+  name_record("resume with: palpate resume " + sweep.directory.string());
   const std::vector<std::size_t> jobs = undone(begun);
   if (campaign.options.retry_failed) try_again(begun);
   if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {
-    mention("one job at a time: the backend has but one thing to move\n");
+    mention("jobs run one at a time, because the backend moves only one arm\n");
   }
   if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
   const Launched launched = launch_open(campaign, begun);
@@ -232,8 +232,8 @@ int run_campaign(const Campaign& campaign, Standing begun) {
 /// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.
 std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {
   const auto refuse = [&] {
-    return Error("command line", fmt::format("--jobs: '{}' is not understood", text),
-                 fmt::format("write 0-7,12, from 0 to {}", count - 1));
+    return Error("command line", fmt::format("--jobs: '{}' is not a list of job numbers", text),
+                 fmt::format("write for example 0-7,12, with numbers from 0 to {}", count - 1));
   };
   const auto number = [&](const std::string& word) {
     const char* const end = word.data() + word.size();
@@ -257,8 +257,8 @@ std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) 
 /// Throws Error for a job whose taps a program of Python makes.
 void check_who_taps(const ResolvedConfig& config, const std::string& place) {
   if (config.options.backend.type != kCaller) return;
-  throw Error(place, "the taps of this sweep are made by a program of somebody's own, not by palpate",
-              "palpate.begin_sweep() in Python makes it, and experiments() of it carries it on");
+  throw Error(place, "the taps of this sweep are made by the caller's own program, not by palpate",
+              "create it with palpate.begin_sweep() in Python, and run its jobs with experiments()");
 }
 
 }  // namespace
@@ -299,7 +299,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   if (!arguments.launch.quiet) {
     for (const std::string& line : left_out) mention(line + "\n");
     mention(fmt::format("{} in {}{}\n", jobs, plan.sweep.directory.string(),
-                        is_new ? "" : ", which exists: what is missing is run"));
+                        is_new ? "" : ", which exists: only missing jobs are run"));
   }
   return run_campaign(campaign, standing_of(plan.sweep, jobs_of(campaign)));
 }
@@ -315,9 +315,9 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
     campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
     const char* const hint = "leave one of them out";
     if (arguments.launch.jobs_per_task.value_or(1) > 1)
-      refuse("--jobs and --jobs-per-task do not go together: a task carries on all of its jobs", hint);
+      refuse("--jobs and --jobs-per-task exclude each other: a task runs all of its jobs", hint);
     if (!arguments.launch.junit.empty())
-      refuse("--jobs and --junit do not go together: what is expected is judged of the whole sweep", hint);
+      refuse("--jobs and --junit exclude each other: expectations are checked for the whole sweep", hint);
   }
   Standing begun = standing_of(sweep, jobs_of(campaign));
   const std::vector<std::size_t> left = undone(begun);

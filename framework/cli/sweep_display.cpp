@@ -21,9 +21,9 @@ namespace palpate::cli {
 namespace {
 
 std::string rate_words(double per_second) {
-  if (per_second >= 1.0) return fmt::format("{:.3g} a second", per_second);
-  return per_second >= 1.0 / 60.0 ? fmt::format("{:.3g} a minute", 60.0 * per_second)
-                                  : fmt::format("{:.3g} an hour", 3600.0 * per_second);
+  if (per_second >= 1.0) return fmt::format("{:.3g} per second", per_second);
+  return per_second >= 1.0 / 60.0 ? fmt::format("{:.3g} per minute", 60.0 * per_second)
+                                  : fmt::format("{:.3g} per hour", 3600.0 * per_second);
 }
 
 /// "12 s", "8 min", "3 h 05 min".

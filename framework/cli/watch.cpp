@@ -21,8 +21,9 @@ int watch(Program& program, const WatchArguments& arguments) {
   Site site(program, arguments.directory);
   Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kPatience : 0});
   if (server.is_open_to_others()) {
-    mention(fmt::format("watch: whoever reaches {} and knows this address sees the run, and it travels in the clear\n",
-                        arguments.bind));
+    mention(fmt::format(
+        "watch: anyone who can reach {} and has this address can see the run; the connection is not encrypted\n",
+        arguments.bind));
   }
   print_text(server.url() + "\n");
   flush_output();

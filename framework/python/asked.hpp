@@ -97,18 +97,18 @@ class Asked {
   int columns() const { return static_cast<int>(xs_.size()); }
 
   CallersRun& open() {
-    if (!run_) throw Error("experiment", "is closed", "palpate.Experiment.resume(DIR) carries it on");
+    if (!run_) throw Error("experiment", "is closed", "resume the run with palpate.Experiment.resume(DIR)");
     return *run_;
   }
   Eigen::VectorXd checked(const Array& scores) const {
     const auto wanted = static_cast<py::ssize_t>(rows()) * columns();
     if (scores.size() != wanted) {
       throw Error("scores", "has " + std::to_string(scores.size()) + " values",
-                  "give one a candidate, " + std::to_string(wanted));
+                  "give one per candidate, " + std::to_string(wanted));
     }
     const py::array_t<double, py::array::c_style | py::array::forcecast> dense(scores);
     Eigen::VectorXd out = Eigen::Map<const Eigen::VectorXd>(dense.data(), wanted);
-    if (!out.allFinite()) throw Error("scores", "has a value that is not a finite number", "0 is worth nothing");
+    if (!out.allFinite()) throw Error("scores", "has a value that is not a finite number", "use 0 for a worthless tap");
     return out;
   }
 
@@ -126,8 +126,8 @@ inline Contact contact_of(const std::string& outcome, double height, double forc
                           const std::string& reason, bool ends_run) {
   const std::optional<Outcome> known = answered_outcome(outcome);
   if (!known) {
-    throw Error("tell", "there is no outcome '" + plain_line(outcome) + "'",
-                "it is contact, no_contact, unreachable, timeout or aborted");
+    throw Error("tell", "unknown outcome '" + plain_line(outcome) + "'",
+                "use contact, no_contact, unreachable, timeout or aborted");
   }
   return {*known, height, force, seconds, reason, ends_run};
 }

@@ -22,7 +22,7 @@ namespace palpate {
 inline Installation find_own_installation() {
   Dl_info self{};
   if (::dladdr(reinterpret_cast<const void*>(&find_own_installation), &self) == 0 || self.dli_fname == nullptr)
-    throw Error("palpate", "the module does not know where it lies", {}, Error::Kind::run);
+    throw Error("palpate", "the path of the module is unknown", {}, Error::Kind::run);
   return find_installation(std::filesystem::weakly_canonical(self.dli_fname));
 }
 

@@ -125,7 +125,7 @@ class Unlocked {
 
 /// For a long call without Python's lock: throws what a signal raises, as Ctrl-C does, and once the interpreter ends.
 inline void check_signals() {
-  if (Calls::all().ended()) throw Error("palpate", "the interpreter ends", {}, Error::Kind::run);
+  if (Calls::all().ended()) throw Error("palpate", "the Python interpreter is shutting down", {}, Error::Kind::run);
   const pybind11::gil_scoped_acquire held;
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
 }
@@ -148,8 +148,8 @@ class Turn {
  public:
   explicit Turn(Owned& owned, const std::string& place = "experiment") {
     if (!owned.is_here()) {
-      throw Error(place, "was opened by the process that this one was forked from",
-                  "open it in the child, once the parent has closed it", Error::Kind::run);
+      throw Error(place, "was opened by the parent of this forked process",
+                  "open it in the child after the parent has closed it", Error::Kind::run);
     }
     unlocked_.emplace();
     lock_ = std::unique_lock(owned.mutex_);

@@ -48,7 +48,7 @@ class Caller final : public Backend {
 
   /// Nobody asks: see CallersRun.
   Contact tap(const TapRequest&) override {
-    throw Error("", "makes no taps: the caller does", "ask and tell from Python", Error::Kind::run);
+    throw Error("", "makes no taps: the caller's program does", "use ask() and tell() in Python", Error::Kind::run);
   }
   /// What is at the caller's end, only he knows.
   bool repeatable() const override { return false; }

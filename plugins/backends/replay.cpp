@@ -76,7 +76,7 @@ class Table {
     if (!read_row()) throw Error(file, "cannot be read", hint);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (!columns_.emplace(cells_[i], i).second)
-        throw Error(file, "has two columns '" + cells_[i] + "'", "take one away, or name it otherwise");
+        throw Error(file, "has two columns '" + cells_[i] + "'", "remove or rename one of them");
     }
     for (const char* needed : {"x", "y", "outcome", "height"}) {
       if (columns_.count(needed) == 0) throw Error(file, std::string("has no column '") + needed + "'");
@@ -85,7 +85,7 @@ class Table {
 
   bool next() {
     if (!read_row()) return false;
-    if (cells_.size() != columns_.size()) throw Error(where(), "has another number of cells than the header");
+    if (cells_.size() != columns_.size()) throw Error(where(), "has a different number of cells than the header");
     return true;
   }
 
@@ -114,7 +114,7 @@ class Table {
   int count(const std::string& column) const {
     const double value = number(column, 0.0);
     if (value < 0.0 || value > std::numeric_limits<int>::max() || value != std::floor(value))
-      throw Error(where(), column + ": '" + text(column) + "' is not a whole number from 0 on");
+      throw Error(where(), column + ": '" + text(column) + "' is not a whole number of at least 0");
     return static_cast<int>(value);
   }
 
@@ -166,7 +166,7 @@ std::vector<Recorded> read_record(const std::string& path) {
     one.contact.seconds = table.number("robot_seconds", 0.0);
     if (one.contact.outcome != Outcome::contact) {
       one.contact.height = 0.0;
-      one.contact.reason = "so recorded";
+      one.contact.reason = "recorded without a reason";
     }
     if (std::isnan(one.place.x + one.place.y + one.contact.height)) throw Error(table.where(), "lacks x, y or height");
     if (const auto fault = find_fault(one.contact, kAnyArm)) throw Error(table.where(), fault->reason, fault->remedy);

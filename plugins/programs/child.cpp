@@ -193,7 +193,7 @@ std::string Child::fate() {
     how = "was ended by signal " + std::to_string(info.si_status) + (name ? std::string(" (") + name + ")" : "");
   }
   const std::string words = diary_.last_words();
-  return words.empty() ? how : how + ", its last words: " + shown(words);
+  return words.empty() ? how : how + ", its last output: " + shown(words);
 }
 
 /// Whether it ended; it is not reaped yet. An error means that somebody else has: SIGCHLD is ignored.

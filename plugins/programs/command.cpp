@@ -53,7 +53,7 @@ std::optional<std::vector<std::string>> list_command(std::string& command, Field
                            .needed()
                            .not_identifying());
   auto words = split_command(command);
-  fields.require(words.has_value(), "command", "names no program, or a quote is left open");
+  fields.require(words.has_value(), "command", "names no program, or has an unclosed quote");
   return words;
 }
 
@@ -96,7 +96,7 @@ std::string find_program(const std::string& program, const std::string& folder) 
     if (executable(file)) return file;
   }
   throw Error("command", "there is no program " + shown(program),
-              "a name is looked for in PATH, a path from " +
+              "names are searched in PATH, relative paths start in " +
                   (folder.empty() ? std::string("the folder in which palpate runs") : "the folder " + folder));
 }
 
@@ -127,8 +127,8 @@ std::string find_checked(const std::string& command, const std::vector<std::stri
                          const std::string& checksum) {
   const std::string found = content_of(words, folder).checksum;
   if (checksum == found) return find_program(words.front(), folder);
-  throw Error("checksum", "is not that of " + shown(command) + " with its program, which has " + found,
-              "put the program back that the run began with, or begin another run", Error::Kind::busy);
+  throw Error("checksum", "does not match " + shown(command) + " with its program, whose checksum is " + found,
+              "restore the program that the run started with, or start another run", Error::Kind::busy);
 }
 
 std::string shown(const std::string& text) {

@@ -29,8 +29,7 @@ const auto kNoteLength = static_cast<off_t>(note_of(0).size());
 Descriptor open_recorded(const std::string& file, int flags) {
   const int number = ::open(file.c_str(), flags | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
   if (number < 0 && errno == ELOOP)
-    throw Error(file, "is a link, and nothing in a record is read or written through one", "remove it",
-                Error::Kind::run);
+    throw Error(file, "is a symbolic link, and links in a record are not followed", "remove it", Error::Kind::run);
   Descriptor out = above_standard(number);
   if (!out) fail("command", "cannot open a pipe or file");
   return out;

@@ -9,7 +9,7 @@ struct DomeOptions : RoundOptions {
 
   void list(Fields& fields) override {
     RoundOptions::list(fields);
-    fields.require(height <= diameter / 2, "height", "is more than half the diameter, which makes half a ball");
+    fields.require(height <= diameter / 2, "height", "is more than half the diameter, the height of a half ball");
   }
 };
 

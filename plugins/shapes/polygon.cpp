@@ -49,7 +49,7 @@ std::string trouble_of_outline(const Outline& outline) {
     return "has " + std::to_string(n) + " points, at most " + std::to_string(kMostPoints) + " are allowed";
   for (std::size_t i = 0; i < n; ++i) {
     if (outline[i] == next(outline, i)) {
-      return "points " + number(i) + " and " + number((i + 1) % n) + " are the same; it closes by itself";
+      return "points " + number(i) + " and " + number((i + 1) % n) + " are equal; the outline closes by itself";
     }
     if (folds(outline, i)) return "folds back at point " + number((i + 1) % n);
   }

@@ -69,7 +69,7 @@ struct BarsOptions : Options {
     fields.real(thickness, Field("thickness", "thickness of both bars, seen from above").in(Unit::metre).above(0));
     list_height(height, fields);
     fields.require(thickness < length && thickness < width, "thickness",
-                   "is not less than length and width, nothing would be left of the second bar");
+                   "is not less than length and width, which leaves no second bar");
   }
 };
 

@@ -25,7 +25,7 @@ struct WaveOptions : Options {
         Field("amplitude", "amplitude of the wave, which has a crest at the centre").in(Unit::metre).at_least(0));
     fields.real(period, Field("period", "distance from one crest to the next").in(Unit::metre).above(0));
     fields.require(amplitude <= height, "amplitude",
-                   "is larger than the mean height, the top would dip below the desk");
+                   "is larger than the mean height, so the top would be below the desk");
   }
 };
 

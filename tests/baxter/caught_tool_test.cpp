@@ -74,8 +74,8 @@ TEST(ACaughtTool, IsHeldWhereItIsAndToldAndNotPulledAgainstTheReflex) {
       const std::string where = fmt::format("{} Nm, {} N/m", friction, stiffness);
       EXPECT_EQ(contact.outcome, Outcome::aborted) << where;
       EXPECT_TRUE(contact.ends_run);
-      EXPECT_THAT(contact.reason, StartsWith("something holds the tool: it pulls with ")) << where;
-      EXPECT_THAT(contact.reason, HasSubstr("free it by hand before the arm goes up again; the arm holds "));
+      EXPECT_THAT(contact.reason, StartsWith("the tool is caught: it is pulled with ")) << where;
+      EXPECT_THAT(contact.reason, HasSubstr("free it by hand before the arm moves up again; the arm holds "));
       EXPECT_EQ(bench.reflexes, 0) << where;
       EXPECT_LT(bench.pull, Body::kReflex) << where;
       EXPECT_LT(bench.robot.body.now() - begin, 30.0) << "s, most of them on the way down";
@@ -96,7 +96,7 @@ TEST(ACaughtTool, IsNoticedInAFirstTapBeforeTheReflexWithAnyMotionAndSign) {
         options.force_sign = sign;
         HardDesk bench(friction, options);
         bench.robot.body.inject({FaultKind::caught, 3000.0, {}});
-        EXPECT_THAT(bench.tap(kOnDesk).reason, StartsWith("something holds the tool: it pulls with "));
+        EXPECT_THAT(bench.tap(kOnDesk).reason, StartsWith("the tool is caught: it is pulled with "));
         EXPECT_EQ(bench.reflexes, 0) << static_cast<int>(type) << ", " << friction << " Nm";
         EXPECT_LT(bench.pull, Body::kReflex);
       }
@@ -107,7 +107,7 @@ TEST(ACaughtTool, IsNoticedInAFirstTapBeforeTheReflexWithAnyMotionAndSign) {
 TEST(ACaughtTool, IsFreedByAPersonAndTheNextTapGoesOn) {
   HardDesk bench(0.0);
   bench.robot.body.inject({FaultKind::caught, 3000.0, {}});
-  ASSERT_THAT(bench.tap(kOnDesk).reason, StartsWith("something holds the tool"));
+  ASSERT_THAT(bench.tap(kOnDesk).reason, StartsWith("the tool is caught"));
   const Contact again = bench.tap(kOnDesk);
   EXPECT_TRUE(again.ends_run) << "nobody has freed it: the next run does not pull on either";
   EXPECT_THAT(again.reason, HasSubstr("the arm holds "));
@@ -125,7 +125,7 @@ TEST(ACaughtTool, IsNoticedBeforeTheReflexHoweverSoftlyItIsHeld) {
       ASSERT_EQ(bench.tap({0.06, 0.03}).outcome, Outcome::contact) << where;
       bench.robot.body.inject({FaultKind::caught, stiffness, {}});
       const Contact contact = bench.tap(kOnDesk);
-      EXPECT_THAT(contact.reason, StartsWith("something holds the tool")) << where;
+      EXPECT_THAT(contact.reason, StartsWith("the tool is caught")) << where;
       EXPECT_THAT(contact.reason, HasSubstr("; the arm holds ")) << where;
       bench.wait(10.0);
       EXPECT_EQ(bench.reflexes, 0) << where;

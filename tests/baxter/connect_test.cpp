@@ -110,21 +110,20 @@ TEST(Connect, AnAddressThatIsNotThisMachinesIsNamedBeforeAnythingIsAsked) {
   for (const std::string ip : {"192.0.2.1", "the_desk", "0.0.0.0"}) {
     EXPECT_EQ(refusal_of(master, {"ROS_IP=" + ip}),
               "ROS_IP=" + ip +
-                  ": is no address of this machine, so the robot could not reach it, set it to the address of the "
+                  ": is not an address of this machine, so the robot cannot reach it, set it to the address of the "
                   "interface on the robot's network (ip -brief address)");
   }
   EXPECT_EQ(refusal_of(master, {"ROS_IP=127.0.0.1", "ROS_HOSTNAME=localhost"}),
-            "ROS_IP=127.0.0.1: is set beside ROS_HOSTNAME=localhost, unset one of them");
+            "ROS_IP=127.0.0.1: is set together with ROS_HOSTNAME=localhost, unset one of them");
   EXPECT_THAT(refusal_of(master, {"ROS_HOSTNAME=no.such.host.invalid"}),
               MatchesRegex("ROS_HOSTNAME=no.such.host.invalid: does not resolve \\(.*\\), set ROS_IP to this machine's "
                            "address instead"));
 }
 
 TEST(Connect, WhereNoMasterIsItSaysHowItLookedForOne) {
-  EXPECT_EQ(
-      refusal_of("http://127.0.0.1:1"),
-      "ROS_MASTER_URI=http://127.0.0.1:1: the master is not at 127.0.0.1:1 (Connection refused), start the robot, or "
-      "mend the variable");
+  EXPECT_EQ(refusal_of("http://127.0.0.1:1"),
+            "ROS_MASTER_URI=http://127.0.0.1:1: the master is not at 127.0.0.1:1 (Connection refused), start the "
+            "robot, or correct the variable");
   EXPECT_THAT(
       refusal_of("http://011305P0001.invalid:11311"),
       MatchesRegex("ROS_MASTER_URI=http://011305P0001.invalid:11311: the master is on the host 011305P0001.invalid, "
@@ -136,8 +135,9 @@ TEST(Connect, AMasterThatDoesNotAnswerIsNotWaitedFor) {
   const Stranger taciturn(5);
   const Stranger swallows(0, 4);
   for (const Stranger* stranger : {&taciturn, &swallows}) {
-    EXPECT_THAT(refusal_of(stranger->uri()), EndsWith(" does not answer in time, check that the robot is on and that "
-                                                      "no firewall lies between"));
+    EXPECT_THAT(
+        refusal_of(stranger->uri()),
+        EndsWith(" does not answer in time, check that the robot is on and that no firewall blocks the connection"));
   }
 }
 
@@ -157,15 +157,14 @@ TEST(Connect, AMasterThatNestsItsAnswerWithoutEndIsNoMaster) {
   const Child master({"python3", "-SE", script.string()}, folder.path());
   ASSERT_TRUE(eventually([&] { return master.out().find('\n') != std::string::npos; }));
   const std::string port = master.out().substr(0, master.out().find('\n'));
-  EXPECT_THAT(refusal_of("http://127.0.0.1:" + port), HasSubstr("what answers there is no ROS"));
+  EXPECT_THAT(refusal_of("http://127.0.0.1:" + port), HasSubstr("the program that answers there is not ROS"));
 }
 
 TEST(Connect, ANetworkWithoutARobotIsToldByWhatNobodyPublishes) {
   const RobotLab lab;
-  EXPECT_THAT(
-      refusal(lab.environment()),
-      EndsWith(": nobody publishes /robot/joint_states, /robot/limb/left/endpoint_state and /robot/state, is it "
-               "the master of a Baxter?"));
+  EXPECT_THAT(refusal(lab.environment()),
+              EndsWith(": no node publishes /robot/joint_states, /robot/limb/left/endpoint_state and /robot/state, "
+                       "check that it is the master of a Baxter"));
   EXPECT_THAT(lab.nodes(), ElementsAre());
 }
 
@@ -173,10 +172,9 @@ TEST(Connect, ANodeThatDiedWithoutTakingLeaveIsNamed) {
   RobotLab lab(in_real_time());
   lab.robot().signal(SIGKILL);
   lab.robot().wait();
-  EXPECT_THAT(
-      refusal(lab.environment()),
-      AllOf(StartsWith("/robot/"), HasSubstr("(Connection refused), start it again, or remove what is left of it "
-                                             "with rosnode cleanup")));
+  EXPECT_THAT(refusal(lab.environment()),
+              AllOf(StartsWith("/robot/"),
+                    HasSubstr("(Connection refused), restart it, or remove its remains with rosnode cleanup")));
 }
 
 TEST(Connect, ANodeOnAHostThatDoesNotResolveIsNamedWithThatHost) {
@@ -194,7 +192,7 @@ TEST(Connect, ANodeOnAHostThatDoesNotResolveIsNamedWithThatHost) {
 TEST(Connect, TheRobotsInverseKinematicsIsMissedOnlyByThoseWhoWishForIt) {
   const RobotLab lab(in_real_time({"--fault", "ik_absent"}));
   EXPECT_EQ(refusal(lab.environment(), {true, false}), "connected");
-  EXPECT_THAT(refusal(lab.environment(), {true, true}), HasSubstr("IKService: nobody offers this service"));
+  EXPECT_THAT(refusal(lab.environment(), {true, true}), HasSubstr("IKService: no node offers this service"));
 }
 
 TEST(Connect, TwiceInOneProcessOrEndedInTheMiddleItLeavesNoThreadAndNoNodeAndNotAWord) {

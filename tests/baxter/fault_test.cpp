@@ -73,7 +73,7 @@ TEST_P(FaultInATap, LeavesTheArmSafeTheTapLoggedAndTheReasonNamed) {
 INSTANTIATE_TEST_SUITE_P(OfTheRobot, FaultInATap, testing::ValuesIn(kTroubles),
                          [](const auto& trouble) { return name_of(trouble.param); });
 INSTANTIATE_TEST_SUITE_P(OfItsComputer, FaultInATap,
-                         testing::Values(Trouble{"RobotGone", "die", "the clock of the robot's network stands still"}),
+                         testing::Values(Trouble{"RobotGone", "die", "the clock of the robot's network has stopped"}),
                          [](const auto& trouble) { return name_of(trouble.param); });
 
 TEST(FaultOfInverseKinematics, EndsTheRunBeforeAnythingMoves) {
@@ -119,8 +119,8 @@ INSTANTIATE_TEST_SUITE_P(
         BeforeFlight{"ForceIsZero", {"--fault", "zero_wrench"}, "a force of exactly zero"},
         BeforeFlight{"SecondState",
                      {"--fault", "second_sender"},
-                     "/robot/state: comes from more than one node, /realtime_loop and /second_robot, end what is no "
-                     "robot; rosnode cleanup removes what has ended already"},
+                     "/robot/state: comes from more than one node, /realtime_loop and /second_robot, end the nodes "
+                     "that are not the robot; rosnode cleanup removes ended ones"},
         BeforeFlight{
             "SecondEndpoint",
             {"--fault", "second_sender=endpoint"},
@@ -134,23 +134,23 @@ INSTANTIATE_TEST_SUITE_P(
         BeforeFlight{"OldFirmware",
                      {"--fault", "old_state"},
                      "/robot/state: /realtime_loop sends baxter_core_msgs/AssemblyState with md5 sum "
-                     "d7ff2b9fa7d5f688665ce44db4ee2af8, this driver knows baxter_core_msgs/AssemblyState with "
-                     "356d9dd237ce73b2667da9235f541933, which came with the robot's software 1.2: update the robot"},
+                     "d7ff2b9fa7d5f688665ce44db4ee2af8, but this driver needs baxter_core_msgs/AssemblyState with "
+                     "356d9dd237ce73b2667da9235f541933, update the robot to software 1.2"},
         BeforeFlight{"OldSoftware",
                      {"--fault", "software=1.1.1.5"},
-                     "/rethink/software_version: the robot's software is 1.1.1.5, this driver knows 1.2: update the "
-                     "robot"},
+                     "/rethink/software_version: the robot's software is 1.1.1.5, update the robot to 1.2, which this "
+                     "driver needs"},
         BeforeFlight{"NoEndpoint",
                      {"--fault", "no_data=endpoint"},
-                     "/robot/limb/left/endpoint_state: /realtime_loop publishes it, but nothing that is needed has "
-                     "come, look at it with rostopic echo; the robot may be starting"},
+                     "/robot/limb/left/endpoint_state: /realtime_loop publishes it, but no message has arrived, check "
+                     "it with rostopic echo; the robot may still be starting"},
         BeforeFlight{"NoJoints", {"--fault", "no_data=joints"}, "/robot/joint_states"},
         BeforeFlight{"NoInverseKinematics",
                      {"--fault", "ik_absent"},
-                     "/ExternalTools/left/PositionKinematicsNode/IKService: nobody offers this service, set "
+                     "/ExternalTools/left/PositionKinematicsNode/IKService: no node offers this service, set "
                      "inverse_kinematics: own, or start the robot again",
                      {"backend.inverse_kinematics=robot"}},
-        BeforeFlight{"BesideTheArea", {"--start-at", "-0.12,0.1,0.2"}, "more than 10 cm beside the area"},
+        BeforeFlight{"BesideTheArea", {"--start-at", "-0.12,0.1,0.2"}, "more than 10 cm outside the area"},
         BeforeFlight{
             "OtherGripper", {"backend.tool.gripper=15.85cm"}, "the robot has left_gripper 15.85 cm from left_hand"}),
     [](const auto& fault) { return std::string(fault.param.name); });

@@ -33,7 +33,7 @@ TEST(BaxterOptions, OfTheShippedMotionsAreTaken) {
 }
 
 TEST(BaxterOptions, WithWhichTheFirmwareWouldStopTheArmAreRefused) {
-  EXPECT_THAT(refusal("{type: paper, threshold: 12.5 N}"), HasSubstr("take at most 10 N"));
+  EXPECT_THAT(refusal("{type: paper, threshold: 12.5 N}"), HasSubstr("choose at most 10 N"));
   EXPECT_THAT(refusal("{type: two_stage, threshold: 6 N, fine_threshold: 20 N}"),
               HasSubstr("must not lie above motion.threshold"));
   EXPECT_THAT(refusal("{type: paper, threshold: 10 N}", ", force_stop: 9 N"),
@@ -42,21 +42,21 @@ TEST(BaxterOptions, WithWhichTheFirmwareWouldStopTheArmAreRefused) {
 }
 
 TEST(BaxterOptions, ThatComeDownTooFastOrTooFarAreRefused) {
-  EXPECT_THAT(refusal("{type: continuous, speed: 20 cm/s}"), HasSubstr("take at most 10 cm/s"));
-  EXPECT_THAT(refusal("{type: two_stage, fine_speed: 20 cm/s}"), HasSubstr("take at most 10 cm/s"));
-  EXPECT_THAT(refusal("{type: paper, adaptive_hover: {speed: 20 cm/s}}"), HasSubstr("take at most 10 cm/s"));
-  EXPECT_THAT(refusal("{type: paper, overrun: 20 cm}"), HasSubstr("take at most 10 cm"));
+  EXPECT_THAT(refusal("{type: continuous, speed: 20 cm/s}"), HasSubstr("choose at most 10 cm/s"));
+  EXPECT_THAT(refusal("{type: two_stage, fine_speed: 20 cm/s}"), HasSubstr("choose at most 10 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, adaptive_hover: {speed: 20 cm/s}}"), HasSubstr("choose at most 10 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, overrun: 20 cm}"), HasSubstr("choose at most 10 cm"));
   EXPECT_EQ(refusal("{type: per_tap, of: [{type: continuous}, {type: paper}]}"), "");
   EXPECT_THAT(refusal("{type: per_tap, of: [{type: continuous}, {type: continuous, speed: 20 cm/s}]}"),
-              AllOf(HasSubstr("motion.of.1.speed"), HasSubstr("take at most 10 cm/s")));
+              AllOf(HasSubstr("motion.of.1.speed"), HasSubstr("choose at most 10 cm/s")));
 }
 
 TEST(BaxterOptions, WithWhichATapWouldMeanNothingOrNeverEndAreRefused) {
-  EXPECT_THAT(refusal("{type: paper, threshold: 1 N}"), HasSubstr("take at least 3 N"));
-  EXPECT_THAT(refusal("{type: two_stage, fine_threshold: 1 N}"), HasSubstr("take at least 3 N"));
-  EXPECT_THAT(refusal("{type: paper, tare: 0 s}"), HasSubstr("take at least 100 ms"));
-  EXPECT_THAT(refusal("{type: paper, travel_speed: 0.1 mm/s}"), HasSubstr("take at least 1 cm/s"));
-  EXPECT_THAT(refusal("{type: paper, retreat_speed: 0.1 mm/s}"), HasSubstr("take at least 1 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, threshold: 1 N}"), HasSubstr("choose at least 3 N"));
+  EXPECT_THAT(refusal("{type: two_stage, fine_threshold: 1 N}"), HasSubstr("choose at least 3 N"));
+  EXPECT_THAT(refusal("{type: paper, tare: 0 s}"), HasSubstr("choose at least 100 ms"));
+  EXPECT_THAT(refusal("{type: paper, travel_speed: 0.1 mm/s}"), HasSubstr("at least 1 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, retreat_speed: 0.1 mm/s}"), HasSubstr("at least 1 cm/s"));
 }
 
 TEST(BaxterOptions, ThatAreNoNumbersAreRefused) {

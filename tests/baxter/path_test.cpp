@@ -101,7 +101,7 @@ TEST(Columns, AreRefusedWhereAJointWouldTurnTooFastAndOutOfReach) {
   EXPECT_EQ(refused(kMiddle, 0.03), "");
   EXPECT_THAT(refused(kMiddle, 3.0), testing::StartsWith("a joint would have to turn faster than 0.4 rad/s"));
   EXPECT_THAT(refused({0.7, 0.0}, 0.03),  // 1.2 m before the robot
-              testing::StartsWith("no position of the joints within their limits puts the tool upright at ("));
+              testing::StartsWith("no joint position within the limits puts the tool upright at ("));
 }
 
 TEST(Columns, NeverLeaveTheLimitsOfTheJoints) {
@@ -202,10 +202,9 @@ TEST(TheReachOfTheArea, IsWholeWhereTheFakeRobotHasItsSceneAndElseRefusedWithThe
     FAIL() << "parts of it lie more than 1 m before the robot";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::run);
-    EXPECT_THAT(error.what(),
-                testing::ContainsRegex("scene_pose: [0-9]+ of 36 places of the area cannot be reached, the first at "
-                                       "\\(.* cm, .* cm\\): .*, put the middle of the area near x = 60 cm, y = 20 cm "
-                                       "of base"));
+    EXPECT_THAT(error.what(), testing::ContainsRegex(
+                                  "scene_pose: [0-9]+ of 36 places of the area cannot be reached, the first at \\(.* "
+                                  "cm, .* cm\\): .*, move the middle of the area near x = 60 cm, y = 20 cm of base"));
   }
 }
 

@@ -72,8 +72,8 @@ TEST(RobotPlugin, DoesNotConnectToAnArmThatAnotherProcessHasInHand) {
   };
   std::optional<ArmLock> other;
   other.emplace("backend", "left of " + uri);
-  EXPECT_EQ(attempt(""), master + ": the arm left of " + uri + " is in the hands of process " +
-                             std::to_string(::getpid()) + ", wait until that has ended, or end it");
+  EXPECT_EQ(attempt(""), master + ": the arm left of " + uri + " is used by process " + std::to_string(::getpid()) +
+                             ", wait until that process has ended, or end it");
   EXPECT_EQ(attempt("dry_run: true, "), "accepted") << "that moves nothing";
   other.reset();
   EXPECT_EQ(attempt(""), "accepted");

@@ -259,7 +259,7 @@ TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
   ASSERT_TRUE(terminal.shows("Enter taps, q ends: ")) << terminal.screen();
   EXPECT_THAT(terminal.screen(), HasSubstr("tap 1 of 2 at ("));
   EXPECT_THAT(terminal.screen(), HasSubstr("stop at 5.0 N above the tare: a contact\r\n      press with at most "));
-  EXPECT_THAT(terminal.screen(), HasSubstr("\r\n      stop on the way down when the force changes by 14.0 N upwards"));
+  EXPECT_THAT(terminal.screen(), HasSubstr("\r\n      stop the descent when the force changes by 14.0 N upwards"));
   EXPECT_EQ(commanded(lab), 0);
   EXPECT_EQ(test::lasting_part_of(run_of(lab)), "") << "no tap is announced";
   terminal.type("\n");
@@ -283,7 +283,7 @@ TEST(RobotRun, IsRefusedWhileAnotherProgramCommandsTheArm) {
   }));
   const Ended ended = lab.palpate(run_words(1), 60.0);
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, HasSubstr("the arm is commanded by /probe"));
+  EXPECT_THAT(ended.err, HasSubstr("the arm is also commanded by /probe"));
   EXPECT_FALSE(fs::exists(lab.folder() / "runs"));
 }
 
@@ -313,7 +313,7 @@ TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
                                    "--quiet", "--runs", "swept"});
   EXPECT_EQ(sweep.status, 1);
   EXPECT_THAT(sweep.err, StartsWith("job 0: " + lab.environment().front() + ": the arm left of http://"));
-  EXPECT_THAT(sweep.out, HasSubstr("stopped for the reason above; remove it, then: palpate resume "));
+  EXPECT_THAT(sweep.out, HasSubstr("stopped for the reason above; correct it, then run: palpate resume "));
   EXPECT_THAT(sweep.out, Not(HasSubstr("--retry-failed"))) << "no job has failed";
   // Another machine has locks of its own, and so has another name of the robot.
   std::string master = lab.environment().front();

@@ -111,9 +111,10 @@ TEST(ARobot, ThatMayBeTooSlowIsRejectedBeforeItsFirstTapWithWhatIsAssumed) {
   desk.inject("jitter=0.07");
   const Contact contact = desk.tap();
   EXPECT_EQ(contact.outcome, Outcome::aborted);
-  EXPECT_THAT(contact.reason, HasSubstr("until a contact was measured it is assumed that a contact would be noticed"));
+  EXPECT_THAT(contact.reason,
+              HasSubstr("before the first measured contact it is assumed that a contact would be detected"));
   EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 1 mm/s are needed"));
-  EXPECT_THAT(contact.reason, HasSubstr("take a motion.threshold below 5.0 N"));
+  EXPECT_THAT(contact.reason, HasSubstr("choose a motion.threshold below 5.0 N"));
   EXPECT_GT(desk.lowest, 0.1) << "it did not come down";
 }
 
@@ -124,8 +125,7 @@ TEST(AForce, ThatIsRenewedSeldomAndFreezesAtAContactIsFoundBeforeTheReflex) {
     ASSERT_EQ(desk.tap().outcome, Outcome::contact) << every;
     desk.robot.body.inject({FaultKind::freeze_endpoint, 0.0, {}}, {1, 0.0002});
     const Contact contact = desk.tap();
-    EXPECT_THAT(contact.reason,
-                AnyOf(HasSubstr("the same force to the last digit"), HasSubstr("had another force only")));
+    EXPECT_THAT(contact.reason, AnyOf(HasSubstr("exactly the same force"), HasSubstr("with a new force only")));
     EXPECT_LT(desk.peak, Body::kReflex) << every;
   }
 }
@@ -164,7 +164,7 @@ TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasure
   desk.inject("slow_force=10");
   ASSERT_EQ(desk.tap().outcome, Outcome::contact) << "at 5 N, while nothing was measured";
   const Contact contact = desk.tap();
-  EXPECT_THAT(contact.reason, ContainsRegex("^a contact would be noticed after [45].. ms"));
+  EXPECT_THAT(contact.reason, ContainsRegex("^a contact would be detected after [45].. ms"));
   EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 2 mm/s are needed"));
   EXPECT_GT(desk.lowest, 0.1) << "it did not come down";
 }
@@ -196,7 +196,7 @@ TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThan25SecondsAndTol
       const Contact contact = desk.tap();
       const double took = desk.robot.body.now() - desk.touched.value();
       if (contact.outcome != Outcome::contact) {
-        EXPECT_THAT(contact.reason, HasSubstr("something presses that is too soft: its force rises by 1")) << stiffness;
+        EXPECT_THAT(contact.reason, HasSubstr("a contact is too soft: its force rises by 1")) << stiffness;
         EXPECT_FALSE(contact.ends_run);
       }
       EXPECT_LT(took, 25.0) << stiffness;
@@ -212,7 +212,7 @@ TEST(SomethingSoft, BelowThePromisedStiffnessIsToldByThePapersMotionToo) {
   Desk desk(250.0, options);
   const Contact contact = desk.tap();
   EXPECT_EQ(contact.outcome, Outcome::aborted);
-  EXPECT_THAT(contact.reason, HasSubstr("something presses that is too soft: its force rises by 1"));
+  EXPECT_THAT(contact.reason, HasSubstr("a contact is too soft: its force rises by 1"));
   EXPECT_FALSE(contact.ends_run);
   EXPECT_LT(desk.peak, Body::kReflex);
 }

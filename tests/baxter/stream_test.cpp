@@ -64,7 +64,7 @@ TEST(AStream, BelowFiftyHertzStopsTheArm) {
 
 TEST(ADriver, ThatGetsToTheArmTooSeldomBlamesItsComputer) {
   EXPECT_THAT(looked(0.03, 100.0, 100.0),
-              IsFault("this computer got to the arm 17 times in the last 0.5 s, 25 are needed", Then::hold));
+              IsFault("this computer served the arm 17 times in the last 0.5 s, 25 are needed", Then::hold));
   EXPECT_THAT(looked(0.03, 100.0, 100.0, true), IsNothing()) << "a simulated clock does not wait";
   EXPECT_TRUE(looked(0.03, 100.0, 12.0, true)) << "a stream that is slower than the driver is not its fault";
 }
@@ -74,14 +74,15 @@ TEST(AGap, OfTheDriversOwnIsNotBlamedOnTheNetwork) {
   ASSERT_THAT(rules.at(1.0), IsNothing());
   Snapshot seen = sound(1.0, pose());
   seen.now = 1.15;  // nobody looked, and nobody received
-  EXPECT_THAT(rules.look(seen, kInside), IsFault("this computer did not get to the arm for 0.15 s", Then::silence));
+  EXPECT_THAT(rules.look(seen, kInside), IsFault("this computer could not serve the arm for 0.15 s", Then::silence));
 
   Rules receiving;
   for (seen.now = 1.0; seen.now < 1.1; seen.now += 0.01) ASSERT_THAT(receiving.look(seen, kInside), IsNothing());
   seen.now = 1.12;
-  EXPECT_THAT(receiving.look(seen, kInside), IsFault("see to the network", Then::silence));
+  EXPECT_THAT(receiving.look(seen, kInside), IsFault("check the network", Then::silence));
   seen.own_gap = 0.12;
-  EXPECT_THAT(receiving.look(seen, kInside), IsFault("this computer did not get to the arm for 0.12 s", Then::silence));
+  EXPECT_THAT(receiving.look(seen, kInside),
+              IsFault("this computer could not serve the arm for 0.12 s", Then::silence));
 }
 
 TEST(Pulse, IsWithoutGapsWhileItBeats) {

@@ -99,7 +99,7 @@ TEST(BeforeFlight, WhatTheRobotSaysIsRefusedWhereTheArmWouldNotDoWhatItIsTold) {
   const char* other_timeout = "set it to 0.2, on /robot/limb/left/joint_command_timeout";
   const std::pair<std::function<void(Snapshot&)>, const char*> cases[] = {
       {ratio(0.3), ""},
-      {ratio(0.03), "/other has set it to 0.03, at which the arm cannot follow"},
+      {ratio(0.03), "/other has set it to 0.03, too low for the arm to follow"},
       {timeout(0.2), ""},
       {timeout(0.02), other_timeout},
       {timeout(5.0), other_timeout},
@@ -122,7 +122,7 @@ TEST(BeforeFlight, WhatOthersLeftOnTheRobotIsTold) {
   };
   bench.check();
   EXPECT_THAT(bench.notes, testing::ElementsAre(StartsWith("set_speed_ratio: 0.5 from /other"),
-                                                HasSubstr("joint_command_timeout: nobody says it now"),
+                                                HasSubstr("joint_command_timeout: not published"),
                                                 HasSubstr("rethink electric gripper, 0.8 kg beyond the flange")));
 }
 
@@ -131,7 +131,7 @@ TEST(BeforeFlight, AnArmThatIsNotAsTheConfigHasItIsRefused) {
   expect_check(longer,
                "tool.gripper: the robot has left_gripper 15.85 cm from left_hand, the config has it at 2.50 cm");
   Bench beside(fake_options(), [](test::BodyOptions& body) { body.start_at = Eigen::Vector3d(-0.12, 0.1, 0.2); });
-  expect_check(beside, "more than 10 cm beside the area, bring the tool by hand to a place above the area");
+  expect_check(beside, "more than 10 cm outside the area, move the tool by hand to a position above the area");
   Bench leaning;
   Joints lean = leaning.robot.body.joints();
   lean(5) -= 0.5;
@@ -148,7 +148,7 @@ TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
       {"second_sender=joints", "/robot/joint_states of the left arm comes from more than one node"},
       {"second_sender=collision", "collision_detection_state of the left arm comes from more than one node"},
       {"second_sender=avoidance", "collision_avoidance_state of the left arm comes from more than one node"},
-      {"slow_force=20", "had another force only"},
+      {"slow_force=20", "with a new force only"},
       {"estop=100", "the emergency stop is pressed"},
       {"error", "the robot reports an error and is disabled"},
   };
@@ -162,7 +162,7 @@ TEST(BeforeFlight, AStateInWhichItMustNotMoveIsNamed) {
 
 TEST(BeforeFlight, ACalibrationTapBesideTheAreaIsRefused) {
   Bench bench(with([](BaxterOptions& o) { test::calibrate(o, 0.25, 0.0); }));
-  expect_check(bench, "calibration.at: lies outside of the area");
+  expect_check(bench, "calibration.at: is outside the area");
 }
 
 TEST(BeforeFlight, ADryRunWithoutAnAnswerOfTheRobotsInverseKinematicsSaysSo) {

@@ -73,7 +73,7 @@ void expect_safe(const palpate::test::Trouble& trouble, fake_baxter::MechanicsOp
                 testing::AnyOf(EndsWith("the arm was raised to the height of travel"), HasSubstr("its zero moved")));
     EXPECT_NEAR(bench.tip(), kHover, 0.01);
   } else {
-    EXPECT_THAT(contact.reason, testing::AnyOf(HasSubstr("nothing more is sent"), HasSubstr("the arm holds")));
+    EXPECT_THAT(contact.reason, testing::AnyOf(HasSubstr("no more commands are sent"), HasSubstr("the arm holds")));
     EXPECT_LT(bench.tip(), 0.127);
   }
   EXPECT_LT(bench.robot.body.pressing(), Body::kReflex);
@@ -105,7 +105,7 @@ TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedBeforeItCanJump) {
     };
     const Contact contact = bench.tap(kOnObject);
     ASSERT_GT(stood, 0.0);
-    EXPECT_THAT(contact.reason, HasSubstr("the arm does not follow, it stays ")) << filter;
+    EXPECT_THAT(contact.reason, HasSubstr("the arm does not follow: it stays ")) << filter;
     EXPECT_TRUE(contact.ends_run) << filter;
     EXPECT_LT(bench.robot.body.now() - stood, 2.5 + 0.5) << filter << ": and the joints are held for 0.5 s";
   }
@@ -127,11 +127,12 @@ TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
   const Contact contact = bench.tap(kOnObject);
   ASSERT_GT(sent, 0U);
   EXPECT_LE(bench.robot.commands.size(), sent + 1) << "an arm under an emergency stop is sent nothing";
-  EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not come"));
-  EXPECT_THAT(contact.reason,
-              EndsWith("nothing more is sent, the arm stays where it is: the emergency stop is pressed: "
-                       "release it, then reset it (rosrun baxter_tools enable_robot.py -r) and enable it (rosrun "
-                       "baxter_tools enable_robot.py -e)"));
+  EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not arrive"));
+  EXPECT_THAT(
+      contact.reason,
+      EndsWith(
+          "no more commands are sent, the arm stays where it is: the emergency stop is pressed: release it, then reset "
+          "it (rosrun baxter_tools enable_robot.py -r) and enable it (rosrun baxter_tools enable_robot.py -e)"));
 }
 
 TEST(AFault, BetweenTwoTapsSendsNothing) {
@@ -141,7 +142,7 @@ TEST(AFault, BetweenTwoTapsSendsNothing) {
   bench.robot.wait_until(bench.robot.body.now() + 1.0);
   const std::size_t sent = bench.robot.commands.size();
   const Contact contact = bench.tap(kOnObject);
-  EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not come"));
+  EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not arrive"));
   EXPECT_TRUE(contact.ends_run);
   EXPECT_EQ(bench.robot.commands.size(), sent);
 }
@@ -157,7 +158,7 @@ TEST(AFault, ThatNobodyThoughtOfIsRecordedAndNothingMoreIsSent) {
   const Contact contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
-  EXPECT_EQ(contact.reason, "out of memory; nothing more is sent, the arm stays where it is");
+  EXPECT_EQ(contact.reason, "out of memory; no more commands are sent, the arm stays where it is");
   EXPECT_EQ(bench.robot.commands.size(), sent);
 }
 
@@ -171,7 +172,7 @@ TEST(ATap, InterruptedWhileItIsPlannedAsksForNoOtherPoseAndSendsNothing) {
   };
   const int before = bench.robot.asked;
   const Contact contact = bench.tap(kOnObject);
-  EXPECT_EQ(contact.reason, "interrupted; nothing more is sent, the arm stays where it is");
+  EXPECT_EQ(contact.reason, "interrupted; no more commands are sent, the arm stays where it is");
   EXPECT_FALSE(contact.ends_run);
   EXPECT_EQ(bench.robot.asked, before + 1);
   EXPECT_TRUE(bench.robot.commands.empty());
@@ -211,7 +212,7 @@ double hardest_press(const char* fault, std::string& reason) {
 }
 
 TEST(AFault, OfTheForceAtTheMomentOfAContactIsNoticedBeforeTheArmPressesHard) {
-  const std::pair<const char*, const char*> cases[] = {{"freeze_endpoint", "the same force to the last digit"},
+  const std::pair<const char*, const char*> cases[] = {{"freeze_endpoint", "exactly the same force"},
                                                        {"second_sender=endpoint", "comes from more than one node"}};
   for (const auto& [fault, words] : cases) {
     std::string reason;
@@ -231,8 +232,8 @@ TEST(Travel, OfARobotAtHalfItsSpeedSaysWhatToSet) {
   Bench bench(fake_options(), [](test::BodyOptions& body) { body.speed_ratio = 0.15; });
   const Contact contact = bench.tap({0.21, 0.02});
   EXPECT_EQ(contact.outcome, Outcome::aborted);
-  EXPECT_THAT(contact.reason, HasSubstr("set that to 0.3 on /robot/limb/left/set_speed_ratio, or take a lower "
-                                        "motion.travel_speed"));
+  EXPECT_THAT(contact.reason, HasSubstr("set its speed ratio to 0.3, a Baxter's default, on "
+                                        "/robot/limb/left/set_speed_ratio, or lower motion.travel_speed"));
 }
 
 TEST(Travel, StopsWhenItMeetsSomething) {
@@ -262,7 +263,7 @@ TEST(Travel, StopsWhenAnotherProgramCommandsTheArm) {
     seen.commanders = {"/palpate_2"};
   };
   const Contact contact = bench.tap({0.2, 0.2});
-  EXPECT_THAT(contact.reason, StartsWith("the arm is commanded by /palpate_2, too: end that first"));
+  EXPECT_THAT(contact.reason, StartsWith("the arm is also commanded by /palpate_2: end that program first"));
   EXPECT_TRUE(contact.ends_run);
   EXPECT_EQ(bench.robot.commands.size(), sent) << "two that command the arm make it tremble";
 }

@@ -131,8 +131,8 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
           "descend at 0.4 cm/s to at most 2.0 cm below the desk", "stop at 5.0 N above the tare: a contact",
           "press with at most about 13.5 N on something rigid: the arm's springs have 4.5 kN/m there, and 535 ms "
           "pass from 5.0 N to standstill, so that motion.speed is not reached",
-          "stop on the way down when the force changes by 14.0 N upwards or downwards, and by half as much "
-          "again sideways"));
+          "stop the descent when the force changes by 14.0 N upwards or downwards, and by half as much again "
+          "sideways"));
   EXPECT_TRUE(bench.robot.commands.empty());
   ASSERT_EQ(bench.tap(kOnObject).outcome, Outcome::contact);
   EXPECT_THAT(bench.describe(kOnDesk)[0], StartsWith("travel from (11.")) << "calibrated, and at the height of travel";
@@ -142,7 +142,7 @@ TEST(ATap, OutOfReachMovesNothing) {
   Bench bench(with([](BaxterOptions& o) { o.scene_pose.corner[0] = 0.9; }));
   const Contact contact = bench.tap({0.23, 0.0});
   EXPECT_EQ(contact.outcome, Outcome::unreachable);
-  EXPECT_THAT(contact.reason, StartsWith("no position of the joints"));
+  EXPECT_THAT(contact.reason, StartsWith("no joint position"));
   EXPECT_FALSE(contact.ends_run);
   EXPECT_TRUE(bench.robot.commands.empty());
 }
@@ -170,7 +170,7 @@ TEST(ACalibrationTap, EndsTheRunWhereTheDeskIsNotNearWhereTheConfigHasIt) {
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
-  EXPECT_THAT(contact.reason, HasSubstr("cm higher than scene_pose.height has it"));
+  EXPECT_THAT(contact.reason, HasSubstr("cm higher than scene_pose.height"));
 }
 
 TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {
@@ -249,7 +249,7 @@ TEST(ATap, IsBelievedThoughTheForceIsAnotherWhileTheArmMoves) {
     Bench bench;
     bench.robot.spoil = moves(offset, bench);
     for (const Target& place : {kOnObject, kOnDesk, Target{0.2, 0.03}, Target{0.115, 0.08}}) bench.touch(place, 0.003);
-    EXPECT_THAT(bench.notes, testing::Contains(StartsWith("coming down in the air the force along z reads ")));
+    EXPECT_THAT(bench.notes, testing::Contains(StartsWith("during the descent in air the force along z differs by ")));
   }
 }
 

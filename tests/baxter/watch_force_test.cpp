@@ -67,7 +67,7 @@ TEST(AFrozenForce, IsNoticedAfterTenOfTheTimesInWhichTheRobotRenewsItOrFourThatT
     ASSERT_THAT(robot.send(rules, 120, renewed(every)), IsNothing()) << every;
     const double last = renewed(every)(robot.sent() - 1);
     const std::optional<Fault> fault = robot.send(rules, 100, [&](long) { return last; });
-    EXPECT_THAT(fault, IsFault("the same force to the last digit", Then::hold));
+    EXPECT_THAT(fault, IsFault("exactly the same force", Then::hold));
     EXPECT_LE(robot.taken(), periods + 1) << every << " of " << messages << " a period";
     EXPECT_GE(robot.taken(), periods - every) << "the latest may have been sent again before";
   }
@@ -101,7 +101,7 @@ TEST(AForce, ThatIsRenewedTooSeldomToBeSafeIsToldWithHowOften) {
   Rules rules;
   Sender robot;
   const std::optional<Fault> fault = robot.send(rules, 100, renewed(15));
-  EXPECT_THAT(fault, IsFault("had another force only 3 times in the last 0.5 s, 4 are needed", Then::hold));
+  EXPECT_THAT(fault, IsFault("with a new force only 3 times in the last 0.5 s, 4 are needed", Then::hold));
 }
 
 TEST(AForce, ThatIsRenewedLessThanHalfAsOftenAsBeforeIsToldWithHowOften) {
@@ -110,7 +110,7 @@ TEST(AForce, ThatIsRenewedLessThanHalfAsOftenAsBeforeIsToldWithHowOften) {
     Sender robot;
     ASSERT_THAT(robot.send(rules, 200, renewed(before)), IsNothing()) << before;
     const std::optional<Fault> fault = robot.send(rules, 60, renewed(after));
-    EXPECT_THAT(fault, IsFault("had another force only", Then::hold)) << before;
+    EXPECT_THAT(fault, IsFault("with a new force only", Then::hold)) << before;
     EXPECT_THAT(fault, IsFault((std::to_string(needed) + " are needed").c_str(), Then::hold)) << before;
   }
 }
@@ -144,7 +144,7 @@ TEST(AnArmThatGoesUp, IsHeldByWhatPullsAndByNothingElse) {
     EXPECT_THAT(rising(sign, rise, [](int) { return -5.5; }), IsNothing()) << "its joints rub";
     EXPECT_THAT(rising(sign, rise, [](int period) { return period % 3 == 0 ? -5.0 : -9.0; }), IsNothing()) << "noise";
     EXPECT_THAT(rising(sign, rise, [](int period) { return 10.0 - 0.5 * period; }),
-                AllOf(IsFault("something holds the tool: it pulls with ", Then::hold),
+                AllOf(IsFault("the tool is caught: it is pulled with ", Then::hold),
                       IsFault("at (10.0, 10.0, ", Then::hold), IsFault("free it by hand", Then::hold)));
   }
 }
@@ -152,10 +152,10 @@ TEST(AnArmThatGoesUp, IsHeldByWhatPullsAndByNothingElse) {
 TEST(AnArmThatGoesUp, FollowsAZeroThatChangesWithThePoseAndNoSpring) {
   const Watch::Rise rise{1.0, -1.0, 6.0, Watch::Zero::follows};
   EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.05 * period; }), IsNothing()) << "5 N/s: 50 N/m at 10 cm/s";
-  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("something holds", Then::hold));
+  EXPECT_THAT(rising(-1.0, rise, [](int period) { return -0.5 * period; }), IsFault("the tool is caught", Then::hold));
   EXPECT_THAT(rising(
                   -1.0, rise, [](int period) { return -0.06 * period; }, 0.0002),
-              IsFault("something holds", Then::hold))
+              IsFault("the tool is caught", Then::hold))
       << "300 N/m at 2 cm/s";
 }
 
@@ -168,7 +168,7 @@ TEST(AReflex, OfAnArmThatGoesUpAndIsPulledIsToldAsThatAndHeld) {
       seen.collision->collision = true;
     });
   };
-  EXPECT_THAT(reflex(-12.0, true), IsFault("something holds the tool: it pulls with 12 N", Then::hold));
+  EXPECT_THAT(reflex(-12.0, true), IsFault("the tool is caught: it is pulled with 12 N", Then::hold));
   EXPECT_TRUE(reflex(-12.0, true)->reflex);
   EXPECT_THAT(reflex(17.0, true), IsFault("the arm's own reflex", Then::retreat)) << "left pressing";
   EXPECT_THAT(reflex(-12.0, false), IsFault("the arm's own reflex", Then::retreat));

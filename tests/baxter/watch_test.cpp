@@ -53,13 +53,13 @@ INSTANTIATE_TEST_SUITE_P(
               "the emergency stop is pressed: release it"},
         Wrong{"EmergencyStopReleased", [](Snapshot& s) { s.state->estop_button = Button::released; },
               "was pressed and is released: reset it (rosrun"},
-        Wrong{
-            "Error",
-            [](Snapshot& s) {
-              s.state->error = true;
-              s.state->enabled = false;
-            },
-            "reports an error and is disabled: see its screen, then reset it (rosrun baxter_tools enable_robot.py -r)"},
+        Wrong{"Error",
+              [](Snapshot& s) {
+                s.state->error = true;
+                s.state->enabled = false;
+              },
+              "reports an error and is disabled: check its screen, then reset it (rosrun baxter_tools enable_robot.py "
+              "-r)"},
         Wrong{"Stopped", [](Snapshot& s) { s.state->stopped = true; }, "the robot is stopped"},
         Wrong{"Disabled", [](Snapshot& s) { s.state->enabled = false; }, "the robot is disabled: enable it"},
         Wrong{"Tucked",
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
               },
               "its arm is tucked (left_s1 at -118.6 deg): untuck it"},
         Wrong{"NotReady", [](Snapshot& s) { s.state->ready = false; }, "not ready"},
-        Wrong{"OldState", [](Snapshot& s) { s.state->received -= 0.51; }, "/robot/state did not come for 0.51 s"},
+        Wrong{"OldState", [](Snapshot& s) { s.state->received -= 0.51; }, "/robot/state did not arrive for 0.51 s"},
         Wrong{"TwoSendersOfState", [](Snapshot& s) { s.senders.state.push_back("/mock"); },
               "/robot/state comes from more than one node, /realtime_loop and /mock"},
         Wrong{"TwoSendersOfJoints", [](Snapshot& s) { s.senders.joints.push_back("/mock"); },
@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
               [](Snapshot& s) {
                 s.speed_ratio = Setting{0.05, "/other"};
               },
-              "set_speed_ratio: /other has set it to 0.05, at which the arm cannot follow: set it to 0.3, on "
+              "set_speed_ratio: /other has set it to 0.05, too low for the arm to follow: set it to 0.3, on "
               "/robot/limb/left/set_speed_ratio",
               Then::hold},
         Wrong{"ShortTimeout",
@@ -103,26 +103,26 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"Malformed", [](Snapshot& s) { s.malformed = "joint_states has 17 names and 3 positions"; },
               "17 names and 3 positions"},
         Wrong{"OldJoints", [](Snapshot& s) { s.joints->received -= 0.11; },
-              "joint_states of the left arm did not come"},
+              "joint_states of the left arm did not arrive"},
         Wrong{"OldEndpoint", [](Snapshot& s) { s.endpoint->received -= 0.11; },
               "endpoint_state of the left arm did not", Then::hold},
-        Wrong{"JointIsNoNumber", [](Snapshot& s) { s.joints->position(3) = kNaN; }, "a position that is no number"},
+        Wrong{"JointIsNoNumber", [](Snapshot& s) { s.joints->position(3) = kNaN; }, "a position that is not a number"},
         Wrong{"ForceIsNoNumber", [](Snapshot& s) { s.endpoint->force.z() = kNaN; },
-              "a force or a place that is no number", Then::hold},
+              "a force or a position that is not a number", Then::hold},
         Wrong{"NoForce", [](Snapshot& s) { s.endpoint->force.setZero(); }, "exactly zero", Then::hold},
         Wrong{"StampsLag", [](Snapshot& s) { s.endpoint->stamp -= 0.31; },
-              "endpoint_state comes with stamps 0.31 s older", Then::hold},
+              "endpoint_state arrives with time stamps 0.31 s older", Then::hold},
         Wrong{"JointStampsLag", [](Snapshot& s) { s.joints->stamp -= 0.31; },
-              "joint_states comes with stamps 0.31 s older"},
+              "joint_states arrives with time stamps 0.31 s older"},
         Wrong{"Jump", [](Snapshot& s) { s.joints->position(2) += 0.07; }, "/robot/joint_states jumped by 4.0 deg"},
         Wrong{"CommandedByAnother", [](Snapshot& s) { s.commanders = {"/palpate_2"}; },
-              "the arm is commanded by /palpate_2, too"},
+              "the arm is also commanded by /palpate_2: end that program first"},
         Wrong{"StoppedByAProgram",
               [](Snapshot& s) {
                 s.state->stopped = true;
                 s.state->estop_button = Button::unknown;
               },
-              "a program stopped the robot (/robot/set_super_stop)"},
+              "a program, perhaps a safety node, stopped the robot (/robot/set_super_stop)"},
         Wrong{"Reflex", [](Snapshot& s) { s.collision->collision = true; }, "the arm's own reflex stopped it",
               Then::retreat}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
@@ -197,7 +197,7 @@ bool noticed_silence_of_collisions(double period) {
     if (now < 5.0 && now - last >= period) last = now;
     const std::optional<Fault> fault = rules.at(now, [&](Snapshot& s) { s.collision->received = last; });
     if (!fault) continue;
-    EXPECT_THAT(fault, IsFault("collision_detection_state of the left arm did not come", Then::hold));
+    EXPECT_THAT(fault, IsFault("collision_detection_state of the left arm did not arrive", Then::hold));
     return true;
   }
   return false;
@@ -262,7 +262,7 @@ TEST(AForce, CountsFromTheTareOnly) {
 
 TEST(TheWorkspace, EndsTenCentimetresBesideTheAreaAndAtFloorAndCeiling) {
   EXPECT_EQ(kSpace.breach({-0.09, 0.32, 0.0}), "");
-  EXPECT_THAT(kSpace.breach({-0.11, 0.1, 0.1}), HasSubstr("more than 10 cm beside the area"));
+  EXPECT_THAT(kSpace.breach({-0.11, 0.1, 0.1}), HasSubstr("more than 10 cm outside the area"));
   EXPECT_THAT(kSpace.breach({0.1, 0.34, 0.1}), HasSubstr("the tip is at (10.0, 34.0, 10.0) cm of the scene"));
   EXPECT_THAT(kSpace.breach({0.1, 0.1, -0.031}), HasSubstr("below the floor of -3.0 cm"));
   EXPECT_THAT(kSpace.breach({0.1, 0.1, 0.44}), HasSubstr("above the ceiling of 43.5 cm"));
@@ -298,7 +298,7 @@ TEST(AnArm, MayTrailItsSetPointByFourTenthsOfASecond) {
 
 TEST(AnArm, ThatDoesNotFollowIsNoticed) {
   const auto stuck = [](double now) { return std::min(now, 1.0); };
-  const char* blocked = "deg from where it was sent: see what blocks it";
+  const char* blocked = "deg from its target: check what blocks it";
   const double slow = noticed(0.1, stuck, blocked);
   EXPECT_GT(slow, 1.0);
   EXPECT_LT(slow, 3.0);
@@ -310,8 +310,8 @@ TEST(AnArm, ThatDoesNotFollowIsNoticed) {
 TEST(AnArm, ThatFollowsAtHalfTheSpeedIsToldByThatAndWhatToSet) {
   const double half = noticed(
       0.4, [](double now) { return 0.5 * now; },
-      " deg/s where it is led at 23: it is slower than a Baxter is at its own speed ratio, so set that "
-      "to 0.3 on /robot/limb/left/set_speed_ratio, or take a lower motion.travel_speed");
+      " deg/s instead of 23: set its speed ratio to 0.3, a Baxter's default, on /robot/limb/left/set_speed_ratio, or "
+      "lower motion.travel_speed");
   EXPECT_GT(half, 0.5);
   EXPECT_LT(half, 1.5);
 }

@@ -128,8 +128,8 @@ TEST_F(Consumer, PluginIsFoundDescribedRunAndSound) {
 
 TEST_F(Consumer, EachKindHasAPluginToBeginWithThatBuildsRunsAndKeepsTheLaws) {
   const std::string refused = installed({"new", "kernel", "rbf"}).err;
-  EXPECT_EQ(refused, "there is a plugin kernel/rbf already, take another name\n");
-  EXPECT_THAT(installed({"new", "kernel", "a/b"}).err, HasSubstr("'a/b' is not the name of a plugin, "));
+  EXPECT_EQ(refused, "there is a plugin kernel/rbf already, choose another name\n");
+  EXPECT_THAT(installed({"new", "kernel", "a/b"}).err, HasSubstr("'a/b' is not a valid name of a plugin, "));
   EXPECT_THAT(installed({"new", "kernels", "mine"}).err, HasSubstr("no plugin kind 'kernels', did you mean 'kernel'?"));
   for (const std::string& kind : PluginHost::kinds()) {
     const Ended made = installed({"new", kind, "my_" + kind});
@@ -137,7 +137,7 @@ TEST_F(Consumer, EachKindHasAPluginToBeginWithThatBuildsRunsAndKeepsTheLaws) {
     EXPECT_THAT(made.out, HasSubstr("-DCMAKE_PREFIX_PATH="));
     EXPECT_THAT(text_of(here() / ("my_" + kind) / ("my_" + kind + ".cpp")), testing::Not(HasSubstr("starter")));
   }
-  EXPECT_THAT(installed({"new", "kernel", "my_kernel"}).err, HasSubstr("my_kernel: is there already, "));
+  EXPECT_THAT(installed({"new", "kernel", "my_kernel"}).err, HasSubstr("my_kernel: exists already, "));
   // Each is compiled and asked for all laws of its kind.
   for (const std::string& kind : brief() ? std::vector<std::string>{"acquisition", "shape"} : PluginHost::kinds()) {
     const std::string name = "my_" + kind;

@@ -186,17 +186,17 @@ TEST_F(Calibrate, RejectsARunWhoseSceneDoesNotStandAsItsConfigSays) {
   };
   const std::string block = "{type: block, length: 12 cm, width: 8 cm, height: 5 cm, rotation: 30 deg, at: ";
   EXPECT_THAT(error_of({said_to_be("{objects: []}")}),
-              HasSubstr("contacts are nowhere near its scene, where one in 5 may be, calibrate takes taps of a scene"));
+              HasSubstr("contacts are far from its scene, but only one in 5 may be, use taps on a scene"));
   EXPECT_THAT(error_of({said_to_be(("{objects: [" + block + "[8 cm, 11.5 cm]}]}").c_str())}),
-              HasSubstr("contacts are within an object of its scene, where one in 20 may be"));
+              HasSubstr("contacts are within an object of its scene, but only one in 20 may be"));
   EXPECT_THAT(error_of({said_to_be("{desk: 4 cm}")}), HasSubstr("the heights are off by -40."));
   const Recording moved = said_to_be("{objects: []}");
-  EXPECT_THAT(error_of({arm, arm, arm, moved}), HasSubstr("nowhere near its scene")) << "among others, too";
+  EXPECT_THAT(error_of({arm, arm, arm, moved}), HasSubstr("far from its scene")) << "among others, too";
 }
 
 TEST_F(Calibrate, SaysWhatItLacksOfARun) {
   EXPECT_THAT(error_of({recorded(test::shipped_config("default.yaml", {"taps=9", "scene=block"}))}),
-              HasSubstr("contacts, and it takes 10"));
+              HasSubstr("contacts, but 10 are needed"));
 }
 
 }  // namespace

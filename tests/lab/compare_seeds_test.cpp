@@ -109,12 +109,13 @@ TEST(CompareSeeds, WeighsASeedByItsJobsWhereSomeAreMissing) {
 TEST(CompareSeeds, SaysHowManySeedsThereAreAndWhatFewMean) {
   const Comparison few = MadeSweep(seeds_that_matter(6, {"k", "l"})).by({"acquisition"});
   EXPECT_THAT(compare_tables(few), HasSubstr("   n  seeds  mean [95 % interval]"));
-  EXPECT_THAT(compare_tables(few), HasSubstr("only 6 seeds: an interval of so few (Student's t) misses the true mean"));
+  EXPECT_THAT(compare_tables(few),
+              HasSubstr("only 6 seeds: an interval of this few (Student's t) can miss the true mean"));
   EXPECT_THAT(compare_tables(MadeSweep(seeds_that_matter(3, {"k", "l"})).by({"acquisition"})),
               HasSubstr("only 3 seeds: too few for an interval; run 10 or more\n"));
   const Comparison enough = MadeSweep(seeds_that_matter(10, {"k", "l"})).by({"acquisition"});
   EXPECT_THAT(compare_tables(enough), Not(HasSubstr("only")));
-  EXPECT_THAT(compare_legend({enough}), HasSubstr("The seed is the unit: all jobs of a seed are drawn together"));
+  EXPECT_THAT(compare_legend({enough}), HasSubstr("The unit is the seed: all jobs of a seed are resampled together"));
   EXPECT_EQ(compare_rows(enough, "")[0].number("seeds"), 10.0);
   EXPECT_EQ(compare_rows(enough, "")[2].number("seeds"), 10.0);
 }
@@ -130,7 +131,7 @@ TEST(CompareSeeds, WhereTheSeedIsNotSweptJobsAreTheUnitsAndItSaysSo) {
   EXPECT_EQ(made.groups[0].mean.clusters, 12U);
   EXPECT_EQ(made.pairs[0].difference.clusters, 12U);
   EXPECT_THAT(compare_tables(made), Not(HasSubstr("seeds")));
-  EXPECT_THAT(compare_legend({made}), HasSubstr("The seed is not swept: each job is a unit"));
+  EXPECT_THAT(compare_legend({made}), HasSubstr("The seed is not swept: the unit is the job"));
   EXPECT_EQ(compare_rows(made, "")[0].cell("seeds"), "");
 
   for (const MadeJob& one : std::vector<MadeJob>(jobs))
@@ -143,7 +144,7 @@ TEST(CompareSeeds, WhereTheSeedIsNotSweptJobsAreTheUnitsAndItSaysSo) {
   EXPECT_THAT(compare_tables(made), Not(HasSubstr("units")));
   EXPECT_THAT(compare_tables(twice), HasSubstr("   n  units  mean [95 % interval]"));
   EXPECT_THAT(compare_tables(twice),
-              HasSubstr("\na: 12 of 24 jobs are copies of another run, which counts once in intervals and p\n"));
+              HasSubstr("\na: 12 of 24 jobs are copies of another run; copies count once in intervals and p\n"));
   EXPECT_EQ(compare_rows(twice, "")[0].number("units"), 12.0);
   EXPECT_EQ(compare_rows(twice, "")[2].number("units"), 12.0);
 }
@@ -160,8 +161,7 @@ TEST(CompareSeeds, EqualValuesHaveNoIntervalAndItSaysWhy) {
   EXPECT_TRUE(made.pairs[1].difference.interval) << "c - a";
   EXPECT_FALSE(made.pairs[2].difference.interval) << "c - b";
   EXPECT_THAT(compare_tables(made),
-              HasSubstr("\na has no interval: its values are equal in all 12 seeds, which does not "
-                        "tell how far the next may lie\n"));
+              HasSubstr("\na has no interval: its values are equal in all 12 seeds and show no spread\n"));
   EXPECT_THAT(compare_tables(made), HasSubstr("\nc - b has no interval: its differences are equal in all 12 seeds"));
 }
 

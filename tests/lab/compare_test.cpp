@@ -111,7 +111,7 @@ TEST(Compare, CountsFailedUnfinishedAndValuelessJobsAndLeavesThemOutOfTheMean) {
   EXPECT_EQ(pair.lost.of(Fate::without_value), 1);
   EXPECT_EQ(pair.lost.of(Fate::without_partner), 2) << "seeds 5 and 6";
   EXPECT_THAT(compare_tables(made),
-              HasSubstr("b - a: pairs lost: 2 without a counterpart, 1 unfinished, 1 failed, 1 without a value\n"));
+              HasSubstr("b - a: pairs lost: 2 without a partner, 1 unfinished, 1 failed, 1 without a value\n"));
 }
 
 TEST(Compare, NeitherOrderOfJobsNorOfGroupsChangesWhatIsFound) {
@@ -137,7 +137,7 @@ TEST(Compare, WithABaselineComparesEveryGroupWithItAlone) {
   EXPECT_TRUE(made.one_baseline);
   ASSERT_EQ(made.pairs.size(), 3U);
   for (const ComparedPair& pair : made.pairs) EXPECT_EQ(made.groups[pair.second].name, "matern, a");
-  EXPECT_THAT(compare_tables(made), HasSubstr("4 groups: each is compared with matern, a alone\n"));
+  EXPECT_THAT(compare_tables(made), HasSubstr("4 groups: each is compared with matern, a only\n"));
   EXPECT_EQ(MadeSweep(two_by_two(5)).refusal({"acquisition"}, "rmse_m", "A"),
             "command line: --baseline: there is no group 'A', did you mean 'a'?");
 }
@@ -161,11 +161,11 @@ TEST(Compare, ComparesGroupsOfOneSceneWithEachOtherAlone) {
   EXPECT_THAT(names(sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf")), testing::ElementsAre("a, rbf - b, rbf"));
   const Comparison of_rbf = sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf");
   EXPECT_THAT(compare_tables(of_rbf),
-              HasSubstr("4 groups: each is compared with one of its scene\n2 of them in no pair: "));
+              HasSubstr("4 groups: each is compared with one of its scene\n2 groups are in no pair: "));
   const Comparison alone =
       sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf", "scene == matern or acquisition == b");
   EXPECT_THAT(alone.pairs, testing::IsEmpty());
-  EXPECT_THAT(compare_tables(alone), HasSubstr("3 of them in no pair: "));
+  EXPECT_THAT(compare_tables(alone), HasSubstr("3 groups are in no pair: "));
   EXPECT_EQ(sweep.refusal({"acquisition", "scene"}, "rmse_m", "bb"),
             "command line: --baseline: there is no group 'bb', did you mean 'b'?");
   EXPECT_THAT(names(sweep.by({"scene"})), testing::ElementsAre("matern - rbf")) << "nothing else makes the groups";
@@ -178,7 +178,7 @@ TEST(Compare, ManyGroupsAreComparedWithTheFirstAloneAndItSaysSo) {
   }
   const Comparison nine = MadeSweep(jobs).by({"acquisition"});
   EXPECT_EQ(nine.pairs.size(), 8U);
-  EXPECT_THAT(compare_tables(nine), HasSubstr("9 groups: each is compared with g0 alone\n"));
+  EXPECT_THAT(compare_tables(nine), HasSubstr("9 groups: each is compared with g0 only\n"));
   jobs.resize(40);
   const Comparison eight = MadeSweep(jobs).by({"acquisition"});
   EXPECT_EQ(eight.pairs.size(), 28U);
@@ -188,7 +188,7 @@ TEST(Compare, ManyGroupsAreComparedWithTheFirstAloneAndItSaysSo) {
 TEST(Compare, OneGroupIsShownAloneWithANote) {
   const Comparison made = MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 0.2}}).by({"acquisition"});
   EXPECT_TRUE(made.pairs.empty());
-  EXPECT_THAT(compare_tables(made), HasSubstr("one group: there is nothing to compare it with\n"));
+  EXPECT_THAT(compare_tables(made), HasSubstr("only one group: nothing to compare\n"));
   EXPECT_THAT(compare_legend({made}), Not(HasSubstr("Wilcoxon")));
 }
 
@@ -205,15 +205,14 @@ TEST(Compare, SaysWhichKeyLeavesGroupsWithoutPairsAndWhatPairsThem) {
   const MadeSweep made({{"a", "", 1, 0.1}, {"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
   const Comparison apart = made.by({"acquisition"});
   EXPECT_EQ(apart.apart, std::vector<std::string>{"kernel"});
-  EXPECT_THAT(
-      compare_tables(apart),
-      HasSubstr("\ngroups that have no kernel in common have no pairs: '--by acquisition,kernel' compares them"));
+  EXPECT_THAT(compare_tables(apart),
+              HasSubstr("\ngroups without a common kernel have no pairs: compare them with '--by acquisition,kernel'"));
   const Comparison paired = made.by({"acquisition", "kernel"});
   EXPECT_TRUE(paired.apart.empty());
   for (const ComparedPair& pair : paired.pairs) EXPECT_EQ(pair.difference.count, 1U);
   const Comparison seeds = MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 0.2}, {"b", "k", 3, 0.3}}).by({"acquisition"});
   EXPECT_THAT(compare_tables(seeds),
-              HasSubstr("\ngroups that have no seed in common have no pairs: run them on the same seeds\n"));
+              HasSubstr("\ngroups without a common seed have no pairs: run them on the same seeds\n"));
   EXPECT_THAT(compare_tables(seeds), Not(HasSubstr("--by"))) << "--by acquisition,seed is rejected";
   const MadeSweep shared({{"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
   EXPECT_TRUE(shared.by({"acquisition"}).apart.empty()) << "one lost pair of two is no reason to group otherwise";
@@ -239,8 +238,8 @@ TEST(CompareWhere, LeavesJobsOutAndCountsThemAndThePairsThatItBreaks) {
   EXPECT_EQ(made.pairs[0].lost.of(Fate::left_out), 1) << "seed 2; seeds 3 and 4 are left out whole";
   EXPECT_EQ(made.pairs[0].lost.all(), 1);
   const std::string tables = compare_tables(made);
-  EXPECT_THAT(tables, HasSubstr("--where leaves out 5 of 8 jobs, of which 1 failed, 1 unfinished\n"));
-  EXPECT_THAT(tables, HasSubstr("b - a: pairs lost: 1 with one job that --where leaves out\n"));
+  EXPECT_THAT(tables, HasSubstr("--where excludes 5 of 8 jobs, of which 1 failed, 1 unfinished\n"));
+  EXPECT_THAT(tables, HasSubstr("b - a: pairs lost: 1 with one job excluded by --where\n"));
 }
 
 TEST(CompareWhere, OnASweptKeyKnowsJobsThatHaveNotEnded) {
@@ -263,7 +262,7 @@ TEST(CompareWhere, AGroupThatItLeavesOutWholeIsCountedAndComparedWithNone) {
   }
   EXPECT_THAT(compare_tables(made.by({"acquisition"}, "rmse_m", {}, "acquisition == b")), HasSubstr("one group: "));
   EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", "a", "acquisition == b"),
-            "command line: --baseline: --where leaves out all of 'a', name another group");
+            "command line: --baseline: --where excludes all jobs of 'a', name another group");
 }
 
 TEST(CompareWhere, RefusesUnknownNamesOtherUnitsAndWhatLeavesNothing) {
@@ -271,9 +270,8 @@ TEST(CompareWhere, RefusesUnknownNamesOtherUnitsAndWhatLeavesNothing) {
   EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse <= 1 m"), HasSubstr("did you mean 'rmse_m'?"));
   EXPECT_THAT(made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m <= 1 s"), HasSubstr("compares a length"));
   EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", {}, "rmse_m > 1 m"),
-            "command line: --where: leaves none of the 8 jobs, results.csv, or what --at or --until leaves beside it, "
-            "has the "
-            "values it is compared with");
+            "command line: --where: matches none of the 8 jobs, check the values in results.csv, or in the files that "
+            "--at or --until leave beside it");
   EXPECT_EQ(made.refusal({"acquisition"}, "rmse_m", {}, "found == true"), "accepted");
 }
 
@@ -283,22 +281,22 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
             "command line: --by: this sweep does not vary 'acquisitio', did you mean 'acquisition'?");
   EXPECT_EQ(made.refusal({"taps"}), "command line: --by: this sweep does not vary 'taps', known: acquisition, kernel");
   EXPECT_EQ(made.refusal({"seed"}),
-            "command line: --by: the seed repeats a job, it makes no groups, known: acquisition, kernel");
+            "command line: --by: the seed repeats a job and cannot form groups, known: acquisition, kernel");
   EXPECT_EQ(made.refusal({"kernel", "kernel"}), "command line: --by: 'kernel' is named twice, name it once");
   EXPECT_EQ(made.refusal({"acquisition"}, "kernel"),
-            "command line: --metric: 'kernel' is swept, so it was set and did not come out, give it to --by");
+            "command line: --metric: 'kernel' is a swept key, not a result, use it with --by");
   EXPECT_EQ(made.refusal({"acquisition"}, "rmse"),
             "command line: --metric: results.csv has no column 'rmse', did you mean 'rmse_m'?");
   EXPECT_EQ(made.refusal({"acquisition"}, "status"),
-            "command line: --metric: the column 'status' holds done, not numbers, name one that can be averaged");
+            "command line: --metric: the column 'status' holds done, not numbers, name a column of numbers");
   EXPECT_EQ(
       made.refusal({"acquisition"}, "nlpd"),
       "command line: --metric: no job has a value of 'nlpd', no truth is known, or no cell of the object was left "
       "untapped");
   EXPECT_EQ(MadeSweep({{"a", "k", 1, 0.1, "absent"}}).refusal({"acquisition"}),
-            "runs/x/0123456789ab: no job of this sweep has ended, 'palpate resume' carries on");
+            "runs/x/0123456789ab: no job of this sweep has ended, run it with 'palpate resume'");
   EXPECT_EQ(MadeSweep({{"a", "k", 1, 0.1, "failed"}}).refusal({"acquisition"}),
-            "runs/x/0123456789ab: none of the jobs to compare ended well, 'palpate status' says why");
+            "runs/x/0123456789ab: none of the jobs to compare ended well, see the reasons with 'palpate status'");
 }
 
 TEST(CompareTables, SayBetterOnlyWhereItIsKnown) {
@@ -319,18 +317,13 @@ TEST(CompareTables, SayBetterOnlyWhereItIsKnown) {
 
 TEST(CompareTables, AreTheseLetterByLetter) {
   const std::string tables = compare_tables(MadeSweep(two_by_two(6)).by({"acquisition"}));
-  EXPECT_EQ(
-      tables,
-      "rmse_m [mm] by acquisition; less is better\n"
-      "acquisition  jobs   n  seeds  mean [95 % interval]  median  10 % to 90 %\n"
-      "a              12  12      6        117 [100, 134]     115    100 to 139\n"
-      "b              12  12      6        268 [251, 285]     271    206 to 329\n"
-      "\n"
-      "difference  pairs  lost  seeds        mean [95 % interval]  better/equal/worse      p  effect\n"
-      "b - a          12     0      6  +151.25 [+150.27, +152.23]               0/0/6  0.031   +1.00\n"
-      "\n"
-      "only 6 seeds: an interval of so few (Student's t) misses the true mean more often than 5 times in 100; run "
-      "10 or more\n");
+  EXPECT_EQ(tables,
+            "rmse_m [mm] by acquisition; less is better\nacquisition  jobs   n  seeds  mean [95 % interval]  median  "
+            "10 % to 90 %\na              12  12      6        117 [100, 134]     115    100 to 139\nb              12 "
+            " 12      6        268 [251, 285]     271    206 to 329\n\ndifference  pairs  lost  seeds        mean [95 "
+            "% interval]  better/equal/worse      p  effect\nb - a          12     0      6  +151.25 [+150.27, "
+            "+152.23]               0/0/6  0.031   +1.00\n\nonly 6 seeds: an interval of this few (Student's t) can "
+            "miss the true mean in more than 5 of 100 cases; run 10 or more\n");
 }
 
 TEST(CompareTables, NoteWhereTheMeanAndMostPairsDisagree) {
@@ -340,7 +333,7 @@ TEST(CompareTables, NoteWhereTheMeanAndMostPairsDisagree) {
     jobs.push_back({"b", "k", seed, seed < 4 ? 5.0 + seed : 0.1});
   }
   const std::string tables = compare_tables(MadeSweep(jobs).by({"acquisition"}));
-  EXPECT_THAT(tables, HasSubstr("b - a: worse on average, and yet better in most seeds: 6 of 10\n"));
+  EXPECT_THAT(tables, HasSubstr("b - a: worse on average, but better in most seeds: 6 of 10\n"));
 }
 
 TEST(CompareTables, KeepToTheWidthOfAScreenThoughNamesAreLong) {

@@ -140,18 +140,18 @@ TEST(Condition, LooksNoFurtherThanItNeedsTo) {
 
 TEST(Condition, RefusesANameThatIsNotKnownWhereverItStands) {
   EXPECT_EQ(refusal("taps == 1 and surfac == single"),
-            "c.yaml:3:5: in the condition 'surfac == single' the name 'surfac' is not known, did you mean 'surface'?");
+            "c.yaml:3:5: the condition 'surfac == single' has the unknown name 'surfac', did you mean 'surface'?");
   EXPECT_EQ(refusal("taps == 17 or not (tap == 3)"),
-            "c.yaml:3:5: in the condition 'tap == 3' the name 'tap' is not known, did you mean 'taps'?");
+            "c.yaml:3:5: the condition 'tap == 3' has the unknown name 'tap', did you mean 'taps'?");
 }
 
 TEST(Condition, RefusesAnOrderOfTexts) {
   EXPECT_EQ(refusal("surface < single"),
-            "c.yaml:3:5: the condition 'surface < single' orders texts: 'two_part' and 'single', texts compare by == "
-            "and != alone");
+            "c.yaml:3:5: the condition 'surface < single' compares the order of texts: 'two_part' and 'single', "
+            "compare texts with == or !=");
   EXPECT_EQ(refusal("spacing > 2 mm"),
-            "c.yaml:3:5: the condition 'spacing > 2 mm' orders texts: 'none' and '2 mm', texts compare by == and != "
-            "alone");
+            "c.yaml:3:5: the condition 'spacing > 2 mm' compares the order of texts: 'none' and '2 mm', compare texts "
+            "with == or !=");
 }
 
 TEST(Condition, RefusesUnitsThatDoNotGoTogether) {
@@ -170,16 +170,16 @@ TEST(Condition, RefusesWhatIsNoCondition) {
   };
   expect("", "it is empty" + how_to);
   expect("  ", "it is empty" + how_to);
-  expect("taps", "behind 'taps' a comparison is missing" + how_to);
-  expect("taps count > 3", "behind 'taps' a comparison is missing" + how_to);
-  expect("taps >", "behind 'taps >' a value is missing" + how_to);
-  expect("taps > and seed > 1", "behind 'taps >' a value is missing" + how_to);
+  expect("taps", "a comparison is missing after 'taps'" + how_to);
+  expect("taps count > 3", "a comparison is missing after 'taps'" + how_to);
+  expect("taps >", "a value is missing after 'taps >'" + how_to);
+  expect("taps > and seed > 1", "a value is missing after 'taps >'" + how_to);
   expect("taps > 3 and", "a comparison is missing" + how_to);
   expect("not", "a comparison is missing" + how_to);
   expect("or taps > 3", "a comparison is missing" + how_to);
-  expect("taps > 3 not seed > 3", "'not' is not expected there" + how_to);
+  expect("taps > 3 not seed > 3", "'not' is not expected here" + how_to);
   expect("(taps > 3", "a '(' is not closed, close it");
-  expect("taps > 3)", "a ')' without '('" + how_to);
+  expect("taps > 3)", "there is a ')' without a '('" + how_to);
   expect("()", "a comparison is missing" + how_to);
   expect("name == 'object", "a quote is not closed, close it");
 }
@@ -189,14 +189,14 @@ TEST(Condition, SaysHowToWriteWhatOtherLanguagesWrite) {
     const std::string line = refusal(text);
     return line.substr(line.rfind(": ") + 2);
   };
-  EXPECT_EQ(hint("taps = 3"), "'=' is no comparison, write '=='");
-  EXPECT_EQ(hint("taps <> 3"), "'<>' is no comparison, write '!='");
-  EXPECT_EQ(hint("taps => 3"), "'=>' is no comparison, write '>='");
-  EXPECT_EQ(hint("taps > 3 && seed > 1"), "'&&' is not expected there, write 'and'");
-  EXPECT_EQ(hint("taps > 3 || seed > 1"), "'||' is not expected there, write 'or'");
-  EXPECT_EQ(hint("!(taps > 3)"), "'!' is not expected there, write 'not'");
-  EXPECT_EQ(hint("1 < taps < 5"), "taps >= 12") << "'1' is no name, write the name first: taps >= 12";
-  EXPECT_EQ(hint("taps > 1 < 5"), "'<' is not expected there, join two comparisons by 'and'");
+  EXPECT_EQ(hint("taps = 3"), "'=' is not a comparison, write '=='");
+  EXPECT_EQ(hint("taps <> 3"), "'<>' is not a comparison, write '!='");
+  EXPECT_EQ(hint("taps => 3"), "'=>' is not a comparison, write '>='");
+  EXPECT_EQ(hint("taps > 3 && seed > 1"), "'&&' is not expected here, write 'and'");
+  EXPECT_EQ(hint("taps > 3 || seed > 1"), "'||' is not expected here, write 'or'");
+  EXPECT_EQ(hint("!(taps > 3)"), "'!' is not expected here, write 'not'");
+  EXPECT_EQ(hint("1 < taps < 5"), "taps >= 12") << "'1' is not a name, write the name first: taps >= 12";
+  EXPECT_EQ(hint("taps > 1 < 5"), "'<' is not expected here, join two comparisons by 'and'");
 }
 
 TEST(Condition, RefusesWhatIsNestedTooDeeply) {

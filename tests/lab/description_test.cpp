@@ -131,7 +131,7 @@ TEST(Where, RefusesWhatItCannotKnowYet) {
       refused(" {grid: {kernel: [rbf, matern52]}, where: kernel.length_scale > 2 cm}"),
       "c.yaml:1:49: 'kernel.length_scale' depends on 'kernel', which is swept, sweep it too, or compare 'kernel'");
   EXPECT_EQ(refused(" {grid: {tap: [1, 2]}, where: tp > 2}"),
-            "c.yaml:1:37: in the condition 'tp > 2' the name 'tp' is not known, did you mean 'tap'?");
+            "c.yaml:1:37: the condition 'tp > 2' has the unknown name 'tp', did you mean 'tap'?");
   EXPECT_EQ(refused(" {grid: {a: [1, 2]}, where: 'a >'}").substr(0, 13), "c.yaml:1:35: ");
   EXPECT_EQ(refused(" {grid: {a: [1, 2]}, where: {a: 2}}").substr(0, 35), "c.yaml:1:35: a condition is a text,");
 }
@@ -228,9 +228,9 @@ TEST(Description, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(refused(" {product: {}}"),
             "c.yaml:1:9: unknown option 'product' of sweep, known: grid, zip, list, sobol, where");
   EXPECT_EQ(refused(" {grid: [seed]}"),
-            "c.yaml:1:15: sweep.grid: expects a map of keys to values, write seed: range(0,10), a key a line");
+            "c.yaml:1:15: sweep.grid: expects a map of keys to values, write seed: range(0,10), one key per line");
   EXPECT_EQ(refused(" {zip: seed}"),
-            "c.yaml:1:14: sweep.zip: expects a map of keys to values, write seed: range(0,10), a key a line");
+            "c.yaml:1:14: sweep.zip: expects a map of keys to values, write seed: range(0,10), one key per line");
   const std::string how_to = ", write [{key: value}, {key: value, other: [value, value]}]";
   EXPECT_EQ(refused(" {list: {a: 1}}"), "c.yaml:1:15: sweep.list: expects a list of settings" + how_to);
   EXPECT_EQ(refused(" {list: [a]}"), "c.yaml:1:16: sweep.list: expects a map of keys to values" + how_to);
@@ -238,16 +238,16 @@ TEST(Description, RefusesWhatItDoesNotKnow) {
 
 TEST(Description, RefusesUnequalLengthsSideBySide) {
   EXPECT_EQ(refused(" {zip: {a: [1, 2], b: [1, 2, 3]}}"),
-            "c.yaml:1:30: sweep.zip: 'b' has 3 values, 'a' has 2, give every key as many, or multiply them in 'grid'");
+            "c.yaml:1:30: sweep.zip: 'b' has 3 values, 'a' has 2, give all keys the same number of values, or combine "
+            "them in 'grid'");
 }
 
 TEST(Description, RefusesAKeyInTwoBlocksAndNamesBothPlaces) {
   EXPECT_EQ(refused("\n  grid:\n    taps: [12, 17]\n  zip:\n    taps: [12, 17]\n    seed: [1, 2]"),
-            "c.yaml:5:12: 'taps' stands in sweep.zip and, at c.yaml:3:12, in sweep.grid, a key may stand in one block "
-            "only");
-  EXPECT_EQ(refused(" {grid: {taps: [12, 17]}}", {"sweep.zip={taps: [1, 2]}"}),
-            "command line: 'taps' stands in sweep.zip and, at c.yaml:1:23, in sweep.grid, a key may stand in one block "
-            "only");
+            "c.yaml:5:12: 'taps' is in sweep.zip and, at c.yaml:3:12, in sweep.grid, write each key in one block only");
+  EXPECT_EQ(
+      refused(" {grid: {taps: [12, 17]}}", {"sweep.zip={taps: [1, 2]}"}),
+      "command line: 'taps' is in sweep.zip and, at c.yaml:1:23, in sweep.grid, write each key in one block only");
 }
 
 TEST(Description, RefusesKeysThatAreNone) {
@@ -255,11 +255,10 @@ TEST(Description, RefusesKeysThatAreNone) {
   EXPECT_EQ(refused(" {grid: {a..b: [1]}}"),
             "c.yaml:1:23: 'a..b' is not a dotted path, write it like kernel.length_scale");
   EXPECT_EQ(refused(" {grid: {sweep.zip: [1]}}"),
-            "c.yaml:1:28: 'sweep.zip' cannot be swept, name what it chooses, as in kernel: [rbf, matern52]");
-  EXPECT_EQ(
-      refused(" {zip: {expect.rmse_m: [1]}}"),
-      "c.yaml:1:31: expect.rmse_m: what is expected cannot be swept, it holds for the whole sweep: write it under "
-      "'expect:'");
+            "c.yaml:1:28: 'sweep.zip' cannot be swept, list its names, as in kernel: [rbf, matern52]");
+  EXPECT_EQ(refused(" {zip: {expect.rmse_m: [1]}}"),
+            "c.yaml:1:31: expect.rmse_m: expectations cannot be swept, write it under 'expect:', which applies to the "
+            "whole sweep");
 }
 
 TEST(Description, RefusesMoreThanAMillionCombinations) {
@@ -304,7 +303,7 @@ TEST(Words, ReplaceWholeBlocks) {
 TEST(Words, RefuseBlocksThatThereAreNot) {
   EXPECT_EQ(refused("", {"sweep.were=a > 1"}), "command line: unknown option 'were' of sweep, did you mean 'where'?");
   EXPECT_EQ(refused("", {"sweep={}"}),
-            "command line: 'sweep' is given as a whole, give its blocks: \"sweep.where=taps > 12\"");
+            "command line: 'sweep' cannot be set as a whole, set its blocks: \"sweep.where=taps > 12\"");
   EXPECT_EQ(refused("", {"sweep.where="}).substr(0, 41), "command line: a condition is a text, writ");
   EXPECT_EQ(refused("", {"sweep.zip=[taps"}).substr(0, 41), "command line: sweep.zip: expects a map of");
 }
@@ -315,7 +314,7 @@ TEST(Words, KeepWhatIsExpectedApart) {
   EXPECT_EQ(words.expectations[0].path, "expect.rmse_m");
   ASSERT_EQ(words.axes.size(), 1U);
   EXPECT_EQ(test::error_of([] { parse_sweep_words({"expect.rmse_m=1,2"}); }),
-            "command line: expect.rmse_m: what is expected cannot be swept, give it one value");
+            "command line: expect.rmse_m: expectations cannot be swept, give it one value");
 }
 
 TEST(WrittenDescription, ReadsBackAsTheSameCombinations) {

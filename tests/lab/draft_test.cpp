@@ -104,13 +104,13 @@ TEST_F(PublishedDraft, IsRefusedWithoutOneOfItsLinesOrInAnotherOrder) {
   const std::size_t first = manifest_.find('\n') + 1;
   const std::size_t second = manifest_.find('\n', first) + 1;
   write(manifest_.substr(0, manifest_.rfind('\n', manifest_.size() - 2) + 1));
-  EXPECT_THAT(refusal(directory_), testing::HasSubstr("was changed since this sweep began"));
+  EXPECT_THAT(refusal(directory_), testing::HasSubstr("was changed after this sweep started"));
   write(manifest_.substr(first));
   EXPECT_THAT(refusal(directory_),
-              testing::HasSubstr("manifest.jsonl:1: is no job of this sweep, the file is damaged"));
+              testing::HasSubstr("manifest.jsonl:1: is not a job of this sweep, the file is damaged"));
   write(manifest_.substr(first, second - first) + manifest_.substr(0, first) + manifest_.substr(second));
   EXPECT_THAT(refusal(directory_),
-              testing::HasSubstr("manifest.jsonl:1: is no job of this sweep, the file is damaged"));
+              testing::HasSubstr("manifest.jsonl:1: is not a job of this sweep, the file is damaged"));
 }
 
 TEST_F(PublishedDraft, IsCheckedUnderWhateverNameItHas) {
@@ -120,14 +120,14 @@ TEST_F(PublishedDraft, IsCheckedUnderWhateverNameItHas) {
   directory_ = moved;
   const auto at = manifest_.rfind("matern52");
   write(manifest_.substr(0, at) + "rbf" + manifest_.substr(at + 8));
-  EXPECT_THAT(refusal(moved), testing::HasSubstr("was changed since this sweep began"));
+  EXPECT_THAT(refusal(moved), testing::HasSubstr("was changed after this sweep started"));
 }
 
 TEST_F(PublishedDraft, HasNoJobWhoseFolderIsElsewhereThoughTheIdsAreMadeToFit) {
   for (const char* id : {"../../victim", "..", "", "0123456789a", "0123456789abc", "0123456789AB"}) {
     Sweep sweep{directory_, {"seed"}, {{0, id, {"0"}}}};
     write(manifest_text(sweep, sweep_id(read_run_config(directory_), sweep)));
-    EXPECT_THAT(refusal(directory_), testing::HasSubstr("manifest.jsonl:1: is no job of this sweep")) << id;
+    EXPECT_THAT(refusal(directory_), testing::HasSubstr("manifest.jsonl:1: is not a job of this sweep")) << id;
   }
 }
 
@@ -136,9 +136,10 @@ TEST_F(PublishedDraft, OfAnOlderPalpateIsRefusedWithWhatToDo) {
   for (std::size_t at = old.find(", \"sweep\""); at != std::string::npos; at = old.find(", \"sweep\""))
     old.erase(at, old.find('}', at) - at);
   write(old);
-  EXPECT_EQ(refusal(directory_), directory_.string() +
-                                     ": an older palpate made this sweep: nothing tells whether its jobs were changed, "
-                                     "results.csv is good still; 'palpate sweep' on config.yaml in it makes it anew");
+  EXPECT_EQ(refusal(directory_),
+            directory_.string() +
+                ": an older palpate made this sweep: later changes of its jobs cannot be detected, results.csv is "
+                "still valid; to repeat the sweep, run 'palpate sweep' on its config.yaml");
 }
 
 TEST_F(Draft, ASweepThatExistsIsLeftAlone) {

@@ -87,8 +87,9 @@ TEST(GroupCurves, HaveJobsThatEndedEarlyAsTheyEndedAndNoneThatFailedAndSaySo) {
   EXPECT_EQ(curve.points[2].mean.mean, (0.1 + 0.4) / 2);
   EXPECT_EQ(curve.points[2].mean.count, 2U);
   const std::string table = curves_table(curves);
-  EXPECT_THAT(table, HasSubstr("a: of 3 jobs in no point: 1 failed\n"));
-  EXPECT_THAT(table, HasSubstr("a: 1 of 2 jobs made fewer taps than others and count behind them as they ended\n"));
+  EXPECT_THAT(table, HasSubstr("a: of 3 jobs, those in no point are: 1 failed\n"));
+  EXPECT_THAT(table,
+              HasSubstr("a: 1 of 2 jobs made fewer taps than others and count afterwards with their final values\n"));
   const Row last = curves_rows(curves).back();
   EXPECT_EQ(last.cell("at"), "3");
   EXPECT_EQ(last.cell("failed"), "1");
@@ -128,7 +129,7 @@ TEST(GroupCurves, LeaveOutOfAPointTheJobsThatHaveNoValueThereAndSaySo) {
   const GroupCurves curves = made.curves({"acquisition"});
   EXPECT_EQ(means_of(curves.curves[0])[0], 0.6);
   EXPECT_EQ(curves.curves[0].points[0].mean.count, 1U);
-  EXPECT_THAT(curves_table(curves), HasSubstr("a: 1 to 2 jobs have a value, by the place on the curve\n"));
+  EXPECT_THAT(curves_table(curves), HasSubstr("a: 1 to 2 jobs have a value, depending on the point of the curve\n"));
 }
 
 TEST(GroupCurves, AreRefusedWhereThereIsNothingToDraw) {
@@ -144,7 +145,7 @@ TEST(GroupCurves, AreRefusedWhereThereIsNothingToDraw) {
               HasSubstr("none of the jobs to draw ended well"));
   EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {0.1}, 0.0}}), {}, "robot_seconds"),
               HasSubstr("--against: no job took any robot time"));
-  EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {0.1}}}), {"seed"}, "taps"), HasSubstr("makes no groups"));
+  EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {0.1}}}), {"seed"}, "taps"), HasSubstr("cannot form groups"));
   EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {kNone, kNone}}}), {}, "taps"), HasSubstr("no job has a value"));
 }
 

@@ -232,7 +232,7 @@ TEST(RunPage, SaysOneThingOfARunThatEndsOrGoesOnWhileItIsMade) {
   write(whole);
   EXPECT_THAT(run_news(going_on, history, 7, ""),
               AllOf(Not(HasSubstr(R"("state":"done")")), HasSubstr(R"("stop_reason":"")"),
-                    HasSubstr("The run has not ended: this is how it stands after 6 taps.")));
+                    HasSubstr("The run has not ended: this page shows its state after 6 taps.")));
 }
 
 TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
@@ -244,8 +244,8 @@ TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
 
 TEST(Warnings, TellWhatTheFootprintRemarksAndNothingOfWeights) {
   const std::vector<std::string> said = warnings("default.yaml", {"footprint.max_contradictions=0.01"});
-  EXPECT_THAT(said,
-              Contains(AllOf(HasSubstr("The footprint, primitives, says: "), HasSubstr("has taken over at contact"))));
+  EXPECT_THAT(
+      said, Contains(AllOf(HasSubstr("Remark of the footprint primitives: "), HasSubstr("has taken over at contact"))));
   EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("weight"))));
 }
 
@@ -280,7 +280,8 @@ TEST(Warnings, TellOfTheFirstTapThatThisBuildWouldHaveMadeElsewhere) {
   Recording recording = run.recording();
   for (const std::size_t tap : {11U, 14U}) recording.taps[tap].target.x = 0.5 * 0.23 / 47;  // the first of its row
   const History history = make_history(run.workshop, recording, [](int, int) {});
-  EXPECT_THAT(warnings_of(recording, history), Contains(HasSubstr("this build would have made tap 12 elsewhere")));
+  EXPECT_THAT(warnings_of(recording, history),
+              Contains(HasSubstr("this build would choose another position for tap 12")));
 }
 
 TEST(Warnings, AreNoneOfARunWithoutTrouble) {

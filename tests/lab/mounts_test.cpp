@@ -28,8 +28,8 @@ std::string refusal(const std::string& folder) {
 
 TEST(Mounts, OfNfsWithLocksThatStayOnEachNodeAreRefused) {
   EXPECT_EQ(refusal("/scratch/me/runs"),
-            "/scratch/me/runs: NFS at /scratch is mounted with 'nolock': no node sees the locks of another, and two "
-            "could run the same job, mount it without that, or put --runs on another file system");
+            "/scratch/me/runs: NFS at /scratch is mounted with 'nolock': nodes do not see each other's locks, and two "
+            "could run the same job, mount it without this option, or put --runs on another file system");
   EXPECT_THAT(refusal("/data of all/runs"), testing::HasSubstr("'local_lock=posix'"));
 }
 

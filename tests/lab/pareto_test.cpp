@@ -229,7 +229,7 @@ TEST(Within, EqualValuesAreNeverWithinBecauseTheyTellNothingOfTheNext) {
   EXPECT_EQ(best_bounded(pareto), nullptr);
   EXPECT_THAT(pareto_table(pareto), HasSubstr("1.00 [-]"));
   EXPECT_THAT(pareto_table(pareto),
-              HasSubstr("a setting whose values are equal for all seeds has no interval: that does not tell how far"));
+              HasSubstr("a setting with equal values for all seeds has no interval: the values show no spread"));
 }
 
 TEST(Pareto, CountsCopiesOfARunOnceWhereTheSeedIsNotSwept) {
@@ -248,11 +248,11 @@ TEST(Within, ReadsTheBoundInTheUnitOfTheError) {
   EXPECT_EQ(read_bound(made.pareto(), "5mm"), 0.005);
   EXPECT_EQ(read_bound(made.pareto("robot_seconds", "footprint_iou"), "0.8"), 0.8);
   EXPECT_EQ(made.refusal("robot_seconds", "rmse_m", "5"),
-            "command line: --within: '5' lacks its unit, write a length like '1.7 cm'");
+            "command line: --within: '5' has no unit, write a length like '1.7 cm'");
   EXPECT_EQ(made.refusal("robot_seconds", "rmse_m", "5 s"),
             "command line: --within: '5 s' is a time, not a length, write a length like '1.7 cm'");
   EXPECT_EQ(made.refusal("robot_seconds", "footprint_iou", "80 %"),
-            "command line: --within: '80 %' is not a plain number, this one has no unit");
+            "command line: --within: '80 %' is not a plain number, write it without a unit");
 }
 
 TEST(Pareto, RefusesColumnsThatCannotBeCompared) {
@@ -262,14 +262,14 @@ TEST(Pareto, RefusesColumnsThatCannotBeCompared) {
   EXPECT_EQ(made.refusal("robot_seconds", "rmse"),
             "command line: --error: results.csv has no column 'rmse', did you mean 'rmse_m'?");
   EXPECT_EQ(made.refusal("status", "rmse_m"),
-            "command line: --cost: the column 'status' holds done, not numbers, name one that can be averaged");
+            "command line: --cost: the column 'status' holds done, not numbers, name a column of numbers");
   EXPECT_EQ(made.refusal("robot_seconds", "coverage_95"),
-            "command line: --error: coverage_95 is best at 0.95, neither small nor large, nlpd judges heights and "
-            "intervals together");
+            "command line: --error: coverage_95 is best at 0.95, not at its least or greatest value, use nlpd, which "
+            "rates heights and intervals together");
   EXPECT_EQ(made.refusal("footprint_iou", "rmse_m"),
-            "command line: --cost: more of footprint_iou is better, so it is no cost, give it to --error");
+            "command line: --cost: more of footprint_iou is better, so it is not a cost, use it with --error");
   EXPECT_EQ(MadeUp({{"a", "1", 1, 1, 0.5, "absent"}}).refusal("robot_seconds", "rmse_m"),
-            "runs/x/0123456789ab: no job of this sweep has ended, 'palpate resume' carries on");
+            "runs/x/0123456789ab: no job of this sweep has ended, run it with 'palpate resume'");
 }
 
 TEST(Pareto, ComparesSweptNumbersAndFlagsToo) {
@@ -334,7 +334,7 @@ TEST(ParetoOfScenes, HasAFrontOfEachAndNoneOfSeveral) {
     EXPECT_EQ(made.settings[i].front, static_cast<int>(i % 2) + 1)
         << "the easy scene beats no strategy on the hard one";
   }
-  EXPECT_THAT(pareto_table(made), HasSubstr("\n2 scenes, each with a front of its own\n"));
+  EXPECT_THAT(pareto_table(made), HasSubstr("\n2 scenes, each with its own front\n"));
   const std::string script = pareto_script(made, "two", {}, nullptr);
   EXPECT_THAT(script, AllOf(HasSubstr("'front: scene=cube'"), HasSubstr("'front: scene=ring'")));
 }
@@ -344,10 +344,9 @@ TEST(ParetoOfScenes, ChoosesWithinABoundOnOneSceneAlone) {
     read_bound(on_two_scenes(), "2 m");
     FAIL() << "accepted";
   } catch (const Error& trouble) {
-    EXPECT_STREQ(
-        trouble.what(),
-        "command line: --within: the sweep has 2 scenes, and what is best on one is not best on another, choose "
-        "one: --where \"scene == cube\"");
+    EXPECT_STREQ(trouble.what(),
+                 "command line: --within: the sweep has 2 scenes, whose best settings may differ, choose one: --where "
+                 "\"scene == cube\"");
   }
   const Pareto ring = on_two_scenes("scene == ring");
   EXPECT_EQ(ring.settings.size(), 2U);

@@ -171,7 +171,7 @@ TEST(Plan, RefusesAnOptionThatNoJobHas) {
   EXPECT_EQ(refused({"acquisition=weighted,grid", "acquisition.cuont=1,2"}),
             "command line: no job of the sweep has an option 'acquisition.cuont', did you mean 'count'?");
   EXPECT_EQ(refused({"acquisition=weighted,random", "acquisition.beta=1,2"}),
-            "command line: no job of the sweep has an option 'acquisition.beta', take it away");
+            "command line: no job of the sweep has an option 'acquisition.beta', remove it");
   EXPECT_EQ(refused({"motion=paper,two_stage", "motion.spede=1cm/s,2cm/s"}),
             "command line: no job of the sweep has an option 'motion.spede', did you mean 'speed'?");
   EXPECT_NE(refused({"acquisition.beta=1,2"}).find("unknown option 'beta'"), std::string::npos);
@@ -179,10 +179,10 @@ TEST(Plan, RefusesAnOptionThatNoJobHas) {
 
 TEST(Plan, RefusesJobsThatAreTheSameRunForAnotherReason) {
   const std::string same = " of the sweep are the same run";
-  const std::string twice = ", a value stands twice: write it once";
+  const std::string twice = ", a value occurs twice: write it once";
   const auto differ = [](const std::string& key) {
     return " though they differ in " + key +
-           ", that has no effect there: take it away, or what differs in writing alone";
+           ", this has no effect there: remove it, or values that are written differently but equal";
   };
   const auto ends = [&](const Texts& words, const std::string& jobs, const std::string& why) {
     EXPECT_EQ(refused(words), kPaper.string() + ": jobs " + jobs + same + why);
@@ -210,7 +210,7 @@ TEST(Plan, AsksTheConfigForNamesThatAreNotSwept) {
       << "a default that the config does not write";
   EXPECT_EQ(rows(plan_of({"seed=1,2", "sweep.where=kernel.length_scale == 17 mm and seed < 2"})).size(), 1U);
   EXPECT_EQ(refused({"seed=1,2", "sweep.where=surfaces == single"}).substr(0, 90),
-            "command line: in the condition 'surfaces == single' the name 'surfaces' is not known, know");
+            "command line: the condition 'surfaces == single' has the unknown name 'surfaces', know");
 }
 
 TEST(Plan, DoesNotAskTheConfigForWhatASweptStrategyDecides) {
@@ -221,8 +221,9 @@ TEST(Plan, DoesNotAskTheConfigForWhatASweptStrategyDecides) {
 
 TEST(Plan, RefusesASweepOfNothing) {
   EXPECT_EQ(refused({}), kPaper.string() + ": nothing to sweep, give KEY=V1,V2 or a 'sweep:' in the config");
-  EXPECT_EQ(refused({"seed=1,2,3", "sweep.where=seed > 3"}),
-            "command line: sweep.where: it holds for none of the 3 combinations, ask for less, or sweep other values");
+  EXPECT_EQ(
+      refused({"seed=1,2,3", "sweep.where=seed > 3"}),
+      "command line: sweep.where: matches none of the 3 combinations, relax the condition, or sweep other values");
 }
 
 TEST(Plan, SaysWhatAJobHasWhereOtherItemsOfAListSayIt) {

@@ -193,8 +193,7 @@ TEST_F(RunsTable, ConditionsNameColumnsFieldsOfTheSummaryAndKeysOfTheConfigWithT
   EXPECT_THAT(names_where(all, "taps < 30"), ElementsAre("killed")) << "those that were made, not the budget";
   EXPECT_THAT(names_where({all.back()}, "nlpd > 0"), ElementsAre()) << "it will be known";
   EXPECT_EQ(error_of([&] { names_where(all, "rmse < 5 mm"); }),
-            "command line: --where: in the condition 'rmse < 5 mm' the name 'rmse' is not known, did you mean "
-            "'rmse_m'?");
+            "command line: --where: the condition 'rmse < 5 mm' has the unknown name 'rmse', did you mean 'rmse_m'?");
 }
 
 TEST_F(RunsTable, OfADamagedRunIsAnError) {

@@ -46,7 +46,7 @@ TEST(SlurmSbatchWords, AreOptionsThatPalpateDoesNotSayItself) {
     EXPECT_THROW(check_sbatch_words({"--mem=4G", word}), Error) << word;
   }
   EXPECT_EQ(test::error_of([] { check_sbatch_words({"--time=5"}); }),
-            "command line: --sbatch: --time cannot be said there, palpate has an option of that name");
+            "command line: --sbatch: --time cannot be set with --sbatch, use palpate's own option of this name");
 }
 
 /// Runs the script as Slurm would and returns the words that its program was called with.
@@ -305,9 +305,9 @@ TEST_F(FakeSlurm, ThatSaysNothingUsefulIsRefused) {
   answer("sbatch", "echo hello");
   EXPECT_THAT(refusal(), HasSubstr("sbatch: hello"));
   answer("scontrol", "echo hello");
-  EXPECT_THAT(refusal(), HasSubstr("scontrol: does not say MaxArraySize"));
+  EXPECT_THAT(refusal(), HasSubstr("scontrol: does not print MaxArraySize"));
   answer("scontrol", "kill -9 $$");
-  EXPECT_THAT(refusal(), HasSubstr("scontrol: failed and says nothing"));
+  EXPECT_THAT(refusal(), HasSubstr("scontrol: failed without a message"));
   EXPECT_THAT(heard_, IsEmpty());
 }
 

@@ -27,7 +27,8 @@ TEST(SlurmLimits, RefuseWhatSaysNothingOfThem) {
     EXPECT_THROW(slurm::parse_most_tasks(text), Error) << text;
   }
   for (const char* text : {"MaxArraySize = 0", "MaxArraySize = 1"}) {
-    EXPECT_THAT(test::error_of([&] { slurm::parse_most_tasks(text); }), HasSubstr("this cluster takes no arrays"));
+    EXPECT_THAT(test::error_of([&] { slurm::parse_most_tasks(text); }),
+                HasSubstr("this cluster accepts no job arrays"));
   }
 }
 
@@ -65,7 +66,7 @@ TEST(SlurmWords, AreOneLine) {
   EXPECT_EQ(slurm::words_of("sbatch: error: invalid partition specified: nope\nsbatch: error: Batch job submission "
                             "failed: Invalid partition name specified\n"),
             "invalid partition specified: nope; Batch job submission failed: Invalid partition name specified");
-  EXPECT_EQ(slurm::words_of("\n  \n"), "failed and says nothing");
+  EXPECT_EQ(slurm::words_of("\n  \n"), "failed without a message");
   EXPECT_EQ(slurm::words_of("slurm_load_jobs error: Invalid user\n"), "slurm_load_jobs error: Invalid user");
 }
 

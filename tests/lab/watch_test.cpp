@@ -113,7 +113,7 @@ TEST_F(AGrowingLog, SaysWhereTapsDoNotCountUpAcrossItsReads) {
   EXPECT_THAT(read(), ElementsAre(1, 2));
   append("{\"tap\": 4}\n");
   EXPECT_THAT(test::error_of([&] { read(); }),
-              testing::HasSubstr("record.jsonl:6: has tap 4 where tap 3 belongs: a line is missing"));
+              testing::HasSubstr("record.jsonl:6: has tap 4 instead of tap 3: a line is missing"));
 }
 
 TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceThatIsPutRight) {

@@ -129,7 +129,7 @@ class Notebook(InFolder):
         self.assertEqual([label.get_text() for label in axes.get_xticklabels()], ["taps=2", "taps=3"])
         shown = np.concatenate([line.get_ydata() for line in axes.lines])
         np.testing.assert_array_equal(np.sort(shown), np.sort(done.table["rmse_m"]))
-        self.refuses("plot", "no numbers 'colour'", "column", lambda: done.plot("colour"))
+        self.refuses("plot", "no numeric column 'colour'", "column", lambda: done.plot("colour"))
 
     def test_a_figure_without_matplotlib_is_an_error_with_its_remedy(self):
         run = palpate.run(DEFAULT, "taps=2", runs=self.folder)

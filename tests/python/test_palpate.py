@@ -142,7 +142,7 @@ class Module(InFolder):
             self.assertEqual((tap.source, tap.score, tap.candidate), ("caller", 2.0, 3 * wish.shape[1] + 4))
             self.assertEqual((tap.x, tap.y), (experiment.belief.x[4], experiment.belief.y[3]))
             self.assertEqual(experiment.ask().number, 1, "the same until it is told")
-            self.refuses("tap 1", "is asked for already", "tell first", lambda: experiment.ask(wish))
+            self.refuses("tap 1", "is pending", "call tell()", lambda: experiment.ask(wish))
             experiment.tell(0.05)
             self.assertEqual(experiment.ask(wish).candidate, 10 * wish.shape[1] + 7, "none is tapped again")
             experiment.tell(0.0)
@@ -163,14 +163,14 @@ class Module(InFolder):
     def test_bad_scores_and_answers_are_refused_and_lose_nothing(self):
         experiment = self.begun("taps=3")
         self.refuses("scores", "has 3 values", "2209", lambda: experiment.ask([1, 2, 3]))
-        self.refuses("scores", "not a finite number", "0 is", lambda: experiment.ask(np.full(2209, np.nan)))
-        self.refuses("tell", "no tap is asked for", "ask first", lambda: experiment.tell(0.0))
+        self.refuses("scores", "not a finite number", "use 0", lambda: experiment.ask(np.full(2209, np.nan)))
+        self.refuses("tell", "no tap is pending", "call ask()", lambda: experiment.tell(0.0))
         experiment.ask()
         self.refuses("tell", "neither a height nor an outcome", "no_contact", experiment.tell)
         for name in ("missed", "unknown"):
-            self.refuses("tell", f"no outcome '{name}'", "no_contact", lambda: experiment.tell(outcome=name))
-        self.refuses("tell", "belongs to a contact", "leave one", lambda: experiment.tell(0.1, outcome="timeout"))
-        self.refuses("tap 1", "is asked for", "tell first", experiment.finish)
+            self.refuses("tell", f"unknown outcome '{name}'", "no_contact", lambda: experiment.tell(outcome=name))
+        self.refuses("tell", "is valid only with", "leave one", lambda: experiment.tell(0.1, outcome="timeout"))
+        self.refuses("tap 1", "is pending", "call tell()", experiment.finish)
         experiment.tell(0.0)
         self.assertEqual(experiment.finish()["stop_reason"], "ended by the caller")
         self.assertEqual(len(palpate.load(experiment.directory)), 1)
@@ -222,7 +222,7 @@ class Module(InFolder):
         text = record.read_text(encoding="utf-8")
         record.write_text(re.sub(r'"build": "[0-9a-f]+"', '"build": "0123456789abcdef"', text), encoding="utf-8")
         self.assertNotEqual(record.read_text(encoding="utf-8"), text)
-        self.refuses(directory, "another build", "force=True moves it aside and runs again",
+        self.refuses(directory, "another build", "force to move it aside and run again",
                      lambda: palpate.run(DEFAULT, "taps=3", runs=self.folder))
         self.assertEqual(len(palpate.run(DEFAULT, "taps=3", runs=self.folder, force=True).taps), 3)
 

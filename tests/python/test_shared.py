@@ -72,7 +72,7 @@ class Shared(InFolder):
         experiment.tell(0.0)
         for use in (lambda: experiment.ask(), lambda: experiment.tell(0.0), lambda: experiment.finish(),
                     lambda: experiment.belief.weight):
-            self.assertIn("palpate.Error: experiment: was opened by the process that this one was forked from",
+            self.assertIn("palpate.Error: experiment: was opened by the parent of this forked process",
                           "palpate." + self.in_fork(use))
         self.assertEqual(self.in_fork(lambda: experiment.close() or "closed"), "closed")
         while experiment.ask():

@@ -92,7 +92,7 @@ class Sweeps(InFolder):
             with experiment:
                 self.tap(experiment)
         self.assertEqual(list(sweep.table["status"]), ["done"] + [None] * 5)
-        self.assertIn("made by a program of somebody's own", program("resume", sweep.directory, code=2))
+        self.assertIn("made by the caller's own program", program("resume", sweep.directory, code=2))
         again = self.told(range(3))
         self.assertEqual(again.directory, sweep.directory)
         carried_on = []
@@ -178,9 +178,9 @@ class Sweeps(InFolder):
         self.assertLess(sum(palpate.load_sweep("default@latest", runs=self.folder).table["status"] == "done"), 3)
 
     def test_what_is_wrong_with_a_sweep_is_said_with_place_reason_and_remedy(self):
-        self.refuses("command line", "lacks its ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
+        self.refuses("command line", "has no closing ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
         self.refuses("sweep", "workers", "at least 1", lambda: palpate.sweep(DEFAULT, seed=[1, 2], workers=0))
-        self.refuses("nothing", "has that name", "palpate list", lambda: palpate.load_sweep("nothing", self.folder))
+        self.refuses("nothing", "of that name", "palpate list", lambda: palpate.load_sweep("nothing", self.folder))
 
     def test_a_text_with_commas_is_one_value_of_a_sweep(self):
         done = palpate.sweep(DEFAULT, taps=2, name="cup, left: blue", seed=[1, 2], runs=self.folder)
@@ -211,7 +211,7 @@ class Sweeps(InFolder):
                            "echo '0 of 2 jobs done, 0 running, 0 failed' >&2\nexit 1\n", encoding="utf-8")
         failing.chmod(0o755)
         with unittest.mock.patch.object(palpate._palpate, "program", str(failing)):
-            self.refuses("/default/", "ended with status 1: job 0: no process can be made", "the same call carries it on",
+            self.refuses("/default/", "ended with status 1: job 0: no process can be made", "repeat the call to resume it",
                          lambda: palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder))
         self.assertEqual(list(palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder).table["status"]), ["done"] * 2)
 

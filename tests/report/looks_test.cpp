@@ -231,7 +231,7 @@ TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
   const fs::path missed = run_with_page({"taps=3", "candidates.count=12"});  // nothing is hit
   const Browsed seen = browse(missed, {drawn(3), kPanels, "return document.getElementById('map_w') === null"});
   EXPECT_THAT(seen.values.at(0).at(1).get<std::string>(),
-              HasSubstr("Weight w: whether there is an object: 0 everywhere"));
+              HasSubstr("Weight w: 1 on an object, 0 on the desk: 0 everywhere"));
   EXPECT_EQ(seen.values.at(1), true);
 
   const std::string process = (test::source_folder() / "configs/process.yaml").string();
@@ -264,7 +264,7 @@ TEST_P(Looks, PicturesCallMapsAndCurvesAsThePageDoes) {
     }
     for (const json& title : seen.values.at(0).at(1))
       EXPECT_THAT(curves, HasSubstr("set label '" + title.get<std::string>()));
-    EXPECT_THAT(curves, HasSubstr("The same after every tap:"));
+    EXPECT_THAT(curves, HasSubstr("Constant over all taps:"));
     fs::remove_all(folder_.path() / "runs");
   }
 }

@@ -94,7 +94,7 @@ TEST_F(ReportedRun, MarksTapsAsTheyAreReadAtTheMomentThatIsShown) {
   const json summary = json::parse(text_of(directory / "summary.json"));
   ASSERT_EQ(summary.at("relabelled"), "1 object");
   EXPECT_EQ(seen.values.at(0), json({summary.at("object_taps"), summary.at("desk_taps")}));
-  EXPECT_THAT(seen.values.at(1).get<std::string>(), HasSubstr("Tap 1 is read as on the object by now"));
+  EXPECT_THAT(seen.values.at(1).get<std::string>(), HasSubstr("Tap 1 is now read as on the object"));
   EXPECT_EQ(seen.values.at(3), json({0, 1}));
 }
 

@@ -101,7 +101,8 @@ TEST_F(RunsPage, OfOtherCandidatesHasNoDifferenceAndSaysSo) {
   const Browsed seen = opened({first, second}, {drawn(5), "return document.getElementById('difference_1') === null",
                                                 "return document.body.innerText"});
   EXPECT_EQ(seen.values.at(0), true);
-  EXPECT_THAT(seen.values.at(1).get<std::string>(), HasSubstr("without a difference: B."));
+  EXPECT_THAT(seen.values.at(1).get<std::string>(),
+              HasSubstr("Without a difference, because their candidates differ from A's: B."));
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   const json& points = seen.values.at(12);
   EXPECT_EQ(points.at(0), "scatter");
   EXPECT_THAT(points.at(4).get<std::string>(),
-              MatchesRegex("Mean over [a-z, ]+ of the jobs that are done; bars: standard deviation\\."));
+              MatchesRegex("Mean over [a-z, ]+ of the finished jobs; bars: standard deviation\\."));
   for (std::size_t i = 0; i < 3; ++i) {
     const std::vector<double> values = column(rows, "object_taps", 1.0, [&](const Cells& row) {
       return row.at("kernel.length_scale") == points.at(3).at(i);

@@ -63,7 +63,7 @@ TEST_P(SweepTrouble, OffersWhatParetoTakesAndShowsFailedAndMissingJobs) {
   const json& more_is_better = seen.values.at(4);
   expect_near(sorted(more_is_better.at(2)), costs);
   for (const json& y : more_is_better.at(3)) EXPECT_EQ(y, more_is_better.at(4).at(0)) << "at the lower edge";
-  EXPECT_THAT(seen.values.at(5).get<std::string>(), HasSubstr("4 failed runs came to no cost either"));
+  EXPECT_THAT(seen.values.at(5).get<std::string>(), HasSubstr("4 failed runs have no cost either"));
   ASSERT_EQ(seen.values.at(6).size(), 12U);
   for (const json& state : seen.values.at(6)) EXPECT_THAT(state.get<std::string>(), StartsWith("failed: "));
   EXPECT_EQ(seen.values.at(9), 2);
@@ -92,7 +92,7 @@ TEST_P(SweepTrouble, OffersWhatParetoTakesAndShowsFailedAndMissingJobs) {
   report(directory);
   const Browsed empty = browse(directory, {drawn(1), "return document.getElementById('nothing').textContent",
                                            "return document.querySelectorAll('tr.missing').length"});
-  EXPECT_THAT(empty.values, ElementsAre("No job has come to a result yet: there is nothing to draw.", 16));
+  EXPECT_THAT(empty.values, ElementsAre("No job has a result yet: there is nothing to draw.", 16));
 }
 
 TEST_P(SweepTrouble, TakesTextOfNamesValuesAndReasonsForTextAndNothingElse) {
@@ -212,7 +212,7 @@ TEST_P(SweepTrouble, SaysOfVeryManyJobsWhichOfThemItHasAndCountsThemAll) {
               StartsWith("This page has 150 of 600 jobs, one of 4, taken evenly from all settings"));
   EXPECT_EQ(seen.values.at(2),
             json({"6 jobs failed, the first is job 7 (seed=3, acquisition=uncertainty): out of luck"}));
-  EXPECT_EQ(seen.values.at(3), "150 jobs, one of 4 of 600: the others stand in results.csv");
+  EXPECT_EQ(seen.values.at(3), "150 jobs, one of 4 of 600: the others are in results.csv");
   // Job 8 has seed 4 and is the second of its setting on the page; 9 mm is what it came to.
   EXPECT_EQ(seen.values.at(4).at(0).at(0), "weighted");
   EXPECT_EQ(seen.values.at(4).at(0).at(1), 75);

@@ -26,22 +26,21 @@ TEST(SlurmOptions, AreRefusedForThisMachine) {
                                                   {"--sbatch=--mem=4G"}, {"--jobs-per-task", "1"}, {"--wait"}};
   for (const std::vector<std::string>& option : all) {
     const std::string name = option.front().substr(0, option.front().find('='));
-    EXPECT_THAT(refusal(sweep, option), StartsWith("command line: " + name +
-                                                   " is for a cluster, and the launcher is "
-                                                   "'local', add --launcher slurm"));
+    EXPECT_THAT(
+        refusal(sweep, option),
+        StartsWith("command line: " + name + " needs a cluster, but the launcher is 'local', add --launcher slurm"));
     std::vector<std::string> local = option;
     local.insert(local.end(), {"--launcher", "local"});
-    EXPECT_THAT(refusal(sweep, local), HasSubstr("is for a cluster"));
-    EXPECT_THAT(refusal({"resume", "./nowhere"}, option), HasSubstr("is for a cluster"));
+    EXPECT_THAT(refusal(sweep, local), HasSubstr("needs a cluster"));
+    EXPECT_THAT(refusal({"resume", "./nowhere"}, option), HasSubstr("needs a cluster"));
   }
 }
 
 TEST(SlurmOptions, ThatMakeNoSenseAreRefused) {
   const std::vector<std::string> sweep{"sweep", paper(), "seed=1,2", "--launcher", "slurm"};
-  EXPECT_THAT(refusal(sweep, {"--sbatch=mem=4G"}), HasSubstr("--sbatch: 'mem=4G' is no option of sbatch"));
-  EXPECT_THAT(refusal(sweep, {"--sbatch=--array=0"}), HasSubstr("--array cannot be said there"));
-  EXPECT_THAT(refusal(sweep, {"--junit", "x.xml"}),
-              HasSubstr("--junit: there is no result before the jobs have ended"));
+  EXPECT_THAT(refusal(sweep, {"--sbatch=mem=4G"}), HasSubstr("--sbatch: 'mem=4G' is not an option of sbatch"));
+  EXPECT_THAT(refusal(sweep, {"--sbatch=--array=0"}), HasSubstr("--array cannot be set with --sbatch"));
+  EXPECT_THAT(refusal(sweep, {"--junit", "x.xml"}), HasSubstr("--junit: results exist only after all jobs have ended"));
   EXPECT_THAT(refusal(sweep, {"--jobs-per-task", "0"}), HasSubstr("--jobs-per-task"));
   EXPECT_THAT(refusal({"sweep", paper(), "seed=1,2"}, {"--launcher", "pbs"}), HasSubstr("{local,slurm}"));
 }
@@ -62,13 +61,13 @@ TEST(SlurmOptions, AreForSweepsOnlyAndChunksAreWhole) {
   const Ended single =
       test::palpate({"resume", only_run(folder.path() / "single").string(), "--launcher", "slurm"}, folder.path());
   EXPECT_EQ(single.status, 2);
-  EXPECT_THAT(single.err, HasSubstr("is no sweep"));
+  EXPECT_THAT(single.err, HasSubstr("is not a sweep"));
   ASSERT_EQ(test::palpate({"sweep", paper(), "seed=1,2", "--quiet"}, folder.path()).status, 0);
   const Ended chunk = test::palpate({"resume", only_run(folder.path() / "runs").string(), "--launcher", "slurm",
                                      "--jobs", "1", "--jobs-per-task", "2"},
                                     folder.path());
   EXPECT_EQ(chunk.status, 2);
-  EXPECT_THAT(chunk.err, HasSubstr("--jobs and --jobs-per-task do not go together"));
+  EXPECT_THAT(chunk.err, HasSubstr("--jobs and --jobs-per-task exclude each other"));
 }
 
 }  // namespace

@@ -209,7 +209,7 @@ TEST_F(Slurm, CtrlCCancelsWhatIsWaitedFor) {
   waiting->signal(SIGINT);
   const Ended ended = waiting->wait(60);
   EXPECT_EQ(ended.status, 130) << ended.err;
-  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
+  EXPECT_THAT(ended.out, HasSubstr("resume with: palpate resume"));
   EXPECT_TRUE(lab.becomes_idle());
   const std::vector<int> attempts = attempts_in(sweep);
   EXPECT_EQ(std::accumulate(attempts.begin() + 2, attempts.end(), 0), 0) << "what waited did not begin";

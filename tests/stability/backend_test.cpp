@@ -35,10 +35,9 @@ TEST(ExtremeBackend, EveryKindOfNoNumberIsRefusedAsAFailedTap) {
 
 TEST(ExtremeBackend, ARunOfNothingButNoNumbersFailsAfterTenOfThem) {
   Prepared prepared("paper/object_i.yaml", {}, scripted(std::vector<Contact>(17, contact_at(std::nan("")))));
-  EXPECT_EQ(
-      error_of([&] { prepared.run(); }, Error::Kind::run),
-      "backend/simulator: 10 taps in a row failed, the last so: the backend reported a height that is not a finite "
-      "number, correct the backend");
+  EXPECT_EQ(error_of([&] { prepared.run(); }, Error::Kind::run),
+            "backend/simulator: 10 taps in a row failed, the last with: the backend reported a height that is not a "
+            "finite number, correct the backend");
   EXPECT_EQ(prepared.taps.size(), 10U) << "all are recorded";
   EXPECT_EQ(prepared.experiment.counts().failed_taps, 10);
 }

@@ -102,7 +102,7 @@ TEST(CeresFit, KeepsTheOldValuesWhenTheTapsTellNothing) {
   const FitSummary summary = state.fit(*ceres("{}"), few_taps(5, 0));
   EXPECT_FALSE(summary.changed);
   EXPECT_FALSE(summary.failed);
-  EXPECT_EQ(summary.reason, "the targets do not differ from the mean: they tell nothing");
+  EXPECT_EQ(summary.reason, "the targets equal the mean and contain no information");
   EXPECT_EQ(state.signal, 2.0);
   EXPECT_EQ(state.length_scale(), 0.02);
 }
@@ -227,7 +227,7 @@ TEST(CeresFit, LeavesOutAnOutputWhoseTargetsAreAllAlike) {
   const FitSummary summary = fit_with_another(state, data, Eigen::VectorXd::Zero(50), signal);
   EXPECT_TRUE(summary.changed);
   EXPECT_NEAR(summary.objective, 45.7165, 1e-4);
-  EXPECT_NE(summary.reason.find("outputs that tell nothing were left out"), std::string::npos) << summary.reason;
+  EXPECT_NE(summary.reason.find("outputs without information were left out"), std::string::npos) << summary.reason;
   EXPECT_EQ(signal, 1.0);
 }
 
@@ -255,7 +255,7 @@ TEST(CeresFit, ThatFailsKeepsTheOldValuesAndSaysWhy) {
     const FitSummary summary = state.fit(*ceres("{}"), few_taps(count, 6));
     EXPECT_FALSE(summary.changed);
     EXPECT_TRUE(summary.failed);
-    EXPECT_EQ(summary.reason, "no ascent came to a finite value");
+    EXPECT_EQ(summary.reason, "no ascent reached a finite value");
     EXPECT_EQ(state.length_scale(), 0.017);
     EXPECT_EQ(state.signal, 1.0);
   }

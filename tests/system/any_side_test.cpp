@@ -108,8 +108,8 @@ TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
   }
   EXPECT_GT(contacts, 5);
   EXPECT_THAT(refused({"run", config(), "--dry-run", "prior={depth: " + (run / "export/taps.ply").string() + "}"}),
-              testing::HasSubstr("prior: is of taps from above"));
-  EXPECT_THAT(refused({"export", run, "--to", run}), testing::HasSubstr("nothing is written over"));
+              testing::HasSubstr("prior: applies to taps from above"));
+  EXPECT_THAT(refused({"export", run, "--to", run}), testing::HasSubstr("files are never overwritten"));
 }
 
 TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
@@ -124,23 +124,23 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
     const auto says = [&](const std::string& words) { EXPECT_THAT(text, testing::HasSubstr(words)) << i + 1; };
     says(fmt::format("from x {:.2f} cm, y {:.2f} cm, z {:.2f} cm, ", 100 * rows[i].number("x").value(),
                      100 * rows[i].number("y").value(), 100 * rows[i].number("z").value()));
-    says(fmt::format("What was believed after {} tap", i));
+    says(fmt::format("The belief after {} tap", i));
     says("24 compositions of ");
-    says("Expected, by the most probable composition: ");
+    says("Expected, by the most probable particle: ");
     says("Error of the surface: on the object ");
-    if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; all of the way is free.");
+    if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; the whole path is free.");
     if (rows[i].text("source") == "initial") {
-      says("anywhere through the region");
+      says("through the region");
       continue;
     }
     says("The acquisition chose it: discovery");
-    says("Of one piece more than is believed, as far as no touch has contradicted it, the line is expected to find ");
+    says("Of one further solid that no contact contradicts, this line is expected to find ");
     says(fmt::format("Its score is {:.4g}, the best of 200 approaches", rows[i].number("score").value()));
     says("Runner-up: from x ");
     says(fmt::format("with a score of {:.4g}, ", rows[i].number("runner_up.score").value()));
-    const bool met = text.find("by the most probable composition: an object after") != std::string::npos;
-    says(met ? "the skin knows it along its normal with a standard deviation of "
-             : "By the most probable composition no object is there.");
+    const bool met = text.find("by the most probable particle: an object after") != std::string::npos;
+    says(met ? "the standard deviation along the surface normal is "
+             : "According to the most probable particle, no object is there.");
     places += met ? 1 : 0;
   }
   EXPECT_GT(places, 0);
@@ -331,9 +331,10 @@ TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
     ++compared;
   }
   EXPECT_EQ(compared, 1);
-  // The one error that tables and curves show is that from any side, beside taps from above a root mean square of either.
+  // The one error that tables and curves show is that from any side, beside taps from above a root mean square of
+  // either.
   EXPECT_THAT(palpate("list").out, HasSubstr("rms_surface_distance_m [mm]"));
-  EXPECT_THAT(palpate({"resume", sweep}).out, HasSubstr("The least rms_surface_distance_m first."));
+  EXPECT_THAT(palpate({"resume", sweep}).out, HasSubstr("Groups with the least rms_surface_distance_m come first."));
   EXPECT_THAT(palpate({"curves", sweep, "--by", "acquisition"}).err,
               HasSubstr("curves_acquisition_rms_surface_distance_m_taps.csv"));
   ran("taps=3 initial.count=2", paper());
@@ -400,17 +401,17 @@ TEST_F(AnySide, ARecordThatHasLostTheLineOfATapIsSaidToBeDamaged) {
 
 TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "acquisition=weighted"}),
-              testing::HasSubstr("weighted scores taps from above alone, choose one that scores approaches"));
+              testing::HasSubstr("weighted only scores taps from above, choose one that scores approaches"));
   EXPECT_THAT(refused({"run", config(), "scene.touch=top"}),
-              testing::HasSubstr("surface: implicit is for a scene with touch: any"));
-  EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side has it"));
+              testing::HasSubstr("surface: implicit needs a scene with touch: any"));
+  EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side sets"));
   EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
-              testing::HasSubstr("discovery scores approaches from any side alone"));
+              testing::HasSubstr("discovery only scores approaches from any side"));
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
-              testing::HasSubstr("kernel: is not one of the distance alone"));
+              testing::HasSubstr("kernel: does not depend on the distance alone"));
   const fs::path run = touched("taps=4");
-  EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, and --figures"));
-  EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, and pages of several"));
+  EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, but --figures"));
+  EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, but pages of several"));
 }
 
 TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
@@ -439,10 +440,10 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
                                 "engine.threads=2",
                                 "log.maps=true"}) {
     const std::string word(key);
-    EXPECT_THAT(refused({"run", config(), "--dry-run", word}),
-                testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),
-                               testing::HasSubstr(": is of taps from above and means nothing from any side, take it "
-                                                  "away")));
+    EXPECT_THAT(
+        refused({"run", config(), "--dry-run", word}),
+        testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),
+                       testing::HasSubstr(": applies to taps from above only, remove it or choose scene.touch: top")));
   }
   // Of a grid that is not read there.
   EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "tie_tolerance=1e-6", "candidates.count=47",
@@ -451,7 +452,7 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
             0);
   for (const char* const key : {"space.moves=5", "space.view={}"}) {
     EXPECT_THAT(refused({"run", paper(), "--dry-run", key}),
-                testing::HasSubstr("space: is of surface: implicit and means nothing from above, take it away"));
+                testing::HasSubstr("space: applies to surface: implicit only, remove it for taps from above"));
   }
 }
 

@@ -114,12 +114,12 @@ std::vector<Case> cases() {
 
       // Quantities
       line("MissingUnit", "kernel: {length_scale: 0.017}",
-           "10:24: kernel.length_scale: '0.017' lacks its unit, write a length like '1.7 cm'"),
+           "10:24: kernel.length_scale: '0.017' has no unit, write a length like '1.7 cm'"),
       line("WrongUnit", "kernel: {length_scale: 3 s}",
            "10:24: kernel.length_scale: '3 s' is a time, not a length, write a length like '1.7 cm'"),
       line("UnknownUnit", "height: {noise: 1 nmm}", "10:17: height.noise: unknown unit 'nmm', did you mean 'mm'?"),
       line("UnitWhereNoneBelongs", "label: {noise: 1 mm}",
-           "10:16: label.noise: '1 mm' is not a plain number, this one has no unit"),
+           "10:16: label.noise: '1 mm' is not a plain number, write it without a unit"),
       line("DecimalComma", "kernel:\n  length_scale: 1,7 cm",
            "11:17: kernel.length_scale: '1,7 cm' has a decimal comma, write a point"),
       line("NegativeLength", "kernel: {length_scale: -1.7 cm}",
@@ -131,9 +131,9 @@ std::vector<Case> cases() {
       line("NumberBeyondAnyDouble", "height: {signal: 1e400 m}",
            "10:18: height.signal: '1e400 m' is out of range, write a length like '1.7 cm'"),
       line("OctalNumber", "seed: 010",
-           "10:7: seed: '010' has a leading zero, octal numbers are not read: write it without the zero"),
+           "10:7: seed: '010' has a leading zero, octal numbers are not supported: write it without the zero"),
       line("NegativeSeed", "seed: -1", "10:7: seed: -1 is out of range, it must be at least 0"),
-      line("SeedThatIsNotWhole", "seed: 1.5", "10:7: seed: '1.5' is not a whole number, write digits alone"),
+      line("SeedThatIsNotWhole", "seed: 1.5", "10:7: seed: '1.5' is not a whole number, write digits only"),
       line("YesForTrue", "label: {clip: yes}", "10:15: label.clip: 'yes' is not a truth value, write true or false"),
 
       // Shapes
@@ -154,9 +154,9 @@ std::vector<Case> cases() {
       // YAML
       line("DuplicateKey", "taps: 6", "10:1: duplicate key 'taps', it is already at line 8, column 1"),
       line("MergeKey", "height: {<<: {noise: 1 mm}}",
-           "10:10: merge keys ('<<') are not read, repeat the options, or put them into a group file and name it under "
-           "'defaults'"),
-      line("Tag", "seed: !!str 1", "10:7: tags ('tag:yaml.org,2002:str') are not read, remove it"),
+           "10:10: merge keys ('<<') are not supported, repeat the options, or put them into a group file and name it "
+           "under 'defaults'"),
+      line("Tag", "seed: !!str 1", "10:7: tags ('tag:yaml.org,2002:str') are not supported, remove it"),
       line("BadSyntax", "initial: {design: random",
            "11:1: not valid YAML: end of map flow not found, look here or above for a missing bracket or quote, a "
            "wrong indent or a tab"),
@@ -164,15 +164,15 @@ std::vector<Case> cases() {
            "11:7: not valid YAML: illegal map value, look here or above for a missing bracket or quote, a wrong indent "
            "or a tab"),
       line("TwoDocuments", "---\nseed: 1",
-           "11:1: a second document begins here, remove a '---' or a stray sign here or before"),
+           "11:1: a second document begins here, remove a '---' or a stray character here or above"),
       line("DeepNesting", "name2: " + std::string(200, '[') + std::string(200, ']'),
            "10:108: nested too deeply, at most 100 levels"),
 
       // Overrides
       typed("CommentInAnOverride", {"name=a #b"},
-            "name: '#b' is a comment, put the value in quotes of its own: KEY='\"a #b\"'"),
+            "name: '#b' is a comment, put the value in its own quotes: KEY='\"a #b\"'"),
       typed("CommentInsteadOfAnOverride", {"name=#b"},
-            "name: '#b' is a comment, put the value in quotes of its own: KEY='\"a #b\"'"),
+            "name: '#b' is a comment, put the value in its own quotes: KEY='\"a #b\"'"),
       typed("KeyGivenTwice", {"taps=6", "seed=2", "taps=7"}, "taps is given twice, leave one of them out"),
       sweep("KeySweptTwice", "", {"taps=6", "seed=2", "taps=7"},
             "command line: taps is given twice, leave one of them out"),
@@ -186,9 +186,9 @@ std::vector<Case> cases() {
        {"run", "bad.yaml", "motion.step=1cm"},
        "command line: backend/caller has no motion, take 'motion' away"},
       line("ListOfOneMotion", "motion: {type: per_tap, of: [{type: paper}]}",
-           "10:29: motion.of: names the motions to choose from, at least two"),
+           "10:29: motion.of: must name at least two motions to choose from"),
       line("MotionWithinTheBackend", "backend: {motion: {speed: 1 cm/s}}",
-           "10:11: unknown option 'motion' of backend, write motion: {...} beside backend, not within"),
+           "10:11: unknown option 'motion' of backend, write motion: {...} beside backend, not inside it"),
 
       // Files, groups and plugins
       line("MeshThatIsNotThere", "scene: {objects: [{type: mesh, file: /nowhere.stl, unit: 1 mm}]}",
@@ -206,16 +206,18 @@ std::vector<Case> cases() {
             "9:8: no file scene/object_j.yaml, did you mean 'object_i'?"),
       whole("UnknownGroup", "defaults:\n  - kernl: rbf\n", "2:5: unknown group 'kernl', did you mean 'kernel'?"),
       whole("DefaultsThatAreNoList", "defaults: rbf\n",
-            "1:11: defaults: expects a list, write '- kernel: rbf', one group a line"),
+            "1:11: defaults: expects a list, write '- kernel: rbf', one group per line"),
       {"CyclicDefaults",
        "defaults:\n  - kernel: a\n",
        {"run", "bad.yaml"},
        "kernel/b.yaml:2:13: defaults form a cycle, kernel/a -> kernel/b -> kernel/a",
        {{"kernel/a.yaml", "defaults:\n  - kernel: b\n"}, {"kernel/b.yaml", "defaults:\n  - kernel: a\n"}}},
       whole("GroupNameWithAPath", "defaults:\n  - kernel: ../rbf\n",
-            "2:13: '../rbf' is no name for the group kernel, a name has letters, digits, '_' and '-', and no path"),
+            "2:13: '../rbf' is not a valid name in the group kernel, a name has letters, digits, '_' and '-', and no "
+            "path"),
       line("PluginNameWithAPath", "kernel: {type: ../kernel/rbf}",
-           "10:16: '../kernel/rbf' is not the name of a plugin, a name has letters, digits, '_' and '-', and no path"),
+           "10:16: '../kernel/rbf' is not a valid name of a plugin, a name has letters, digits, '_' and '-', and no "
+           "path"),
       line("UnknownPlugin", "kernel: {type: matern53}", "10:16: no plugin kernel/matern53, did you mean 'matern52'?"),
       typed("UnknownPluginOnTheCommandLine", {"kernel=periodic"},
             "no plugin kernel/periodic, known: matern12, matern32, matern52, product, rational_quadratic, rbf, scale, "
@@ -233,9 +235,9 @@ std::vector<Case> cases() {
 
       // Laws between options
       whole("BothCountAndSpacing", without("candidates") + "candidates: {count: 8, spacing: 5 mm}\n",
-            "9:33: candidates.spacing: give either count or spacing, and set the other to none"),
+            "9:33: candidates.spacing: give either count or spacing; set the other one to none"),
       whole("TooFineASpacing", without("candidates") + "candidates: {spacing: 1 um}\n",
-            "9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 a side are possible"),
+            "9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 per side are possible"),
       line("FewerTapsThanInitialOnes", "initial: {count: 6}",
            "8:7: taps: the budget is smaller than the 6 initial taps, raise it or lower initial.count"),
       whole("MoreInitialTapsThanCandidates", without("candidates") + "candidates: {count: 1}\ninitial: {count: 2}\n",
@@ -243,23 +245,23 @@ std::vector<Case> cases() {
       line("ASearchOfSomeTaps", "initial: {design: search, count: 3}",
            "10:27: unknown option 'count' of initial, known: design, smallest"),
       line("ASearchForWhatIsTooLarge", "initial: {design: search, smallest: 23 cm}",
-           "10:37: initial.smallest: is not below the sides of the area, name the least width of the object"),
+           "10:37: initial.smallest: is not smaller than the sides of the area, give the least width of the object"),
       line("ASearchForNothing", "initial: {design: search, smallest: 0 cm}",
            "10:37: initial.smallest: 0 cm is out of range, it must be above 0 m"),
       line("WaveBelowTheDesk", "scene: {objects: [{type: wave, height: 1 cm, amplitude: 2 cm}]}",
-           "10:57: scene.objects.0.amplitude: is larger than the mean height, the top would dip below the desk"),
+           "10:57: scene.objects.0.amplitude: is larger than the mean height, so the top would be below the desk"),
       line("ObjectTooBigForRandomPlacement", "scene: {placement: random, objects: [{type: wave, length: 50 cm}]}",
            "10:38: scene.objects.0: does not fit into the area, make the object smaller or the area larger"),
       line("HoverBelowTheObject", "motion: {hover: 5 cm}",
-           "10:17: backend/simulator: motion.hover: an object is 11 cm high, and the arm travels at 5 cm, raise it or "
-           "lower the object"),
+           "10:17: backend/simulator: motion.hover: an object is 11 cm high, but the arm travels at 5 cm, raise "
+           "motion.hover or lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",
-           "10:42: label.kernel: the labels have the heights' kernel when hyperparameters are shared; take it away, "
+           "10:42: label.kernel: the labels use the kernel of the heights when hyperparameters are shared; remove it, "
            "or choose own"),
       line("LabelsOfTheirOwnFittingThatShare", "label: {hyperparameters: shared, fitting: {type: fixed}}",
-           "10:43: label.fitting: the labels are fitted with the heights when hyperparameters are shared; take it "
-           "away, or choose own"),
+           "10:43: label.fitting: the labels are fitted together with the heights when hyperparameters are shared; "
+           "remove it, or choose own"),
 
       // Plugins inside plugins, and how the surface is made
       line("UnknownSurface", "surface: two_parts",
@@ -288,11 +290,11 @@ std::vector<Case> cases() {
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
       line("GridPosteriorWithANonSeparableKernel", "engine: {type: grid}\nkernel: {type: matern32}",
-           "10:16: engine.type: grid cannot be used with the kernel matern32, which is not separable: no product of a "
-           "factor along x and one along y, engine: {type: dense} serves every kernel"),
+           "10:16: engine.type: grid cannot be used with the kernel matern32, which is not a product of a factor along "
+           "x and a factor along y, engine: {type: dense} serves every kernel"),
       line("LowrankPosteriorWithASum", "engine: {type: lowrank}\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
-           "10:16: engine.type: lowrank cannot be used with the kernel sum, which is not separable: no product of a "
-           "factor along x and one along y, engine: {type: dense} serves every kernel"),
+           "10:16: engine.type: lowrank cannot be used with the kernel sum, which is not a product of a factor along x "
+           "and a factor along y, engine: {type: dense} serves every kernel"),
       line("NoThreads", "engine: {threads: 0}", "10:19: engine.threads: 0 is out of range, it must be at least 1"),
       line("LowrankThatKeepsNothing", "engine: {tolerance: 0}",
            "10:21: engine.tolerance: 0 is out of range, it must be above 0"),
@@ -309,19 +311,19 @@ std::vector<Case> cases() {
             "'scene.objects.1.height': the list has no item '1', its items are 0 to 0"),
       typed("OverrideWithABadValue", {"seed=none"}, "seed: 'none' is not a number, write a plain number"),
       typed("GroupNameWithAPathOnTheCommandLine", {"kernel=../rbf"},
-            "'../rbf' is no name for the group kernel, a name has letters, digits, '_' and '-', and no path"),
+            "'../rbf' is not a valid name in the group kernel, a name has letters, digits, '_' and '-', and no path"),
 
       typed("NameThatIsNotUtf8SoThatNoRecordCouldHoldIt", {"name=a\xff"}, "not UTF-8, write it in UTF-8"),
       typed("ManyNamesOfAGroup", {"acquisition=weighted,random"},
-            "acquisition has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "acquisition has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ManyValues", {"engine.type=dense,grid"},
-            "engine.type has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "engine.type has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ManyWholeNumbers", {"seed=1,2"},
-            "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "seed has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ARange", {"seed=range(0,5)"},
-            "seed has several values, and a run takes one, 'palpate sweep' runs all of them"),
+            "seed has several values, but a run takes one, run all of them with 'palpate sweep'"),
       typed("ListThatIsOneValue", {"scene.objects.0.at=[3,4]"},
-            "scene.objects.0.at: '3' lacks its unit, write a length like '1.7 cm'"),
+            "scene.objects.0.at: '3' has no unit, write a length like '1.7 cm'"),
 
       // Sweeps
       sweep("BadSweepRange", "sweep:\n  grid:\n    seed: range(0)\n", {},
@@ -338,7 +340,7 @@ std::vector<Case> cases() {
             "bad.yaml:11:3: unknown option 'gird' of sweep, did you mean 'grid'?"),
       sweep("NothingToSweep", "", {}, "bad.yaml: nothing to sweep, give KEY=V1,V2 or a 'sweep:' in the config"),
       sweep("SweepOfOneValueTwice", "", {"seed=1,1"},
-            "bad.yaml: jobs 0 and 1 of the sweep are the same run, a value stands twice: write it once"),
+            "bad.yaml: jobs 0 and 1 of the sweep are the same run, a value occurs twice: write it once"),
   };
 }
 

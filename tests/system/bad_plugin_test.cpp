@@ -99,10 +99,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(BadPlugin, UnderAnotherNameOrInTheFolderOfAnotherKindSaysWhatItIs) {
   fs::copy(test::plugin_folder() / "kernel" / "rbf.so", kernel("mine"));
-  expect_broken(here(), "mine", "comparing the name: the library says it is kernel/rbf");
+  expect_broken(here(), "mine", "comparing the name: the library contains the plugin kernel/rbf");
   fs::remove(kernel("mine"));
   fs::copy(test::plugin_folder() / "acquisition" / "weighted.so", kernel("weighted"));
-  expect_broken(here(), "weighted", "comparing the name: the library says it is acquisition/weighted");
+  expect_broken(here(), "weighted", "comparing the name: the library contains the plugin acquisition/weighted");
 }
 
 TEST_F(BadPlugin, ThatIsATextFileIsNoLibrary) {
@@ -117,7 +117,7 @@ TEST_F(BadPlugin, ThatIsAFolderIsNoLibrary) {
 
 TEST_F(BadPlugin, ThatIsADanglingLinkSaysSo) {
   fs::create_symlink("nowhere.so", kernel("link"));
-  expect_broken(here(), "link", "opening: a link to a file that is not there");
+  expect_broken(here(), "link", "opening: a link to a missing file");
 }
 
 TEST_F(BadPlugin, ThatCannotBeReadSaysSo) {
@@ -161,7 +161,7 @@ TEST_F(BadPlugin, WithAFlippedBitIsListedOrListedPast) {
 TEST_F(BadPlugin, ThatTakesItsProcessDownIsListedWithHow) {
   for (const auto& [name, how] : std::vector<std::pair<std::string, std::string>>{
            {"crashes_when_loaded", "crashed, signal 11 (Segmentation fault)"},
-           {"hangs_when_loaded", "came to no end within 5 s"},
+           {"hangs_when_loaded", "did not finish within 5 s"},
            {"ends_when_loaded", "ended the program with status 0"}}) {
     const fs::path folder = test::bad_plugin_folder(name);
     search(folder);
@@ -183,9 +183,9 @@ TEST_F(BadPlugin, InTwoFoldersIsRefusedOnceWithBothNames) {
   fs::copy(test::plugin_folder() / "kernel" / "rbf.so", kernel("rbf"));
   search(here());
   EXPECT_THAT(listed_as_broken(),
-              AllOf(StartsWith("plugin kernel/rbf is there twice: " + kernel("rbf").string() + " and "),
+              AllOf(StartsWith("plugin kernel/rbf exists twice: " + kernel("rbf").string() + " and "),
                     HasSubstr("lib/palpate/kernel/rbf.so, remove one")));
-  expect_refused("rbf", kPlace, "plugin kernel/rbf is there twice: ");
+  expect_refused("rbf", kPlace, "plugin kernel/rbf exists twice: ");
 }
 
 TEST_F(BadPlugin, PathThatNamesTheShippedFolderAgainIsNoDuplicate) {
@@ -229,15 +229,17 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"throws_own_exception",
                "exp.yaml:1:16: kernel/throws_own_exception cannot be created: an exception of its own\n"},
         Broken{"throws_number",
-               "exp.yaml:1:16: kernel/throws_number cannot be created: it threw something that is no exception\n"}),
+               "exp.yaml:1:16: kernel/throws_number cannot be created: it threw an object that is not a "
+               "std::exception\n"}),
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST_F(BadPlugin, ThrowingInTheMiddleOfARunFailsTheRunInGoodOrder) {
   for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
            {"throws_in_score", "acquisition/throws_in_score: no score today"},
            {"reads_untold",
-            "acquisition/reads_untold: reads the weight w, which its reads() does not name, add it there"},
-           {"throws_number_in_score", "acquisition/throws_number_in_score: threw something that is no exception"}}) {
+            "acquisition/reads_untold: reads the weight w, which its reads() does not list, add it there"},
+           {"throws_number_in_score",
+            "acquisition/throws_number_in_score: threw an object that is not a std::exception"}}) {
     environment_ = {test::with_plugin(name)};
     write("exp.yaml", config_with("acquisition", name));
     const Ended ended = palpate({"run", "exp.yaml", "--runs", name});

@@ -34,29 +34,29 @@ TEST_F(CalibrateCommand, PrintsAFileThatAConfigTakesAsItsEffects) {
 
 TEST_F(CalibrateCommand, SaysWhichCountsAreExpectedAndHowMuchOfARateTheMotionsShow) {
   const std::string file = palpate({"calibrate", tapped()}).out;
-  EXPECT_THAT(file, ContainsRegex("missed_contacts: .*# [0-9]+ of 30 taps came to nothing; [^ ]+ \\[.*\\] per tap, of "
-                                  "which these motions show [0-9]+ %\n"));
+  EXPECT_THAT(file, ContainsRegex("missed_contacts: .*# [0-9]+ of 30 taps made no contact; [^ ]+ \\[.*\\] per tap, of "
+                                  "which these motions reveal [0-9]+ %\n"));
   EXPECT_THAT(file,
-              ContainsRegex("false_contacts: .*# [0-9]+\\.[0-9] of [0-9]+ contacts are expected to be nowhere near "
-                            "the scene; [^ ]+ \\[.*\\] per tap, of which these motions show [0-9]+ %\n"));
+              ContainsRegex("false_contacts: .*# [0-9]+\\.[0-9] of [0-9]+ contacts are estimated to be far from the "
+                            "scene; [^ ]+ \\[.*\\] per tap, of which these motions reveal [0-9]+ %\n"));
 }
 
 TEST_F(CalibrateCommand, RefusesInOneLineWhatSaysTooLittle) {
   const fs::path run = tapped();
   EXPECT_THAT(refused({"calibrate", tapped("taps=5")}),
-              HasSubstr("taps are contacts, and it takes 10, tap more of a "));
+              HasSubstr("taps are contacts, but 10 are needed, make more taps on a "));
   EXPECT_THAT(refused({"calibrate", here() / "nowhere"}), HasSubstr("nowhere"));
   const std::string replay = "backend={type: replay, record: " + run.string() + "}";
   const fs::path again = ran(Words{"scene=block", "taps=20", replay}, config("default.yaml"));
-  EXPECT_THAT(refused({"calibrate", again}), HasSubstr("its backend, replay, has no motion to be simulated by"));
+  EXPECT_THAT(refused({"calibrate", again}), HasSubstr("its backend, replay, has no motion to simulate"));
 }
 
 TEST_F(CalibrateCommand, RefusesTapsOfADomeThatTheConfigDoesNotHave) {
   const std::string example = (test::source_folder() / "plugins/backends/process/example.py").string();
   const fs::path run =
       ran(Words{"acquisition=random", "taps=30", "backend.command=python3 '" + example + "'"}, config("process.yaml"));
-  EXPECT_THAT(refused({"calibrate", run}), HasSubstr("contacts are nowhere near its scene, where one in 5 may be, "
-                                                     "calibrate takes taps of a scene that stands as its config says"));
+  EXPECT_THAT(refused({"calibrate", run}), HasSubstr("contacts are far from its scene, but only one in 5 may be, use "
+                                                     "taps on a scene that stands as in its config"));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST_F(Groups, InAWorkingFolderThatOthersMayWriteAreNotTaken) {
   for (const fs::path& open : {here(), here() / "configs"}) {
     fs::permissions(open, fs::perms::others_write, fs::perm_options::add);
     EXPECT_THAT(refused("validate mine/x.yaml"),
-                HasSubstr("configs/backend/mine.yaml lies where others may put files"));
+                HasSubstr("configs/backend/mine.yaml is in a folder where other users can write"));
     fs::permissions(open, fs::perms::others_write, fs::perm_options::remove);
   }
 }
@@ -140,10 +140,11 @@ TEST_F(CommandLine, ACommandThatThereIsNotIsToldTheNearest) {
 
 TEST_F(CommandLine, SeveralDirectoriesWhereACommandTakesOneAreOneLineWithARemedy) {
   for (const char* command : {"status", "resume", "replay", "export"}) {
-    EXPECT_THAT(refused({command, "runs/a/1", "runs/a/2"}),
-                MatchesRegex(std::string("command line: ") + command +
-                             " takes one (DIR|RUN), and 'runs/a/2' stands beside it, where a \\* stands for several, "
-                             "name one of them\n"));
+    EXPECT_THAT(
+        refused({command, "runs/a/1", "runs/a/2"}),
+        MatchesRegex(
+            std::string("command line: ") + command +
+            " takes one (DIR|RUN), but 'runs/a/2' is given as well, if a \\* matches several, name one of them\n"));
   }
   EXPECT_THAT(refused("explain runs/a/1 runs/a/2 3"), HasSubstr(" takes one RUN and one TAP, and "));
   EXPECT_THAT(refused("report runs/a/1 --fig"), Not(HasSubstr("takes one DIR"))) << "an option is no directory";

@@ -30,8 +30,8 @@ TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   const Ended ended = compare(directory, "--by acquisition --metric object_taps");
   EXPECT_THAT(ended.out, StartsWith("object_taps by acquisition; more is better\nacquisition  jobs "));
   EXPECT_THAT(ended.out, HasSubstr("\nweighted - uncertainty     12 "));
-  EXPECT_THAT(ended.out, HasSubstr("\nThe seed is the unit: all jobs of a seed are drawn together, "
-                                   "and count as one.\npair: two jobs that are equal in taps, seed.\n"));
+  EXPECT_THAT(ended.out, HasSubstr("\nThe unit is the seed: all jobs of a seed are resampled together and count as "
+                                   "one.\npair: two jobs with equal taps, seed.\n"));
   EXPECT_THAT(ended.out, HasSubstr("\nonly 6 seeds: "));
   const fs::path file = directory / "compare_acquisition_object_taps.csv";
   EXPECT_EQ(ended.err, "table: " + file.string() + "\n");
@@ -134,7 +134,7 @@ TEST_F(Compare, WithAConditionHasAFileOfItsOwnThatNamesIt) {
   const std::string whole = text_of(directory / "compare_acquisition_rmse_m.csv");
   const std::string condition = "taps == 12 and robot_seconds > 1 s";
   const Ended ended = compare(directory, words + Words{"--where", condition});
-  EXPECT_THAT(ended.out, HasSubstr("--where leaves out 12 of 24 jobs\n"));
+  EXPECT_THAT(ended.out, HasSubstr("--where excludes 12 of 24 jobs\n"));
   EXPECT_EQ(text_of(directory / "compare_acquisition_rmse_m.csv"), whole);
   const std::string file = ended.err.substr(7, ended.err.size() - 8);
   ASSERT_THAT(file, HasSubstr("compare_acquisition_rmse_m_where_"));
@@ -204,7 +204,7 @@ TEST_F(Compare, RefusesInOneLineWhatCannotBeCompared) {
   EXPECT_THAT(refused(compare + "--by acquisition"), StartsWith("--metric is required"));
   const Words where = compare + "--by acquisition --metric rmse_m --where";
   EXPECT_THAT(refused(where + Words{"taps >"}), StartsWith("command line: --where: the condition 'taps >'"));
-  EXPECT_THAT(refused(where + Words{"taps > 100"}), StartsWith("command line: --where: leaves none of the 24 jobs"));
+  EXPECT_THAT(refused(where + Words{"taps > 100"}), StartsWith("command line: --where: matches none of the 24 jobs"));
   fs::create_directory(here() / "empty");
   EXPECT_THAT(refused(Words{"compare", here() / "empty"} + "--by acquisition --metric rmse_m"),
               EndsWith("is neither a run nor a sweep, it has no record of one\n"));

@@ -319,18 +319,18 @@ TEST_F(FigureOfCurves, HasWordsOnItsAxesNoTitleAndItsScriptBesideIt) {
 TEST_F(CurvesOfGroups, RefuseInOneLineWhatCannotBeDrawn) {
   const Words curves{"curves", swept("acquisition=weighted,random taps=4 candidates.count=16 seed=range(0,2)")};
   EXPECT_EQ(refused(curves + "-o a.jpg"),
-            "command line: -o: 'a.jpg' does not end in what is written, end it in one of .csv, .png, .pdf, .svg\n");
-  EXPECT_THAT(refused(curves + "-o none/a.png"), HasSubstr("there is no folder"));
+            "command line: -o: 'a.jpg' has no supported file extension, use one of .csv, .png, .pdf, .svg\n");
+  EXPECT_THAT(refused(curves + "-o none/a.png"), HasSubstr("does not exist, create it first"));
   EXPECT_THAT(refused(curves + "--by aquisition"), HasSubstr("did you mean 'acquisition'?"));
   EXPECT_THAT(refused(curves + "--metric rsme_m"), HasSubstr("did you mean 'rmse_m'?"));
   EXPECT_THAT(refused(curves + "--metric seed"), HasSubstr("is swept"));
   EXPECT_THAT(refused(curves + "--against wall_seconds"), StartsWith("--against: "));
   EXPECT_EQ(refused(curves + "--metric rmse_m,footprint_iou"),
-            "command line: --metric: 'rmse_m,footprint_iou' names several columns, and a figure has one, draw a figure "
-            "for each\n");
+            "command line: --metric: 'rmse_m,footprint_iou' names several columns, but a figure shows one, draw one "
+            "figure per column\n");
   EXPECT_THAT(refused(curves + "--width 8.8"), HasSubstr("unit"));
   EXPECT_EQ(refused(curves + "--width 2cm"),
-            "command line: --width: 2cm is not between 5 cm and 1 m, a column of a paper has 8.8 cm\n");
+            "command line: --width: 2cm is not between 5 cm and 1 m, use for example 8.8 cm for a column of a paper\n");
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class Explain : public Shell {
     }
     expect_score(text, tap);
     if (tap["source"] == "fallback") {
-      EXPECT_THAT(text, HasSubstr("nothing to go by: " + tap["why"].get<std::string>() + "."));
+      EXPECT_THAT(text, HasSubstr("gave no usable scores: " + tap["why"].get<std::string>() + "."));
     } else {
       EXPECT_THAT(text, HasSubstr("The acquisition chose it: "));
     }
@@ -95,9 +95,8 @@ class Explain : public Shell {
   static void expect_maps(const std::string& text, const json& tap, const std::string& footprint) {
     const auto has = [&](const char* name) { return tap.contains(name) && !tap[name].is_null(); };
     if (!footprint.empty()) {
-      EXPECT_EQ(
-          text.find("(the probability that an object is there, by footprint/" + footprint + ")") != std::string::npos,
-          has("p"));
+      EXPECT_EQ(text.find("(probability of an object there, by footprint/" + footprint + ")") != std::string::npos,
+                has("p"));
       EXPECT_EQ(text.find("Footprint: " + footprint) != std::string::npos, has("p"));
       EXPECT_THAT(text, Not(HasSubstr("Label GP")));
     }
@@ -109,7 +108,7 @@ class Explain : public Shell {
         EXPECT_THAT(text, Not(ContainsRegex("[ ,]" + begin)));
       }
     }
-    EXPECT_EQ(text.find("This choice read no model.") == std::string::npos,
+    EXPECT_EQ(text.find("This choice used no model.") == std::string::npos,
               has("u") || has("w") || has("p") || has("max_standard_deviation"));
   }
 
@@ -227,10 +226,12 @@ TEST_F(Explain, SaysWhyTheFallbackHadToChoose) {
 }
 
 TEST_F(Explain, SaysThatAStalledRuleTapsTheSamePlaceForEver) {
-  EXPECT_THAT(explain(ran("fallback=none repeat=allow"), 7),
-              AllOf(HasSubstr("All of 2209 candidates are tied"),
-                    HasSubstr("No score is positive: such scores tell nothing, but the config has the rule stand"),
-                    HasSubstr("This place was tapped before: taps 4, 5, 6."), HasSubstr("No candidate is left out.")));
+  EXPECT_THAT(
+      explain(ran("fallback=none repeat=allow"), 7),
+      AllOf(
+          HasSubstr("All of 2209 candidates are tied"),
+          HasSubstr("No score is positive: such scores do not distinguish candidates, but the config uses no fallback"),
+          HasSubstr("This place was tapped before: taps 4, 5, 6."), HasSubstr("No candidate is left out.")));
 }
 
 TEST_F(Explain, SaysThatTheFallbackDidNotStepInWhereScoresAreAsGoodAsZeroButPositive) {
@@ -242,7 +243,7 @@ TEST_F(Explain, SaysThatTheFallbackDidNotStepInWhereScoresAreAsGoodAsZeroButPosi
     ++found;
     EXPECT_LE(tap["score"], 1e-12);
     const std::string text = explain(directory, tap["tap"]);
-    EXPECT_THAT(text, HasSubstr(", is as good as 0, but it is positive: so no fallback stepped in."));
+    EXPECT_THAT(text, HasSubstr(", is nearly 0 but positive, so the fallback was not used."));
     EXPECT_THAT(text, Not(HasSubstr("fallback: none")));
   }
   EXPECT_GT(found, 0);
@@ -320,8 +321,8 @@ TEST_F(Explain, ReadsARunThatIsNotDone) {
   fs::remove(directory / "summary.json");
   const std::string cut = explain(directory, 9);
   EXPECT_THAT(cut, HasSubstr("Tap 9 of 9 so far, run object_i ("));
-  EXPECT_EQ(cut.substr(cut.find("Why there"), cut.find("What it changed") - cut.find("Why there")),
-            whole.substr(whole.find("Why there"), whole.find("What it changed") - whole.find("Why there")));
+  EXPECT_EQ(cut.substr(cut.find("Why there"), cut.find("Effect of the tap") - cut.find("Why there")),
+            whole.substr(whole.find("Why there"), whole.find("Effect of the tap") - whole.find("Why there")));
   EXPECT_THAT(cut, HasSubstr("The record has no errors from before and after it")) << "no later tap has recorded it";
 }
 
@@ -340,15 +341,16 @@ TEST_F(Explain, RefusesInOneLineWhatItCannotExplain) {
   const fs::path directory = ran();
   for (const char* tap : {"0", "18", "-1"}) {
     EXPECT_EQ(refused({"explain", directory, tap}),
-              "tap " + std::string(tap) + ": the run has 17 taps, ask for one of 1 to 17\n");
+              "tap " + std::string(tap) + ": the run has 17 taps, choose one of 1 to 17\n");
   }
   EXPECT_THAT(refused({"explain", directory, "x"}), HasSubstr("TAP"));
-  EXPECT_THAT(refused("explain nowhere 1"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
+  EXPECT_THAT(refused("explain nowhere 1"),
+              HasSubstr("nowhere: is not a folder, and runs contains no run or sweep of that name"));
   const fs::path sweep = swept("seed=1,2 taps=4");
   for (const Words& words : {Words{"explain", sweep, "1"}, Words{"replay", sweep}}) {
     const std::string jobs = (sweep / "jobs").string();
-    EXPECT_EQ(refused(words), sweep.string() + ": is a sweep of many runs, give one of them: " + jobs +
-                                  "/<id>; 'palpate list " + jobs + " --where \"seed == 3\"' shows which\n");
+    EXPECT_EQ(refused(words), sweep.string() + ": is a sweep of many runs, name one run: " + jobs +
+                                  "/<id>; 'palpate list " + jobs + " --where \"seed == 3\"' finds it\n");
     EXPECT_THAT(palpate({"list", jobs, "--where", "seed == 2"}).out, HasSubstr(job_of(sweep, 1).filename().string()));
   }
   for (const fs::path& job : jobs_of(sweep)) EXPECT_THAT(explain(job, 4), HasSubstr("Tap 4 of 4, run object_i ("));

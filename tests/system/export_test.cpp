@@ -146,7 +146,7 @@ TEST_F(Export, OfARunThatIsNotDoneSaysWhatItStandsOn) {
   fs::remove(directory / "summary.json");
   const Ended ended = exported(directory);
   EXPECT_EQ(ended.status, 0);
-  EXPECT_EQ(ended.err, "this run is unfinished; what is written is what its first 11 taps tell\n");
+  EXPECT_EQ(ended.err, "this run is unfinished; the export uses its first 11 taps\n");
   EXPECT_THAT(text_of(directory / "export" / "taps.ply"), HasSubstr("element vertex 11\n"));
   EXPECT_TRUE(text_of(directory / "export" / "surface.ply") != whole);
 }
@@ -185,8 +185,7 @@ TEST_F(Export, OfARunThatFailedSaysSoAndLeavesOutATruthThatNobodyKnows) {
   const Ended ended = exported(directory());
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err,
-            "this run failed: backend/cannot_go_on: the e-stop is pressed; what is written is what its "
-            "first 5 taps tell\n");
+            "this run failed: backend/cannot_go_on: the e-stop is pressed; the export uses its first 5 taps\n");
   EXPECT_THAT(text_of(directory() / "export" / "surface.ply").substr(0, 600), Not(HasSubstr("true_height")));
 }
 
@@ -199,7 +198,7 @@ TEST_F(Export, WritesOverItsOwnFilesAndOverNoRecord) {
   for (const char* format : {"csv", "ply"}) {
     const Ended ended = exported(directory, {"--to", directory, "--format", format});
     EXPECT_EQ(ended.status, 2) << format;
-    EXPECT_THAT(ended.err, HasSubstr("is the folder of the record, where nothing is written over, choose another"));
+    EXPECT_THAT(ended.err, HasSubstr("is the folder of the record, whose files are never overwritten, choose another"));
   }
   EXPECT_EQ(palpate({"replay", directory}).status, 0);
   EXPECT_THAT(status_of(directory).out, HasSubstr("done after 17 of 17 taps"));
@@ -209,12 +208,13 @@ TEST_F(Export, RefusesInOneLineWhatItCannotExport) {
   const fs::path directory = ran();
   const Words words{"export", directory};
   EXPECT_THAT(refused(words + "--format obj"), HasSubstr("--format: obj not in {ply,csv}"));
-  EXPECT_THAT(refused("export nowhere"), HasSubstr("nowhere: is no folder, and in runs nothing has that name"));
+  EXPECT_THAT(refused("export nowhere"),
+              HasSubstr("nowhere: is not a folder, and runs contains no run or sweep of that name"));
   EXPECT_FALSE(fs::exists(here() / "nowhere"));
   EXPECT_THAT(refused(words + Words{"--to", directory / "summary.json"}, 1), HasSubstr("cannot be made"));
   const fs::path sweep = swept("seed=1,2 taps=4");
   EXPECT_THAT(refused({"export", sweep}),
-              HasSubstr("is a sweep of many runs, give one of them: " + (sweep / "jobs" / "<id>").string()));
+              HasSubstr("is a sweep of many runs, name one run: " + (sweep / "jobs" / "<id>").string()));
 }
 
 }  // namespace

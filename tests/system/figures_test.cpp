@@ -32,9 +32,9 @@ TEST_F(Figures, OfASweepWithoutTheJobsSaysInALineEachWhatIsMissing) {
   const Ended two = report(some, "--paper");
   EXPECT_EQ(two.status, 0);
   EXPECT_THAT(two.err, HasSubstr("figure_3 is left out: no finished job has scene=object_ii and acquisition=weighted, "
-                                 "configs/paper/figures.yaml has them all\n"));
+                                 "run configs/paper/figures.yaml, which has all of them\n"));
   EXPECT_THAT(two.err, HasSubstr("figure_4 and figure_5 are left out: no finished job has scene=object_i_right and "
-                                 "acquisition=uncertainty, configs/paper/figures.yaml has them all\n"));
+                                 "acquisition=uncertainty, run configs/paper/figures.yaml, which has all of them\n"));
   EXPECT_EQ(lines(two.err), 2) << two.err;
   EXPECT_TRUE(fs::exists(some / "figures/figure_2.png"));
 
@@ -48,7 +48,7 @@ TEST_F(Figures, OfASweepWithoutTheJobsSaysInALineEachWhatIsMissing) {
                         "one with acquisition=uncertainty and one with weighted, are equal in all else, "));
   const Ended none = report(swept("seed=1,2"), "--paper");
   EXPECT_EQ(none.status, 2);
-  EXPECT_THAT(none.err, HasSubstr("configs/paper/figures.yaml has them all\n"));
+  EXPECT_THAT(none.err, HasSubstr("run configs/paper/figures.yaml, which has all of them\n"));
   EXPECT_EQ(lines(none.err), 1) << none.err;
 }
 
@@ -142,8 +142,8 @@ TEST_F(Figures, WithoutGnuplotTheScriptsStayAndOneLineSaysWhy) {
   environment_ = {"PATH=/nowhere"};
   const Ended ended = report(directory, "--figures");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, HasSubstr("was not drawn: gnuplot is not installed, the package gnuplot-nox has it, 'gnuplot "
-                                   "surface.gnuplot' in that folder draws it later\n"));
+  EXPECT_THAT(ended.err, HasSubstr("was not drawn: gnuplot is not installed, install the package gnuplot-nox, run "
+                                   "'gnuplot surface.gnuplot' in that folder to draw it later\n"));
   EXPECT_EQ(lines(ended.err), 1) << ended.err;
   for (const char* name : {"surface", "maps", "curves"}) {
     EXPECT_TRUE(fs::exists(directory / "figures" / (std::string(name) + ".gnuplot"))) << name;

@@ -117,7 +117,7 @@ TEST_F(Expect, ThatIsBadIsRefusedBeforeAnythingMoves) {
     EXPECT_EQ(refused(words), "gate.yaml:10:3: expect: the summary has no field 'rmse', did you mean 'rmse_m'?\n");
   }
   EXPECT_EQ(refused({"sweep", paper(), "seed=1,2", "expect.taps=>1,>2"}),
-            "command line: expect.taps: what is expected cannot be swept, give it one value\n");
+            "command line: expect.taps: expectations cannot be swept, give it one value\n");
   EXPECT_TRUE(left_nothing());
 }
 
@@ -156,7 +156,7 @@ TEST_F(Expect, CountsRunsThatFailAgainstASweep) {
   const Ended worst = with(may_fail + Words{"expect.max(rmse_m)=<= 9 m"});
   EXPECT_EQ(worst.status, 1);
   EXPECT_EQ(worst.err,
-            "command line: expected max(rmse_m) <= 9 m, got no value: 1 of 3 runs have none and count as the worst "
+            "command line: expected max(rmse_m) <= 9 m, got no value: 1 of 3 runs have no value and count as the worst "
             "(job 2: the run failed)\n");
 }
 
@@ -168,7 +168,7 @@ TEST_F(Expect, ASweepWithAnOpenJobFailsThoughFailedRunsAreExpected) {
   fs::create_directory(table);  // where it cannot be written again
   const Ended ended = resume(directory());
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume "));
+  EXPECT_THAT(ended.out, HasSubstr("resume with: palpate resume "));
 }
 
 using JUnit = Expect;
@@ -194,7 +194,7 @@ TEST_F(JUnit, TellsOfARunThatFailedAndOfWhatWasExpectedOfIt) {
 TEST_F(JUnit, IsRefusedBeforeTheRunWhereItCannotBeWritten) {
   for (const char* command : {"run", "sweep"}) {
     EXPECT_EQ(refused({command, paper(), "seed=3", "--junit", "no/such/out.xml"}),
-              "no/such/out.xml: its folder does not exist, make it first\n");
+              "no/such/out.xml: its folder does not exist, create it first\n");
   }
   EXPECT_TRUE(left_nothing());
 }

@@ -28,11 +28,10 @@ Labels labels_in_table(const std::string& printed) {
   return out;
 }
 
-/// Labels with those of the line "read again at the end: tap 1 is on the object (desk when it was made), ..." in their
-/// place.
+/// Labels with those of the line "relabelled at the end: tap 1 is on the object (desk at first), ..." in their place.
 Labels corrected(Labels labels, const std::string& printed) {
   for (const std::string& line : lines_of(printed)) {
-    if (line.rfind("read again at the end: ", 0) != 0) continue;
+    if (line.rfind("relabelled at the end: ", 0) != 0) continue;
     for (auto at = line.find("tap "); at != std::string::npos; at = line.find("tap ", at + 1)) {
       std::istringstream words(line.substr(at));
       int tap = 0;
@@ -82,8 +81,8 @@ class LabelsReadAgain : public Shell {
 
     const Ended done = palpate(Words{"run", (test::source_folder() / file).string()} + words);
     EXPECT_THAT(done.out, HasSubstr("already done"));
-    EXPECT_THAT(done.out, HasSubstr(fmt::format("read again at the end: tap {} is on the {} ({} when it was made)",
-                                                changed, end.at(changed), when_made)));
+    EXPECT_THAT(done.out, HasSubstr(fmt::format("relabelled at the end: tap {} is on the {} ({} at first)", changed,
+                                                end.at(changed), when_made)));
     EXPECT_THAT(palpate({"explain", directory, std::to_string(changed)}).out,
                 HasSubstr(end.at(changed) == "desk" ? "it is read as a contact with the desk"
                                                     : "it is read as a contact with an object"));

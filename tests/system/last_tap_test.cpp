@@ -48,7 +48,7 @@ TEST_F(ARunWhoseRobotCannotGoOn, IsCarriedOnOnlyWhenAskedAndRepeatsNoTap) {
   fail();
   const std::string before = taps();
   EXPECT_THAT(refused({"resume", directory()}, 1),
-              HasSubstr("this run failed: " + kReason + ", --retry-failed carries on"));
+              HasSubstr("this run failed: " + kReason + ", resume it with --retry-failed"));
   EXPECT_EQ(taps(), before);
 
   EXPECT_EQ(retry().status, 0);

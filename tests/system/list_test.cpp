@@ -51,25 +51,25 @@ TEST_F(List, OfWhatIsDamagedSaysSoAndShowsTheRest) {
   EXPECT_THAT(all.out, ContainsRegex("object_i .* 1 +unfinished +seed 2 +runs/object_i/"));
   EXPECT_EQ(lines(all.err), 3) << all.err;
   EXPECT_THAT(all.err, HasSubstr("record.jsonl: its last line is not a JSON object, put the file back"));
-  EXPECT_THAT(all.err, HasSubstr("config.yaml or manifest.jsonl was changed since this sweep began"));
+  EXPECT_THAT(all.err, HasSubstr("config.yaml or manifest.jsonl was changed after this sweep started"));
   EXPECT_THAT(all.err, HasSubstr("runs: not listed: 1 folder without a run\n"));
 }
 
 TEST_F(List, OfAFolderWithoutRunsIsOneLine) {
-  EXPECT_EQ(refused("list"), "runs: is no folder, 'palpate run' makes runs/, or name another\n");
+  EXPECT_EQ(refused("list"), "runs: is not a folder, start a run, which creates runs/, or name another folder\n");
   write("file", "");
   EXPECT_EQ(refused("list file"), "file: Not a directory, name a folder with runs\n");
   fs::create_directory(here() / "runs");
   const Ended empty = list();
   EXPECT_EQ(empty.out, "");
-  EXPECT_EQ(empty.err, "runs: holds no run and no sweep\n");
+  EXPECT_EQ(empty.err, "runs: contains no runs and no sweeps\n");
   EXPECT_EQ(list({"--json"}).out, "[]\n");
   ran("taps=3");
-  EXPECT_EQ(list({"--where", "taps > 3"}).err, "command line: --where: leaves none of 1\n");
-  EXPECT_THAT(refused({"list", "--where", "tapps > 3"}), HasSubstr("'tapps' is not known, did you mean 'taps'?"));
+  EXPECT_EQ(list({"--where", "taps > 3"}).err, "command line: --where: matches none of 1\n");
+  EXPECT_THAT(refused({"list", "--where", "tapps > 3"}), HasSubstr("the unknown name 'tapps', did you mean 'taps'?"));
   const fs::path sweep = swept("name=many taps=3 seed=1,2");
   EXPECT_THAT(list({"--where", "seed == 2", "runs/many"}).err,
-              AllOf(HasSubstr("leaves none of 1; of a sweep it looks at the jobs in 'palpate list runs/many/"),
+              AllOf(HasSubstr("matches none of 1; to filter the jobs of a sweep, use 'palpate list runs/many/"),
                     HasSubstr("/jobs --where ...'\n")));
 }
 
@@ -97,14 +97,13 @@ TEST_F(List, ANameThatSeveralRunsHaveIsRefusedWithWhatSetsThemApart) {
   ran("taps=4 seed=2");
   for (const char* command : {"status", "resume", "replay", "report", "export", "calibrate"}) {
     EXPECT_THAT(refused({command, "object_i"}),
-                MatchesRegex("object_i: stands for 2 runs: runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 2, taps 4\\); "
+                MatchesRegex("object_i: matches 2 runs: runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 2, taps 4\\); "
                              "runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 1, taps 3\\), give the directory of one, or "
-                             "object_i@latest for the last\n"));
+                             "object_i@latest for the latest\n"));
   }
   EXPECT_EQ(palpate("status object_i@latest").out, "object_i: done after 4 of 4 taps: tap budget\n");
   EXPECT_EQ(refused("status object_j"),
-            "object_j: is no folder, and in runs nothing has that name, did you mean "
-            "'object_i'?\n");
+            "object_j: is not a folder, and runs contains no run or sweep of that name, did you mean 'object_i'?\n");
 }
 
 TEST_F(List, AFolderWithARecordWinsOverANameAndOneWithoutDoesNot) {

@@ -116,11 +116,11 @@ TEST_F(FirstCommand, LookingAtARunTakesItsPluginsAndListingThemThoseThatAreListe
 TEST_F(FirstCommand, CalledByItselfTheProgramSaysWhatIsNotBuilt) {
   const Ended run = call({"run", paper()});
   EXPECT_EQ(run.status, 2);
-  EXPECT_THAT(run.err, HasSubstr("plugin kernel/rbf is not built, ./palpate builds it, or 'cmake --build "));
+  EXPECT_THAT(run.err, HasSubstr("plugin kernel/rbf is not built, build it with ./palpate, or with 'cmake --build "));
   EXPECT_EQ(lines(run.err), 1);
   const Ended sweep = call({"sweep", paper(), "seed=1,2"});
   EXPECT_EQ(sweep.status, 2);
-  EXPECT_THAT(sweep.err, HasSubstr("palpate-whole: has this command, and is not built, ./palpate builds it, or"));
+  EXPECT_THAT(sweep.err, HasSubstr("palpate-whole: has this command but is not built, build it with ./palpate, or"));
   EXPECT_EQ(lines(sweep.err), 1);
 }
 

@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
             Spoilt{"shape", "first_intersection", "first_intersection() gave", {"scene.objects.0.tilt='10 deg'"}},
             Spoilt{"shape", "first_intersection", "first_intersection() gave", {}, kAnySide},
             Spoilt{"shape", "intervals", "intervals() gave", {}, kAnySide},
-            Spoilt{"backend", "tap: along", "an end that is not on the way", {}, kAnySide}),
+            Spoilt{"backend", "tap: along", "an end point that is not on the path", {}, kAnySide}),
         testing::Values("nan", "infinity")),
     [](const auto& one) {
       const Spoilt& spoilt = std::get<0>(one.param);

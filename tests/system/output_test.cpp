@@ -89,7 +89,7 @@ TEST_F(Output, WithoutAReaderStillSaysHowAnInterruptedRunGoesOn) {
   }));
   ASSERT_EQ(::kill(std::stoi(text_of(here() / "pid")), SIGTERM), 0);
   EXPECT_TRUE(test::eventually([&] { return text_of(here() / "status") == "130\n"; })) << text_of(here() / "status");
-  EXPECT_EQ(child.err(), "carry on: palpate resume " + fs::relative(directory(), here()).string() + "\n");
+  EXPECT_EQ(child.err(), "resume with: palpate resume " + fs::relative(directory(), here()).string() + "\n");
 }
 
 TEST_F(Output, OfACommandThatOnlyPrintsEndsQuietlyWithItsReader) {

@@ -92,7 +92,7 @@ for ask in asks():
 )";
   const Ended ended = palpate(robots(body, "taps=5"));
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, StartsWith("backend/process: the program was ended by signal 9 (Killed); see to the robot"));
+  EXPECT_THAT(ended.err, StartsWith("backend/process: the program was ended by signal 9 (Killed); check the robot"));
   EXPECT_EQ(notes(), "begin\ntap 1\ntap 2\ntap 3\n");
   write("cleared", "");
   EXPECT_EQ(retry().status, 0);
@@ -112,10 +112,9 @@ TEST_F(ARobotsRun, FailsAfterThreeTapsInARowThatCameToNothingAndIsCarriedOnOnceS
   write("fate", "ncnnununn");
   const Ended ended = palpate(robots(kFated, "taps=17"));
   EXPECT_EQ(ended.status, 1);
-  EXPECT_EQ(
-      ended.err,
-      "backend/process: 3 taps in a row failed, the last so: the gripper is open, see to it, then 'palpate resume "
-      "--retry-failed' carries on; stop.failed_in_a_row sets how many\n");
+  EXPECT_EQ(ended.err,
+            "backend/process: 3 taps in a row failed, the last with: the gripper is open, correct the cause, then run "
+            "'palpate resume --retry-failed'; stop.failed_in_a_row sets the limit\n");
   EXPECT_EQ(outcomes(directory()).size(), 6U) << "what cannot be reached neither counts nor makes up for anything";
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"status\": \"failed\""));
   EXPECT_EQ(retry().status, 0) << "it counts anew, or the tap that failed next would have ended it";
@@ -153,7 +152,8 @@ time.sleep(60)  # and does not care that its run is gone
   ASSERT_TRUE(test::running(std::stol(pid)));
   const Ended refused = retry();
   EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.err, HasSubstr("the program of an earlier attempt, process " + pid + ", still runs: end it"));
+  EXPECT_THAT(refused.err,
+              HasSubstr("the program of an earlier attempt, process " + pid + ", is still running: end it"));
   EXPECT_EQ(noted()["begin"], 1);
   EXPECT_TRUE(test::running(std::stol(pid)));
   ::kill(static_cast<pid_t>(std::stol(pid)), SIGKILL);

@@ -81,7 +81,7 @@ for ask in asks():
   EXPECT_EQ(outcomes(directory()), expected);
   const std::string taps = part_of(directory(), "tap");
   EXPECT_THAT(taps, HasSubstr(R"(which has no NaN and no Infinity: '{\"tap\": 2)"));
-  EXPECT_THAT(taps, HasSubstr(R"(its last words: 'no arm, \"not\" today')"));
+  EXPECT_THAT(taps, HasSubstr(R"(its last output: 'no arm, \"not\" today')"));
   EXPECT_THAT(taps, HasSubstr(R"("reason": "an \"end\",  of way")"));
   EXPECT_EQ(diary(), "no arm, \"not\" today\n");
   const Ended replayed = palpate({"replay", directory()});

@@ -97,7 +97,7 @@ TEST_F(ProgramRun, BeginsInTheFolderThatTheConfigNamesAndIsFoundFromElsewhere) {
   EXPECT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_EQ(text_of(cut / "taps.csv"), text_of(run / "taps.csv"));
   EXPECT_THAT(refused(Words{"run", paper(), "acquisition={type: program, command: ./own, folder: mine}"}),
-              testing::HasSubstr("folder: is no whole path"));
+              testing::HasSubstr("folder: is not an absolute path"));
 }
 
 TEST_F(ProgramRun, WhoReadsARecordStartsNothingAndFindsTheRecordedChoices) {
@@ -138,7 +138,7 @@ TEST_F(ProgramRun, AnotherProgramIsAnotherRunAndCarriesNoneOn) {
   cut_taps(first);
   const std::string other = echo("uncertainty", "true");
   EXPECT_THAT(refused({"resume", first, "--quiet"}, 75),
-              AllOf(HasSubstr("acquisition/program"), HasSubstr("put the program back that the run began with")));
+              AllOf(HasSubstr("acquisition/program"), HasSubstr("restore the program that the run started with")));
   const fs::path second = ran(few(other, "--runs other"));
   EXPECT_NE(first.filename(), second.filename());
   echo("uncertainty");
@@ -151,10 +151,10 @@ TEST_F(ProgramRun, ASweepWhoseProgramIsChangedStopsAndNoJobFailsByIt) {
   const std::string before = text_of(here() / "echo.sh");
   const Ended stopped = palpate(Words{"sweep", paper()} + few(acquisition, "seed=range(0,4) -j 1"));
   EXPECT_EQ(stopped.status, 1);
-  EXPECT_THAT(stopped.err, AllOf(HasSubstr("job 1: "), HasSubstr("put the program back that the run began with"),
+  EXPECT_THAT(stopped.err, AllOf(HasSubstr("job 1: "), HasSubstr("restore the program that the run started with"),
                                  testing::Not(HasSubstr("job 2: "))));
   const fs::path sweep = directory();
-  const std::string last = "stopped for the reason above; remove it, then: palpate resume ";
+  const std::string last = "stopped for the reason above; correct it, then run: palpate resume ";
   EXPECT_THAT(stopped.out, AllOf(HasSubstr(last), testing::Not(HasSubstr("carry on"))));
   EXPECT_THAT(status_of(sweep).out, HasSubstr("4 jobs, 1 done, 0 running, 0 failed"));
   const Ended again = palpate({"resume", sweep, "-j", "2"});
@@ -175,7 +175,7 @@ TEST_F(ProgramRun, AProgramThatIsGoneFailsNoJobEither) {
   const fs::path run = ran(few("acquisition={type: program, command: ./echo.sh}"));
   cut_taps(run);
   fs::rename(here() / "echo.sh", here() / "away");
-  EXPECT_THAT(refused({"resume", run, "--quiet"}, 75), HasSubstr("put the program back that the run began with"));
+  EXPECT_THAT(refused({"resume", run, "--quiet"}, 75), HasSubstr("restore the program that the run started with"));
   fs::rename(here() / "away", here() / "echo.sh");
   EXPECT_EQ(resume(run).status, 0);
 }
@@ -183,9 +183,9 @@ TEST_F(ProgramRun, AProgramThatIsGoneFailsNoJobEither) {
 TEST_F(ProgramRun, AProgramThatDiesFailsTheRunInOneLineAndTheRunIsCarriedOn) {
   const std::string acquisition = echo("uncertainty", "[ -e well ] || { echo 'out of memory' >&2; exit 3; }");
   const std::string told = refused(Words{"run", paper(), "--quiet"} + few(acquisition), 1);
-  EXPECT_THAT(told, testing::MatchesRegex("acquisition/program: the program ended with exit status 3, its last words: "
-                                          "'out of memory', correct it, what it said is in runs/.*/acquisition_"
-                                          "[0-9a-f]{8}.stderr.txt\n"));
+  EXPECT_THAT(told, testing::MatchesRegex(
+                        "acquisition/program: the program ended with exit status 3, its last output: 'out of memory', "
+                        "correct it, its output is in runs/.*/acquisition_[0-9a-f]{8}.stderr.txt\n"));
   EXPECT_EQ(lines(part_of(directory(), "tap")), 3) << "the initial taps are kept";
   write("well", "");
   EXPECT_EQ(resume(directory(), "--retry-failed").status, 0);
@@ -209,7 +209,7 @@ TEST_F(ProgramRun, FromAnySideAProgramScoresLinesAndIsReplayedByItsRecord) {
   EXPECT_THAT(palpate({"replay", own}).out, HasSubstr("all equal"));
   EXPECT_EQ(palpate({"explain", own, "9"}).status, 0);
   EXPECT_THAT(refused(Words{"run", config, "scene=any_bowl", echo("object_probability")}),
-              HasSubstr("program scores taps from above alone"));
+              HasSubstr("program only scores taps from above"));
 }
 
 TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed) {
@@ -233,9 +233,9 @@ TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed)
   EXPECT_EQ(palpate({"replay", own}).status, 0);
   EXPECT_THAT(text_of(own / "config.yaml"), HasSubstr("placement: random")) << "else 30 seeds are one place";
   EXPECT_EQ(refused({"new", "kernel", "--python", "mine"}),
-            "command line: --python: a plugin of the kind kernel cannot be a function of Python, only an acquisition "
-            "can; leave it out\n");
-  EXPECT_THAT(refused({"new", "acquisition", "--python", "a-b"}), HasSubstr("is not the name of a Python module"));
+            "command line: --python: a plugin of the kind kernel cannot be a function of Python, leave --python out; "
+            "only an acquisition can be one\n");
+  EXPECT_THAT(refused({"new", "acquisition", "--python", "a-b"}), HasSubstr("is not a valid name of a Python module"));
 }
 
 TEST_F(ProgramRun, InPythonWhatGoesWrongIsTold) {
@@ -253,9 +253,9 @@ TEST_F(ProgramRun, InPythonWhatGoesWrongIsTold) {
   EXPECT_THAT(trouble("return belief.uncertainty[1:]"),
               HasSubstr("score returned an array of shape (2208,), not (2209,)"));
   EXPECT_THAT(trouble("return belief.height_mean"),
-              HasSubstr("AttributeError: the belief has no height_mean: name it in reads=[...]"));
+              HasSubstr("AttributeError: the belief has no height_mean: add it to reads=[...]"));
   EXPECT_THAT(trouble("return belief.uncertainty", ", reads: height_mean"),
-              HasSubstr("the config says 'reads: height_mean', score has reads=['uncertainty']"));
+              HasSubstr("the config has 'reads: height_mean', but score has reads=['uncertainty']"));
   EXPECT_THAT(trouble("print('hello'); return belief.uncertainty / 0"), HasSubstr("which is not a finite number"));
 }
 

@@ -70,7 +70,7 @@ TEST_F(Received, ARecordWithAPipeOrADeviceInThePlaceOfAFileIsToldOfAtOnce) {
         all += ended.out + ended.err;
       }
       EXPECT_THAT(all, HasSubstr(std::string(name) + ": "));
-      EXPECT_THAT(all, HasSubstr(device ? "is a link" : "not a regular file")) << file;
+      EXPECT_THAT(all, HasSubstr(device ? "is a symbolic link" : "not a regular file")) << file;
     }
   }
 }
@@ -103,14 +103,14 @@ TEST_F(Received, ARecordThatIsNestedDeeplyOrHoldsManyValuesTakesNoMemory) {
               HasSubstr("record.jsonl:4: is nested too deeply"));
   EXPECT_THAT(said(end + "1" + many_times(",\"a\":1", 190'000) + "}"), HasSubstr("record.jsonl:4: is too long"));
   EXPECT_THAT(said(end + "1" + many_times(",\"a\":1", 19'000) + "}"),
-              HasSubstr("record.jsonl:4: holds too many values"));
+              HasSubstr("record.jsonl:4: contains too many values"));
   const std::string list = many_times("[", 100'000) + many_times("]", 100'000);
   for (const char* kind : {"objects", "setup", "weather"}) {
     write(run / "record.jsonl", begun + "{\"" + kind + "\": " + list + "}\n");
     EXPECT_THAT(refusal_of({"status", run}), HasSubstr("record.jsonl:4: is nested too deeply")) << kind;
   }
   write(run / "record.jsonl", "{\"manifest\": [" + many_times("1,", 2'000'000) + "1]}\n");
-  EXPECT_THAT(refusal_of({"status", run}), HasSubstr("record.jsonl:1: holds too many values"));
+  EXPECT_THAT(refusal_of({"status", run}), HasSubstr("record.jsonl:1: contains too many values"));
 }
 
 TEST_F(Received, ADottedPathOfManyLevelsIsRefused) {
@@ -140,7 +140,7 @@ TEST_F(Received, GroupsThatManyBuildOnAreComposedOnce) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("length_scale: 0.02 m"));
   for (int i = 12; i < 20; ++i) group(i, "defaults:\n" + next(i) + "kernel: {}\n");
-  EXPECT_THAT(refusal_of(words), HasSubstr("g15.yaml:2:13: groups build on each other more than 16 deep"));
+  EXPECT_THAT(refusal_of(words), HasSubstr("g15.yaml:2:13: groups are nested more than 16 levels deep"));
 }
 
 TEST_F(Received, TextThatIsPrintedMovesNoCursorAndTurnsNoLine) {
@@ -165,22 +165,21 @@ TEST_F(Received, ARecordWithALineMissingDoubledOrOutOfOrderIsRefusedByFileAndLin
     for (const char* command : {"resume", "status", "report"}) {
       EXPECT_EQ(refusal_of({command, here() / "run"}),
                 file.string() + ":" + std::to_string(line) + ": " + reason +
-                    ", put the file back as it was, or begin anew with 'palpate run --force'\n");
+                    ", put the file back as it was, or start again with 'palpate run --force'\n");
     }
     EXPECT_EQ(text_of(file), text) << "nothing is added to a damaged record";
   };
   // Manifest, attempt and set-up; then each tap with its times.
   using Lines = std::vector<std::string>;
   changed(
-      8, [](Lines& lines) { lines.erase(lines.begin() + 7); }, "has the times of tap 3, and does not follow it");
+      8, [](Lines& lines) { lines.erase(lines.begin() + 7); }, "has the times of tap 3, but does not follow that tap");
   changed(
       4, [](Lines& lines) { lines.erase(lines.begin() + 3, lines.begin() + 5); },
-      "has tap 2 where tap 1 belongs: a line is missing");
+      "has tap 2 instead of tap 1: a line is missing");
   changed(
-      9, [](Lines& lines) { lines.insert(lines.begin() + 8, lines[7]); },
-      "has tap 3 a second time, where tap 4 belongs");
+      9, [](Lines& lines) { lines.insert(lines.begin() + 8, lines[7]); }, "has tap 3 a second time instead of tap 4");
   changed(
-      8, [](Lines& lines) { std::swap(lines[7], lines[9]); }, "has tap 4 where tap 3 belongs: a line is missing");
+      8, [](Lines& lines) { std::swap(lines[7], lines[9]); }, "has tap 4 instead of tap 3: a line is missing");
 }
 
 }  // namespace

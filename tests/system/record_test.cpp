@@ -45,8 +45,8 @@ TEST_F(Record, OfVeryManyObjectsIsReadByEveryCommand) {
 TEST_F(Record, ThatCouldNotBeReadAgainIsNotBegun) {
   write("many.yaml", many_objects(7000));
   EXPECT_EQ(refused("run many.yaml"),
-            "many.yaml:1:1: too large with all that it leaves to defaults, at most 1 MiB and 100000 values in "
-            "config.yaml\n");
+            "many.yaml:1:1: too large after the defaults are filled in, reduce config.yaml to at most 1 MiB and 100000 "
+            "values\n");
   EXPECT_TRUE(left_nothing());
 }
 
@@ -69,7 +69,7 @@ TEST_F(Record, OfWhichTheEndWasCutOffIsNotTakenForTheWholeRun) {
     fs::resize_file(directory / "record.jsonl", cut);
     const Ended status = status_of(directory);
     EXPECT_THAT(status.out, HasSubstr("unfinished after 8 of 17 taps"));
-    EXPECT_THAT(status.err, HasSubstr("record.jsonl: was cut, as summary.json says that the run had ended"));
+    EXPECT_THAT(status.err, HasSubstr("record.jsonl: was cut short, because summary.json says that the run had ended"));
     EXPECT_EQ(resume(directory).status, 0);
     EXPECT_EQ(part_of(directory, "tap"), taps);
     EXPECT_EQ(status_of(directory).err, "");
@@ -91,7 +91,7 @@ TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
     const Ended ended = palpate(words);
     EXPECT_EQ(ended.status, 0) << ended.err;
     for (const char* name : {"taps.csv", "surface.csv", "summary.json"})
-      EXPECT_THAT(ended.out, HasSubstr(std::string("made again from the record: ") + name + "\n"));
+      EXPECT_THAT(ended.out, HasSubstr(std::string("rebuilt from the record: ") + name + "\n"));
     EXPECT_EQ(test::lasting_files(directory), whole);
     EXPECT_EQ(text_of(directory / "record.jsonl"), record) << "nothing is added";
   }
@@ -100,8 +100,9 @@ TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
   const std::size_t hash = record.find("\"hash\": \"", record.find("\"taps.csv\"")) + 9;
   write(directory / "record.jsonl", record.substr(0, hash) + std::string(4, 'x') + record.substr(hash + 4));
   fs::remove(directory / "taps.csv");
-  EXPECT_THAT(palpate({"run", paper()}).out,
-              HasSubstr("taps.csv is gone or damaged, and this build makes another one from the same taps\n"));
+  EXPECT_THAT(
+      palpate({"run", paper()}).out,
+      HasSubstr("taps.csv is missing or damaged, and this build computes a different one from the same taps\n"));
   EXPECT_FALSE(fs::exists(directory / "taps.csv"));
 }
 
@@ -113,7 +114,7 @@ TEST_F(Record, ThatIsDamagedIsMovedAsideAsItsErrorSays) {
   write(directory / "record.jsonl", record);
   const Ended refused = palpate({"run", paper()});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("or begin anew with 'palpate run --force'"));
+  EXPECT_THAT(refused.err, HasSubstr("or start again with 'palpate run --force'"));
   const Ended anew = palpate({"run", paper(), "--force"});
   EXPECT_EQ(anew.status, 0) << anew.err;
   EXPECT_THAT(status_of(directory).out, HasSubstr("done after 17 of 17 taps"));
@@ -124,8 +125,8 @@ TEST_F(Record, InAFolderWithTheIdOfAnotherSaysThatAndNotThatItWasChanged) {
   const fs::path directory = ran();
   const fs::path other = directory.parent_path() / "000000000000";
   fs::copy(directory, other, fs::copy_options::recursive);
-  EXPECT_EQ(palpate({"replay", other}).err, other.string() + ": holds the run " + directory.filename().string() +
-                                                ", and has the name of another, give the folder another name\n");
+  EXPECT_EQ(palpate({"replay", other}).err, other.string() + ": contains the run " + directory.filename().string() +
+                                                ", but has the name of another run, rename the folder\n");
 }
 
 class KilledBeforeItsSummary : public Shell, public testing::WithParamInterface<std::pair<std::string, Words>> {};

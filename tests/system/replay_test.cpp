@@ -64,9 +64,9 @@ TEST_F(Replay, NamesTheInstructionsOfARunThatUsedOthers) {
     return palpate({"replay", directory}).out;
   };
   EXPECT_THAT(differing("tap", "\"robot_seconds\": ", "\"invented\": 1, \"robot_seconds\": "),
-              Not(HasSubstr("instructions")));
+              Not(HasSubstr("instruction set")));
   EXPECT_THAT(differing("manifest", "\"instruction_path\": \"", "\"instruction_path\": \"old "),
-              HasSubstr("the run used the instructions old "));
+              HasSubstr("the run used the instruction set old "));
 }
 
 TEST_F(Replay, OfARunThatEndedEarlyTakesTheEngineOfItsWholeBudget) {

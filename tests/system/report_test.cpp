@@ -70,7 +70,8 @@ TEST_F(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   EXPECT_EQ(data.at("moments").size(), 6U);
   EXPECT_TRUE(data.at("summary").is_null());
   EXPECT_EQ(data.at("state"), "unfinished");
-  EXPECT_THAT(data.at("warnings").at(0).get<std::string>(), HasSubstr("has not ended: this is how it stands after 5"));
+  EXPECT_THAT(data.at("warnings").at(0).get<std::string>(),
+              HasSubstr("has not ended: this page shows its state after 5"));
   EXPECT_TRUE(text_of(directory / "record.jsonl") == record);
 }
 
@@ -98,7 +99,7 @@ TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
   const json summary = json::parse(text_of(directory / "summary.json"));
   const auto& panels = data.at("curves");
   const auto told = std::find_if(panels.begin(), panels.end(), [](const json& panel) {
-    return panel.at("title") == "What footprint/primitives tells";
+    return panel.at("title") == "Numbers of footprint/primitives";
   });
   ASSERT_NE(told, panels.end());
   json last{{"remark", data.at("moments").back().at("remark")}};
@@ -110,7 +111,7 @@ TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
   EXPECT_EQ(last, summary.at("footprint"));
   EXPECT_TRUE(data.at("moments").back().at("least_weight").is_null());
   const std::string remark = summary.at("footprint").at("remark");
-  EXPECT_THAT(data.at("warnings").dump(), HasSubstr("The footprint, primitives, says: " + remark + "."));
+  EXPECT_THAT(data.at("warnings").dump(), HasSubstr("Remark of the footprint primitives: " + remark + "."));
   const auto maps = csv_rows(text_of(directory / "maps/tap_030.csv"));
   EXPECT_EQ(maps.at(0).count("p"), 1U) << "the maps that log.maps keeps have it, too";
   EXPECT_EQ(maps.at(0).count("w"), 0U);
@@ -119,7 +120,7 @@ TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
 TEST_F(Report, OfARunThatFailedWithoutAReasonSaysSo) {
   const fs::path directory = ran("taps=4");
   test::set_end(directory, R"({"status": "failed", "stop_reason": null})");
-  EXPECT_EQ(reported(directory).at("warnings").at(0), "The run failed and does not say why.");
+  EXPECT_EQ(reported(directory).at("warnings").at(0), "The run failed without a reason.");
 }
 
 TEST_F(Report, OfWhatIsNoRunOrHasNoTapIsRefusedInOneLine) {
@@ -158,10 +159,10 @@ TEST_F(Report, IsWrittenElsewhereWhereTheRecordMayNotBeTouched) {
 TEST_F(Report, OfSeveralRefusesWhatCannotStandSideBySide) {
   const fs::path run = ran("taps=4");
   const fs::path sweep = swept("taps=4 seed=1,2");
-  EXPECT_THAT(refused({"report", run, sweep}), HasSubstr("is a sweep, and several runs stand side by side"));
+  EXPECT_THAT(refused({"report", run, sweep}), HasSubstr("is a sweep, but a page of several runs needs single runs"));
   EXPECT_THAT(refused({"report", run, run, "--figures"}), HasSubstr("--figures and --paper draw one run or sweep"));
   const std::vector<std::string> nine{"report", run, run, run, run, run, run, run, run, run};
-  EXPECT_THAT(refused(nine), HasSubstr("9 runs are too many side by side"));
+  EXPECT_THAT(refused(nine), HasSubstr("9 runs are too many for one page"));
 }
 
 }  // namespace

@@ -96,12 +96,11 @@ TEST_F(ARun, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
     return out.substr(std::min(out.find("# models"), out.size()));
   };
   EXPECT_EQ(models({}),
-            "# models that taps are chosen from, and who reads them:\n"
-            "#   height GP: acquisition weighted, fallback uncertainty, from its first use on\n"
-            "#   label GP: acquisition weighted\n");
+            "# models for the choice of taps, and the parts that read them:\n#   height GP: acquisition weighted, "
+            "fallback uncertainty, from its first use on\n#   label GP: acquisition weighted\n");
   EXPECT_EQ(models("acquisition=random fallback=none"), "");
   EXPECT_EQ(models("acquisition=random fallback=none motion=adaptive"),
-            "# models that taps are chosen from, and who reads them:\n#   height GP: backend simulator\n");
+            "# models for the choice of taps, and the parts that read them:\n#   height GP: backend simulator\n");
   EXPECT_THAT(run("kernel.length_scale=1e-300m scene.objects.0.at=[30cm,5cm] --print-config").out,
               HasSubstr("# this config cannot be run: "));
 
@@ -187,10 +186,10 @@ TEST_F(ARun, InterruptedInASimulationItEndsWith130AndResumedItEqualsTheUnbrokenO
   child->signal(SIGINT);
   const Ended ended = child->wait();
   EXPECT_EQ(ended.status, 130) << ended.err;
-  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
+  EXPECT_THAT(ended.out, HasSubstr("resume with: palpate resume"));
   EXPECT_FALSE(fs::exists(directory() / "summary.json"));
   EXPECT_THAT(status_of(directory()).out, HasSubstr("unfinished after "));
-  EXPECT_THAT(refused(words), HasSubstr("'palpate resume' carries on"));
+  EXPECT_THAT(refused(words), HasSubstr("resume it with 'palpate resume'"));
   ASSERT_EQ(resume(directory()).status, 0);
   EXPECT_EQ(part_of(directory(), "tap"), part_of(ran("taps=4 --runs unbroken"), "tap"))
       << "the tap that was broken off was made again, as if nothing had happened";

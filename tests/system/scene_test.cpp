@@ -53,9 +53,9 @@ TEST_F(Scenes, WithAnObjectWhoseSizeIsSaidInPartSayWhatTheRestIs) {
     return ended.err;
   };
   EXPECT_EQ(said_of("[{type: block, length: 6 cm, width: 5 cm}]"),
-            "e.yaml:5:20: scene.objects.0: not said and so at its default: height 5 cm\n");
+            "e.yaml:5:20: scene.objects.0: not given, so the default is used: height 5 cm\n");
   EXPECT_EQ(said_of("[{type: compound, parts: [{type: cone, height: 4 cm}]}]"),
-            "e.yaml:5:45: scene.objects.0.parts.0: not said and so at its default: diameter 12 cm\n");
+            "e.yaml:5:45: scene.objects.0.parts.0: not given, so the default is used: diameter 12 cm\n");
   EXPECT_EQ(said_of("[{type: block}, {type: block, length: 6 cm, width: 5 cm, height: 2 cm}]"), "");
 }
 

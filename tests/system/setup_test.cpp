@@ -91,7 +91,7 @@ TEST_F(SetUp, ConfiguresAgainWhenThatFailedTheLastTime) {
   program("cmake", "exit 1");
   const Ended ended = script_ended("palpate", "status");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_EQ(ended.err, "configuring failed, the whole story is in build/release.log\n");
+  EXPECT_EQ(ended.err, "configuring failed, see build/release.log\n");
   program("cmake", sound);
   call();
   EXPECT_EQ(configured(), 2);
@@ -124,7 +124,8 @@ TEST_F(SetUp, ACompletionNeitherWaitsNorBuilds) {
 TEST_F(SetUp, SaysWhatIsMissingAndGoesOnAlsoWhereThereIsNoDpkg) {
   installed("three");
   const std::string told =
-      "packages are missing; as root: apt-get update && apt-get install --no-install-recommends one \n";
+      "packages are missing; install them as root with: apt-get update && apt-get install --no-install-recommends one "
+      "\n";
   EXPECT_THAT(call().err, HasSubstr(told));
   fs::remove(here() / "bin" / "dpkg-query");
   EXPECT_THAT(call().err, HasSubstr(told));
@@ -250,7 +251,7 @@ TEST_F(SetUp, SaysHowLongALaterCommandIsBuilt) {
   const std::string ninja = text_of(here() / "bin" / "ninja");
   program("nproc", "echo 2");
   program("ninja", "[ \"$3\" != -n ] || { echo '[1/9] CXX a.o'; echo '[90/90] LINK'; }\n" + ninja);
-  EXPECT_THAT(call().err, HasSubstr("building what this command takes: 90 steps, about 4 minutes\n"));
+  EXPECT_THAT(call().err, HasSubstr("building the parts that this command needs: 90 steps, about 4 minutes\n"));
   program("ninja", "[ \"$3\" != -n ] || echo '[9/9] LINK'\n" + ninja);
   EXPECT_THAT(call().err, Not(HasSubstr("steps")));
 }
@@ -273,10 +274,10 @@ TEST_F(SetUp, SaysHowLongARebuildTakesWhereBuildFilesAreLookedAtEachTime) {
   write("build/release/header.hpp", "");
   write("build/release/globs", "");
   write("build/release/build.ninja", text + "\n" + objects);
-  EXPECT_THAT(call().err, HasSubstr("building what this command takes: 30 steps, about 2 minutes\n"));
+  EXPECT_THAT(call().err, HasSubstr("building the parts that this command needs: 30 steps, about 2 minutes\n"));
   EXPECT_EQ(call().err, "no package is missing\n");
   write("build/release/header.hpp", "// changed");
-  EXPECT_THAT(call().err, HasSubstr("building what this command takes: 30 steps, about 2 minutes\n"));
+  EXPECT_THAT(call().err, HasSubstr("building the parts that this command needs: 30 steps, about 2 minutes\n"));
 }
 
 TEST_F(SetUp, BuildsNothingMoreOnceItIsEnded) {
@@ -345,8 +346,7 @@ TEST_F(SetUp, GoesOnWhereNothingCanBeFetched) {
   program("apt-get", "echo 'no such host'; exit 100");
   const Ended ended = script_ended("palpate", "status");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err,
-              HasSubstr("no such host\ninstalling failed, the whole story is in build/update.log; going on"));
+  EXPECT_THAT(ended.err, HasSubstr("no such host\ninstalling failed, see build/update.log; continuing"));
 }
 
 TEST_F(SetUp, AFileThatIsNamedAfterErrorsIsNoErrorOfTheBuild) {

@@ -59,7 +59,9 @@ TEST_F(SeveralSweeps, DoNotDifferInTheNumberOfThreads) {
     return named(name, {}, write(name + ".yaml", text_of(paper()) + "engine: {" + engine + "}\n").string());
   };
   const fs::path first = with_engine("first", "threads: 1");
-  const auto notes = [&](const fs::path& other) { return about("compare", {first, other}, "--by acquisition --metric rmse_m").err; };
+  const auto notes = [&](const fs::path& other) {
+    return about("compare", {first, other}, "--by acquisition --metric rmse_m").err;
+  };
   EXPECT_THAT(notes(with_engine("second", "threads: 2")), Not(HasSubstr("engine")));
   EXPECT_THAT(notes(with_engine("third", "type: dense")), HasSubstr("differ in engine.type"));
 }
@@ -102,8 +104,8 @@ TEST_F(SeveralSweeps, PairTheSameSeedsAndNameWhatElseDiffers) {
   // An own config, in which more is different than the acquisition.
   const fs::path mine = named("mine", "taps=6", own());
   const Ended by_key = about("compare", {earlier, mine}, "--by acquisition --metric rmse_m");
-  EXPECT_THAT(by_key.err, StartsWith("note: beside what they sweep the records differ in kernel.length_scale\n"));
-  EXPECT_THAT(by_key.out, HasSubstr("in common have no pairs: '--by acquisition,"));
+  EXPECT_THAT(by_key.err, StartsWith("note: besides the swept keys, the records differ in kernel.length_scale\n"));
+  EXPECT_THAT(by_key.out, HasSubstr("have no pairs: compare them with '--by acquisition,"));
   // By name all of it is what is compared.
   const Ended named_groups = about("compare", {earlier, mine}, "--by name --metric rmse_m --format csv");
   EXPECT_EQ(named_groups.err, "note: the names differ in acquisition, kernel.length_scale\n");
@@ -126,10 +128,10 @@ TEST_F(SeveralSweeps, CountARunOnceThatStandsInBothAndSayWhichScenesOneLacks) {
   const fs::path one = named("one", "acquisition=random,grid scene=ring");
   const fs::path run = ran(set_by(kPlan, "seed=9 acquisition=random scene=ring name=alone"));
   const Ended ended = about("compare", {both, one, run, run}, "--by acquisition --metric rmse_m --format csv");
-  EXPECT_THAT(ended.err, HasSubstr("note: 6 of 22 jobs stand in an earlier record, too, and count once\n"));
+  EXPECT_THAT(ended.err, HasSubstr("note: 6 of 22 jobs are also in an earlier record and count once\n"));
   EXPECT_THAT(
       ended.err,
-      HasSubstr("note: scene=block is missing in one, alone: compare scene by scene, or leave it out by --where\n"));
+      HasSubstr("note: scene=block is missing in one, alone: compare scene by scene, or exclude it with --where\n"));
   EXPECT_EQ(csv_rows(ended.out).front().at("n"), "11") << "five seeds on two scenes, and the run";
 }
 
@@ -141,7 +143,7 @@ TEST_F(SeveralSweeps, ANameStandsForAllItsRunsWhereItHasNoSweep) {
   const Ended ended = palpate(Words{"compare", "loop"} + words);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("\nrandom          2"));
-  EXPECT_THAT(ended.out, HasSubstr("pair: two jobs that are equal in seed.\n"));
+  EXPECT_THAT(ended.out, HasSubstr("pair: two jobs with equal seed.\n"));
   // What it has left beside the runs does not disturb a * for them.
   Words star{"compare"};
   for (const auto& one : fs::directory_iterator(here() / "runs/loop")) star.push_back(one.path().string());
@@ -160,7 +162,7 @@ TEST_F(SeveralSweeps, AreNamedByWordsThatNoFileInTheWorkingFolderHides) {
   EXPECT_THAT(both, AllOf(HasSubstr("\nrandom "), HasSubstr("\nuncertainty ")));
   write("tables/one.csv", "");
   write("tables/two.csv", "");
-  EXPECT_THAT(refused(Words("compare tables/one.csv tables/two.csv") + by), HasSubstr("no sweep and no run is named"));
+  EXPECT_THAT(refused(Words("compare tables/one.csv tables/two.csv") + by), HasSubstr("no sweep and no run is given"));
 }
 
 TEST_F(SeveralSweeps, MayBeOneRunAndAreNotMergedWhereTheSameRunMeasuredSomethingElse) {
@@ -171,10 +173,10 @@ TEST_F(SeveralSweeps, MayBeOneRunAndAreNotMergedWhereTheSameRunMeasuredSomething
   fs::create_directories(copy.parent_path());
   fs::copy(run, copy);
   const Words both{"compare", run, copy, "--by", "acquisition", "--metric", "rmse_m"};
-  EXPECT_THAT(palpate(both).err, HasSubstr("note: 1 of 2 jobs stand in an earlier record, too"));
+  EXPECT_THAT(palpate(both).err, HasSubstr("note: 1 of 2 jobs are also in an earlier record"));
   replace(copy / "taps.csv", "initial", "IniTial");
   EXPECT_THAT(refused(both, 1),
-              AllOf(HasSubstr("has the id of "), HasSubstr(" and other taps, give such runs a seed")));
+              AllOf(HasSubstr("has the same id as "), HasSubstr(" but other taps, give each run its own seed")));
 }
 
 TEST_F(SeveralSweeps, ByNameHaveEachItsOwnJobsThoughAnotherHasTheSame) {

@@ -136,19 +136,19 @@ TEST_F(StepRun, AsksAgainAfterAnythingElse) {
 
 TEST_F(StepRun, IsRefusedWithoutATerminalBeforeAnythingStarts) {
   EXPECT_EQ(refused(robot("--step")),
-            "command line: --step: there is no terminal to show a tap and to ask whether it may be made, stdin and "
-            "stderr must be one\n");
+            "command line: --step: needs a terminal to show each tap and to wait for Enter, connect stdin and stderr "
+            "to a terminal\n");
   EXPECT_FALSE(program_asked());
   EXPECT_TRUE(left_nothing());
   ASSERT_EQ(palpate(robot("--quiet")).status, 0);
-  EXPECT_THAT(refused({"resume", directory(), "--step"}), HasSubstr("there is no terminal"));
+  EXPECT_THAT(refused({"resume", directory(), "--step"}), HasSubstr("needs a terminal"));
 }
 
 TEST_F(StepRun, IsRefusedWhereTapsCanBeRepeated) {
   for (const Words& words : {robot("backend.repeatable=true"), Words{"run", paper()}}) {
     const std::unique_ptr<Terminal> terminal = at_terminal(words);
     EXPECT_EQ(terminal->wait(), 2);
-    EXPECT_THAT(terminal->screen(), HasSubstr("can be repeated, there is nothing to confirm, leave it out\r\n"));
+    EXPECT_THAT(terminal->screen(), HasSubstr("can be repeated and need no confirmation, leave it out\r\n"));
     EXPECT_EQ(lines(terminal->screen()), 1);
     EXPECT_TRUE(left_nothing());
   }

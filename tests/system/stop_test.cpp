@@ -65,7 +65,7 @@ TEST_F(Stops, AtBoundsThatMeanNothingAreRefused) {
   EXPECT_EQ(refusal("stop.expected_rmse=0 cm"),
             "command line: stop.expected_rmse: 0 cm is out of range, it must be above 0 m\n");
   EXPECT_EQ(refusal("stop.expected_rmse=1"),
-            "command line: stop.expected_rmse: '1' lacks its unit, write a length like '1.7 cm'\n");
+            "command line: stop.expected_rmse: '1' has no unit, write a length like '1.7 cm'\n");
   EXPECT_EQ(refusal("stop.expected_rmse=1 s"),
             "command line: stop.expected_rmse: '1 s' is a time, not a length, write a length like '1.7 cm'\n");
   EXPECT_EQ(refusal("stop.expected_rms=1 cm"),

@@ -28,7 +28,7 @@ class AStrangeRecord : public Shell {
   }
 
   static std::string refusal(const fs::path& link) {
-    return link.string() + ": is a link, and nothing in a record is read or written through one, remove it\n";
+    return link.string() + ": is a symbolic link, and links in a record are not followed, remove it\n";
   }
 
   fs::path victim_ = write("victim", "mine");
@@ -118,8 +118,7 @@ TEST_F(AStrangeRecord, ThatIsMovedAwayUnderItsRunStopsThatAtTheNextTapAndCanBeCa
         "    if tap == 3 and not os.path.exists('moved'): os.rename(glob.glob('runs/*/*')[0], 'moved')\n"
         "    print(json.dumps({'tap': tap, 'outcome': 'contact', 'height': 0.0, 'seconds': 1.0}), flush=True)\n");
   EXPECT_THAT(refused({"run", paper(), "taps=6", "--quiet", "backend=process", "backend.command=python3 arm.py"}, 1),
-              EndsWith(": was moved or removed while a run was writing there, where it was moved to, "
-                       "'palpate resume' carries on\n"));
+              EndsWith(": was moved or removed while a run was writing there, run 'palpate resume' on its new path\n"));
   const Ended resumed = palpate("resume moved --quiet");
   EXPECT_EQ(resumed.status, 0) << resumed.err;
   const std::vector<std::string> made = outcomes(here() / "moved");

@@ -105,14 +105,15 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{"AZipOfUnlikeLengths",
               {"sweep.zip={taps: [12, 17], seed: [1, 2, 3]}"},
-              "sweep.zip: 'seed' has 3 values, 'taps' has 2, give every key as many, or multiply them in 'grid'"},
+              "sweep.zip: 'seed' has 3 values, 'taps' has 2, give all keys the same number of values, or combine them "
+              "in 'grid'"},
         Wrong{"AConditionThatNothingFulfils",
               {"taps=12,17", "sweep.where=taps > 20"},
-              "sweep.where: it holds for none of the 2 combinations, ask for less, or sweep other values"},
+              "sweep.where: matches none of the 2 combinations, relax the condition, or sweep other values"},
         Wrong{"AConditionCutShort",
               {"taps=12,17", "sweep.where=taps >"},
-              "the condition 'taps >': behind 'taps >' a value is missing, write it like taps >= 12 and not surface "
-              "== two_part"},
+              "the condition 'taps >': a value is missing after 'taps >', write it like taps >= 12 and not surface == "
+              "two_part"},
         Wrong{"EndsOfUnlikeUnits",
               {"sweep.sobol={samples: 4, keys: {height.noise: 'uniform(0.1 mm, 1 cm)'}}"},
               "height.noise: 'uniform(0.1 mm, 1 cm)' has ends with different units, write uniform(0.1 mm, 1 mm) or "
@@ -126,10 +127,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(SweepDescription, WithAKeyInTwoBlocksIsRefusedWithBothPlaces) {
   write("twice.yaml", "sweep:\n  grid: {seed: [1, 2]}\n  zip: {seed: [1, 2]}\n");
-  EXPECT_EQ(
-      refused("sweep twice.yaml"),
-      "twice.yaml:3:16: 'seed' stands in sweep.zip and, at twice.yaml:2:17, in sweep.grid, a key may stand in one "
-      "block only\n");
+  EXPECT_EQ(refused("sweep twice.yaml"),
+            "twice.yaml:3:16: 'seed' is in sweep.zip and, at twice.yaml:2:17, in sweep.grid, write each key in one "
+            "block only\n");
 }
 
 TEST_F(SweepDescription, OfAShippedConfigRunsToItsEnd) {
@@ -143,7 +143,7 @@ TEST_F(SweepDescription, ASingleRunLeavesItAsideAndSaysSo) {
   const Words words{"taps=5", "sweep.grid={seed: [1, 2]}"};
   const Ended ended = run(words);
   EXPECT_EQ(ended.status, 0);
-  EXPECT_EQ(ended.err, "command line: sweep: is left aside, one experiment is run; 'palpate sweep' runs them all\n");
+  EXPECT_EQ(ended.err, "command line: sweep: is ignored by 'palpate run'; 'palpate sweep' runs all its jobs\n");
   EXPECT_EQ(run(words + "--quiet").err, "");
   EXPECT_EQ(run("taps=6").err, "");
 }

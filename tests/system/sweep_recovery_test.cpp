@@ -82,8 +82,8 @@ TEST_F(Recovery, ASweepWhoseDirectoryIsMovedOrRemovedStopsAndSaysWhatToDo) {
     const Ended ended = child->wait();
     EXPECT_EQ(ended.status, 1);
     EXPECT_EQ(ended.err, fs::relative(before, here()).string() +
-                             ": was moved or removed while its jobs were under way, where it was moved to, 'palpate "
-                             "resume' carries on; otherwise begin it again with 'palpate sweep'\n");
+                             ": was moved or removed while its jobs were running, run 'palpate resume' on its new "
+                             "path, or start it again with 'palpate sweep'\n");
     EXPECT_FALSE(fs::exists(before)) << "nothing grows in its place";
     if (moved) {
       EXPECT_EQ(palpate("resume moved --quiet").status, 0);
@@ -110,7 +110,7 @@ TEST_F(Recovery, AJobThatCrashesOrLeavesNoResultCostsItselfAlone) {
 TEST_F(Recovery, AJobThatIsKilledIsBegunAgainButNotForEver) {
   const Ended ended = dying("none,kill");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.out, HasSubstr("was killed by signal 9 (Killed), as is done when memory runs out, in attempt 3"));
+  EXPECT_THAT(ended.out, HasSubstr("was killed by signal 9 (Killed), as happens when memory runs out, in attempt 3"));
   EXPECT_EQ(attempts(0), 1);
   EXPECT_EQ(attempts(1), 3);
   EXPECT_EQ(lines(part_of(job(1), "tap")), 4) << "what was tapped before is kept, and not tapped again";
@@ -157,7 +157,7 @@ TEST_F(Recovery, AnInterruptEndsTheTapsUnderWayAndLeavesTheRest) {
   child->signal(SIGINT);
   const Ended ended = child->wait();
   EXPECT_EQ(ended.status, 130);
-  EXPECT_THAT(ended.out, HasSubstr("carry on: palpate resume"));
+  EXPECT_THAT(ended.out, HasSubstr("resume with: palpate resume"));
   EXPECT_THAT(status(), StartsWith("5 jobs, 0 done, 0 running, 0 failed, 2 unfinished, 3 missing"));
   EXPECT_THAT(part_of(job(0), "end"), HasSubstr("\"end\": \"interrupted\""));
   ASSERT_EQ(resume().status, 0);
@@ -189,7 +189,7 @@ TEST_F(Recovery, AChangedConfigOfAJobFailsThatJobAndOneOfTheSweepRefusesItAll) {
   EXPECT_THAT(part_of(job(1), "manifest"), HasSubstr("\"build\": ")) << "it begins anew";
 
   replace(directory() / "config.yaml", "taps: 17", "taps: 18");
-  EXPECT_THAT(refused({"resume", directory(), "--quiet"}), HasSubstr("was changed since this sweep began"));
+  EXPECT_THAT(refused({"resume", directory(), "--quiet"}), HasSubstr("was changed after this sweep started"));
   EXPECT_EQ(attempts(0), 2);
 }
 
@@ -213,7 +213,7 @@ TEST_F(Recovery, SomeJobsAloneCanBeCarriedOn) {
   }
   const Ended judged = resume("--jobs 0 --junit part.xml");
   EXPECT_EQ(judged.status, 2);
-  EXPECT_THAT(judged.err, HasSubstr("--jobs and --junit do not go together"));
+  EXPECT_THAT(judged.err, HasSubstr("--jobs and --junit exclude each other"));
 }
 
 TEST_F(Recovery, HalfALineDoesNoHarm) {
@@ -248,7 +248,7 @@ TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
   environment_ = {test::with_plugin("cannot_go_on")};
   const Ended ended = sweep("backend=cannot_go_on taps=4 seed=range(0,3) -j 2");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, AllOf(HasSubstr("one job at a time"), Not(HasSubstr("2 running"))));
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("jobs run one at a time"), Not(HasSubstr("2 running"))));
 }
 
 /// How a sweep is begun: by a shell, or by whatever program this line of a shell names, in the place of $0.

@@ -148,7 +148,7 @@ TEST_F(Sweeps, CalledAgainRunWhatIsMissingAndTellTheSame) {
   fs::remove(before / "results.csv");
   const Ended again = sweep("seed=range(0,3)");
   EXPECT_EQ(again.status, 0);
-  EXPECT_THAT(again.err, HasSubstr("which exists: what is missing is run"));
+  EXPECT_THAT(again.err, HasSubstr("which exists: only missing jobs are run"));
   EXPECT_EQ(again.out, first.out);
   EXPECT_EQ(directory(), before) << "and leaves nothing beside it";
   EXPECT_EQ(lines(text_of(before / "results.csv")), 4);

@@ -83,8 +83,8 @@ TEST_F(UrArm, ThatAnotherProcessHasInHandIsNotMoved) {
   const Ended ended = run_with("");
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err,
-              StartsWith("backend/process: the arm UR " + host() + " is in the hands of process " +
-                         std::to_string(::getpid()) + "; wait until that has ended, or end it, then 'palpate resume"));
+              StartsWith("backend/process: the arm UR " + host() + " is used by process " + std::to_string(::getpid()) +
+                         "; wait until that process has ended, or end it, then run 'palpate resume"));
   EXPECT_EQ(log(), "") << "nobody has even connected";
   other.reset();
   EXPECT_EQ(palpate({"resume", directory().string(), "--retry-failed", "--quiet"}).status, 0);
@@ -129,7 +129,7 @@ TEST_F(UrArm, AKickThatIsRefusedBetweenTwoTapsEndsTheRunBeforeTheNextMove) {
 TEST_F(UrArm, WhoseCableIsPulledBetweenTwoTapsIsAskedNothing) {
   const Ended ended = run_with("idle_cable@3");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, StartsWith("backend/process: no new state of the robot for 0.2 s: look at cable and arm"));
+  EXPECT_THAT(ended.err, StartsWith("backend/process: no new state from the robot for 0.2 s: check the cable"));
   EXPECT_EQ(noted("waits for an answer"), 0) << "300 s, in which it hears no signal";
   EXPECT_EQ(noted("down"), 3);
   EXPECT_EQ(taps().size(), 4U);
@@ -149,7 +149,7 @@ TEST_F(UrArm, WithoutAContactTheFloorEndsTheWayDown) {
 TEST_F(UrArm, AContactAfterWhichTheForceStaysIsNotBelieved) {
   ASSERT_EQ(run_with("sticky@2").status, 0);
   EXPECT_EQ(taps()[1].at("outcome"), "aborted");
-  EXPECT_THAT(record(), HasSubstr("5.0 N were left after the tap"));
+  EXPECT_THAT(record(), HasSubstr("5.0 N remained after the tap"));
 }
 
 TEST_F(UrArm, ThatIsNotSwitchedOnIsNotMovedNorConnectedTo) {
@@ -177,7 +177,7 @@ TEST_P(UrArmInTrouble, EndsTheRunWithAReasonAndResumeGoesOnBehindIt) {
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, StartsWith("backend/process: "));
   EXPECT_THAT(ended.err, HasSubstr(GetParam().words));
-  EXPECT_THAT(ended.err, HasSubstr("then 'palpate resume --retry-failed'"));
+  EXPECT_THAT(ended.err, HasSubstr("then run 'palpate resume --retry-failed'"));
   EXPECT_EQ(lines(ended.err), 1);
   EXPECT_EQ(noted("down"), 3);
   EXPECT_LE(noted("stop"), 3) << "a way that is stopped is not stopped again";
@@ -205,11 +205,11 @@ INSTANTIATE_TEST_SUITE_P(By, UrArmInTrouble,
                          testing::Values(Trouble{"protective", "protective stop: free the arm if it presses"},
                                          Trouble{"emergency", "emergency stop: release the button"},
                                          Trouble{"lost", "unable to get state data"},
-                                         Trouble{"frozen", "no new state of the robot for 0.2 s"},
-                                         Trouble{"cable", "no new state of the robot for 0.2 s"},
-                                         Trouble{"restless", "the arm does not stand 1 s after its stop"},
+                                         Trouble{"frozen", "no new state from the robot for 0.2 s"},
+                                         Trouble{"cable", "no new state from the robot for 0.2 s"},
+                                         Trouble{"restless", "the arm still moves 1 s after its stop"},
                                          Trouble{"script", "ur_rtde's script no longer runs on the robot"},
-                                         Trouble{"pushed", "something pushes the arm with 50 N"}),
+                                         Trouble{"pushed", "the arm is pushed with 50 N"}),
                          [](const auto& one) { return std::string(one.param.kind); });
 
 class UrArmOnItsWayDown : public UrArm, public testing::WithParamInterface<int> {};

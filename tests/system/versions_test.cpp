@@ -58,10 +58,10 @@ TEST_F(Versions, AnIdStaysWhereTheOptionsMeanWhatTheyDid) {
 
 TEST_F(Versions, WhatNoLongerExistsIsRefusedUnlessARecordHasItsLastDefault) {
   EXPECT_THAT(with_version(3, run_words("kernel.tolerance=1e-8")).err,
-              HasSubstr("option 'tolerance' is no more, nothing has taken its place"));
+              HasSubstr("option 'tolerance' no longer exists, nothing has taken its place"));
   ASSERT_EQ(with_version(1, run_words("kernel.tolerance=1e-7 --quiet")).status, 0);
   EXPECT_THAT(with_version(3, {"replay", directory().string()}).err,
-              HasSubstr("option 'tolerance' is no more, only records that have 1e-08 can be read"));
+              HasSubstr("option 'tolerance' no longer exists, only records with the value 1e-08 can be read"));
 }
 
 TEST_F(Versions, AConfigThatWasEditedIsFoundWhateverItsFolderIsCalled) {
@@ -84,11 +84,11 @@ TEST_F(Versions, AConfigThatWasEditedIsFoundWhateverItsFolderIsCalled) {
   EXPECT_THAT(palpate("replay mine").err, HasSubstr("config.yaml was changed"));
   fs::rename(here() / "mine", run);
   EXPECT_THAT(palpate(words).err,
-              HasSubstr("the run there is another one with the id " + run.filename().string() + ", give this one"));
+              HasSubstr("the folder contains another run with the id " + run.filename().string() + ", give this run"));
   // On a disk that tells no capital letters two names are one folder.
   boost::replace_first(record, "\"name\": \"object", "\"name\": \"Object");
   write(run / "record.jsonl", record);
-  EXPECT_THAT(palpate(words).err, HasSubstr(": the run there has the name 'Object"));
+  EXPECT_THAT(palpate(words).err, HasSubstr(": the folder contains a run with the name 'Object"));
 }
 
 }  // namespace

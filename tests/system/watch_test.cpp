@@ -97,7 +97,7 @@ TEST_F(WatchedRun, HasAnAddressThatNobodyCanGuessOnThisMachineAlone) {
   const Address other = watch({directory, "--bind", "0.0.0.0"});
   EXPECT_NE(other.token(), one.token());
   EXPECT_EQ(other.listening(), std::vector<std::string>{"00000000"});
-  EXPECT_THAT(server_->err(), HasSubstr("whoever reaches 0.0.0.0 and knows this address sees the run"));
+  EXPECT_THAT(server_->err(), HasSubstr("anyone who can reach 0.0.0.0 and has this address can see the run"));
 }
 
 TEST_F(WatchedRun, IsShownToWhoHasTheAddressAndNothingElseIsToAnybody) {
@@ -296,10 +296,11 @@ TEST_F(WatchedRun, TakesThePortThatIsAskedForAndSaysWhereItCannot) {
   const fs::path directory = ran("taps=3");
   const Address first = watch({directory});
   const std::string port = std::to_string(first.port());
-  EXPECT_THAT(refused({"watch", directory, "--port", port}, 1), HasSubstr("port " + port + ": cannot be listened on"));
+  EXPECT_THAT(refused({"watch", directory, "--port", port}, 1),
+              HasSubstr("port " + port + ": cannot be opened for listening"));
   EXPECT_EQ(end().status, 0);
   EXPECT_EQ(watch({directory, "--port", port}).port(), first.port());
-  EXPECT_THAT(refused({"watch", directory, "--bind", "here"}), HasSubstr("--bind: 'here' is no address"));
+  EXPECT_THAT(refused({"watch", directory, "--bind", "here"}), HasSubstr("--bind: 'here' is not an address"));
   EXPECT_THAT(refused({"watch", "nowhere"}), HasSubstr("nowhere"));
 }
 

@@ -57,7 +57,7 @@ std::string packages(const std::string& wanted) {
 /// The line that says what to install.
 std::string remedy(const std::string& library, const std::string& names) {
   return "this build has no " + library + "; 'sudo apt-get install --no-install-recommends " + names +
-         "' installs it, then build again, as ./palpate does by itself";
+         "' installs it, then build again; ./palpate does both";
 }
 
 TEST_F(WithoutLibraries, ARunIsToldWhatToInstallAndNotFirstWhatItsConfigLacks) {

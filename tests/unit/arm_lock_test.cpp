@@ -43,8 +43,8 @@ TEST(ArmLocks, HoldOneArmForOneObjectAndSayWhoHasIt) {
   const std::string left = arm("left");
   std::optional<ArmLock> first;
   first.emplace("backend", left);
-  EXPECT_EQ(trouble_with(left), "backend: the arm " + left + " is in the hands of process " +
-                                    std::to_string(::getpid()) + ", wait until that has ended, or end it");
+  EXPECT_EQ(trouble_with(left), "backend: the arm " + left + " is used by process " + std::to_string(::getpid()) +
+                                    ", wait until that process has ended, or end it");
   EXPECT_EQ(trouble_with(arm("right")), "accepted") << "another arm";
   first.reset();
   EXPECT_EQ(trouble_with(left), "accepted");
@@ -68,9 +68,9 @@ TEST(ArmLocks, HoldInEveryEnvironmentAndWhateverFoldersAreRemoved) {
   const ArmLock held("backend", name);
   std::filesystem::remove_all(session.path());  // as at the end of a user's last session
   std::filesystem::create_directory(session.path());
-  EXPECT_THAT(trouble_with(name), HasSubstr("in the hands of"));
+  EXPECT_THAT(trouble_with(name), HasSubstr("is used by"));
   ::unsetenv("XDG_RUNTIME_DIR");  // as under cron
-  EXPECT_THAT(trouble_with(name), HasSubstr("in the hands of"));
+  EXPECT_THAT(trouble_with(name), HasSubstr("is used by"));
 }
 
 TEST(ArmLocks, HoldForOtherUsersToo) {
@@ -125,7 +125,7 @@ os.kill(child, signal.SIGKILL)
   };
   EXPECT_EQ(hold(), "");
   const ArmLock held("backend", name);
-  EXPECT_EQ(hold(), "the arm " + name + " is in the hands of process " + std::to_string(::getpid()) + "\n");
+  EXPECT_EQ(hold(), "the arm " + name + " is used by process " + std::to_string(::getpid()) + "\n");
 }
 
 }  // namespace

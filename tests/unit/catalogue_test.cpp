@@ -83,7 +83,7 @@ TEST_F(Records, AreFoundByNameAlsoWhereAFolderCannotBeCalledSo) {
   EXPECT_EQ(found("my run"), spaced);
   EXPECT_EQ(found("my-run"), dashed);
   EXPECT_EQ(found(slug("my run")), spaced) << "the folder's own name";
-  EXPECT_THAT(refusal("my  run"), HasSubstr("nothing has that name"));
+  EXPECT_THAT(refusal("my  run"), HasSubstr("contains no run or sweep of that name"));
 }
 
 TEST_F(Records, AreFoundByNameBesideAFolderOfTheSameNameWithoutOne) {
@@ -93,7 +93,7 @@ TEST_F(Records, AreFoundByNameBesideAFolderOfTheSameNameWithoutOne) {
   fs::current_path(folder_.path());
   fs::create_directory("first");  // of sources, as `palpate new` makes it
   EXPECT_EQ(found("first@latest"), last);
-  EXPECT_THAT(refusal("first"), HasSubstr("stands for 2 runs: "));
+  EXPECT_THAT(refusal("first"), HasSubstr("matches 2 runs: "));
   fs::current_path(before);
 }
 
@@ -101,17 +101,16 @@ TEST_F(Records, OfSeveralAreToldApartByWhatTheirConfigsDoNotShare) {
   const fs::path one = run("first/000000000001", 1, "name: first\nkernel: {type: rbf}\nseed: 1\ntaps: 9\n");
   const fs::path two = run("first/000000000002", 2, "name: first\nkernel: {type: matern52}\nseed: 7\ntaps: 9\n");
   EXPECT_EQ(refusal("first"),
-            "first: stands for 2 runs: " + two.string() + " (" + begun_text(two) + ", seed 7, kernel.type matern52); " +
+            "first: matches 2 runs: " + two.string() + " (" + begun_text(two) + ", seed 7, kernel.type matern52); " +
                 one.string() + " (" + begun_text(one) +
-                ", seed 1, kernel.type rbf), give the directory of one, or first@latest for the last");
+                ", seed 1, kernel.type rbf), give the directory of one, or first@latest for the latest");
   EXPECT_THAT(begun_text(two), MatchesRegex("20..-..-..T..:..:.."));
 }
 
 TEST_F(Records, OfManyTheLastFourAreTold) {
   for (int i = 0; i < 9; ++i) run("first/00000000000" + std::to_string(i), i, "seed: " + std::to_string(i) + "\n");
-  EXPECT_THAT(refusal("first"),
-              AllOf(HasSubstr("stands for 9 runs: "), HasSubstr(", seed 8); "), HasSubstr("seed 5); "),
-                    HasSubstr("; 5 that were begun before, "), Not(HasSubstr("seed 4"))));
+  EXPECT_THAT(refusal("first"), AllOf(HasSubstr("matches 9 runs: "), HasSubstr(", seed 8); "), HasSubstr("seed 5); "),
+                                      HasSubstr("; 5 that were started earlier, "), Not(HasSubstr("seed 4"))));
 }
 
 TEST_F(Records, BegunLastAreMeantByLatest) {
@@ -129,7 +128,7 @@ TEST_F(Records, OfTheKindThatACommandTakesAreMeantWhereThereAreAny) {
   const fs::path many = sweep("first/000000000002", 2);
   EXPECT_EQ(found("first", Wanted::run), one);
   EXPECT_EQ(found("first", Wanted::sweep), many);
-  EXPECT_THAT(refusal("first"), HasSubstr("stands for 2 runs and sweeps: "));
+  EXPECT_THAT(refusal("first"), HasSubstr("matches 2 runs and sweeps: "));
   const fs::path alone = sweep("many/000000000003", 3);
   EXPECT_EQ(found("many", Wanted::run), alone) << "the command says what it cannot do with a sweep";
 }
@@ -139,16 +138,18 @@ TEST_F(Records, ThatAreDamagedAreFoundForTheCommandToSaySo) {
   folder_.write("runs/second/000000000002/record.jsonl", "{");
   EXPECT_EQ(found("first"), runs() / "first/000000000001");
   EXPECT_EQ(found("second"), runs() / "second/000000000002");
-  EXPECT_THAT(refusal(runs()), StartsWith(runs().string() + ": stands for 2 runs: "));
+  EXPECT_THAT(refusal(runs()), StartsWith(runs().string() + ": matches 2 runs: "));
 }
 
 TEST_F(Records, ThatAreNotThereAreOneLineAndPathsStayAsTheyAre) {
   run("first/000000000001", 1);
-  EXPECT_EQ(refusal("frist"),
-            "frist: is no folder, and in " + runs().string() + " nothing has that name, did you mean 'first'?");
-  EXPECT_THAT(refusal("zzz"), HasSubstr("nothing has that name, 'palpate list' shows what there is"));
-  EXPECT_THAT(refusal("first@first"), HasSubstr("nothing has that name, behind a name @latest alone may stand"));
-  EXPECT_THAT(refusal(""), HasSubstr("nothing has that name"));
+  EXPECT_EQ(refusal("frist"), "frist: is not a folder, and " + runs().string() +
+                                  " contains no run or sweep of that name, did you mean 'first'?");
+  EXPECT_THAT(refusal("zzz"),
+              HasSubstr("contains no run or sweep of that name, run 'palpate list' to see all runs and sweeps"));
+  EXPECT_THAT(refusal("first@first"),
+              HasSubstr("contains no run or sweep of that name, only @latest may follow a name"));
+  EXPECT_THAT(refusal(""), HasSubstr("contains no run or sweep of that name"));
   const fs::path empty = folder_.path() / "empty";
   fs::create_directory(empty);
   const fs::path file = folder_.write("file.txt", "");

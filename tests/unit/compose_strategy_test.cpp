@@ -134,9 +134,9 @@ TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {
 
 TEST_F(ComposeStrategy, RefusesAnUnknownOneAndACycle) {
   EXPECT_EQ(refusal("strategy: bald\n"), "c.yaml:1:11: no file strategy/bald.yaml, did you mean 'bold'?");
-  EXPECT_EQ(
-      refusal("", {"strategy=../x"}),
-      "command line: '../x' is no name for the group strategy, a name has letters, digits, '_' and '-', and no path");
+  EXPECT_EQ(refusal("", {"strategy=../x"}),
+            "command line: '../x' is not a valid name in the group strategy, a name has letters, digits, '_' and '-', "
+            "and no path");
   folder_.write("strategy/egg.yaml", "strategy: hen\n");
   folder_.write("strategy/hen.yaml", "strategy: egg\n");
   EXPECT_EQ(refusal("strategy: hen\n"),

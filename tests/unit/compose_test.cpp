@@ -167,9 +167,9 @@ TEST_F(Compose, CountsHowDeepAGroupIsThoughPartsOfItWereReadBefore) {
   };
   Composer composer(folder_.path(), config_keys());
   EXPECT_EQ(deep(composer, 10), "accepted");
-  EXPECT_THAT(deep(composer, 1), testing::HasSubstr("groups build on each other more than 16 deep"));
+  EXPECT_THAT(deep(composer, 1), testing::HasSubstr("groups are nested more than 16 levels deep"));
   Composer another(folder_.path(), config_keys());
-  EXPECT_THAT(deep(another, 1), testing::HasSubstr("groups build on each other more than 16 deep"));
+  EXPECT_THAT(deep(another, 1), testing::HasSubstr("groups are nested more than 16 levels deep"));
 }
 
 TEST_F(Compose, FallsBackToTheShippedGroups) {
@@ -203,7 +203,7 @@ TEST_F(Compose, RefusesANameWithAPathInIt) {
     const std::string plain = std::string(name) == "''" ? "" : name;
     EXPECT_EQ(refusal(std::string("defaults:\n  - kernel: ") + name + "\n"),
               "c.yaml:2:13: '" + plain +
-                  "' is no name for the group kernel, a name has letters, digits, '_' and '-', and no path");
+                  "' is not a valid name in the group kernel, a name has letters, digits, '_' and '-', and no path");
   }
 }
 
@@ -214,7 +214,7 @@ TEST_F(Compose, RefusesWhatIsNoConfigOrNamesNoGroupWithItsPlace) {
        "c.yaml:2:5: unknown group 'engine', known: kernel, acquisition, fitting, footprint, scene, scene.effects, "
        "backend, motion, strategy, expect"},
       {"defaults:\n  - scene: desc\n", "c.yaml:2:12: no file scene/desc.yaml, did you mean 'desk'?"},
-      {"defaults: {kernel: rbf}\n", "c.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group a line"},
+      {"defaults: {kernel: rbf}\n", "c.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group per line"},
       {"defaults:\n  - rbf\n", "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'"},
       {"defaults:\n  - kernel: [rbf]\n", "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'"},
       {"seed: 1\ndefualts:\n  - kernel: rbf\n", "c.yaml:2:1: unknown option 'defualts', did you mean 'defaults'?"},
@@ -327,8 +327,7 @@ TEST_F(GroupFolders, ThatMayNotBeSearchedAreNotTakenForEmptyOnes) {
     }
     said = error_of([&] { Composer(folder_.path() / "shipped", config_keys()).compose(config, {}); });
   }
-  EXPECT_THAT(said,
-              ::testing::EndsWith("a/kernel/mine.yaml: cannot be looked for, check the permissions of its folder"));
+  EXPECT_THAT(said, ::testing::EndsWith("a/kernel/mine.yaml: cannot be accessed, check the permissions of its folder"));
   rights("a/kernel", 0755);
   EXPECT_EQ(from("a/x.yaml"), "a");
 }
@@ -349,7 +348,7 @@ TEST_F(GroupFolders, ThatAllUsersShareArePassedOverAndNamed) {
   rights("all", 01777);
   EXPECT_EQ(from("all/x.yaml"),
             (folder_.path() / "all/x.yaml:1:9: ").string() + (folder_.path() / "all/kernel/mine.yaml").string() +
-                " lies where others may put files, move the config and its groups to a folder of your own");
+                " is in a folder where other users can write, move the config and its groups to a folder of your own");
   kernel("shipped");
   EXPECT_EQ(from("all/x.yaml"), "shipped");
   rights("all", 0777);

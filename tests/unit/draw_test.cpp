@@ -149,14 +149,14 @@ std::string drawn_from(const std::string& of, const std::string& counts = "{leas
 
 TEST(Draw, RefusesNumbersThatAreNone) {
   EXPECT_EQ(drawn_from("{type: block}", "{least: 3, most: 2, of: "),
-            "c.yaml:3:28: scene.objects.draw.most: is less than least, which is 3");
+            "c.yaml:3:28: scene.objects.draw.most: is less than 'least', which is 3");
   EXPECT_EQ(drawn_from("{type: block}", "{least: -1, most: 2, of: "),
             "c.yaml:3:19: scene.objects.draw.least: -1 is out of range, it must be at least 0");
   EXPECT_EQ(drawn_from("{type: block}", "{least: 1, most: 2000, of: "),
             "c.yaml:3:28: scene.objects.draw.most: 2000 is out of range, it must be at most 1000");
   EXPECT_EQ(drawn_from("{type: block}", "{most: 2, of: "),
             "c.yaml:3:11: 'scene.objects.draw.least' is missing, minimum number of objects");
-  EXPECT_EQ(drawn_from(""), "c.yaml:3:35: scene.objects.draw.of: is empty, name an object or more");
+  EXPECT_EQ(drawn_from(""), "c.yaml:3:35: scene.objects.draw.of: is empty, name at least one object");
 }
 
 TEST(Draw, RefusesKeysThatItDoesNotKnow) {
@@ -183,14 +183,13 @@ TEST(Draw, RefusesRangesThatAreNone) {
   EXPECT_EQ(of_length("\"uniform(8 mm, 3 cm)\""), at + "'uniform(8 mm, 3 cm)' has ends with different units" + how);
   EXPECT_EQ(of_length("\"uniform(8 mm)\""), at + "'uniform(8 mm)' does not have two ends" + how);
   EXPECT_EQ(of_length("\"uniform(a, b)\""), at + "'a' in 'uniform(a, b)' is not a number" + how);
-  EXPECT_EQ(of_length("uniform(3 cm, 8 cm)"), at + "'uniform(3 cm' lacks its ')', within braces, where commas part "
-                                                   "entries, put it into quotes: \"uniform(...)\"");
+  EXPECT_EQ(of_length("uniform(3 cm, 8 cm)"),
+            at + "'uniform(3 cm' has no closing ')', inside braces, put it into quotes: \"uniform(...)\"");
   EXPECT_EQ(of_length("\"uniform(3 s, 8 s)\"").substr(0, at.size() + 9), at + "'3 s' is ");
 }
 
 TEST(Draw, IsTheOnlyPlaceForARange) {
-  const std::string why =
-      "is not a number, ranges are for the objects of scene.objects.draw.of and for the keys of sweep.sobol";
+  const std::string why = "is not a number, use ranges only in scene.objects.draw.of and in the keys of sweep.sobol";
   EXPECT_EQ(error_of([] { shipped_config("paper/object_i.yaml", {"height.signal=uniform(1 m, 2 m)"}); }),
             "command line: height.signal: 'uniform(1 m, 2 m)' " + why);
   EXPECT_EQ(error_of([] {

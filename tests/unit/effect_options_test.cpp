@@ -47,7 +47,7 @@ TEST(OptionalGroups, RefuseWhatIsNoGroupInOneLine) {
   EXPECT_EQ(effect_refusal("{joint_lag: }"),
             "options.yaml:1:2: joint_lag has no value, write {} for its defaults, or none");
   EXPECT_THAT(effect_refusal("{joint_lag: 350 ms}"), testing::HasSubstr("joint_lag is not a group of options"));
-  EXPECT_THAT(effect_refusal("{joint_lag: {delay: 350}}"), testing::HasSubstr("joint_lag.delay: '350' lacks its unit"));
+  EXPECT_THAT(effect_refusal("{joint_lag: {delay: 350}}"), testing::HasSubstr("joint_lag.delay: '350' has no unit"));
   EXPECT_THAT(effect_refusal("{joint_lag: {dely: 350 ms}}"), testing::HasSubstr("did you mean 'delay'?"));
   EXPECT_THAT(effect_refusal("{joint_lagg: {}}"), testing::HasSubstr("did you mean 'joint_lag'?"));
 }

@@ -82,7 +82,7 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
     return std::string(process.engine()) + ": " + process.engine_reason();
   };
   EXPECT_EQ(engine(matern, square, 300, 1e-9), "dense: the kernel is not separable");
-  EXPECT_EQ(engine(rbf(), any, 300, 1e-9), "dense: the candidates are no product grid");
+  EXPECT_EQ(engine(rbf(), any, 300, 1e-9), "dense: the candidates are not a product grid");
   EXPECT_EQ(engine(rbf(), square, 300, 0.0), "dense: no error is allowed");
   EXPECT_EQ(engine(rbf(), square, 17, 1e-9), "grid: separable kernel on a grid and 17 taps");
   // Along y, there is a direction for every row.

@@ -75,8 +75,7 @@ TEST(Expand, RefusesRangesThatAreNotUnderstood) {
 
 TEST(Expand, RefusesARangeThatYamlCutAtItsComma) {
   EXPECT_EQ(error_of([] { expand_values(*parse_yaml("{k: range(0,3)}", "c.yaml").find("k"), "k", fresh()); }),
-            "c.yaml:1:5: k: 'range(0' lacks its ')', within braces, where commas part entries, put it into quotes: "
-            "\"range(...)\"");
+            "c.yaml:1:5: k: 'range(0' has no closing ')', inside braces, put it into quotes: \"range(...)\"");
 }
 
 TEST(Expand, RefusesRangesOfWhatAreNoNumbers) {
@@ -91,9 +90,9 @@ TEST(Expand, RefusesRangesWithoutValuesOrWithTooMany) {
             "c.yaml:1:4: k: 'range(10,0)' has no value, the end must lie beyond the start");
   EXPECT_EQ(refused_value("range(0,0)"), "c.yaml:1:4: k: 'range(0,0)' has no value, the end must lie beyond the start");
   EXPECT_EQ(refused_value("range(0,1000001)"),
-            "c.yaml:1:4: k: 'range(0,1000001)' has more than a million values, take a wider step");
+            "c.yaml:1:4: k: 'range(0,1000001)' has more than a million values, use a wider step");
   EXPECT_EQ(refused_value("range(0,1,0)"),
-            "c.yaml:1:4: k: 'range(0,1,0)' has more than a million values, take a wider step");
+            "c.yaml:1:4: k: 'range(0,1,0)' has more than a million values, use a wider step");
 }
 
 TEST(Expand, RefusesLogarithmsOfNothing) {

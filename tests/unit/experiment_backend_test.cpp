@@ -41,7 +41,7 @@ TEST(LastTap, ThatTouchedSomethingCountsAsAContact) {
 
 TEST(LastTap, WithoutAReasonOrAHeightIsTheLastAllTheSame) {
   Prepared silent("paper/object_i.yaml", {}, scripted({stopped("")}));
-  EXPECT_EQ(failure_of(silent), "backend/simulator: cannot go on, and gives no reason");
+  EXPECT_EQ(failure_of(silent), "backend/simulator: cannot continue and gives no reason");
   Prepared wild("paper/object_i.yaml", {}, scripted({last_contact(std::nan(""))}));
   EXPECT_EQ(failure_of(wild), "backend/simulator: the backend reported a height that is not a finite number");
 }

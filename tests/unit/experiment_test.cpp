@@ -80,7 +80,7 @@ TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
   };
   const Instead<Acquisition> broken(std::make_shared<Broken>());
   Prepared prepared("paper/object_i.yaml", {}, nullptr, broken);
-  EXPECT_EQ(error_of([&] { prepared.run(); }), "acquisition/weighted: gave a score that is not a finite number");
+  EXPECT_EQ(error_of([&] { prepared.run(); }), "acquisition/weighted: returned a score that is not a finite number");
   EXPECT_EQ(prepared.taps.size(), 3U) << "the taps before stay recorded";
 }
 

@@ -156,9 +156,9 @@ TEST_F(InnerFolder, IsMadeButNeverALink) {
   make_inner_folder(folder_.path() / "a");
   EXPECT_TRUE(fs::is_directory(folder_.path() / "a"));
   fs::create_directory_symlink(folder_.path() / "a", folder_.path() / "b");
-  EXPECT_EQ(error_of([&] { make_inner_folder(folder_.path() / "b"); }),
-            (folder_.path() / "b").string() +
-                ": is a link, and nothing in a record is read or written through one, remove it");
+  EXPECT_EQ(
+      error_of([&] { make_inner_folder(folder_.path() / "b"); }),
+      (folder_.path() / "b").string() + ": is a symbolic link, and links in a record are not followed, remove it");
 }
 
 TEST_F(WriteFile, SaysWhyAPlaceCannotBeWrittenOrAFolderReplaced) {
@@ -195,7 +195,7 @@ TEST_F(ReadFile, TakesNoShortageOfDescriptorsForADamagedFile) {
   const fs::path file = folder_.write("x", "text");
   EXPECT_EQ(without_descriptors([&] { read_if_there(file); }), file.string() + ": cannot be read: Too many open files");
   EXPECT_EQ(without_descriptors([&] { FileLock::is_held(file); }),
-            file.string() + ": cannot be looked at: Too many open files");
+            file.string() + ": cannot be accessed: Too many open files");
 }
 
 TEST_F(ReadFile, FindsTheFirstLineHoweverLongItIs) {
@@ -231,8 +231,7 @@ TEST_F(Appending, AndLockAndCutFollowNoLink) {
   const fs::path victim = folder_.write("victim", "mine");
   const fs::path link = folder_.path() / "log";
   fs::create_symlink(victim, link);
-  const std::string words =
-      link.string() + ": is a link, and nothing in a record is read or written through one, remove it";
+  const std::string words = link.string() + ": is a symbolic link, and links in a record are not followed, remove it";
   EXPECT_EQ(error_of([&] { AppendFile(link).append("x", false); }), words);
   EXPECT_EQ(error_of([&] { FileLock{link}; }), words);
   EXPECT_FALSE(FileLock::is_held(link)) << "nor is it opened";

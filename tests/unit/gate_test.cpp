@@ -81,7 +81,7 @@ TEST(Judge, AValueThatIsNotFiniteFulfilsNothing) {
 
 TEST(Judge, ARunWhoseValueIsNotFiniteCountsAsTheWorst) {
   const std::vector<RunOutcome> runs{run(0, 2, 0.01), run(1, 4, std::nan("")), run(2, 9, 0.03)};
-  const std::string why = ": 1 of 3 runs have none and count as the worst (job 1: rmse_m is not finite)";
+  const std::string why = ": 1 of 3 runs have no value and count as the worst (job 1: rmse_m is not finite)";
   EXPECT_EQ(judged("{mean(rmse_m): <= 1 m, max(rmse_m): <= 1 m, median(rmse_m): <= 2 cm}", runs),
             (Texts{"no no value" + why, "no no value" + why, "no 3 cm" + why}));
   EXPECT_EQ(judged("{median(rmse_m): <= 3 cm, min(rmse_m): == 1 cm}", runs), (Texts{"yes 3 cm", "no no value" + why}));
@@ -98,7 +98,7 @@ TEST(Judge, AFieldAloneHasToHoldInEveryRun) {
   const std::vector<RunOutcome> runs{run(0, 11, 0.01), run(1, 3, 0.01), run(2, 5, 0.01), failed(3)};
   EXPECT_EQ(judged("{object_taps: '>= 3'}", {runs[0], runs[1]}), (Texts{"yes "}));
   EXPECT_EQ(judged("{object_taps: '>= 5'}", {runs[0], runs[1], runs[2]}), (Texts{"no 3 in job 1"}));
-  EXPECT_EQ(judged("{object_taps: '>= 10'}", runs), (Texts{"no 3 in job 1, and 3 of 4 runs miss it"}));
+  EXPECT_EQ(judged("{object_taps: '>= 10'}", runs), (Texts{"no 3 in job 1, and 3 of 4 runs miss the expectation"}));
   EXPECT_EQ(judged("{rmse_m: <= 2 cm}", runs), (Texts{"no no value: the run failed in job 3"}));
 }
 
@@ -111,7 +111,7 @@ TEST(Judge, TakesStatisticsOverAllRuns) {
 
 TEST(Judge, ARunThatFailedTakesTheWorstValueWhicheverWayItIs) {
   const std::vector<RunOutcome> runs{run(0, 2, 0.01), run(1, 4, 0.02), run(2, 9, 0.03), failed(3), failed(4)};
-  const std::string why = ": 2 of 5 runs have none and count as the worst (job 3: the run failed)";
+  const std::string why = ": 2 of 5 runs have no value and count as the worst (job 3: the run failed)";
   EXPECT_EQ(judged("{median(object_taps): '>= 3', median(rmse_m): <= 2 cm}", runs),
             (Texts{"no 2" + why, "no 3 cm" + why}));
   EXPECT_EQ(judged("{mean(object_taps): '>= 0', max(rmse_m): <= 1 m, p90(rmse_m): < 1 m}", runs),

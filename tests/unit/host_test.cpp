@@ -146,14 +146,14 @@ TEST_F(PluginFolder, AFolderWithoutPluginsIsNamedRatherThanANeighbour) {
   EXPECT_EQ(refusal_with(missing), begin + missing.string() + " does not exist, see PALPATE_PLUGIN_PATH");
   folder_.write("kernel.so", "");
   EXPECT_EQ(refusal_with(folder_.path()),
-            begin + folder_.path().string() + " holds no plugin, which is KIND/NAME.so in it, see PALPATE_PLUGIN_PATH");
+            begin + folder_.path().string() + " contains no plugin KIND/NAME.so, see PALPATE_PLUGIN_PATH");
   const fs::path file = folder_.path() / "kernel.so";
   EXPECT_EQ(refusal_with(file), begin + file.string() + " is a file, see PALPATE_PLUGIN_PATH");
 }
 
 TEST(PluginHost, RefusesNamesWithAPath) {
   for (const char* name : {"../kernel/rbf", "/etc/passwd", "rbf.so", ".", "", "a b"}) {
-    EXPECT_THAT(refusal_of("kernel", name), HasSubstr("is not the name of a plugin")) << name;
+    EXPECT_THAT(refusal_of("kernel", name), HasSubstr("is not a valid name of a plugin")) << name;
   }
 }
 

@@ -173,14 +173,14 @@ TEST(Identity, OfARecordIsTheSameInLaterVersionsAndNewOptionsAreNeutralThere) {
 
 TEST(Identity, OfARecordThatLacksWhatItMustHaveIsRefused) {
   EXPECT_EQ(trouble_with<First>("reach: 1 cm\ntolerance: 1e-8"),
-            "c.yaml:1:1: 'deviation' is missing, what is complete gives every option: put it back, or take 'complete' "
-            "away");
+            "c.yaml:1:1: 'deviation' is missing, a config with 'complete' needs every option: restore it, or remove "
+            "'complete'");
   EXPECT_EQ(trouble_with<First>("reach: 1 cm\ntolerance: 1e-8", false), "accepted") << "it has a default";
   EXPECT_EQ(trouble_with<Third>("reach: 1 cm\nspread: 1\ntolerance: 1e-7"),
-            "c.yaml:4:12: option 'tolerance' is no more, only records that have 1e-08 can be read");
+            "c.yaml:4:12: option 'tolerance' no longer exists, only records with the value 1e-08 can be read");
   EXPECT_EQ(trouble_with<Third>("reach: 1 cm\nspread: 1\ntolerance: 0.00000001"), "accepted") << "the same number";
   EXPECT_EQ(trouble_with<Third>("tolerance: 1e-8", false),
-            "c.yaml:1:12: option 'tolerance' is no more, nothing has taken its place");
+            "c.yaml:1:12: option 'tolerance' no longer exists, nothing has taken its place");
   EXPECT_THAT(trouble_with<Third>("deviation: 1", false), HasSubstr("unknown option 'deviation'"));
 }
 

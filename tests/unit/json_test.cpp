@@ -112,7 +112,7 @@ TEST_F(JsonLinesFile, RefusesALineThatIsTooLongTooDeepOrHoldsTooMuch) {
   EXPECT_EQ(read_json_lines(folder_.write("sound", nested(100) + "\n" + fields(4096) + "\n")).rows.size(), 2U);
   EXPECT_EQ(refusal(nested(101)), ":2: is nested too deeply: at most 100 levels, the file is damaged");
   EXPECT_EQ(refusal(nested(150'000)), ":2: is nested too deeply: at most 100 levels, the file is damaged");
-  EXPECT_EQ(refusal(fields(4097)), ":2: holds too many values: at most 4096, the file is damaged");
+  EXPECT_EQ(refusal(fields(4097)), ":2: contains too many values: at most 4096, the file is damaged");
   EXPECT_EQ(refusal("{\"" + std::string(1025, 'a') + "\": 1}"),
             ":2: has a name of more than 1 KiB, the file is damaged");
   EXPECT_EQ(refusal("{\"a\": \"" + std::string(1 << 20, 'a') + "\"}"),
@@ -128,7 +128,7 @@ TEST(JsonRows, OfOneFileHoldNoMoreNamesThanFitIntoMemory) {
     for (;;)
       for (const auto& field : lines.read(line + "}}").fields) bytes += field.first.size();
   });
-  EXPECT_THAT(words, testing::HasSubstr("the file holds too much"));
+  EXPECT_THAT(words, testing::HasSubstr("the file is too large"));
   EXPECT_LT(bytes, std::size_t{3} << 29);
 }
 
@@ -168,7 +168,7 @@ TEST(JsonTree, IsRefusedInOneLineWhereItsFileIsDamaged) {
   EXPECT_EQ(json_refusal(deep), "manifest.json: is nested too deeply: at most 100 levels" + remedy);
   std::string many = "{\"a\": [0";
   for (int i = 0; i < 1'000'000; ++i) many += ",0";
-  EXPECT_EQ(json_refusal(many + "]}"), "manifest.json: holds too many values" + remedy);
+  EXPECT_EQ(json_refusal(many + "]}"), "manifest.json: contains too many values" + remedy);
 }
 
 TEST(JsonTree, IsNotReadFromAFileLargerThanAnyThatIsWritten) {

@@ -95,13 +95,13 @@ TEST_F(MeshFile, OfNothingGarbageAnotherFormatOrNoTrianglesIsRefused) {
   std::string garbage;
   for (int i = 0; i < 3000; ++i) garbage += static_cast<char>(i * 7919 % 251);
   const std::tuple<const char*, std::string, const char*> cases[] = {
-      {"a.3mf", "PK", "the format '.3mf' is not read, export it as .stl, .obj or .ply"},
-      {"a", "solid", "has no ending that tells its format"},
+      {"a.3mf", "PK", "the format '.3mf' is not supported, export it as .stl, .obj or .ply"},
+      {"a", "solid", "has no file extension"},
       {"a.stl", "", "is empty, export"},
       {"a.obj", "", "is empty, export"},
       {"a.ply", "", "is empty, export"},
-      {"a.stl", garbage, "is no STL, neither text nor binary, or cut short"},
-      {"a.ply", garbage, "is no PLY or cut short: the line 'end_header' is missing"},
+      {"a.stl", garbage, "is not an STL file, neither text nor binary, or is cut short"},
+      {"a.ply", garbage, "is not a PLY file or is cut short: the line 'end_header' is missing"},
       {"b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "has no triangles"},
       {"a.ply",
        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nelement face 2\n"
@@ -134,8 +134,8 @@ TEST_F(MeshFile, OfAnyLineEndMeansTheSame) {
     for (const char c : whole) other += c == '\n' ? end : std::string(1, c);
     const std::string header = other.substr(0, other.find("end_header"));
     EXPECT_THAT(refusal("a.ply", header + "end_header" + end + "0 0 0" + end),
-                HasSubstr("is cut short: its header promises more rows than there are"));
-    EXPECT_THAT(refusal("a.ply", header + "\nend_header\n0 0 0\n"), HasSubstr("is cut short: its header promises"));
+                HasSubstr("is cut short: its header announces more rows than there are"));
+    EXPECT_THAT(refusal("a.ply", header + "\nend_header\n0 0 0\n"), HasSubstr("is cut short: its header announces"));
     EXPECT_EQ(refusal("a.ply", other), "accepted");
   }
 }
@@ -146,7 +146,7 @@ TEST_F(MeshFile, WhoseHeaderCountsNoRowsIsRefused) {
   for (const char* count : {"-5", "4e9", "9999999999", ""}) {
     std::string other = whole;
     other.replace(at, other.find('\n', at) - at, count);
-    EXPECT_THAT(refusal("a.ply", other), HasSubstr("its header does not say how many rows of 'vertex' follow"));
+    EXPECT_THAT(refusal("a.ply", other), HasSubstr("its header does not give the number of rows of 'vertex' follow"));
   }
 }
 
@@ -160,14 +160,14 @@ TEST_F(MeshFile, ThatTakesFarMoreMemoryThanItsSizeIsRefused) {
   bytes.append(4, '\0');
   bytes.append(reinterpret_cast<const char*>(&corners), sizeof corners);
   bytes.append(16, '\0');
-  EXPECT_THAT(refusal("a.ply", bytes), HasSubstr("takes more memory than any sound file of its size, export it again"));
+  EXPECT_THAT(refusal("a.ply", bytes), HasSubstr("needs more memory than any valid file of its size, export it again"));
 }
 
 TEST_F(MeshFile, WithATriangleTwiceIsRefused) {
   Surface surface = block();
   const auto [a, b, c] = surface.triangles[0];
   surface.triangles.push_back({b, a, c});
-  EXPECT_THAT(refusal("a.stl", stl_binary(surface)), HasSubstr("a triangle is there twice, at ("));
+  EXPECT_THAT(refusal("a.stl", stl_binary(surface)), HasSubstr("a triangle occurs twice, at ("));
 }
 
 TEST_F(MeshFile, WithACoordinateThatIsNotFiniteIsRefused) {
@@ -184,7 +184,7 @@ TEST_F(MeshFile, WithTrianglesWithoutAreaIsRefused) {
   surface.triangles.push_back({0, 1, surface.points.size() - 1});
   EXPECT_THAT(refusal("a.stl", stl_binary(surface)),
               AllOf(HasSubstr("2 of 14 triangles have no area, the first is triangle 13 at ("),
-                    EndsWith("remove degenerate triangles where the mesh was made")));
+                    EndsWith("remove degenerate triangles in the program that made the mesh")));
 }
 
 TEST_F(MeshFile, WithAHoleIsRefusedUnlessItIsAllowed) {
@@ -192,7 +192,7 @@ TEST_F(MeshFile, WithAHoleIsRefusedUnlessItIsAllowed) {
   surface.triangles.erase(surface.triangles.begin());
   EXPECT_THAT(refusal("a.ply", ply(surface)),
               AllOf(HasSubstr("has holes: 3 edges belong to one triangle only, one from ("),
-                    EndsWith("close them where the mesh was made, or write `holes: allow`")));
+                    EndsWith("close them in the program that made the mesh, or write `holes: allow`")));
   EXPECT_EQ(refusal("a.ply", ply(surface), "unit: 1 mm, holes: allow"), "accepted");
 }
 
@@ -207,7 +207,7 @@ TEST_F(MeshFile, FarFromItsOriginIsRefused) {
   Surface surface = block();
   for (Eigen::Vector3d& point : surface.points) point.x() += 100.0;
   EXPECT_THAT(refusal("a.ply", ply(surface)),
-              HasSubstr("lies 100 m from its origin, where single precision is coarser"));
+              HasSubstr("lies 100 m from its origin, where single precision has errors"));
 }
 
 TEST_F(MeshFile, WithTooManyTrianglesOrBytesIsRefusedBeforeItIsRead) {
@@ -218,7 +218,7 @@ TEST_F(MeshFile, WithTooManyTrianglesOrBytesIsRefusedBeforeItIsRead) {
   fs::resize_file(many, 84 + std::uintmax_t{50} * count);
   EXPECT_THAT(refusal_of(many), HasSubstr("has 5000001 triangles, at most 5000000 are read, reduce their number"));
   fs::resize_file(many, 600'000'000);
-  EXPECT_THAT(refusal_of(many), HasSubstr("has more than 500 MB, reduce what it holds"));
+  EXPECT_THAT(refusal_of(many), HasSubstr("is larger than 500 MB, reduce its content"));
 }
 
 TEST_F(MeshFile, IsKnownAgainByItsChecksum) {
@@ -236,7 +236,7 @@ TEST_F(MeshFile, IsKnownAgainByItsChecksum) {
   const auto refusal_to_build = [&](const PluginChoice& one) {
     return error_of([&] { context_of(shared_host()).create<Shape>(one); });
   };
-  const std::string other = "shape/mesh: checksum: is not that of " + file.string();
+  const std::string other = "shape/mesh: checksum: does not match " + file.string();
   EXPECT_THAT(refusal_to_build(choice(", checksum: '" + checksum + "'")),
               AllOf(StartsWith("options.yaml:1:"), HasSubstr(other)));
   EXPECT_THAT(refusal_to_build(before), StartsWith(other));

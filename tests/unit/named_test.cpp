@@ -140,7 +140,7 @@ TEST(NamedPlugin, KeepsPlaceReasonAndRemedyOfAnError) {
   EXPECT_EQ(error_of([&] { backend->tap(request); }, Error::Kind::busy),
             "backend/mine: arm.txt:3: has no joint, add one");
   request.number = 2;
-  EXPECT_EQ(error_of([&] { backend->tap(request); }), "backend/mine: threw something that is no exception");
+  EXPECT_EQ(error_of([&] { backend->tap(request); }), "backend/mine: threw an object that is not a std::exception");
   EXPECT_TRUE(backend->repeatable());
 }
 
@@ -170,7 +170,7 @@ TEST(NamedKernel, ThatGivesWhatIsNotFiniteIsNamedWithItsFunction) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2, 2);
   const auto kernel = broken<NoNumbers, Kernel>();
   const auto said = [](const std::string& function) {
-    return "kernel/mine: " + function + "() gave a number that is not finite, correct the plugin";
+    return "kernel/mine: " + function + "() returned a number that is not finite, correct the plugin";
   };
   EXPECT_EQ(error_of([&] { kernel->covariance(points, points, matrix); }), said("covariance"));
   EXPECT_EQ(error_of([&] { kernel->variance(points, vector); }), said("variance"));

@@ -124,7 +124,8 @@ TEST(RandomPlacement, SaysWhenAnObjectDoesNotFit) {
 TEST(RandomPlacement, SaysWhenObjectsDoNotFitTogether) {
   const std::string large = "{type: cylinder, diameter: 30 cm}";
   EXPECT_EQ(placement_refusal({large, large}),
-            "scene.objects: found no room for all 2 in 10000 draws, make them smaller or fewer, or the area larger");
+            "scene.objects: found no placement for all 2 objects in 10000 draws, make them smaller or fewer, or the "
+            "area larger");
 }
 
 TEST(FixedPlacement, RefusesAnObjectThatReachesBeyondTheArea) {

@@ -141,15 +141,16 @@ TEST_F(ProcessBackend, ASecondLineIsRefusedAtTheNextTapBeforeTheArmMoves) {
       "    line = json.dumps({'tap': ask['tap'], 'outcome': 'contact', 'height': 0.07, 'seconds': 5.5}) + '\\n'\n"
       "    os.write(1, (line + ('well done\\n' if ask['tap'] == 1 else '')).encode())");
   expect_contact(tap(*backend, 1));
-  expect_failure(tap(*backend, 2), Outcome::aborted, "the program said more than its answer: 'well done'");
+  expect_failure(tap(*backend, 2), Outcome::aborted, "the program printed more than its answer: 'well done'");
   expect_contact(tap(*backend, 3));
   EXPECT_EQ(diary(), "asked 1\nasked 3\n");
 }
 
 TEST_F(ProcessBackend, AProgramThatNeverAnsweredIsAskedWhetherItFlushes) {
   const auto backend = open("for ask in asks(): time.sleep(60)", ", deadline: 500 ms, start: 0 s");
-  expect_failure(tap(*backend, 1), Outcome::timeout,
-                 "the program did not answer in time, nor ever before: does it flush its output after each line?");
+  expect_failure(
+      tap(*backend, 1), Outcome::timeout,
+      "the program did not answer in time and has never answered, check that it flushes its output after each line");
 }
 
 TEST_F(ProcessBackend, StartingMayTakeLongerThanATap) {
@@ -160,7 +161,7 @@ TEST_F(ProcessBackend, StartingMayTakeLongerThanATap) {
 
 TEST_F(ProcessBackend, AnEarlyEndIsToldWithItsStatusAndItsLastWords) {
   expect_failure(second_tap("sys.exit('no arm\\x1b\\nnot today')", false), Outcome::aborted,
-                 "the program ended with exit status 1, its last words: 'not today'");
+                 "the program ended with exit status 1, its last output: 'not today'");
   EXPECT_EQ(diary(), "no arm\x1b\nnot today\n");
 }
 
@@ -180,7 +181,7 @@ TEST_F(ProcessBackend, AProgramThatEndsAtEveryTapEndsInFailedTaps) {
   const auto backend = open("sys.exit('broken')");
   for (int number = 1; number <= 5; ++number) {
     expect_failure(tap(*backend, number), Outcome::aborted,
-                   "the program ended with exit status 1, its last words: 'broken'");
+                   "the program ended with exit status 1, its last output: 'broken'");
   }
 }
 
@@ -311,13 +312,12 @@ TEST_F(ProcessBackend, WithoutARecordStderrIsDropped) {
 }
 
 TEST_F(ProcessBackend, WhatCannotBeStartedIsRefusedWhenItIsBuilt) {
-  EXPECT_THAT(refusal("pyhton3 x.py"),
-              HasSubstr("command: there is no program 'pyhton3', a name is looked for in PATH"));
+  EXPECT_THAT(refusal("pyhton3 x.py"), HasSubstr("command: there is no program 'pyhton3', names are searched in PATH"));
   EXPECT_THAT(refusal("./nowhere"), HasSubstr("command: there is no program './nowhere'"));
   EXPECT_THAT(refusal(folder_.path().string()), HasSubstr("there is no program"));
   EXPECT_THAT(refusal(folder_.write("plain", "x").string()), HasSubstr("there is no program"));
   for (const char* text : {"", "  ", "''", "python3 'open", "\"open"}) {
-    EXPECT_THAT(refusal(text), HasSubstr("command: names no program, or a quote is left open")) << text;
+    EXPECT_THAT(refusal(text), HasSubstr("command: names no program, or has an unclosed quote")) << text;
   }
 }
 

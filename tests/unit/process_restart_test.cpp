@@ -8,7 +8,7 @@
 namespace palpate::test {
 namespace {
 
-constexpr const char* kSeeToIt = "; see to the robot, then 'palpate resume --retry-failed' starts it again";
+constexpr const char* kSeeToIt = "; check the robot, then run 'palpate resume --retry-failed'";
 
 /// What a program does for its second tap, so that nobody knows what its arm does, and what is said of it.
 struct Gone {
@@ -57,23 +57,23 @@ TEST_P(ProgramThatIsGone, IsStartedAgainIfTheConfigSaysSo) {
 
 INSTANTIATE_TEST_SUITE_P(
     By, ProgramThatIsGone,
-    testing::Values(Gone{"Exit", "os._exit(3)", "the program ended with exit status 3, its last words: 'begin'"},
-                    Gone{"Signal", "os.kill(os.getpid(), 9)",
-                         "the program was ended by signal 9 (Killed), its last words: 'begin'"},
-                    Gone{"Crash", "os.kill(os.getpid(), 11)",
-                         "the program was ended by signal 11 (Segmentation fault), its last words: 'begin'"},
-                    Gone{"Silence", "time.sleep(60)", "the program did not answer in time", "1 s", Outcome::timeout},
-                    // Nor is its answer taken for one to the next tap.
-                    Gone{"LateAnswer", "time.sleep(1); contact(ask)", "the program did not answer in time", "500 ms",
-                         Outcome::timeout},
-                    Gone{"HalfAnAnswer", "os.write(1, b'{\"tap\": 2,'); time.sleep(60)",
-                         "the program did not end its answer in time: '{\"tap\": 2,'", "500 ms", Outcome::timeout},
-                    Gone{"Stubbornness", "import signal; signal.signal(15, signal.SIG_IGN); time.sleep(60)",
-                         "the program did not answer in time", "500 ms", Outcome::timeout},
-                    Gone{"ClosedStdout", "os.close(1); time.sleep(60)", "the program closed its stdin or stdout"},
-                    Gone{"Garbage", "print('moving', flush=True)", "the answer is not JSON: 'moving'"},
-                    Gone{"AnotherTap", "print('{\"tap\": 7}', flush=True)",
-                         "the answer is not that to tap 2: '{\"tap\": 7}'"}),
+    testing::Values(
+        Gone{"Exit", "os._exit(3)", "the program ended with exit status 3, its last output: 'begin'"},
+        Gone{"Signal", "os.kill(os.getpid(), 9)",
+             "the program was ended by signal 9 (Killed), its last output: 'begin'"},
+        Gone{"Crash", "os.kill(os.getpid(), 11)",
+             "the program was ended by signal 11 (Segmentation fault), its last output: 'begin'"},
+        Gone{"Silence", "time.sleep(60)", "the program did not answer in time", "1 s", Outcome::timeout},
+        // Nor is its answer taken for one to the next tap.
+        Gone{"LateAnswer", "time.sleep(1); contact(ask)", "the program did not answer in time", "500 ms",
+             Outcome::timeout},
+        Gone{"HalfAnAnswer", "os.write(1, b'{\"tap\": 2,'); time.sleep(60)",
+             "the program sent an incomplete answer until the deadline: '{\"tap\": 2,'", "500 ms", Outcome::timeout},
+        Gone{"Stubbornness", "import signal; signal.signal(15, signal.SIG_IGN); time.sleep(60)",
+             "the program did not answer in time", "500 ms", Outcome::timeout},
+        Gone{"ClosedStdout", "os.close(1); time.sleep(60)", "the program closed its stdin or stdout"},
+        Gone{"Garbage", "print('moving', flush=True)", "the answer is not JSON: 'moving'"},
+        Gone{"AnotherTap", "print('{\"tap\": 7}', flush=True)", "the answer does not belong to tap 2: '{\"tap\": 7}'"}),
     [](const auto& one) { return one.param.name; });
 
 class ProgramLeftBehind : public ProcessBackend {
@@ -103,7 +103,7 @@ TEST_F(ProgramLeftBehind, KeepsTheNextOneFromBeingStarted) {
     EXPECT_TRUE(contact.ends_run);
     expect_failure(contact, Outcome::aborted,
                    "the program of an earlier attempt, process " + std::to_string(other->pid()) +
-                       ", still runs: end it" + kSeeToIt);
+                       ", is still running: end it" + kSeeToIt);
   }
   EXPECT_FALSE(fs::exists(folder_.path() / "record" / "process.stderr.txt")) << "nothing was started";
 }

@@ -121,22 +121,22 @@ TEST_F(ProgramAcquisition, SendsTheArraysThatTheProgramNamesAndTakesItsScores) {
 TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoesInsteadOfScoring) {
   EXPECT_EQ(trouble("answer([1.0] * 5)"),
             "acquisition/program: the program answered with an array of the shape '(5,)', not (6,): '{'descr': '<f8', "
-            "'fortran_order': False, 'shape': (5,), }                       ...', correct it; with another program it "
-            "is another run");
+            "'fortran_order': False, 'shape': (5,), }                       ...', correct it; a changed program makes "
+            "a new run");
   EXPECT_THAT(trouble("answer([1.0] * 6, shape='(2, 3)')"), HasSubstr("an array of the shape '(2,3)', not (6,)"));
   EXPECT_THAT(trouble("answer([1.0] * 6, descr='<f4')"), HasSubstr("numbers of the type '<f4', not '<f8'"));
   EXPECT_THAT(trouble("answer([1.0] * 5 + [float('nan')])"),
               HasSubstr("gave candidate 5 the score nan, which is not a finite number"));
   EXPECT_THAT(trouble("print('[1, 2, 3, 4, 5, 6]', flush=True)"),
-              HasSubstr("answered with something that is no array in the format NPY 1.0: '[1, 2, 3, "));
-  EXPECT_THAT(trouble("sys.exit('no torch here')"),
-              testing::MatchesRegex("acquisition/program: the program ended with exit status 1, its last words: 'no "
-                                    "torch here', correct it, what it said is in .*/record/acquisition_"
-                                    "[0-9a-f]{8}.stderr.txt"));
+              HasSubstr("answered with data that is not an array in the format NPY 1.0: '[1, 2, 3, "));
+  EXPECT_THAT(
+      trouble("sys.exit('no torch here')"),
+      testing::MatchesRegex("acquisition/program: the program ended with exit status 1, its last output: 'no torch "
+                            "here', correct it, its output is in .*/record/acquisition_[0-9a-f]{8}.stderr.txt"));
   EXPECT_THAT(trouble("import numpy"), HasSubstr("Debian: apt install python3-numpy")) << "-S finds no packages";
   EXPECT_THAT(trouble("os.kill(os.getpid(), 9)"), HasSubstr("the program was ended by signal 9 (Killed)"));
   EXPECT_THAT(trouble("time.sleep(600)", ", deadline: 0.2 s, start: 0 s"),
-              AllOf(StartsWith("acquisition/program: the program gave no scores in time, nor ever before"),
+              AllOf(StartsWith("acquisition/program: the program sent no scores in time, nor ever before"),
                     HasSubstr("acquisition.deadline")));
   EXPECT_THAT(trouble("sys.stdout.buffer.write(npy([1.0] * 6)[:-1]); sys.stdout.buffer.flush(); time.sleep(600)",
                       ", deadline: 0.2 s, start: 0 s"),
@@ -144,7 +144,7 @@ TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoes
   const auto chatty = open(command(
       "for ask in asks():\n    sys.stdout.buffer.write(npy([1.0] * 6) + b'more')\n    sys.stdout.buffer.flush()\n"));
   EXPECT_EQ(scores(*chatty), std::vector<double>(6, 1.0));
-  EXPECT_THAT(error_of([&] { scores(*chatty); }), HasSubstr("the program said more than its scores"));
+  EXPECT_THAT(error_of([&] { scores(*chatty); }), HasSubstr("the program printed more than its scores"));
 }
 
 TEST_F(ProgramAcquisition, KeepsTheTextOfItsProgramWithTheRun) {
@@ -194,7 +194,7 @@ TEST_F(ProgramAcquisition, IsNotStartedWhereNoRecordIsKept) {
   context_.directory.clear();
   const auto acquisition = open(words);
   EXPECT_EQ(error_of([&] { scores(*acquisition); }),
-            "acquisition/program: no program is started outside a run, look at what the run recorded");
+            "acquisition/program: programs are started in a run only, use the values that the run recorded");
   EXPECT_FALSE(fs::exists("started"));
 }
 
@@ -205,22 +205,22 @@ TEST_F(ProgramAcquisition, SaysWhatIsWrongWithItsOptionsBeforeAnythingStarts) {
   EXPECT_EQ(refusal(command("")), "accepted");
   EXPECT_THAT(refusal(command("", "\"height\"")),
               AllOf(HasSubstr("plugin.command: reads=[...] in '"),
-                    HasSubstr("has 'height', which is none of uncertainty, label_mean, "),
+                    HasSubstr("has 'height', which is not one of uncertainty, label_mean, "),
                     HasSubstr("contacts (from above); uncertainty, surface_std, ")))
       << "the config has no reads";
-  EXPECT_THAT(refusal(command(""), ", reads: height"), HasSubstr("plugin.reads: has 'height', which is none of "));
+  EXPECT_THAT(refusal(command(""), ", reads: height"), HasSubstr("plugin.reads: has 'height', which is not one of "));
   EXPECT_THAT(refusal(command("reads=['height_mean']")), HasSubstr("the program has several reads=[...]"));
   EXPECT_EQ(refusal(command("reads=['height_mean']"), ", reads: \"height_mean\""), "accepted");
-  EXPECT_THAT(refusal("python3 -m mine"), HasSubstr("is not said, and 'python3 -m mine' names no file in"));
-  EXPECT_THAT(refusal("python3 -m mine"), HasSubstr("paths in it begin in the folder in which palpate is called"));
+  EXPECT_THAT(refusal("python3 -m mine"), HasSubstr("is not given, and 'python3 -m mine' names no file in"));
+  EXPECT_THAT(refusal("python3 -m mine"), HasSubstr("relative paths start in the current folder"));
   fs::create_directory(folder_.path() / "own");
   folder_.write("own/own.py", "# reads=[\"uncertainty\"]\n");
   EXPECT_THAT(refusal("python3 own/own.py", ", folder: " + yaml_quoted((folder_.path() / "own").string())),
-              HasSubstr("so call it in '" + folder_.path().string() + "'"));
+              HasSubstr("so call palpate in '" + folder_.path().string() + "'"));
   EXPECT_THAT(refusal(command("", "\"height_mean\", \"surface_std\"")),
               HasSubstr("names arrays of taps from above and arrays of taps from any side"));
   EXPECT_THAT(refusal("nobody-has-this x", ", reads: uncertainty"), HasSubstr("there is no program 'nobody-has-this'"));
-  EXPECT_THAT(refusal(command(""), ", checksum: other"), HasSubstr("put the program back that the run began with"));
+  EXPECT_THAT(refusal(command(""), ", checksum: other"), HasSubstr("restore the program that the run started with"));
 }
 
 TEST_F(ProgramAcquisition, BeginsInTheFolderThatTheConfigNames) {
@@ -238,7 +238,7 @@ TEST_F(ProgramAcquisition, AWaitForItsScoresIsBrokenOff) {
   const auto acquisition = open(command("for ask in asks(): time.sleep(600)\n"));
   interrupted_ = true;
   EXPECT_EQ(error_of([&] { scores(*acquisition); }),
-            "acquisition/program: the program was interrupted, 'palpate resume' carries on");
+            "acquisition/program: the program was interrupted, run 'palpate resume' to continue");
 }
 
 }  // namespace

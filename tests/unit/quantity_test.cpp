@@ -76,18 +76,18 @@ TEST(Quantity, RefusesABareNumberAnotherDimensionAndWhatIsNoUnitAndSaysWhatToWri
     Unit unit;
     std::string message;
   };
-  const Row rows[] = {{"0.017", Unit::metre, "'0.017' lacks its unit, write a length like '1.7 cm'"},
-                      {"0", Unit::second, "'0' lacks its unit, write a time like '500 ms'"},
-                      {"8", Unit::newton, "'8' lacks its unit, write a force like '10 N'"},
-                      {"8", Unit::radian, "'8' lacks its unit, write an angle like '30 deg'"},
-                      {"8", Unit::metre_per_second, "'8' lacks its unit, write a speed like '10 cm/s'"},
+  const Row rows[] = {{"0.017", Unit::metre, "'0.017' has no unit, write a length like '1.7 cm'"},
+                      {"0", Unit::second, "'0' has no unit, write a time like '500 ms'"},
+                      {"8", Unit::newton, "'8' has no unit, write a force like '10 N'"},
+                      {"8", Unit::radian, "'8' has no unit, write an angle like '30 deg'"},
+                      {"8", Unit::metre_per_second, "'8' has no unit, write a speed like '10 cm/s'"},
                       {"3 s", Unit::metre, "'3 s' is a time, not a length, write a length like '1.7 cm'"},
                       {"3 cm", Unit::newton, "'3 cm' is a length, not a force, write a force like '10 N'"},
-                      {"1 cm", Unit::none, "'1 cm' is not a plain number, this one has no unit"},
+                      {"1 cm", Unit::none, "'1 cm' is not a plain number, write it without a unit"},
                       {"3 cmm", Unit::metre, "unknown unit 'cmm', did you mean 'cm'?"},
                       {"3 inch", Unit::metre, "unknown unit 'inch', known: m, dm, cm, mm, um"},
                       {"3 degs", Unit::radian, "unknown unit 'degs', did you mean 'deg'?"},
-                      {"0x10", Unit::none, "'0x10' is not a plain number, this one has no unit"},
+                      {"0x10", Unit::none, "'0x10' is not a plain number, write it without a unit"},
                       {"0x10 m", Unit::metre, "unknown unit 'x10 m', known: m, dm, cm, mm, um"},
                       {"1,7 cm", Unit::metre, "'1,7 cm' has a decimal comma, write a point"},
                       {"1 2 cm", Unit::metre, "unknown unit '2 cm', known: m, dm, cm, mm, um"},
@@ -117,7 +117,7 @@ TEST(Quantity, RefusesLeadingZeros) {
   for (const char* text : {"010 cm", "-010 cm", "+01 cm", "00.5 m", "08 m"}) {
     EXPECT_EQ(quantity_refusal(text),
               std::string("c.yaml:2:5: x: '") + text +
-                  "' has a leading zero, octal numbers are not read: write it without the zero");
+                  "' has a leading zero, octal numbers are not supported: write it without the zero");
   }
   EXPECT_EQ(quantity_refusal("0.5 m"), "accepted");
 }
@@ -148,10 +148,10 @@ TEST(Integer, ReachesTheEndsOfItsRange) {
 TEST(Integer, IsRefusedUnlessItIsWholeAndInDecimal) {
   for (const char* text : {"1.5", "1.0", "1e3", "0x10", "17 taps", "1_000", "0b1", "0o17"}) {
     EXPECT_EQ(refused_integer(text),
-              std::string("c.yaml:2:5: n: '") + text + "' is not a whole number, write digits alone");
+              std::string("c.yaml:2:5: n: '") + text + "' is not a whole number, write digits only");
   }
   EXPECT_EQ(refused_integer("010"),
-            "c.yaml:2:5: n: '010' has a leading zero, octal numbers are not read: write it without the zero");
+            "c.yaml:2:5: n: '010' has a leading zero, octal numbers are not supported: write it without the zero");
 }
 
 TEST(WrittenQuantity, IsTheShortestTextWithItsUnit) {

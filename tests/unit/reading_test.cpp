@@ -86,9 +86,9 @@ TEST_F(AReading, FollowsLinksOfTheUserAndNoneInARecord) {
 
 TEST_F(AReading, IsToldOfInWords) {
   EXPECT_EQ(words_of(read_bounded(folder_.write("x", "12345"), 4, Origin::record), 4).reason,
-            "is too large for what it should hold: at most 4 bytes are read");
+            "is too large for its purpose: at most 4 bytes are read");
   EXPECT_EQ(words_of({Kind::too_large, {}}, 512 << 20).reason,
-            "is too large for what it should hold: at most 512 MiB are read");
+            "is too large for its purpose: at most 512 MiB are read");
 }
 
 TEST(Printable, KeepsTextAndLineEndsAndShowsWhatATerminalWouldObey) {

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 using Lines = std::vector<std::string>;
 
-const std::string kPutBack = ", put the file back as it was, or begin anew with 'palpate run --force'";
+const std::string kPutBack = ", put the file back as it was, or start again with 'palpate run --force'";
 
 std::string joined(const Lines& lines) {
   return std::accumulate(lines.begin(), lines.end(), std::string(),
@@ -133,27 +133,25 @@ TEST_F(Record, ThatIsSoundHasEachOfItsParts) {
 
 TEST_F(Record, Law1BeginsWithItsManifestAndHasNoOther) {
   const Sound sound;
-  EXPECT_EQ(refusal(sound.without(0)), ":1: is not the manifest, with which a record begins" + kPutBack);
-  EXPECT_EQ(refusal(sound.with(0, "{}")), ":1: is not the manifest, with which a record begins" + kPutBack);
+  EXPECT_EQ(refusal(sound.without(0)), ":1: is not the manifest, which must be the first line" + kPutBack);
+  EXPECT_EQ(refusal(sound.with(0, "{}")), ":1: is not the manifest, which must be the first line" + kPutBack);
   EXPECT_EQ(refusal(sound.with(1, sound.lines[0])), ":2: is a second manifest" + kPutBack);
   EXPECT_THAT(refusal(R"({"manifest": 2})"
                       "\n"),
-              HasSubstr(":1: is of a later version"));
+              HasSubstr(":1: has a later version"));
 }
 
 TEST_F(Record, Law2CountsItsAttemptsWithTheirTapsAndSetsEachUp) {
   const Sound sound;
-  EXPECT_EQ(refusal(sound.without(1)),
-            ":2: does not follow the attempt that it belongs to: a line is missing" + kPutBack);
+  EXPECT_EQ(refusal(sound.without(1)), ":2: does not follow its attempt: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.without(Sound::kSetup)),
             ":3: has tap 1 before its attempt was set up: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.with(2, R"({"attempt": 3, "after_tap": 0})")),
-            ":3: has attempt 3 where attempt 2 belongs: a line is missing" + kPutBack);
+            ":3: has attempt 3 instead of attempt 2: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.first(3) + R"({"attempt": 2, "after_tap": 1})"
                                      "\n"),
-            ":4: begins behind tap 1, and 0 taps stand before it: a line is missing" + kPutBack);
-  EXPECT_EQ(refusal(sound.without(Sound::kAttempt)),
-            ":7: does not follow the attempt that it belongs to: a line is missing" + kPutBack);
+            ":4: starts after tap 1, but 0 taps precede it: a line is missing" + kPutBack);
+  EXPECT_EQ(refusal(sound.without(Sound::kAttempt)), ":7: does not follow its attempt: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.first(2) + R"({"attempt": 2, "after_tap": 0})"
                                      "\n"),
             "")
@@ -164,9 +162,8 @@ TEST_F(Record, Law3CountsItsTaps) {
   const Sound sound;
   const std::string begun = begun_record();
   EXPECT_EQ(refusal(begun + "{\"tap\": 1}\n{\"tap\": 2}\n"), "");
-  EXPECT_EQ(refusal(begun + "{\"tap\": 2}\n"), ":4: has tap 2 where tap 1 belongs: a line is missing" + kPutBack);
-  EXPECT_EQ(refusal(begun + "{\"tap\": 1}\n{\"tap\": 1}\n"),
-            ":5: has tap 1 a second time, where tap 2 belongs" + kPutBack);
+  EXPECT_EQ(refusal(begun + "{\"tap\": 2}\n"), ":4: has tap 2 instead of tap 1: a line is missing" + kPutBack);
+  EXPECT_EQ(refusal(begun + "{\"tap\": 1}\n{\"tap\": 1}\n"), ":5: has tap 1 a second time instead of tap 2" + kPutBack);
   for (const char* number : {"\"2\"", "2.5", "null", "true", "-1", "0"})
     EXPECT_NE(refusal(begun + "{\"tap\": 1}\n{\"tap\": " + number + "}\n"), "") << number;
 }
@@ -199,7 +196,7 @@ TEST_F(Record, Law5HasTheTimesOfATapBehindIt) {
   const Sound sound;
   EXPECT_EQ(refusal(sound.without(Sound::kTiming)), "") << "a kill may lose them";
   EXPECT_EQ(refusal(sound.with(Sound::kAttempt, sound.lines[Sound::kTiming])),
-            ":7: has the times of tap 1, and does not follow it" + kPutBack);
+            ":7: has the times of tap 1, but does not follow that tap" + kPutBack);
   EXPECT_EQ(refusal(sound.instead(Sound::kTiming, R"({"timing": 1, "robot": "long"})")),
             ":6: has no number 'robot'" + kPutBack);
 }
@@ -207,11 +204,10 @@ TEST_F(Record, Law5HasTheTimesOfATapBehindIt) {
 TEST_F(Record, Law6HasNothingBehindAnEndThatIsDone) {
   const Sound sound;
   for (const char* line : {R"({"note": "x"})", R"({"attempt": 3, "after_tap": 2})", R"({"end": "done"})"})
-    EXPECT_EQ(refusal(joined(sound.lines) + line + "\n"),
-              ":14: stands behind the end of a run that is done" + kPutBack);
+    EXPECT_EQ(refusal(joined(sound.lines) + line + "\n"), ":14: follows the end of a finished run" + kPutBack);
   EXPECT_EQ(refusal(sound.first(6) + R"({"end": "done", "summary": {"taps": 2}})"
                                      "\n"),
-            ":7: ends a run of 2 taps, and 1 stand before it: a line is missing" + kPutBack);
+            ":7: ends a run of 2 taps, but 1 taps precede it: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.without(Sound::kLastTap)).substr(0, 3), ":10");
   for (const char* how : {"failed", "interrupted"}) {
     const std::string ended = sound.first(6) + fmt::format("{{\"end\": \"{}\"}}\n", how);
@@ -220,11 +216,11 @@ TEST_F(Record, Law6HasNothingBehindAnEndThatIsDone) {
               "");
     EXPECT_EQ(refusal(ended + R"({"note": "x"})"
                               "\n"),
-              ":8: stands behind the end of an attempt, and begins none" + kPutBack);
+              ":8: follows the end of an attempt but does not start a new one" + kPutBack);
   }
   EXPECT_THAT(refusal(sound.first(6) + R"({"end": "well"})"
                                        "\n"),
-              HasSubstr(":7: has no 'end' that is done, failed"));
+              HasSubstr(":7: has no 'end' with done, failed"));
 }
 
 TEST_F(Record, Law7LeavesOutALastLineWithoutItsEndAndNoOther) {
@@ -274,7 +270,8 @@ TEST_F(Record, BehindAnEndHoldsAnAttemptAndNothingElse) {
   for (const char* end : {"failed", "interrupted"}) {
     const std::string ended = sound.first(3) + "{\"end\": \"" + end + "\"}\n";
     EXPECT_EQ(refusal(ended), "");
-    EXPECT_EQ(refusal(ended + "{\"x\": 1}\n"), ":5: stands behind the end of an attempt, and begins none" + kPutBack);
+    EXPECT_EQ(refusal(ended + "{\"x\": 1}\n"),
+              ":5: follows the end of an attempt but does not start a new one" + kPutBack);
   }
 }
 
@@ -282,8 +279,9 @@ TEST_F(Record, WhoseVersionIsNoNumberIsNotTakenForALaterOne) {
   const Sound sound;
   EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": "x"})")), ":1: has no version 'manifest'" + kPutBack);
   EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": 0})")), ":1: has no version 'manifest'" + kPutBack);
-  EXPECT_EQ(refusal(sound.instead(0, R"({"manifest": 2})")),
-            ":1: is of a later version than this palpate reads, take a palpate as new as the one that wrote it");
+  EXPECT_EQ(
+      refusal(sound.instead(0, R"({"manifest": 2})")),
+      ":1: has a later version than this palpate can read, use a palpate at least as new as the one that wrote it");
 }
 
 TEST_F(Record, NamesNoFileOutsideItsFolder) {
@@ -291,8 +289,10 @@ TEST_F(Record, NamesNoFileOutsideItsFolder) {
   for (const char* name : {"../x", "/etc/passwd", "..", ".", "", "maps/x"}) {
     const std::string end =
         fmt::format(R"({{"end": "failed", "files": {{"{}": {{"bytes": 1, "hash": "0"}}}}}})", name) + "\n";
-    EXPECT_THAT(refusal(sound.first(3) + end), HasSubstr(", or a file that is not beside it" + kPutBack)) << name;
-    EXPECT_THAT(error_of([&] { read_record_end(run()); }), HasSubstr(", or a file that is not beside it" + kPutBack));
+    EXPECT_THAT(refusal(sound.first(3) + end), HasSubstr(", or names a file that is not in its folder" + kPutBack))
+        << name;
+    EXPECT_THAT(error_of([&] { read_record_end(run()); }),
+                HasSubstr(", or names a file that is not in its folder" + kPutBack));
   }
 }
 

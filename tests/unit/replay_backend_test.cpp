@@ -42,7 +42,8 @@ TEST_F(ReplayBackend, AnswersByPlaceWithAllThatWasRecorded) {
 TEST_F(ReplayBackend, ReadsATableWithAByteOrderMarkAndBlankLinesAtItsEnd) {
   for (const char* end : {"", "\n", "\n\n", "\r\n\r\n", "\n  \n"})
     EXPECT_EQ(refusal("\xef\xbb\xbfx,y,outcome,height\n0.1,0.1,contact,0.05" + std::string(end)), "accepted");
-  EXPECT_THAT(refusal("x,y,outcome,height\n\n0.1,0.1,contact,0.05\n"), HasSubstr("scan.csv:2: has another number of"));
+  EXPECT_THAT(refusal("x,y,outcome,height\n\n0.1,0.1,contact,0.05\n"),
+              HasSubstr("scan.csv:2: has a different number of"));
 }
 
 TEST_F(ReplayBackend, TapsOfOnePlaceAreToldApartByTheirNumberWhateverCameBefore) {
@@ -60,7 +61,7 @@ TEST_F(ReplayBackend, TapsOfOnePlaceAreToldApartByTheirNumberWhateverCameBefore)
 TEST_F(ReplayBackend, ANumberOfATapThatIsNoneIsRefused) {
   for (const char* number : {"1e300", "-1", "1.5", "2147483648"}) {
     EXPECT_THAT(refusal(std::string("tap,x,y,outcome,height\n") + number + ",0.1,0.1,contact,0.1\n"),
-                HasSubstr(std::string("scan.csv:2: tap: '") + number + "' is not a whole number from 0 on"));
+                HasSubstr(std::string("scan.csv:2: tap: '") + number + "' is not a whole number of at least 0"));
   }
 }
 
@@ -84,7 +85,7 @@ TEST_F(ReplayBackend, CellsInQuotesMayHoldCommasQuotesAndLineEnds) {
   EXPECT_THAT(refusal("x,y,outcome,height,note\n1,1,contact,1,\"a\nb\"\n1,1,touched,1,\n"),
               HasSubstr("scan.csv:4: unknown outcome 'touched'"));
   EXPECT_THAT(refusal("x,y,outcome,height,\"=note\"\n1,1,\"contact,1,1\n"),
-              HasSubstr("scan.csv:2: has another number of"));
+              HasSubstr("scan.csv:2: has a different number of"));
 }
 
 TEST_F(ReplayBackend, TakesTheApostropheAwayThatKeepsSpreadsheetsFromComputing) {
@@ -145,14 +146,14 @@ TEST_F(ReplayBackend, WhatATableLacksOrCannotMeanIsNamedWithItsLine) {
   const std::string head = "x,y,outcome,height\n";
   const std::pair<std::string, const char*> cases[] = {
       {"x,y,outcome\n0.1,0.1,contact\n", "scan.csv: has no column 'height'"},
-      {"x,y,outcome,height,x\n1,1,contact,1,1\n", "scan.csv: has two columns 'x', take one away, or name it otherwise"},
+      {"x,y,outcome,height,x\n1,1,contact,1,1\n", "scan.csv: has two columns 'x', remove or rename one of them"},
       {head + "0.1,0.1,contact,0.1\n0.1,4cm,contact,0.1\n",
        "scan.csv:3: y: '4cm' is not a number, write it without a unit, such as"},
       {head + "0.1,0.1,contact,+-0.1\n", "scan.csv:2: height: '+-0.1' is not a number"},
       {head + "0.1,0.1,contact,nan\n", "scan.csv:2: height: 'nan' is not a number"},
       {head + "0.1,0.1,contact,\n", "scan.csv:2: lacks x, y or height"},
       {head + "0.1,0.1,hit,0.1\n", "scan.csv:2: unknown outcome 'hit'"},
-      {head + "0.1,0.1,contact\n", "scan.csv:2: has another number of cells"}};
+      {head + "0.1,0.1,contact\n", "scan.csv:2: has a different number of cells"}};
   for (const auto& [text, message] : cases) EXPECT_THAT(refusal(text), HasSubstr(message));
 }
 

@@ -95,9 +95,9 @@ TEST(ResolveAdopted, DropsAndListsOptionsThatALaterTypeLacks) {
 }
 
 TEST(ResolveAdopted, RefusesAPluginWhoseOptionHasTheNameOfAFieldBesideIt) {
-  EXPECT_EQ(
-      refusal<Clashing>("type: smooth\n"),
-      "c.yaml:1:1: kernel/smooth has an option 'scale', and so has the config, the plugin needs another name for it");
+  EXPECT_EQ(refusal<Clashing>("type: smooth\n"),
+            "c.yaml:1:1: kernel/smooth has an option 'scale', and the config has one of the same name, rename the "
+            "plugin's option");
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ TEST(Resolve, RefusesWhatNoFieldTakesWithItsPlaceAndTheNearestName) {
       {"flag:", "1: flag: nothing is not a truth value, write true or false"},
       {"choice: ritch", "9: choice: unknown value 'ritch', did you mean 'rich'?"},
       {"choice: [rich]", "9: choice: a list is not a name, known: plain, rich"},
-      {"pair: [1 cm, 2]", "14: pair: '2' lacks its unit, write a length like '1.7 cm'"},
+      {"pair: [1 cm, 2]", "14: pair: '2' has no unit, write a length like '1.7 cm'"},
       {"whole: [3]", "8: whole: is a list or a map, not a number, write a plain number"},
       {"text: [a]", "7: text: expects a text, not a list, write a word or two"},
       {"items: {width: 1 m}", "8: items: expects a list, write [{...}, {...}]"},

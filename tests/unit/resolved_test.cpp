@@ -88,8 +88,8 @@ TEST(ResolvedConfig, IsCompleteAndOneOfALaterVersionIsRefused) {
     });
   };
   EXPECT_EQ(trouble_with("complete: 2\na_key_of_version_2: 3"),
-            "config.yaml:1:11: complete: 2 is newer than 1, the latest known here, take a palpate as new as the one "
-            "that wrote it");
+            "config.yaml:1:11: complete: 2 is newer than 1, the latest version that this build reads, use a palpate at "
+            "least as new as the one that wrote it");
   EXPECT_EQ(trouble_with("complete: 0").substr(0, 28), "config.yaml:1:11: complete: ");
 }
 
@@ -103,7 +103,7 @@ TEST(ResolvedConfig, ThatIsCompleteTakesNeutralValuesForWhatItLacksAndIsRefusedW
   };
   EXPECT_EQ(read_without("scene", "touch").identity, config.identity);
   EXPECT_THAT(error_of([&] { read_without("label", "clip"); }),
-              testing::HasSubstr("'label.clip' is missing, what is complete gives every option"));
+              testing::HasSubstr("'label.clip' is missing, a config with 'complete' needs every option"));
 }
 
 TEST(ResolvedConfig, FollowsTheContentOfMeshesViewsAndProgramsAndNotTheirPaths) {
@@ -124,7 +124,7 @@ TEST(ResolvedConfig, FollowsTheContentOfMeshesViewsAndProgramsAndNotTheirPaths) 
 TEST(ResolvedConfig, RefusesAGridThatIsTooFineForAnyComputer) {
   EXPECT_EQ(
       refused_config({"candidates={spacing: 1 um}", "candidates.count=none"}),
-      "command line: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 a side are possible");
+      "command line: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 per side are possible");
   EXPECT_EQ(refused_config({"candidates.spacing=1e-300 m", "candidates.count=none"}).substr(0, 34),
             "command line: candidates.spacing: ");
   EXPECT_EQ(refused_config({"candidates.spacing=0.115 mm", "candidates.count=none"}), "accepted")
@@ -142,8 +142,9 @@ TEST(ResolvedConfig, TakesASearchInPlaceOfCountedTaps) {
   EXPECT_EQ(refused_config({"initial.design=search"}), "accepted") << "the count of the config goes with its design";
   EXPECT_EQ(refused_config({"initial.design=search", "taps=1"}), "accepted") << "it ends when the budget does";
   EXPECT_EQ(refused_config({"initial.design=search", "initial.smallest=22.9 cm"}), "accepted");
-  EXPECT_EQ(refused_config({"initial.design=search", "initial.smallest=23 cm"}),
-            "command line: initial.smallest: is not below the sides of the area, name the least width of the object");
+  EXPECT_EQ(
+      refused_config({"initial.design=search", "initial.smallest=23 cm"}),
+      "command line: initial.smallest: is not smaller than the sides of the area, give the least width of the object");
   EXPECT_EQ(refused_config({"initial.smallest=1 cm"}),
             "command line: unknown option 'smallest' of initial, known: design, count");
 }

@@ -167,7 +167,7 @@ TEST_F(RunFolder, IsWrittenToByNoForkedChildAndFreeAgainThoughThatLives) {
   run->record(tap(1, 0.09), kSeconds);
   const std::string recorded = text_of(folder / "record.jsonl");
   const auto child = ChildProcess::fork([&](const ChildProcess::Say& say) {
-    expect_nothing_is_written(*run, folder.string() + ": is held by the process that this one was forked from");
+    expect_nothing_is_written(*run, folder.string() + ": is held by the parent of this forked process");
     say(testing::Test::HasFailure() ? "written" : "refused");
     return ::pause();
   });

@@ -22,14 +22,14 @@ std::string object_refusal(const std::string& object) {
 
 TEST(SceneOptions, RefuseDimensionsThatMakeNoSolidATiltOfMoreThan80DegreesAndFieldsOfAnotherShape) {
   EXPECT_EQ(object_refusal("{type: dome, diameter: 10 cm, height: 51 mm}"),
-            "objects.0.height: is more than half the diameter, which makes half a ball");
+            "objects.0.height: is more than half the diameter, the height of a half ball");
   EXPECT_EQ(object_refusal("{type: ring, outer: 4 cm, inner: 4 cm}"),
             "objects.0.inner: is not less than the outer diameter");
   EXPECT_EQ(object_refusal("{type: l, length: 8 cm, width: 3 cm, thickness: 3 cm}"),
-            "objects.0.thickness: is not less than length and width, nothing would be left of the second bar");
+            "objects.0.thickness: is not less than length and width, which leaves no second bar");
   EXPECT_EQ(object_refusal("{type: cone, height: 0 cm}"), "objects.0.height: 0 cm is out of range");
   EXPECT_EQ(object_refusal("{type: wave, height: 1 cm, amplitude: 2 cm}"),
-            "objects.0.amplitude: is larger than the mean height, the top would dip below the desk");
+            "objects.0.amplitude: is larger than the mean height, so the top would be below the desk");
   EXPECT_EQ(object_refusal("{type: block, tilt: 80 deg}"), "accepted");
   EXPECT_EQ(object_refusal("{type: block, tilt: -80 deg}"), "accepted");
   EXPECT_EQ(object_refusal("{type: block, tilt: 80.1 deg}"), "objects.0.tilt: is more than 80 deg");
@@ -48,7 +48,7 @@ TEST(SceneOptions, RefuseOutlinesThatBoundNothing) {
   EXPECT_EQ(object_refusal("{type: polygon}"), "'objects.0.outline' is missing");
   EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm]]"), "objects.0.outline: needs three points or more");
   EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm], [4 cm, 4 cm], [0 cm, 0 cm]]"),
-            "objects.0.outline: points 4 and 1 are the same; it closes by itself");
+            "objects.0.outline: points 4 and 1 are equal; the outline closes by itself");
   EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 4 cm], [4 cm, 0 cm], [0 cm, 4 cm]]"),
             "objects.0.outline: edge 1 meets edge 3");
   EXPECT_EQ(outline("[[0 cm, 0 cm], [4 cm, 0 cm], [2 cm, 0 cm]]"), "objects.0.outline: folds back at point 2");

@@ -104,7 +104,7 @@ TEST(SideView, IsRefusedWhereAnotherWorldIsTappedThanTheScene) {
     const FromAnySide made(config.options, shared_host(), nullptr, std::make_shared<Elsewhere>());
     ADD_FAILURE() << "not refused";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("space.view: is made of the scene of the config"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("space.view: uses the scene of the config"));
   }
 }
 

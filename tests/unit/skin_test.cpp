@@ -244,8 +244,8 @@ std::string refusal(const std::string& type, const std::string& options) {
 
 TEST(SkinAndKernels, ThoseThatAreNotOfTheDistanceAloneAreRefused) {
   const char* const line =
-      "kernel: is not one of the distance alone, as surface: implicit needs it, choose one with a single length scale, "
-      "such as matern32";
+      "kernel: does not depend on the distance alone, as surface: implicit requires, choose one with a single length "
+      "scale, such as matern32";
   EXPECT_EQ(refusal("rbf", "{length_scale: 3 cm, length_scale_y: 2.9 cm}"), line);
   EXPECT_EQ(refusal("product", "{kernels: [{type: rbf, length_scale: 1 mm, length_scale_y: 9 m}, {type: matern32}]}"),
             line);
@@ -271,8 +271,8 @@ TEST(SkinAndKernels, NormalsAreRefusedWhereTheKernelHasNoSlopes) {
       ADD_FAILURE() << type;
     } catch (const Error& error) {
       EXPECT_STREQ(error.what(),
-                   "kernel: has no slopes at every place, and normals that a tool feels are slopes, choose matern32, "
-                   "matern52 or rbf");
+                   "kernel: is not differentiable everywhere, but measured surface normals need its derivatives, "
+                   "choose matern32, matern52 or rbf");
     }
   }
 }

@@ -84,7 +84,7 @@ TEST(PointFile, IsReadWhateverElementsStandBesideItsVertices) {
 TEST(PointFile, SaysWhatIsWrongWithIt) {
   const PointCloud one = PointCloud::Constant(3, 1, 0.5);
   const auto said = [](const std::string& bytes) { return error_of([&] { read_points(bytes, "view.ply"); }); };
-  EXPECT_THAT(said(""), HasSubstr("view.ply: is no PLY or cut short"));
+  EXPECT_THAT(said(""), HasSubstr("view.ply: is not a PLY file or is cut short"));
   EXPECT_THAT(said("solid\nend_header\n"), HasSubstr("does not begin with the line 'ply'"));
   EXPECT_THAT(said("ply\nformat ascii 1.0\nend_header\n"), HasSubstr("has no vertices"));
   EXPECT_THAT(said("ply\nformat ascii 1.0\nelement face 2\nproperty int a\nend_header\n1\n2\n"),
@@ -97,7 +97,7 @@ TEST(PointFile, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(said("ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n"),
               HasSubstr("a property of type 'list'"));
   EXPECT_THAT(said("ply\nformat bits 1.0\nelement vertex 1\nend_header\n"), HasSubstr("the format 'bits'"));
-  EXPECT_THAT(said("ply\nelement vertex many\nend_header\n"), HasSubstr("how many vertices"));
+  EXPECT_THAT(said("ply\nelement vertex many\nend_header\n"), HasSubstr("number of vertices"));
   EXPECT_THAT(said("ply\nelement vertex 99999999999\nend_header\n"), HasSubstr("at most 20000000 are read"));
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string whole = ply(one, format);
@@ -107,9 +107,9 @@ TEST(PointFile, SaysWhatIsWrongWithIt) {
   }
   EXPECT_THAT(said("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                    "end_header\n1 two 3\n"),
-              HasSubstr("something else than a number in vertex 1"));
+              HasSubstr("a value that is not a number in vertex 1"));
   EXPECT_THAT(said(ply(PointCloud::Constant(3, 2, std::nan("")), "binary_little_endian")),
-              HasSubstr("no point that is finite"));
+              HasSubstr("no finite point"));
 }
 
 /// What a camera above the scene sees of all places for which `sees` holds: a point every 2 mm, with normal noise, all
@@ -187,7 +187,7 @@ TEST(View, OfAnotherPlaceIsRefused) {
   const auto scene = object_i();
   const PointCloud far = PointCloud::Constant(3, 5, 9.0);
   EXPECT_THAT(error_of([&] { sights_of(far, {}, *scene); }),
-              HasSubstr("prior.depth: none of its 5 points lies in the area, mind their unit and pose"));
+              HasSubstr("prior.depth: none of its 5 points is in the area, check unit and pose"));
 }
 
 /// Runs of the default on object I whose near half a camera has seen.

@@ -79,13 +79,14 @@ TEST(Yaml, RefusesWhatIsNoPlainConfigWithItsPlace) {
       {"a: 1\n'a': 2\n", "c.yaml:2:1: duplicate key 'a', it is already at line 1, column 1"},
       {"a: {x: 1}\nb: {x: 1}\n", "accepted"},
       {"base: &b {x: 1}\nk:\n  <<: *b\n",
-       "c.yaml:3:3: merge keys ('<<') are not read, repeat the options, or put them into a group file and name it "
+       "c.yaml:3:3: merge keys ('<<') are not supported, repeat the options, or put them into a group file and name it "
        "under 'defaults'"},
       {"? [a, b]\n: 1\n", "c.yaml:1:3: a key must be plain text"},
       {"? {a: b}\n: 1\n", "c.yaml:1:3: a key must be plain text"},
-      {"a: !!int 5\n", "c.yaml:1:4: tags ('tag:yaml.org,2002:int') are not read, remove it"},
-      {"a: 1\nb: !include x.yaml\n", "c.yaml:2:4: tags ('!include') are not read, remove it"},
-      {"a: 1\n---\nb: 2\n", "c.yaml:3:1: a second document begins here, remove a '---' or a stray sign here or before"},
+      {"a: !!int 5\n", "c.yaml:1:4: tags ('tag:yaml.org,2002:int') are not supported, remove it"},
+      {"a: 1\nb: !include x.yaml\n", "c.yaml:2:4: tags ('!include') are not supported, remove it"},
+      {"a: 1\n---\nb: 2\n",
+       "c.yaml:3:1: a second document begins here, remove a '---' or a stray character here or above"},
       {"---\na: 1\n...\n", "accepted"},
       {"a: &x {b: *x}\n", "c.yaml:1:11: nested too deeply, at most 100 levels"},
       {"a: " + repeated("[", 99) + repeated("]", 99), "accepted"},
@@ -100,7 +101,7 @@ TEST(Yaml, RefusesWhatIsNoPlainConfigWithItsPlace) {
 }
 
 TEST(Yaml, RefusesAStrayCommaInsteadOfReadingDocumentsWithoutEnd) {
-  const std::string refused = "a second document begins here, remove a '---' or a stray sign here or before";
+  const std::string refused = "a second document begins here, remove a '---' or a stray character here or above";
   EXPECT_EQ(yaml_refusal("{name: x},"), "c.yaml:1:10: " + refused);
   EXPECT_EQ(yaml_refusal("#\n,"), "c.yaml:2:1: " + refused);
   EXPECT_EQ(parse_value("{a: 1},", "command line").text, "{a: 1},") << "what does not parse is text";
@@ -152,14 +153,15 @@ TEST(Yaml, RefusesAnAliasBombBeforeItUnfolds) {
     const std::string below = "*l" + std::to_string(i - 1);
     bomb += "l" + std::to_string(i) + ": &l" + std::to_string(i) + " [" + below + repeated(", " + below, 9) + "]\n";
   }
-  EXPECT_EQ(yaml_refusal(bomb), "c.yaml:1:37: too many values, aliases unfold to over 100000");
+  EXPECT_EQ(yaml_refusal(bomb),
+            "c.yaml:1:37: too many values, use fewer aliases: they expand to more than 100000 values");
 }
 
 TEST(Yaml, RefusesAliasesThatUnfoldToMuchText) {
   const std::string text = "a: &x " + std::string(500'000, 'y') + "\nb: [*x";
   EXPECT_EQ(yaml_refusal(text + ", *x]\n"), "accepted");
   EXPECT_EQ(yaml_refusal(text + repeated(", *x", 100'000) + "]\n"),
-            "c.yaml:1:4: too much text, aliases unfold to over 4 MiB");
+            "c.yaml:1:4: too much text, use fewer aliases: they expand to more than 4 MiB");
 }
 
 TEST(Yaml, RefusesAnUnknownAlias) {
@@ -266,7 +268,7 @@ TEST(YamlWriter, TellsWhatItsReaderWouldRefuse) {
   EXPECT_EQ(parse_yaml(to_yaml(tree), "config.yaml").canonical(), tree.canonical());
   const auto check = [&] { check_readable(tree, "c.yaml"); };
   const std::string refusal =
-      "c.yaml: too large with all that it leaves to defaults, at most 1 MiB and 100000 values in config.yaml";
+      "c.yaml: too large after the defaults are filled in, reduce config.yaml to at most 1 MiB and 100000 values";
   items.push_back(Tree::scalar("1"));
   EXPECT_EQ(error_of(check), refusal);
   items.assign(2, Tree::scalar(std::string(1 << 19, 'x')));

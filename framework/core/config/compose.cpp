@@ -42,7 +42,7 @@ fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, c
       fs::path file = root / folder / (name + ".yaml");
       if (fs::exists(file, trouble)) return file;
       if (trouble == std::errc::permission_denied) {
-        throw Error(file.string(), "cannot be looked for", "check the permissions of its folder");
+        throw Error(file.string(), "cannot be accessed", "check the permissions of its folder");
       }
     }
   }
@@ -59,15 +59,15 @@ fs::path shown(const fs::path& path) {
 constexpr Layer kLayersOfGroup = 16;
 
 [[noreturn]] void refuse_depth(const Place& place) {
-  throw Error(place.text(), fmt::format("groups build on each other more than {} deep", kLayersOfGroup),
-              "put what they hold into fewer files");
+  throw Error(place.text(), fmt::format("groups are nested more than {} levels deep", kLayersOfGroup),
+              "merge them into fewer files");
 }
 
 /// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
 /// name, and for a file that is being read already.
 void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
   if (!is_name(name))
-    throw Error(place.text(), fmt::format("'{}' is no name for the group {}", name, group), kNameHint);
+    throw Error(place.text(), fmt::format("'{}' is not a valid name in the group {}", name, group), kNameHint);
   const std::string link = group + "/" + name;
   const bool cyclic = std::find(chain.begin(), chain.end(), link) != chain.end();
   chain.push_back(link);
@@ -135,9 +135,10 @@ void mark_complete(Tree& config) {
   std::int64_t number = 0;
   trouble_in([&] { number = read_integer(*complete, "complete"); });  // resolving says what else is wrong
   if (number > kRecordVersion) {
-    throw Error(complete->place.text(),
-                fmt::format("complete: {} is newer than {}, the latest known here", number, kRecordVersion),
-                "take a palpate as new as the one that wrote it");
+    throw Error(
+        complete->place.text(),
+        fmt::format("complete: {} is newer than {}, the latest version that this build reads", number, kRecordVersion),
+        "use a palpate at least as new as the one that wrote it");
   }
   for_all(config, [](Tree& one) { one.complete = one.is_map(); });
 }
@@ -185,7 +186,7 @@ fs::path Composer::find_group(const std::string& group, const std::string& name,
   fs::path file = find_in(places.safe, group, name);
   if (file.empty()) {
     if (const fs::path doubtful = find_in(places.open, group, name); !doubtful.empty()) {
-      throw Error(place.text(), fmt::format("{} lies where others may put files", doubtful.string()),
+      throw Error(place.text(), fmt::format("{} is in a folder where other users can write", doubtful.string()),
                   "move the config and its groups to a folder of your own");
     }
   } else {
@@ -218,7 +219,7 @@ Error Composer::no_file(const std::string& group, const std::string& name, const
   for (const auto& [known, file] : files_of(group, beside)) names.push_back(known);
   return {place.text(), fmt::format("no file {}/{}.yaml", group, name),
           !names.empty() ? suggestion(name, names)
-                         : "looked beside the config, in 'configs' above it, ./configs and the program's configs"};
+                         : "put it beside the config, or into 'configs' above it, ./configs or the program's configs"};
 }
 
 Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
@@ -259,7 +260,7 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
     }
     if (!entry.value.is_map()) {
       throw Error(entry.place.text(), fmt::format("'{}' is not a group of options", entry.key),
-                  is_beside ? "write key: value below it, a name is not read here" : "write key: value below it");
+                  is_beside ? "write key: value below it, a name is not accepted here" : "write key: value below it");
     }
     if (is_beside) {
       Tree& slot = content.at(beside_group);
@@ -298,7 +299,7 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
     return choices;
   }
   if (defaults->kind != Tree::Kind::list) {
-    throw Error(defaults->place.text(), "defaults: expects a list", "write '- kernel: rbf', one group a line");
+    throw Error(defaults->place.text(), "defaults: expects a list", "write '- kernel: rbf', one group per line");
   }
   for (const Tree& item : defaults->items) {
     if (!item.is_map() || item.entries.size() != 1 || !item.entries.front().value.is_scalar()) {

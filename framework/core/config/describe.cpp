@@ -52,7 +52,7 @@ void check_neutral(Type type, const Field& field, const std::vector<Case>& cases
   const bool is_low = field.open_below ? !(value.real > field.least) : value.real < field.least;
   const bool is_number = value.kind == Kind::real || value.kind == Kind::integer;
   if (is_of_type() && !(is_number && (is_low || value.real > field.most))) return;
-  throw std::logic_error(fmt::format("the neutral value of '{}' is none that it can have", field.name));
+  throw std::logic_error(fmt::format("the neutral value of '{}' is outside its range", field.name));
 }
 
 class Describer final : public Fields {

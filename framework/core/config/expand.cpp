@@ -70,7 +70,7 @@ std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree,
   // (1.3 - 1) / 0.1 is 3.0000000000000004: rounding must not let the end in.
   const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
   if (!(count >= 1.0)) refuse(tree, key, "has no value", "the end must lie beyond the start");
-  if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "take a wider step");
+  if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "use a wider step");
   counted.add(static_cast<std::size_t>(count), tree.place, key);
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
@@ -107,8 +107,7 @@ std::optional<Call> parse_call(const Tree& value, const std::string& key, const 
   Call call{value.text.substr(0, open), {}};
   if (std::find(names.begin(), names.end(), call.name) == names.end()) return std::nullopt;
   if (value.text.back() != ')') {
-    refuse(value, key, "lacks its ')'",
-           fmt::format("within braces, where commas part entries, put it into quotes: \"{}(...)\"", call.name));
+    refuse(value, key, "has no closing ')'", fmt::format("inside braces, put it into quotes: \"{}(...)\"", call.name));
   }
   for (const std::string& part : split_top(value.text.substr(open + 1, value.text.size() - open - 2))) {
     call.bounds.push_back(parse_bound(boost::trim_copy(part), value, key, how_to));

@@ -84,8 +84,8 @@ void MapReader::retired(const Field& field, const FixedValue& last) {
   const bool is_last = complete_ && tree->is_scalar() &&
                        (last.kind == FixedValue::Kind::real ? quantity(*tree, field) == last.real : tree->text == text);
   if (is_last) return;
-  throw Error(tree->place.text(), fmt::format("option '{}' is no more", field.name),
-              complete_ ? fmt::format("only records that have {} can be read", text) : field.meaning);
+  throw Error(tree->place.text(), fmt::format("option '{}' no longer exists", field.name),
+              complete_ ? fmt::format("only records with the value {} can be read", text) : field.meaning);
 }
 
 void MapReader::require(bool holds, const char* field, const std::string& reason) {
@@ -120,8 +120,9 @@ const Tree* MapReader::find(const Field& field) {
 
 const Tree* MapReader::claim(const Field& field, Missing missing) {
   if (!adopted_.empty() && is_known(field.name)) {
-    throw Error(where(), fmt::format("{} has an option '{}', and so has {}", adopted_, field.name, owner()),
-                "the plugin needs another name for it");
+    throw Error(where(),
+                fmt::format("{} has an option '{}', and {} has one of the same name", adopted_, field.name, owner()),
+                "rename the plugin's option");
   }
   known_.emplace_back(field.name);
   claimed_ = find(field);
@@ -145,7 +146,7 @@ const Tree* MapReader::neutral(const Field& field, bool may_be_absent) {
   if (is_absent && !may_be_absent && !enters(field)) return nullptr;  // any value will do
   if (is_absent && !may_be_absent) {
     miss(field.name, {where(), fmt::format("'{}' is missing", name(field)),
-                      "what is complete gives every option: put it back, or take 'complete' away"});
+                      "a config with 'complete' needs every option: restore it, or remove 'complete'"});
     return nullptr;
   }
   neutral_ = Tree::scalar(is_absent ? "none" : constant_text(value, field.unit), value.kind == FixedValue::Kind::text);
@@ -231,7 +232,7 @@ void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::
     const Tree* last = &entry.value;  // who said any of it last
     for_all(entry.value, [&](const Tree& one) { last = one.layer > last->layer ? &one : last; });
     throw Error((last->layer > entry.value.layer ? last->place : entry.place).text(),
-                fmt::format("{} has no {}", plugin_, entry.key), fmt::format("take '{}' away", path_of(entry.key)));
+                fmt::format("{} has no {}", plugin_, entry.key), fmt::format("remove '{}'", path_of(entry.key)));
   }
   const std::string reason = fmt::format("unknown option '{}'", entry.key);
   if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));

@@ -50,7 +50,7 @@ Override parse_override(const std::string& text) {
   check_path(out.path, kCommandLine);
   if (const auto comment = comment_in(text.substr(equals + 1), out.value); comment != std::string::npos) {
     throw Error(kCommandLine, fmt::format("{}: '{}' is a comment", out.path, text.substr(equals + 1 + comment)),
-                "put the value in quotes of its own: KEY='\"a #b\"'");
+                "put the value in its own quotes: KEY='\"a #b\"'");
   }
   out.value.set_layer(kCommandLineLayer);
   return out;

@@ -102,7 +102,7 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   const std::size_t length = decimal_length(text);
   if (length == 0 && is_continuous_range(text)) {
     refuse(tree, name, fmt::format("'{}' is not a number", text),
-           "ranges are for the objects of scene.objects.draw.of and for the keys of sweep.sobol");
+           "use ranges only in scene.objects.draw.of and in the keys of sweep.sobol");
   }
   if (length == 0) refuse(tree, name, fmt::format("'{}' is not a number", text), unit);
   std::string_view rest = text.substr(length);
@@ -110,7 +110,7 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
   const std::string_view number = text.substr(0, length);
   if (looks_octal(number)) {
     refuse(tree, name, fmt::format("'{}' has a leading zero", text),
-           "octal numbers are not read: write it without the zero");
+           "octal numbers are not supported: write it without the zero");
   }
   return {number, rest};
 }
@@ -174,10 +174,10 @@ double read_quantity(const Tree& tree, const std::string& name, Unit unit) {
   }
   if (unit == Unit::none) {
     if (!symbol.empty())
-      refuse(tree, name, fmt::format("'{}' is not a plain number", tree.text), "this one has no unit");
+      refuse(tree, name, fmt::format("'{}' is not a plain number", tree.text), "write it without a unit");
     return to_double(number, 0, tree, name, unit);
   }
-  if (symbol.empty()) refuse(tree, name, fmt::format("'{}' lacks its unit", tree.text), unit);
+  if (symbol.empty()) refuse(tree, name, fmt::format("'{}' has no unit", tree.text), unit);
   for (const UnitName& known : kUnits) {
     if (known.name != symbol) continue;
     if (known.unit != unit) {
@@ -217,7 +217,7 @@ std::int64_t read_integer(const Tree& tree, const std::string& name) {
     refuse(tree, name, fmt::format("'{}' is out of range", tree.text), "at most 9223372036854775807");
   }
   if (result.ec != std::errc() || result.ptr != last || !rest.empty()) {
-    refuse(tree, name, fmt::format("'{}' is not a whole number", tree.text), "write digits alone");
+    refuse(tree, name, fmt::format("'{}' is not a whole number", tree.text), "write digits only");
   }
   return value;
 }

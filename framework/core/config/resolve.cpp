@@ -311,7 +311,7 @@ void check_beside(const Tree& group, const std::string& plugin, const std::strin
   for (const Tree::Entry& entry : group.entries) {
     if (option.empty() || entry.key != option) continue;
     throw Error(entry.place.text(), fmt::format("unknown option '{}' of {}", option, plugin),
-                fmt::format("write {}: {{...}} beside {}, not within", option, plugin));
+                fmt::format("write {}: {{...}} beside {}, not inside it", option, plugin));
   }
 }
 

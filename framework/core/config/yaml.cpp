@@ -130,7 +130,7 @@ class Reader final : public YAML::EventHandler {
     }
     // "?" is a plain value, "!" one in quotes or a block; all other tags are written by hand.
     if (!tag.empty() && tag != "?" && tag != "!") {
-      refuse(value.place, fmt::format("tags ('{}') are not read", tag), "remove it");
+      refuse(value.place, fmt::format("tags ('{}') are not supported", tag), "remove it");
     }
     count(value, open_.size());
     *slot = std::move(value);
@@ -141,7 +141,7 @@ class Reader final : public YAML::EventHandler {
     if (!key.is_scalar()) refuse(key.place, "a key must be plain text");
     if (map.entries.size() == kMaxKeys) refuse(key.place, "too many keys", "a map has at most 1000");
     if (key.text == "<<") {
-      refuse(key.place, "merge keys ('<<') are not read",
+      refuse(key.place, "merge keys ('<<') are not supported",
              "repeat the options, or put them into a group file and name it under 'defaults'");
     }
     for (const Tree::Entry& twin : map.entries) {
@@ -157,11 +157,13 @@ class Reader final : public YAML::EventHandler {
 
   /// Counts a value that lies so deep, and all in it, which only an alias brings along.
   void count(const Tree& value, std::size_t depth) {
-    if (++values_ > kMaxValues) refuse(value.place, "too many values", "aliases unfold to over 100000");
+    if (++values_ > kMaxValues)
+      refuse(value.place, "too many values", "use fewer aliases: they expand to more than 100000 values");
     if (depth > kMaxDepth) refuse(value.place, "nested too deeply", "at most 100 levels");
     text_bytes_ += value.text.size();
     for (const Tree::Entry& entry : value.entries) text_bytes_ += entry.key.size();
-    if (text_bytes_ > kMaxTextBytes) refuse(value.place, "too much text", "aliases unfold to over 4 MiB");
+    if (text_bytes_ > kMaxTextBytes)
+      refuse(value.place, "too much text", "use fewer aliases: they expand to more than 4 MiB");
     if (refused_) return;
     for (const Tree& item : value.items) count(item, depth + 1);
     for (const Tree::Entry& entry : value.entries) count(entry.value, depth + 1);
@@ -333,7 +335,7 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
     const YAML::Mark& mark = trouble.mark;
     const std::string at = mark.is_null() ? file : fmt::format("{}:{}:{}", file, mark.line + 1, mark.column + 1);
     if (dynamic_cast<const SecondDocument*>(&trouble) != nullptr)
-      throw Error(at, trouble.msg, "remove a '---' or a stray sign here or before");
+      throw Error(at, trouble.msg, "remove a '---' or a stray character here or above");
     // yaml-cpp's own words are "bad file", which mislead.
     if (dynamic_cast<const YAML::DeepRecursion*>(&trouble) != nullptr)
       throw Error(at, "nested too deeply", "at most 100 levels");
@@ -375,7 +377,8 @@ void check_readable(const Tree& config, const std::string& file) {
   int values = 0;  // as Reader counts them
   for_all(config, [&](const Tree&) { ++values; });
   if (to_yaml(config).size() <= kMostConfigBytes && values <= kMaxValues) return;
-  throw Error(file, "too large with all that it leaves to defaults", "at most 1 MiB and 100000 values in config.yaml");
+  throw Error(file, "too large after the defaults are filled in",
+              "reduce config.yaml to at most 1 MiB and 100000 values");
 }
 
 Tree parse_value(const std::string& text, const std::string& file) {

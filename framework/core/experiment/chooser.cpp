@@ -15,8 +15,8 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
       initial_(initial_design(options.initial, candidates, context.scene.area(), context.seed)),
       allowed_(Allowed::Constant(candidates.size(), true)) {
   if (!acquisition_->from_above()) {
-    throw Error("acquisition", options.acquisition.type + " scores approaches from any side alone",
-                "choose another, or a scene with touch: any");
+    throw Error("acquisition", options.acquisition.type + " only scores approaches from any side",
+                "choose another acquisition, or a scene with touch: any");
   }
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, candidates, context.scene.area(), Random(context.seed, "initial"));
@@ -103,7 +103,7 @@ const Eigen::VectorXd& Chooser::scores(const TapBelief& belief) {
   scores_.resize(candidates_.size());
   acquisition_->score(belief, scores_);
   if (all_finite(scores_)) return scores_;
-  throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
+  throw Error("acquisition/" + options_.acquisition.type, "returned a score that is not a finite number", {},
               Error::Kind::run);
 }
 

@@ -98,12 +98,12 @@ void Experiment::check_backend(const PastTap& tap) {
   const auto fail = [&](const std::string& reason, const std::string& hint = {}) {
     throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
   };
-  if (last.ends_run) fail(last.reason.empty() ? "cannot go on, and gives no reason" : last.reason);
+  if (last.ends_run) fail(last.reason.empty() ? "cannot continue and gives no reason" : last.reason);
   // One number that is none may be a glitch. So many in a row are none, and no model is made of a run of them.
   constexpr int kMostRefused = 10;
   refused_in_a_row_ = is_refused(last) ? refused_in_a_row_ + 1 : 0;
   if (refused_in_a_row_ == kMostRefused) {
-    fail(fmt::format("{} taps in a row failed, the last so: {}", kMostRefused, last.reason), "correct the backend");
+    fail(fmt::format("{} taps in a row failed, the last with: {}", kMostRefused, last.reason), "correct the backend");
   }
   const bool is_well = last.outcome == Outcome::contact || tap.is_without_contact();
   if (is_well) failed_in_a_row_ = 0;
@@ -112,9 +112,9 @@ void Experiment::check_backend(const PastTap& tap) {
   const std::optional<std::int64_t> most =
       options_.stop.failed_in_a_row || backend_->repeatable() ? options_.stop.failed_in_a_row : kOfARobot;
   if (!most || ++failed_in_a_row_ < *most) return;
-  fail(fmt::format("{} failed, the last so: {}", *most == 1 ? "a tap" : fmt::format("{} taps in a row", *most),
+  fail(fmt::format("{} failed, the last with: {}", *most == 1 ? "a tap" : fmt::format("{} taps in a row", *most),
                    last.reason.empty() ? "no reason given" : last.reason),
-       "see to it, then 'palpate resume --retry-failed' carries on; stop.failed_in_a_row sets how many");
+       "correct the cause, then run 'palpate resume --retry-failed'; stop.failed_in_a_row sets the limit");
 }
 
 Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& factory,

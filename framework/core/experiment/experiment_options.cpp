@@ -21,7 +21,7 @@ constexpr std::int64_t kPaperCount = 47;
 void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields) {
   const ExperimentOptions usual;
   const auto only = [&](const char* key, bool untouched) {
-    fields.require(untouched, key, "is of taps from above and means nothing from any side, take it away");
+    fields.require(untouched, key, "applies to taps from above only, remove it or choose scene.touch: top");
   };
   only("candidates.spacing", !options.candidates.spacing);
   only("candidates.count", options.candidates.count == kPaperCount);
@@ -72,7 +72,7 @@ void CandidateOptions::list(Fields& fields) {
   // The default belongs into the resolved config, unless spacing takes its place.
   if (!spacing && !count) count = kPaperCount;
   fields.integer(count, Field("count", "number of grid cells per side").at_least(1).at_most(kMaxCellsPerSide));
-  fields.require(!(count && spacing), "spacing", "give either count or spacing, and set the other to none");
+  fields.require(!(count && spacing), "spacing", "give either count or spacing; set the other one to none");
 }
 
 void ProcessOptions::list_plugins(Fields& fields) {
@@ -133,9 +133,10 @@ void LabelOptions::list(Fields& fields) {
   list_plugins(fields);
   const bool shared = hyperparameters == Hyperparameters::shared;
   fields.require(!shared || !kernel, "kernel",
-                 "the labels have the heights' kernel when hyperparameters are shared; take it away, or choose own");
-  fields.require(!shared || !fitting, "fitting",
-                 "the labels are fitted with the heights when hyperparameters are shared; take it away, or choose own");
+                 "the labels use the kernel of the heights when hyperparameters are shared; remove it, or choose own");
+  fields.require(
+      !shared || !fitting, "fitting",
+      "the labels are fitted together with the heights when hyperparameters are shared; remove it, or choose own");
 }
 
 void EngineOptions::list(Fields& fields) {
@@ -317,19 +318,18 @@ void ExperimentOptions::list(Fields& fields) {
   const double rows = cells(scene.area.depth);
   const bool any_side = scene.touch == SceneOptions::Touch::any;
   fields.require(any_side == (surface == Surface::implicit), "surface",
-                 any_side ? "scene.touch is any, what is touched from any side is believed by surface: implicit; "
-                            "strategy=any_side has it"
-                          : "implicit is for a scene with touch: any");
+                 any_side ? "scene.touch: any needs surface: implicit, which strategy=any_side sets"
+                          : "implicit needs a scene with touch: any");
   fields.require(!any_side || initial.design == InitialOptions::Design::random, "initial.design",
-                 "from any side the first taps are random");
+                 "must be random for taps from any side");
   if (any_side) refuse_what_is_from_above(*this, fields);
   fields.require(!space || surface == Surface::implicit, "space",
-                 "is of surface: implicit and means nothing from above, take it away");
-  fields.require(
-      std::max(columns, rows) <= kMaxCellsPerSide, "candidates.spacing",
-      fmt::format("cuts the area into {} x {} cells, at most {} a side are possible", columns, rows, kMaxCellsPerSide));
+                 "applies to surface: implicit only, remove it for taps from above");
+  fields.require(std::max(columns, rows) <= kMaxCellsPerSide, "candidates.spacing",
+                 fmt::format("cuts the area into {} x {} cells, at most {} per side are possible", columns, rows,
+                             kMaxCellsPerSide));
   fields.require(!initial.searches() || initial.smallest < std::min(scene.area.width, scene.area.depth),
-                 "initial.smallest", "is not below the sides of the area, name the least width of the object");
+                 "initial.smallest", "is not smaller than the sides of the area, give the least width of the object");
   fields.require(any_side || initial.searches() || static_cast<double>(initial.count) <= columns * rows,
                  "initial.count",
                  fmt::format("{} taps, but there are only {} candidates, take fewer first taps or more candidates",

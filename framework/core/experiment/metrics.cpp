@@ -67,7 +67,7 @@ void require_finite(const Errors& errors, int taps) {
         errors.rms_surface_distance, errors.f_score, errors.coverage, errors.volume_iou}) {
     if (std::isfinite(one.value_or(0.0))) continue;
     throw Error("maps", fmt::format("their errors are not finite numbers after tap {}", taps),
-                "look for heights that no arm reports, or choose a larger height.noise", Error::Kind::run);
+                "check for heights that no arm can report, or choose a larger height.noise", Error::Kind::run);
   }
 }
 

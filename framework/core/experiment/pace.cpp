@@ -66,9 +66,10 @@ Pace::Choice Pace::choose(const TapBelief& belief, int candidate, const Target& 
 
 void Pace::observe(const PastTap& tap, const std::optional<Target>& previous) {
   if (tap.motion < 0 || tap.motion >= motions_->count()) {
-    throw Error(
-        "", fmt::format("a recorded tap was made by motion {}, but the config has {}", tap.motion, motions_->count()),
-        "the record is damaged", Error::Kind::run);
+    throw Error("",
+                fmt::format("a recorded tap was made by motion {}, but the config has {} motions", tap.motion,
+                            motions_->count()),
+                "the record is damaged", Error::Kind::run);
   }
   Shown& shown = shown_[static_cast<std::size_t>(tap.motion)];
   ++shown.taps;

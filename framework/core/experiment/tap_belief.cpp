@@ -372,7 +372,7 @@ void TapBelief::map_footprint() {
 }
 
 const Eigen::VectorXd& TapBelief::kept(const Eigen::VectorXd& map) const {
-  if (map.size() == 0) throw std::logic_error("a map of the belief is read for which nobody asked");
+  if (map.size() == 0) throw std::logic_error("a map of the belief is read that no reads() names");
   if (!current_) throw std::logic_error("a map of the belief is read that is older than the last tap");
   return map;
 }

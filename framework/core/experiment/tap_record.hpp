@@ -105,7 +105,7 @@ constexpr const char* kStoppedByUser = "interrupted";
 
 /// The reasons of a tap that failed because its height is none, or because it ended where the tool never was.
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
-constexpr const char* kAlongRefused = "the backend reported an end that is not on the way of the tool";
+constexpr const char* kAlongRefused = "the backend reported an end point that is not on the path of the tool";
 constexpr const char* kNumberRefused = "the backend reported a force or a time that is not a finite number";
 /// Whether a tap failed for one of these.
 inline bool is_refused(const Contact& contact) {

@@ -20,9 +20,9 @@ struct Choice {
 
 Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
                    double error) {
-  if (settings.engine != Kind::automatic) return {settings.engine, "asked for"};
+  if (settings.engine != Kind::automatic) return {settings.engine, "chosen by engine.type"};
   if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
-  if (!candidates.is_grid()) return {Kind::dense, "the candidates are no product grid"};
+  if (!candidates.is_grid()) return {Kind::dense, "the candidates are not a product grid"};
   if (!(settings.accuracy > 0.0)) return {Kind::dense, "no error is allowed"};
   if (error > settings.accuracy) {
     return {Kind::grid,
@@ -47,8 +47,8 @@ Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, cons
 
 std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates) {
   if (settings.engine == Kind::automatic || settings.engine == Kind::dense) return {};
-  if (!kernel.separable()) return "which is not separable: no product of a factor along x and one along y";
-  if (!candidates.is_grid()) return "as the candidates are no product grid";
+  if (!kernel.separable()) return "which is not a product of a factor along x and a factor along y";
+  if (!candidates.is_grid()) return "because the candidates are not a product grid";
   return {};
 }
 

@@ -28,7 +28,7 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
       posterior_(std::move(posterior)),
       factor_(*posterior_.machine.loops) {
   const std::string why = objection(posterior_, *kernel_, candidates_);
-  if (!why.empty()) throw Error("posterior", "cannot be used with this kernel, " + why);
+  if (!why.empty()) throw Error("engine", "cannot be used with this kernel, " + why);
   take_prior();
   choose();
   reserve(1);
@@ -151,7 +151,7 @@ void Process::update_maps() {
 }
 
 void Process::require_maps() const {
-  if (taken_ != factor_.size()) throw std::logic_error("a map of a process is read that is older than its taps");
+  if (taken_ != factor_.size()) throw std::logic_error("a map of a GP is read that is older than its taps");
 }
 
 void Process::take_rows() {
@@ -232,7 +232,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
     kernel_->set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
     summary.changed = false;
     summary.failed = true;
-    summary.reason = "a number that is not finite and positive was refused; " + summary.reason;
+    summary.reason = "a number that is not finite and positive was rejected; " + summary.reason;
     return summary;
   }
   ++generation_;

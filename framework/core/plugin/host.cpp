@@ -121,8 +121,9 @@ const PluginManifest& check_manifest(const boost::dll::shared_library& library, 
            "build it with the same compiler flags (-march, -mavx and their like) as the program");
   }
   if (kind != manifest.kind || name != manifest.name) {
-    refuse(file, "comparing the name", fmt::format("the library says it is {}/{}", manifest.kind, manifest.name),
-           "folder and file must be named like the plugin");
+    refuse(file, "comparing the name",
+           fmt::format("the library contains the plugin {}/{}", manifest.kind, manifest.name),
+           "name folder and file like the plugin");
   }
   return manifest;
 }
@@ -146,7 +147,7 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
   } catch (const std::exception& trouble) {
     throw Error(place, fmt::format("{} {}: {}", plugin, failure, trouble.what()));
   } catch (...) {
-    throw Error(place, fmt::format("{} {}: it threw something that is no exception", plugin, failure));
+    throw Error(place, fmt::format("{} {}: it threw an object that is not a std::exception", plugin, failure));
   }
 }
 
@@ -161,7 +162,7 @@ std::string trouble_of_folder(const fs::path& folder) {
     const std::vector<fs::path> files = list_folder(folder / kind);
     return std::any_of(files.begin(), files.end(), [](const fs::path& file) { return file.extension() == ".so"; });
   });
-  return any ? "" : "holds no plugin, which is KIND/NAME.so in it";
+  return any ? "" : "contains no plugin KIND/NAME.so";
 }
 
 }  // namespace
@@ -181,14 +182,14 @@ class PluginHost::Library {
  public:
   Library(const fs::path& from, const std::string& kind, const std::string& name) : file(from) {
     std::error_code trouble;
-    if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a file that is not there");
+    if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a missing file");
     if (!fs::is_regular_file(file, trouble)) refuse(file, "opening", "not a regular file");
     const std::string bytes = read_library(file);
     check_complete(file, bytes);
     try {
       library.load(fs::absolute(file).string(), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
     } catch (const std::exception& failure) {
-      refuse(file, "loading", dlerror_part(failure.what()), "a plugin links all that it uses");
+      refuse(file, "loading", dlerror_part(failure.what()), "link the plugin with all libraries that it uses");
     }
     manifest = &check_manifest(library, file, kind, name);
     hash = hash_of_loaded(bytes);
@@ -264,7 +265,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
   const std::lock_guard lock(mutex_);
   auto& slot = libraries_[{kind, name}];
   if (slot) return slot;
-  if (!is_name(name)) throw Error("", fmt::format("'{}' is not the name of a plugin", name), kNameHint);
+  if (!is_name(name)) throw Error("", fmt::format("'{}' is not a valid name of a plugin", name), kNameHint);
   std::vector<fs::path> found;
   for (const fs::path& folder : folders_) {
     std::error_code none;
@@ -275,7 +276,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
     for (const fs::path& folder : folders_) {
       if (plugins_of_build(folder).count({kind, name}) != 0) {
         throw Error("", fmt::format("plugin {}/{} is not built", kind, name),
-                    fmt::format("./palpate builds it, or 'cmake --build {} --target palpate_{}_{}'",
+                    fmt::format("build it with ./palpate, or with 'cmake --build {} --target palpate_{}_{}'",
                                 (folder / ".." / "..").lexically_normal().string(), kind, name));
       }
       const std::string trouble = trouble_of_folder(folder);
@@ -293,7 +294,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
   }
   if (found.size() > 1) {
     throw Error("",
-                fmt::format("plugin {}/{} is there twice: {} and {}", kind, name, found[0].string(), found[1].string()),
+                fmt::format("plugin {}/{} exists twice: {} and {}", kind, name, found[0].string(), found[1].string()),
                 "remove one, or build it under another name");
   }
   slot = std::make_shared<const Library>(found.front(), kind, name);

@@ -55,8 +55,8 @@ void look_apart(const std::function<std::string()>& look, PluginListing& row) {
     }
     return kSound;
   });
-  const std::string trouble = !child ? fmt::format("no process to look at it: {}", std::strerror(errno))
-                              : !child->wait(kPatience) ? fmt::format("came to no end within {:.0f} s", kPatience)
+  const std::string trouble = !child ? fmt::format("cannot start a child process to load it: {}", std::strerror(errno))
+                              : !child->wait(kPatience) ? fmt::format("did not finish within {:.0f} s", kPatience)
                                                         : trouble_of(child->status());
   if (!trouble.empty()) {
     row.trouble = fmt::format("{}: loading: {}, build or copy it again", row.file.string(), trouble);

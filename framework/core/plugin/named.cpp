@@ -53,7 +53,7 @@ class Declared final : public Belief {
  private:
   const Belief& declared(Quantity one, const char* name) const {
     if (reads_.has(one)) return belief_;
-    throw Undeclared(name_, std::string("reads ") + name + ", which its reads() does not name", "add it there",
+    throw Undeclared(name_, std::string("reads ") + name + ", which its reads() does not list", "add it there",
                      Error::Kind::run);
   }
 
@@ -93,7 +93,7 @@ class Named : public Interface {
     } catch (const std::exception& trouble) {
       throw Error(name_, trouble.what(), {}, Error::Kind::run);
     } catch (...) {
-      throw Error(name_, "threw something that is no exception", {}, Error::Kind::run);
+      throw Error(name_, "threw an object that is not a std::exception", {}, Error::Kind::run);
     }
   }
 
@@ -101,7 +101,7 @@ class Named : public Interface {
   template <class Values>
   void require_finite(const char* function, const Values& values) const {
     if (are_finite(values)) return;
-    throw Error(name_, std::string(function) + " gave a number that is not finite", "correct the plugin",
+    throw Error(name_, std::string(function) + " returned a number that is not finite", "correct the plugin",
                 Error::Kind::run);
   }
 
@@ -298,7 +298,7 @@ class NamedMotions final : public Motions {
  private:
   double finite(const char* function, double value) const {
     if (std::isfinite(value)) return value;
-    throw Error(name_, std::string("its motions' ") + function + " gave a number that is not finite",
+    throw Error(name_, std::string("its motions' ") + function + " returned a number that is not finite",
                 "correct the plugin", Error::Kind::run);
   }
 

@@ -25,7 +25,7 @@ class Held final : public CallersRun {
   const TapRecord* begin(const Eigen::VectorXd* scores) override {
     if (finished()) return nullptr;
     if (tap_ && scores != nullptr) {
-      throw Error(fmt::format("tap {}", tap_->number), "is asked for already", "tell first what came of it");
+      throw Error(fmt::format("tap {}", tap_->number), "is pending", "call tell() with its result first");
     }
     if (tap_) return &*tap_;
     const std::optional<Wish> wish = scores != nullptr ? std::optional(Wish{*scores, {}}) : std::nullopt;
@@ -38,7 +38,7 @@ class Held final : public CallersRun {
   }
 
   void end(Contact contact) override {
-    if (!tap_) throw Error("tell", "no tap is asked for", "ask first where to tap");
+    if (!tap_) throw Error("tell", "no tap is pending", "call ask() first");
     if (const auto fault = find_fault(contact, bounds())) throw Error("tell", fault->reason, fault->remedy);
     contact.reason = plain_line(contact.reason);
     tap_->contact = std::move(contact);
@@ -49,7 +49,7 @@ class Held final : public CallersRun {
 
   const RunReport& finish() override {
     if (!finished()) {
-      if (tap_) throw Error(fmt::format("tap {}", tap_->number), "is asked for", "tell first what came of it");
+      if (tap_) throw Error(fmt::format("tap {}", tap_->number), "is pending", "call tell() with its result first");
       begun_.experiment->stop("ended by the caller");
       end_with({});
     }
@@ -90,7 +90,7 @@ class Held final : public CallersRun {
 
 /// What is said of a run that is there already.
 Error finished_error(const std::filesystem::path& directory) {
-  return Error(directory.string(), "this run is finished", "force moves it aside and runs again");
+  return Error(directory.string(), "this run is finished", "force=True moves it aside and runs again");
 }
 
 }  // namespace

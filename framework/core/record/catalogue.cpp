@@ -103,9 +103,9 @@ Error several(const std::string& words, const std::string& base, std::vector<fs:
     for (const std::string& one : settings[i]) apart += (apart.empty() ? "" : ", ") + one;
     shown.push_back(records[i].string() + (apart.empty() ? "" : " (" + apart + ")"));
   }
-  if (all > kShown) shown.push_back(fmt::format("{} that were begun before", all - kShown));
-  return Error(words, fmt::format("stands for {} {}: {}", all, noun, fmt::join(shown, "; ")),
-               fmt::format("give the directory of one, or {}{} for the last", base, kLatest));
+  if (all > kShown) shown.push_back(fmt::format("{} that were started earlier", all - kShown));
+  return Error(words, fmt::format("matches {} {}: {}", all, noun, fmt::join(shown, "; ")),
+               fmt::format("give the directory of one, or {}{} for the latest", base, kLatest));
 }
 
 /// What could be meant by a name that nothing has.
@@ -114,10 +114,10 @@ Error unknown(const std::string& words, const std::string& name, const fs::path&
   for (const fs::path& one : list_folder(runs)) known.push_back(one.filename().string());
   const std::string near = nearest(name, known);
   const bool misspelt = name.find('@') != std::string::npos;
-  return Error(words, fmt::format("is no folder, and in {} nothing has that name", runs.string()),
-               misspelt        ? fmt::format("behind a name {} alone may stand", kLatest)
+  return Error(words, fmt::format("is not a folder, and {} contains no run or sweep of that name", runs.string()),
+               misspelt        ? fmt::format("only {} may follow a name", kLatest)
                : !near.empty() ? fmt::format("did you mean '{}'?", near)
-                               : "'palpate list' shows what there is");
+                               : "run 'palpate list' to see all runs and sweeps");
 }
 
 /// The records that words mean.
@@ -227,7 +227,8 @@ std::vector<fs::path> find_records(const std::vector<std::string>& words, const 
     if (all) out.insert(out.end(), meant.records.begin(), meant.records.end());
     if (!all || meant.records.empty()) out.push_back(only_one(one, meant));
   }
-  if (out.empty()) throw Error("command line", "no sweep and no run is named", "'palpate list' shows what there is");
+  if (out.empty())
+    throw Error("command line", "no sweep and no run is given", "run 'palpate list' to see all runs and sweeps");
   return out;
 }
 

@@ -90,7 +90,7 @@ void take_back(RunDirectory& held, const std::optional<Ending>& before, const Er
 void check_worth_asking(const ResolvedConfig& config, const Experiment& experiment) {
   if (!experiment.backend().repeatable()) return;
   throw Error("command line",
-              fmt::format("--step: the taps of backend {} can be repeated, there is nothing to confirm",
+              fmt::format("--step: the taps of backend {} can be repeated and need no confirmation",
                           config.options.backend.type),
               "leave it out");
 }
@@ -206,21 +206,21 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
     const bool has_name = other.name.empty() || other.name == config.options.name;
     if (!has_name || (!other.identity.empty() && other.identity != config.identity)) {
       throw Error(where,
-                  has_name ? fmt::format("the run there is another one with the id {}", config.id)
-                           : fmt::format("the run there has the name '{}'", other.name),
-                  "give this one another name");
+                  has_name ? fmt::format("the folder contains another run with the id {}", config.id)
+                           : fmt::format("the folder contains a run with the name '{}'", other.name),
+                  "give this run another name");
     }
     switch (status.state) {
       case RunStatus::State::done:
         if (read_run_record(directory).build() == build_hash(workshop.host, config.notes.plugins)) return {};
         throw Error(where, "this run was finished by another build of palpate or its plugins",
-                    "--force moves it aside and runs again");
+                    "add --force to move it aside and run again");
       case RunStatus::State::failed:
         throw Error(where, fmt::format("this run failed: {}", status.stop_reason),
-                    "'palpate resume --retry-failed' carries on, --force starts again");
+                    "resume it with 'palpate resume --retry-failed', or start again with --force");
       default:
-        throw Error(where, fmt::format("this run was broken off after {} taps", status.taps),
-                    "'palpate resume' carries on, --force starts again");
+        throw Error(where, fmt::format("this run was interrupted after {} taps", status.taps),
+                    "resume it with 'palpate resume', or start again with --force");
     }
   }
   // Built before the directory is touched: what only building finds out leaves no trace.
@@ -233,8 +233,8 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
   auto held = std::make_unique<RunDirectory>(directory);
   // Another process may have run it, whole or in part, while this one was still building.
   if (read_record(directory).state != RunStatus::State::absent) {
-    throw Error(directory.string(), "another process has just run this", "run it again to see how it ended",
-                Error::Kind::busy);
+    throw Error(directory.string(), "another process has just finished this run",
+                "repeat the command to see how it ended", Error::Kind::busy);
   }
   sync_if_asked(config, *experiment, *held);
   held->write_config(to_yaml_with_places(config.tree));
@@ -252,8 +252,8 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
   if (end && end->how == Ending::How::done) return nullptr;
   check_who_taps(config, taps, "resume");
   if (end && end->how == Ending::How::failed && !options.retry_failed) {
-    throw Error(directory.string(), fmt::format("this run failed: {}", end->reason),
-                "--retry-failed carries on all the same", Error::Kind::run);
+    throw Error(directory.string(), fmt::format("this run failed: {}", end->reason), "resume it with --retry-failed",
+                Error::Kind::run);
   }
   const auto objection = options.force ? std::nullopt : objection_to_build(workshop, config, before);
   if (objection) throw *objection;
@@ -281,12 +281,12 @@ void check_who_taps(const ResolvedConfig& config, Taps taps, const std::string& 
   const bool by_caller = backend == kCaller;
   if (by_caller == (taps == Taps::by_caller)) return;
   if (by_caller) {
-    throw Error("backend", "the taps of this run are made by a program of somebody's own, not by palpate",
-                command == "run" ? "palpate.Experiment(...) in Python asks for them, or choose another backend"
-                                 : "palpate.Experiment.resume(DIR) in Python carries it on");
+    throw Error("backend", "the taps of this run are made by the caller's own program, not by palpate",
+                command == "run" ? "run it with palpate.Experiment(...) in Python, or choose another backend"
+                                 : "resume it with palpate.Experiment.resume(DIR) in Python");
   }
   throw Error("backend", fmt::format("the taps of this run are made by backend {}, not by a caller", backend),
-              command == "run" ? "choose the backend caller" : "'palpate resume' carries it on");
+              command == "run" ? "choose the backend caller" : "resume it with 'palpate resume'");
 }
 
 }  // namespace palpate

@@ -63,7 +63,7 @@ class Course {
     } catch (const std::exception& trouble) {
       return trouble.what();
     } catch (...) {
-      return "a plugin threw something that is no exception";
+      return "a plugin threw an object that is not a std::exception";
     }
   }
 

@@ -62,7 +62,7 @@ void collect(const Tree& map, const std::string& prefix, std::vector<Clause>& li
       continue;
     }
     const auto twin = std::find_if(lines.begin(), lines.end(), [&](const Clause& line) { return line.key == key; });
-    if (twin != lines.end()) throw Error(place_of(entry).text(), fmt::format("expect.{}: stands there twice", key));
+    if (twin != lines.end()) throw Error(place_of(entry).text(), fmt::format("expect.{}: is given twice", key));
     lines.push_back({key, place_of(entry), &entry.value});
   }
 }
@@ -119,7 +119,7 @@ const RecordField& read_key(const Clause& line, Expectation& out) {
 }
 
 std::string example(const RecordField& field, Statistic statistic) {
-  if (field.type == RecordField::Type::text) return "write the text that it has to be";
+  if (field.type == RecordField::Type::text) return "write the expected text";
   if (field.type == RecordField::Type::flag && statistic == Statistic::each) return "write true or false";
   if (field.unit == Unit::metre) return "write a comparison like '<= 2 cm'";
   if (field.unit == Unit::second) return "write a comparison like '<= 90 s'";

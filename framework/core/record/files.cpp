@@ -98,7 +98,8 @@ TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
   remove_temporaries_once(folder_of(file));
   for (int trial = 0; trial < kTrials; ++trial) {
     std::uint64_t unforeseen = 0;
-    if (::getrandom(&unforeseen, sizeof unforeseen, 0) != sizeof unforeseen) fail(file, "no random name for it");
+    if (::getrandom(&unforeseen, sizeof unforeseen, 0) != sizeof unforeseen)
+      fail(file, "cannot get a random name for a temporary file");
     const fs::path path = file.string() + fmt::format(".{:016x}{}", unforeseen, kTemporary);
     descriptor_ = open_file(path, O_RDWR | O_CREAT | O_EXCL);
     if (!descriptor_ && errno == EEXIST) continue;
@@ -111,7 +112,7 @@ TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
     if (!taken && what.st_nlink > 0) return;
     ::unlink(path.c_str());
   }
-  throw Error(file.string(), "no temporary file beside it stays there", "put --runs on another file system",
+  throw Error(file.string(), "temporary files beside it disappear", "put --runs on another file system",
               Error::Kind::run);
 }
 
@@ -171,13 +172,13 @@ std::optional<std::uintmax_t> size_if_there(const char* path) {
   struct stat what {};
   if (::stat(path, &what) == 0) return static_cast<std::uintmax_t>(what.st_size);
   if (shows_nothing(errno)) return std::nullopt;
-  fail(path, "cannot be looked at");
+  fail(path, "cannot be accessed");
 }
 
 void refuse_link(const fs::path& path) {
   std::error_code none;
   if (!fs::is_symlink(path, none)) return;
-  throw Error(path.string(), "is a link, and nothing in a record is read or written through one", "remove it",
+  throw Error(path.string(), "is a symbolic link, and links in a record are not followed", "remove it",
               Error::Kind::run);
 }
 
@@ -323,17 +324,18 @@ FileLock::~FileLock() {
 
 void FileLock::check() const {
   if (owner_ != ::getpid()) {
-    throw Error(file_.parent_path().string(), "is held by the process that this one was forked from",
-                "open it in the child, once the parent has closed it", Error::Kind::run);
+    throw Error(file_.parent_path().string(), "is held by the parent of this forked process",
+                "open it in the child after the parent has closed it", Error::Kind::run);
   }
   struct stat held {
   }, named{};
-  if (::fstat(descriptor_.number(), &held) != 0) fail(file_, "cannot be looked at");
+  if (::fstat(descriptor_.number(), &held) != 0) fail(file_, "cannot be accessed");
   const int there = ::fstatat(folder_.number(), file_.filename().c_str(), &named, AT_SYMLINK_NOFOLLOW);
   if (there == 0 && held.st_dev == named.st_dev && held.st_ino == named.st_ino) return;
-  if (there != 0 && errno != ENOENT) fail(file_, "cannot be looked at");
-  throw Error(file_.string(), "was moved or removed while a run was writing to it: another process may begin that run",
-              "put it back, then 'palpate resume' carries on", Error::Kind::run);
+  if (there != 0 && errno != ENOENT) fail(file_, "cannot be accessed");
+  throw Error(file_.string(),
+              "was moved or removed while a run was writing to it: another process may start the same run",
+              "move it back, then run 'palpate resume'", Error::Kind::run);
 }
 
 void FileLock::check_in_place() const {
@@ -344,7 +346,7 @@ void FileLock::check_in_place() const {
       held.st_ino == named.st_ino)
     return;
   throw Error(folder_of(file_).string(), "was moved or removed while a run was writing there",
-              "where it was moved to, 'palpate resume' carries on", Error::Kind::run);
+              "run 'palpate resume' on its new path", Error::Kind::run);
 }
 
 AppendFile FileLock::append_file() const {
@@ -356,7 +358,7 @@ AppendFile FileLock::append_file() const {
 bool FileLock::is_held(const fs::path& file) {
   // Nobody locks what is no file, and to open a device may already do something.
   struct stat what {};
-  if (::lstat(file.c_str(), &what) != 0 && !shows_nothing(errno)) fail(file, "cannot be looked at");
+  if (::lstat(file.c_str(), &what) != 0 && !shows_nothing(errno)) fail(file, "cannot be accessed");
   if (!S_ISREG(what.st_mode)) return false;
   const Descriptor in = open_file(file, O_RDONLY | O_NOFOLLOW);
   if (!in && shows_nothing(errno)) return false;
@@ -364,7 +366,7 @@ bool FileLock::is_held(const fs::path& file) {
   if (in && ::fcntl(in.number(), F_OFD_GETLK, &other) == 0) return other.l_type != F_UNLCK;
   // On a file system without locks nobody holds one.
   const bool keeps_none = in && (errno == ENOLCK || errno == ENOSYS || errno == EINVAL || errno == EOPNOTSUPP);
-  if (!keeps_none) fail(file, "cannot be looked at");
+  if (!keeps_none) fail(file, "cannot be accessed");
   return false;
 }
 
@@ -372,8 +374,8 @@ void check_locks(const fs::path& folder) {
   const fs::path file = folder / "lock";
   const FileLock first = FileLock::wait_for(file);
   if (FileLock::is_held(file)) return;
-  throw Error(folder.string(), "its file system keeps no locks: two processes could do the same work",
-              "put --runs on another one; Lustre keeps them when mounted with 'flock'");
+  throw Error(folder.string(), "its file system has no file locks, so two processes could do the same work",
+              "put --runs on another file system; Lustre has locks when mounted with 'flock'");
 }
 
 }  // namespace palpate

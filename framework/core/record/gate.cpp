@@ -80,7 +80,7 @@ Verdict judge_each(const Expectation& one, const std::vector<RunOutcome>& runs) 
     if (verdict.holds) continue;
     if (missed++ == 0) got = fmt::format("{} in {}", verdict.got, run.label);
   }
-  if (missed > 1) got += fmt::format(", and {} of {} runs miss it", missed, runs.size());
+  if (missed > 1) got += fmt::format(", and {} of {} runs miss the expectation", missed, runs.size());
   return {one, missed == 0, got};
 }
 
@@ -124,7 +124,7 @@ Verdict judge_statistic(const Expectation& one, const std::vector<RunOutcome>& r
   }
   if (!without.empty() && !out.holds) {
     const RunOutcome& first = *without.front();
-    out.got += fmt::format(": {} of {} runs have none and count as the worst ({}: {})", without.size(), runs.size(),
+    out.got += fmt::format(": {} of {} runs have no value and count as the worst ({}: {})", without.size(), runs.size(),
                            first.label, absence(one, first));
   }
   return out;

@@ -79,7 +79,7 @@ class RowReader final : public nlohmann::json_sax<Json> {
       list_ += json_value(Scalar(std::move(value)));
       return true;
     }
-    if (row_.fields.size() == kMostRowValues) return refuse("holds too many values: at most 4096");
+    if (row_.fields.size() == kMostRowValues) return refuse("contains too many values: at most 4096");
     row_.fields.emplace_back(name_, std::move(value));
     return true;
   }
@@ -152,7 +152,7 @@ class TreeReader final : public nlohmann::json_sax<Json> {
     const auto refuse = [&](const char* reason) { throw Error(file_.string(), reason, kDamagedFile); };
     if (open_.empty() && !value.is_map()) refuse(kNoObject);
     if (open_.size() > kMostLevels) refuse(kTooDeep);
-    if (++values_ > kMostValues) refuse("holds too many values");
+    if (++values_ > kMostValues) refuse("contains too many values");
     return place() = std::move(value);
   }
   bool add(Tree value) {
@@ -221,7 +221,7 @@ Row RowLines::read(const std::string& line) {
   // Names that repeat all that is around them would fill the memory where there are many.
   for (const auto& field : row->fields) values_ += 1 + field.first.size() / kNameOfOneValue;
   if (number_ > kMostLines || values_ > kMostLineValues)
-    throw Error(place(), "the file holds too much: at most 1.1 million lines and 20 million values", kDamaged);
+    throw Error(place(), "the file is too large: at most 1.1 million lines and 20 million values", kDamaged);
   return std::move(*row);
 }
 

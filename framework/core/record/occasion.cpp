@@ -29,7 +29,7 @@ Occasion Occasion::once(const std::string& text) {
       if (one.better != RecordField::Better::neither) known.push_back(one.name);
     }
     throw Error("command line",
-                fmt::format("--until: '{}' is no field of the summary of which more or less is better", goal.path),
+                fmt::format("--until: '{}' is not a field of the summary for which more or less is better", goal.path),
                 suggestion(goal.path, known));
   }
   Occasion out;

@@ -25,8 +25,9 @@ constexpr std::array<std::string_view, 9> kKinds{"manifest", "attempt", "setup",
 /// By Ending::How.
 constexpr std::array<const char*, 3> kHows{"done", "failed", "interrupted"};
 
-constexpr const char* kNoEnding = "has no 'end' that is done, failed or interrupted, or a file that is not beside it";
-constexpr const char* kPutBack = "put the file back as it was, or begin anew with 'palpate run --force'";
+constexpr const char* kNoEnding =
+    "has no 'end' with done, failed or interrupted, or names a file that is not in its folder";
+constexpr const char* kPutBack = "put the file back as it was, or start again with 'palpate run --force'";
 
 bool holds_lists(LineKind kind) {
   return kind == LineKind::manifest || kind == LineKind::setup || kind == LineKind::objects || kind == LineKind::other;
@@ -134,10 +135,10 @@ RecordLine RecordReader::read(std::string_view line) {
 }
 
 void RecordReader::check(const RecordLine& line) {
-  if (end_ == Ending::How::done) refuse("stands behind the end of a run that is done");
-  if (!begun_ && line.kind != LineKind::manifest) refuse("is not the manifest, with which a record begins");
+  if (end_ == Ending::How::done) refuse("follows the end of a finished run");
+  if (!begun_ && line.kind != LineKind::manifest) refuse("is not the manifest, which must be the first line");
   if (begun_ && line.kind == LineKind::manifest) refuse("is a second manifest");
-  if (end_ && line.kind != LineKind::attempt) refuse("stands behind the end of an attempt, and begins none");
+  if (end_ && line.kind != LineKind::attempt) refuse("follows the end of an attempt but does not start a new one");
   if (line.kind == LineKind::other) return;
   end_.reset();
   switch (line.kind) {
@@ -177,18 +178,16 @@ void RecordReader::check_version(const Tree& manifest) const {
   const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), version);
   if (wrong != std::errc() || end != text.data() + text.size() || version < 1) refuse("has no version 'manifest'");
   if (version <= kRecordVersion) return;
-  throw Error(lines_.place(), "is of a later version than this palpate reads",
-              "take a palpate as new as the one that wrote it");
+  throw Error(lines_.place(), "has a later version than this palpate can read",
+              "use a palpate at least as new as the one that wrote it");
 }
 
 void RecordReader::check_attempt(const Row& row) {
   const auto number = count_in(row, "attempt");
   if (number != attempts_ + 1)
-    refuse(
-        fmt::format("has attempt {} where attempt {} belongs: a line is missing", row.cell("attempt"), attempts_ + 1));
+    refuse(fmt::format("has attempt {} instead of attempt {}: a line is missing", row.cell("attempt"), attempts_ + 1));
   if (count_in(row, "after_tap") != taps_) {
-    refuse(fmt::format("begins behind tap {}, and {} taps stand before it: a line is missing", row.cell("after_tap"),
-                       taps_));
+    refuse(fmt::format("starts after tap {}, but {} taps precede it: a line is missing", row.cell("after_tap"), taps_));
   }
   ++attempts_;
   set_up_ = false;
@@ -196,7 +195,7 @@ void RecordReader::check_attempt(const Row& row) {
 
 void RecordReader::check_setup(const Tree& line) {
   if (last_ != LineKind::attempt || line.find("setup")->text != std::to_string(attempts_))
-    refuse("does not follow the attempt that it belongs to: a line is missing");
+    refuse("does not follow its attempt: a line is missing");
   const Tree* const announces = line.find("announces");
   announces_ = announces != nullptr && announces->text == "true";
   set_up_ = true;
@@ -208,9 +207,9 @@ void RecordReader::check_tap(const Row& row, bool announces) {
   const std::int64_t next = taps_ + 1;
   if (!tap) refuse(fmt::format("has no number '{}'", key));
   if (*tap != next) {
-    refuse(*tap > next ? fmt::format("has tap {} where tap {} belongs: a line is missing", *tap, next)
+    refuse(*tap > next ? fmt::format("has tap {} instead of tap {}: a line is missing", *tap, next)
            : announces ? fmt::format("announces tap {}, which is recorded already", *tap)
-                       : fmt::format("has tap {} a second time, where tap {} belongs", *tap, next));
+                       : fmt::format("has tap {} a second time instead of tap {}", *tap, next));
   }
   if (!set_up_) refuse(fmt::format("has tap {} before its attempt was set up: a line is missing", *tap));
   if (announces && announced_) refuse(fmt::format("announces tap {} a second time", *tap));
@@ -222,7 +221,7 @@ void RecordReader::check_tap(const Row& row, bool announces) {
 
 void RecordReader::check_timing(const Row& row) const {
   if (last_ != LineKind::tap || count_in(row, "timing") != taps_)
-    refuse(fmt::format("has the times of tap {}, and does not follow it", row.cell("timing")));
+    refuse(fmt::format("has the times of tap {}, but does not follow that tap", row.cell("timing")));
   for (const char* phase : kPhaseNames)
     if (row.find(phase) != nullptr && !row.number(phase)) refuse(fmt::format("has no number '{}'", phase));
 }
@@ -231,7 +230,7 @@ void RecordReader::check_end(const RecordLine& line) {
   if (!line.end) refuse(kNoEnding);
   end_ = line.end->how;
   if (end_ != Ending::How::done || line.row.number("summary.taps") == static_cast<double>(taps_)) return;
-  refuse(fmt::format("ends a run of {} taps, and {} stand before it: a line is missing", line.row.cell("summary.taps"),
+  refuse(fmt::format("ends a run of {} taps, but {} taps precede it: a line is missing", line.row.cell("summary.taps"),
                      taps_));
 }
 

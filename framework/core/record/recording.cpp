@@ -184,7 +184,7 @@ bool Recording::failed() const { return summary && summary->text("status") == "f
 Recording read_recording(const Workshop& workshop, const fs::path& directory) {
   ResolvedConfig config = load_run(workshop.host, directory);
   RunRecord record = read_run_record(directory);
-  if (record.taps.empty()) throw Error(directory.string(), "holds no recorded tap", {}, Error::Kind::run);
+  if (record.taps.empty()) throw Error(directory.string(), "has no recorded tap", {}, Error::Kind::run);
   Recording out{directory, std::move(config),         std::move(record.taps),
                 {},        std::move(record.timings), std::move(record.manifest),
                 {}};
@@ -272,7 +272,7 @@ std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Rec
   const auto made = static_cast<int>(recording.rows.size());
   for (const Occasion& one : occasions) {
     if (one.taps().value_or(0) <= made) continue;
-    throw Error(recording.directory.string(), "its record holds fewer taps than its summary says",
+    throw Error(recording.directory.string(), "its record has fewer taps than its summary",
                 "the file is damaged, run the job again");
   }
   const std::vector<Seconds> seconds = seconds_until(recording);

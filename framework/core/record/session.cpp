@@ -107,8 +107,8 @@ ResolvedConfig load_run(const PluginHost& host, const fs::path& directory) {
                 "config.yaml was changed; run it with 'palpate run' instead");
   }
   if (!other_folder) return config;
-  throw Error(directory.string(), fmt::format("holds the run {}, and has the name of another", config.id),
-              "give the folder another name");
+  throw Error(directory.string(), fmt::format("contains the run {}, but has the name of another run", config.id),
+              "rename the folder");
 }
 
 std::optional<Error> objection_to_build(const Workshop& workshop, const ResolvedConfig& config,
@@ -116,8 +116,8 @@ std::optional<Error> objection_to_build(const Workshop& workshop, const Resolved
   const std::string build = record.build();
   if (build.empty() || build == build_hash(workshop.host, config.notes.plugins) || record.taps.empty())
     return std::nullopt;
-  return Error(record.file.parent_path().string(), "this run was begun by another build of palpate or its plugins",
-               "--force carries on all the same, and the record will say so");
+  return Error(record.file.parent_path().string(), "this run was started by another build of palpate or its plugins",
+               "add --force to resume it with this build, which the record will note");
 }
 
 Restored restore_files(const Workshop& workshop, RunDirectory& held) {

@@ -31,8 +31,8 @@ struct DrawOptions : Options {
     fields.integer(least, Field("least", "minimum number of objects").at_least(0).at_most(kMost).needed());
     fields.integer(most, Field("most", "maximum number of objects").at_least(0).at_most(kMost).needed());
     fields.sections(of, Field("of", "list of objects from which each object is drawn").needed());
-    fields.require(least <= most, "most", fmt::format("is less than least, which is {}", least));
-    fields.require(!of.empty(), "of", "is empty, name an object or more");
+    fields.require(least <= most, "most", fmt::format("is less than 'least', which is {}", least));
+    fields.require(!of.empty(), "of", "is empty, name at least one object");
   }
 };
 

@@ -93,7 +93,7 @@ void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t 
     for (std::size_t i = 0; i < bodies.size(); ++i) draw_inside(bodies[i], area, streams[i], i);
     if (all_separate(bodies)) return;
   }
-  throw Error("scene.objects", fmt::format("found no room for all {} in {} draws", bodies.size(), kRounds),
+  throw Error("scene.objects", fmt::format("found no placement for all {} objects in {} draws", bodies.size(), kRounds),
               "make them smaller or fewer, or the area larger");
 }
 

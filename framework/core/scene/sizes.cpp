@@ -41,7 +41,7 @@ std::vector<std::string> half_said_sizes(const Tree& resolved, const ResolveNote
   std::vector<std::string> out;
   for (const auto& [path, object] : objects) {
     if (!object.has_size || object.left_out.empty()) continue;
-    out.push_back(fmt::format("{}: {}: not said and so at its default: {}", object.place, path,
+    out.push_back(fmt::format("{}: {}: not given, so the default is used: {}", object.place, path,
                               fmt::join(object.left_out, ", ")));
   }
   return out;

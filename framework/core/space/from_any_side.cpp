@@ -31,7 +31,7 @@ FromAnySide::FromAnySide(const ExperimentOptions& options, const PluginFactory& 
       bundle_(belief_.region().centre, belief_.region().outside(), kDirections, kPitch),
       cubes_(belief_.region().centre, belief_.region().outside(), kCube) {
   if (!acquisition_->any_side()) {
-    throw Error("acquisition", fmt::format("{} scores taps from above alone", options.acquisition.type),
+    throw Error("acquisition", fmt::format("{} only scores taps from above", options.acquisition.type),
                 "choose one that scores approaches: discovery, uncertainty, random");
   }
   if (options_.space->view) look();
@@ -39,10 +39,9 @@ FromAnySide::FromAnySide(const ExperimentOptions& options, const PluginFactory& 
 
 void FromAnySide::look() {
   if (!backend_->scene_is_truth()) {
-    throw Error(
-        "space.view",
-        fmt::format("is made of the scene of the config, and backend {} taps another world", options_.backend.type),
-        "take it away, or choose backend=simulator");
+    throw Error("space.view",
+                fmt::format("uses the scene of the config, but backend {} taps another scene", options_.backend.type),
+                "remove it, or choose backend=simulator");
   }
   constexpr std::size_t kMost = 160;  // rays that are kept: what a touch costs grows with them
   const std::vector<SurfaceTouch> view = side_view(*options_.space->view, *scene_, belief_.region().centre,
@@ -66,7 +65,7 @@ Eigen::VectorXd FromAnySide::scores() {
   Eigen::VectorXd out(static_cast<Eigen::Index>(belief_.approaches().size()));
   acquisition_->score_approaches(belief_, out);
   if (!all_finite(out)) {
-    throw Error("acquisition/" + options_.acquisition.type, "gave a score that is not a finite number", {},
+    throw Error("acquisition/" + options_.acquisition.type, "returned a score that is not a finite number", {},
                 Error::Kind::run);
   }
   return out;
@@ -240,7 +239,7 @@ std::unique_ptr<Experiment> make_experiment(const ExperimentOptions& options, co
 
 FromAbove& from_above_of(Experiment& experiment, const std::string& where) {
   if (auto* const above = dynamic_cast<FromAbove*>(&experiment)) return *above;
-  throw Error(where, "is a run from any side, this is of runs from above", "its surface is in surface.ply");
+  throw Error(where, "is a run from any side, but this needs a run from above", "read its surface from surface.ply");
 }
 
 }  // namespace palpate

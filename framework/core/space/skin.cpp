@@ -66,7 +66,7 @@ std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std
 Skin::Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings, const simd::Table& loops)
     : kernel_(std::move(kernel)), settings_(settings), loops_(loops) {
   if (!knows_distances_alone(*kernel_)) {
-    throw Error("kernel", "is not one of the distance alone, as surface: implicit needs it",
+    throw Error("kernel", "does not depend on the distance alone, as surface: implicit requires",
                 "choose one with a single length scale, such as matern32");
   }
   kernel_->variance(Points::Zero(1, 2), Eigen::Map<VectorXd>(&unit_, 1));
@@ -164,7 +164,7 @@ std::vector<Skin::Row> Skin::contacts_of(const Composition& solids, const std::v
     constexpr double kTurned = 0.5;
     if (!touch.normal || touch.normal->dot(place.normal) < kTurned) continue;
     if (!kernel_->has_gradient()) {
-      throw Error("kernel", "has no slopes at every place, and normals that a tool feels are slopes",
+      throw Error("kernel", "is not differentiable everywhere, but measured surface normals need its derivatives",
                   "choose matern32, matern52 or rbf");
     }
     const Vector3d one = touch.normal->unitOrthogonal();

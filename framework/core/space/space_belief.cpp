@@ -220,8 +220,8 @@ void SpaceBelief::draw_approaches() {
   constexpr std::size_t kTries = 20;
   for (std::size_t tries = 0; approaches_.size() < count_; ++tries) {
     if (tries == kTries * count_) {
-      throw Error("backend", "makes no tap from any side that was tried",
-                  "scene.touch: top is for arms that come from above");
+      throw Error("backend", "rejects every tap from any side that was tried",
+                  "use scene.touch: top for an arm that taps from above");
     }
     std::optional<Line> line;
     if ((taps_ > 0 || seen_ > 0) && !goes_anywhere(approaches_.size())) line = along_normal(random);

@@ -41,7 +41,7 @@ class Reader {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& reason) const { throw Error(file_, reason, "write it again as PLY"); }
+  [[noreturn]] void refuse(const std::string& reason) const { throw Error(file_, reason, "export it again as PLY"); }
 
   Header read_header() {
     Header out;
@@ -49,13 +49,13 @@ class Reader {
     bool of_vertices = false;
     const auto next = [&] {
       const std::size_t end = bytes_.find('\n', at);
-      if (end == std::string::npos) refuse("is no PLY or cut short: the line 'end_header' is missing");
+      if (end == std::string::npos) refuse("is not a PLY file or is cut short: the line 'end_header' is missing");
       std::string line = bytes_.substr(at, end - at);
       at = end + 1;
       if (!line.empty() && line.back() == '\r') line.pop_back();
       return line;
     };
-    if (next() != "ply") refuse("is no PLY: it does not begin with the line 'ply'");
+    if (next() != "ply") refuse("is not a PLY file: it does not begin with the line 'ply'");
     for (std::string line = next(); line != "end_header"; line = next()) {
       std::istringstream words(line);
       std::string word, one, two;
@@ -82,16 +82,17 @@ class Reader {
     if (name == "ascii") return Format::ascii;
     if (name == "binary_little_endian") return Format::little;
     if (name == "binary_big_endian") return Format::big;
-    refuse("has the format '" + name + "', which no PLY has");
+    refuse("has the format '" + name + "', which PLY does not define");
   }
 
   long count_in(const std::string& word) const {
     long out = -1;
     const auto read = std::from_chars(word.data(), word.data() + word.size(), out);
     if (read.ec != std::errc() || read.ptr != word.data() + word.size() || out < 0)
-      refuse("does not say how many vertices it has");
+      refuse("does not give its number of vertices");
     if (out > kMostPoints) {
-      throw Error(file_, fmt::format("has {} points, at most {} are read", out, kMostPoints), "thin them out");
+      throw Error(file_, fmt::format("has {} points, at most {} are read", out, kMostPoints),
+                  "reduce the number of points");
     }
     return out;
   }
@@ -106,7 +107,7 @@ class Reader {
   }
 
   [[noreturn]] void refuse_short(long points) const {
-    refuse(fmt::format("is cut short: its header promises {} vertices", points));
+    refuse(fmt::format("is cut short: its header announces {} vertices", points));
   }
 
   PointCloud in_words(const Header& header, std::string_view body) const {
@@ -121,7 +122,7 @@ class Reader {
         if (at == end) refuse_short(header.points);
         const auto read = std::from_chars(at, end, number);
         if (read.ec == std::errc::invalid_argument || (read.ptr != end && !is_space(*read.ptr)))
-          refuse(fmt::format("has something else than a number in vertex {}", i + 1));
+          refuse(fmt::format("has a value that is not a number in vertex {}", i + 1));
         if (read.ec == std::errc::result_out_of_range) number = std::numeric_limits<double>::infinity();
         at = read.ptr;
       }
@@ -159,7 +160,7 @@ class Reader {
   }
 
   PointCloud joined(const std::vector<Eigen::Vector3d>& points) const {
-    if (points.empty()) refuse("has no point that is finite");
+    if (points.empty()) refuse("has no finite point");
     PointCloud out(3, static_cast<Eigen::Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = points[i];
     return out;

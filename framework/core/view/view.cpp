@@ -131,8 +131,8 @@ std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& optio
   squares.erase(std::remove_if(squares.begin(), squares.end(), [](const Square& one) { return one.count == 0; }),
                 squares.end());
   if (squares.empty()) {
-    throw Error("prior.depth", fmt::format("none of its {} points lies in the area", points.cols()),
-                "mind their unit and pose");
+    throw Error("prior.depth", fmt::format("none of its {} points is in the area", points.cols()),
+                "check unit and pose");
   }
   const double noise = options.noise;
   const double reach = kClearlyAbove * std::hypot(noise, options.bias);
@@ -160,7 +160,7 @@ std::vector<Sight> sights_of(const std::optional<PriorOptions>& options, const S
   if (const auto trouble = trouble_in([&] { bytes = bytes_of(options->depth); }))
     throw Error("prior.depth", trouble->what(), {}, trouble->kind());
   if (const std::string found = hash_of(bytes); !options->checksum.empty() && found != options->checksum)
-    throw Error("prior.checksum", "is not that of " + options->depth + ", which has " + found);
+    throw Error("prior.checksum", "does not match " + options->depth + ", whose checksum is " + found);
   return sights_of(placed(read_points(bytes, options->depth), *options), *options, scene);
 }
 

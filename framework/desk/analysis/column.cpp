@@ -89,14 +89,14 @@ JobValue value_of_job(const Row* row, const std::string& column, const std::stri
   if (number.is_text) {
     throw Error("command line",
                 fmt::format("{}: the column '{}' holds {}, not numbers", option, column, row->cell(column)),
-                "name one that can be averaged");
+                "name a column of numbers");
   }
   return number.value ? JobValue{Fate::counted, *number.value} : JobValue{Fate::without_value};
 }
 
 std::string FateCounts::words(const std::vector<Fate>& fates, const std::string& behind) const {
-  constexpr const char* kWords[] = {"with one job that --where leaves out", "without a counterpart", "unfinished",
-                                    "failed", "without a value"};  // by Fate
+  constexpr const char* kWords[] = {"with one job excluded by --where", "without a partner", "unfinished", "failed",
+                                    "without a value"};  // by Fate
   std::vector<std::string> out;
   for (const Fate fate : fates) {
     if (of(fate) > 0) out.push_back(fmt::format("{}{} {}", of(fate), behind, kWords[static_cast<std::size_t>(fate)]));

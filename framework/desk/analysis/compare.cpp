@@ -235,7 +235,7 @@ void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<Comp
   Values names;
   for (const ComparedGroup& one : groups) {
     if (is_named(one))
-      throw Error("command line", fmt::format("--baseline: --where leaves out all of '{}'", name),
+      throw Error("command line", fmt::format("--baseline: --where excludes all jobs of '{}'", name),
                   "name another group");
     names.push_back(one.name);
     if (const std::string rest = values_at(one.values, scenes, false); !contains(names, rest)) names.push_back(rest);
@@ -262,11 +262,12 @@ void check_values(const Comparison& made, const Sweep& sweep) {
     without_value += group.counts.of(Fate::without_value);
   }
   if (made.left_out.all() == made.jobs) {
-    throw Error("command line", fmt::format("--where: leaves none of the {} jobs", made.jobs),
-                "results.csv, or what --at or --until leaves beside it, has the values it is compared with");
+    throw Error("command line", fmt::format("--where: matches none of the {} jobs", made.jobs),
+                "check the values in results.csv, or in the files that --at or --until leave beside it");
   }
   if (without_value == 0) {
-    throw Error(sweep.directory.string(), "none of the jobs to compare ended well", "'palpate status' says why");
+    throw Error(sweep.directory.string(), "none of the jobs to compare ended well",
+                "see the reasons with 'palpate status'");
   }
   const RecordField* field = find_summary_field(made.metric.name);
   throw Error("command line", fmt::format("--metric: no job has a value of '{}'", made.metric.name),
@@ -290,7 +291,7 @@ bool Comparison::has_copies() const {
 
 Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const CompareQuery& query) {
   if (results.empty()) {
-    throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
+    throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
   }
   check_group_keys(sweep, query.by);
   const Values columns = columns_of(results);

@@ -141,7 +141,7 @@ std::string contrary_note(const Comparison& comparison, const ComparedPair& pair
   const auto [up, down] = sides(comparison, pair.test);
   if (up == down || (gain > 0.0) == (up > down)) return {};
   const Words words = words_of(comparison.metric);
-  return fmt::format("{}: {} on average, and yet {} in most {}: {} of {}\n", pair_name(comparison, pair),
+  return fmt::format("{}: {} on average, but {} in most {}: {} of {}\n", pair_name(comparison, pair),
                      gain > 0.0 ? words.up : words.down, gain > 0.0 ? words.down : words.up,
                      comparison.by_seed ? "seeds" : "pairs", std::max(up, down), pair.difference.clusters);
 }
@@ -169,8 +169,8 @@ std::string units_note(const Comparison& comparison) {
   std::string out;
   const auto equal = [&](const std::string& name, const MeanEstimate& mean, bool difference) {
     if (mean.clusters < kLeastForInterval || mean.interval) return;
-    out += fmt::format("{} has no interval: its {} are equal in all {}, which does not tell how far the next may lie\n",
-                       name, difference ? "differences" : "values", units_words(mean.clusters, comparison.by_seed));
+    out += fmt::format("{} has no interval: its {} are equal in all {} and show no spread\n", name,
+                       difference ? "differences" : "values", units_words(mean.clusters, comparison.by_seed));
   };
   for (const ComparedGroup& one : comparison.groups) {
     if (comparison.has_copies() && one.mean.clusters < one.mean.count)
@@ -188,10 +188,10 @@ std::string apart_note(const Comparison& comparison) {
   std::string out;
   if (seed != keys.end()) {
     keys.erase(seed);
-    out += "groups that have no seed in common have no pairs: run them on the same seeds\n";
+    out += "groups without a common seed have no pairs: run them on the same seeds\n";
   }
   if (keys.empty()) return out;
-  return out + fmt::format("groups that have no {} in common have no pairs: '--by {},{}' compares them\n",
+  return out + fmt::format("groups without a common {} have no pairs: compare them with '--by {},{}'\n",
                            keys_text(keys), one_line(fmt::format("{}", fmt::join(comparison.by, ","))),
                            one_line(fmt::format("{}", fmt::join(keys, ","))));
 }
@@ -207,25 +207,25 @@ std::string remarks(const Comparison& comparison) {
   std::string out;
   const std::size_t groups = comparison.compared;
   if (const FateCounts& left_out = comparison.left_out; left_out.all() > 0) {
-    out += fmt::format("--where leaves out {} of {} jobs", left_out.all(), comparison.jobs);
+    out += fmt::format("--where excludes {} of {} jobs", left_out.all(), comparison.jobs);
     const std::string ends = left_out.words({Fate::failed, Fate::unfinished});
     out += (ends.empty() ? "" : ", of which " + ends) + "\n";
   }
   out += few_note(comparison) + units_note(comparison);
-  if (groups < 2) out += "one group: there is nothing to compare it with\n";
+  if (groups < 2) out += "only one group: nothing to compare\n";
   if (comparison.scenes_apart) {
     out += fmt::format("{} groups: each is compared {} of its scene\n", groups,
-                       comparison.one_baseline ? "with one" : "with those");
+                       comparison.one_baseline ? "with one" : "with the others");
     if (const std::size_t alone = groups_without_pair(comparison); alone > 0)
-      out += fmt::format("{} of them in no pair: no other group of the scene, or no baseline there\n", alone);
+      out += fmt::format("{} groups are in no pair: their scene has no other group, or no baseline\n", alone);
   } else if (!comparison.pairs.empty() && comparison.pairs.size() < groups * (groups - 1) / 2) {
-    out += fmt::format("{} groups: each is compared with {} alone\n", groups,
+    out += fmt::format("{} groups: each is compared with {} only\n", groups,
                        comparison.groups[comparison.pairs.front().second].name);
   }
   for (const ComparedGroup& one : comparison.groups) {
     if (one.never > 0)
-      out += fmt::format("{}: {} of {} jobs never got there and count as they ended\n", one.name, one.never,
-                         one.mean.count);
+      out += fmt::format("{}: {} of {} jobs never reached the goal and count with their final values\n", one.name,
+                         one.never, one.mean.count);
   }
   for (const ComparedPair& pair : comparison.pairs)
     out += lost_note(comparison, pair) + contrary_note(comparison, pair);
@@ -256,29 +256,28 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
   const Comparison& first = comparisons.front();
   const char* const units = first.by_seed ? "seeds" : "jobs";
   std::string out = fmt::format(
-      "interval: 95 % of the mean: of 100 sweeps like this one with other {}, about 95 have the true mean in theirs\n"
-      "(bootstrap, BCa; below {} {} Student's t); [-]: fewer than {} {}, or all equal.\n",
+      "interval: 95 % confidence interval of the mean over {} (BCa bootstrap; below {} {} Student's t).\n[-]: no "
+      "interval, because of fewer than {} {} or equal values.\n",
       units, kLeastForBootstrap, units, kLeastForInterval, units);
-  out +=
-      first.by_seed
-          ? "The seed is the unit: all jobs of a seed are drawn together, and count as one.\n"
-          : "The seed is not swept: each job is a unit, taken as independent of the others; copies of a run are one.\n";
+  out += first.by_seed ? "The unit is the seed: all jobs of a seed are resampled together and count as one.\n"
+                       : "The seed is not swept: the unit is the job, taken as independent of the others; copies of a "
+                         "run count once.\n";
   if (!paired) return out;
   const std::vector<std::string>& pairing = first.pairing;
   out += pairing.empty() ? "pair: one job of each group.\n"
-                         : fmt::format("pair: two jobs that are equal in {}.\n", keys_text(pairing));
+                         : fmt::format("pair: two jobs with equal {}.\n", keys_text(pairing));
   if (first.ratios) {
     out += fmt::format(
-        "ratio: the mean of the first over that of the second, over the same pairs; its interval draws whole {}\n"
-        "(bootstrap, BCa); '-' of what may be negative.\n",
+        "ratio: mean of the first group divided by the mean of the second, over the same pairs; its interval resamples "
+        "{}\n(BCa bootstrap). '-': the metric may be negative.\n",
         first.by_seed ? "seeds" : "pairs");
   }
   out += fmt::format(
-      "p: how often, were it chance which is the larger, the signed ranks of the differences would lie as far to one\n"
-      "side (Wilcoxon{}, two-sided, equal {} dropped; counted out up to {} differences, else normal).\n{}"
-      "effect: by ranks (matched-pairs rank-biserial), +1: the first is always higher, -1: always lower, 0: neither.\n",
-      first.by_seed ? " on the means per seed" : "", first.by_seed ? "seeds" : "pairs", kExactSignedRanks,
-      holm ? "Holm: adjusted for all p of the table.\n" : "");
+      "p: two-sided Wilcoxon signed-rank test of the differences{}. Equal {} are dropped.\nIt is exact up to {} "
+      "differences and uses the normal approximation for more.\n{}effect: matched-pairs rank-biserial correlation, "
+      "from -1 (the first is always lower) to +1 (always higher).\n",
+      first.by_seed ? " of the means per seed" : "", first.by_seed ? "seeds" : "pairs", kExactSignedRanks,
+      holm ? "p (Holm): adjusted for all tests of the table.\n" : "");
   return out;
 }
 

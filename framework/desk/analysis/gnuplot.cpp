@@ -71,7 +71,7 @@ std::string draw_picture(const std::string& script, int width, int height, const
   const std::string output = fs::absolute(picture.path()).string();
   const std::unique_ptr<ChildProcess> gnuplot =
       ChildProcess::start(program, picture_header(width, height, file, output, unit) + script);
-  if (!gnuplot && errno == ENOENT) return "gnuplot is not installed, the package gnuplot-nox has it";
+  if (!gnuplot && errno == ENOENT) return "gnuplot is not installed, install the package gnuplot-nox";
   if (!gnuplot) return fmt::format("gnuplot cannot be started: {}", std::strerror(errno));
   gnuplot->wait();
   const bool ended_well = gnuplot->status() == 0;

@@ -76,8 +76,8 @@ bool has_value(const std::vector<double>& values) {
 /// Throws Error if there is nothing to draw, with the reason.
 void check_points(const GroupCurves& made, const Sweep& sweep) {
   if (made.curves.empty())
-    throw Error("command line", fmt::format("--where: leaves none of the {} jobs", made.jobs),
-                "results.csv has the values that it is compared with");
+    throw Error("command line", fmt::format("--where: matches none of the {} jobs", made.jobs),
+                "check the values in results.csv");
   int without_value = 0;
   bool is_drawn = false;
   bool takes_time = made.against.name == kAgainstTaps;
@@ -89,7 +89,8 @@ void check_points(const GroupCurves& made, const Sweep& sweep) {
   if (is_drawn && takes_time) return;
   if (is_drawn) throw Error("command line", "--against: no job took any robot time", "'--against taps' needs none");
   if (without_value == 0)
-    throw Error(sweep.directory.string(), "none of the jobs to draw ended well", "'palpate status' says why");
+    throw Error(sweep.directory.string(), "none of the jobs to draw ended well",
+                "see the reasons with 'palpate status'");
   const RecordField* field = find_summary_field(made.metric.name);
   throw Error("command line", fmt::format("--metric: no job has a value of '{}' after any tap", made.metric.name),
               field != nullptr ? field->when_null : "");
@@ -137,7 +138,7 @@ std::vector<std::string> curve_keys(const Sweep& sweep) {
 GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& results, const std::vector<TapValues>& values,
                               const CurvesQuery& query) {
   if (results.empty())
-    throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
+    throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
   check_group_keys(sweep, query.by);
   const std::vector<std::string> columns = columns_of(results);
   GroupCurves out;

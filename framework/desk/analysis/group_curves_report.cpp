@@ -75,17 +75,18 @@ std::string curve_remarks(const GroupCurves& curves) {
     const std::string scene = curve.scene_name();
     const std::string name = (scene.empty() ? "" : scene + ", ") + curve.name();
     const std::string lost = curve.counts.words({Fate::left_out, Fate::failed, Fate::unfinished, Fate::without_value});
-    if (!lost.empty()) out += fmt::format("{}: of {} jobs in no point: {}\n", name, curve.counts.all(), lost);
+    if (!lost.empty())
+      out += fmt::format("{}: of {} jobs, those in no point are: {}\n", name, curve.counts.all(), lost);
     if (curve.points.empty()) continue;
     if (curve.ended > 0) {
-      out += fmt::format("{}: {} of {} jobs made fewer taps than others and count behind them as they ended\n", name,
-                         curve.ended, curve.counts.of(Fate::counted));
+      out += fmt::format("{}: {} of {} jobs made fewer taps than others and count afterwards with their final values\n",
+                         name, curve.ended, curve.counts.of(Fate::counted));
     }
     const auto fewer = [](const CurvePoint& a, const CurvePoint& b) { return a.mean.count < b.mean.count; };
     const auto [fewest, most] = std::minmax_element(curve.points.begin(), curve.points.end(), fewer);
     if (fewest->mean.count < most->mean.count) {
-      out += fmt::format("{}: {} to {} jobs have a value, by the place on the curve\n", name, fewest->mean.count,
-                         most->mean.count);
+      out += fmt::format("{}: {} to {} jobs have a value, depending on the point of the curve\n", name,
+                         fewest->mean.count, most->mean.count);
     }
   }
   return out + few_words(units_at_points(curves).first, curves.by_seed, kLeastForInterval);
@@ -114,7 +115,7 @@ std::string curves_table(const GroupCurves& curves) {
   }
   out += aligned(lines, "llr" + std::string(places.size(), 'r'));
   out += fmt::format(
-      "mean [95 % interval] over {}, as 'palpate compare' has it; a job that has ended counts as it ended\n",
+      "mean [95 % interval] over {}, as in 'palpate compare'; a job that has ended counts with its final value\n",
       curve_units_words(curves));
   return out + curve_remarks(curves);
 }

@@ -86,8 +86,8 @@ void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys) 
   for (auto key = keys.begin(); key != keys.end(); ++key) {
     if (*key == "seed") {
       const std::vector<std::string> others = setting_keys(sweep);
-      throw Error("command line", "--by: the seed repeats a job, it makes no groups",
-                  others.empty() ? "sweep the key whose values are to be compared" : suggestion(*key, others));
+      throw Error("command line", "--by: the seed repeats a job and cannot form groups",
+                  others.empty() ? "sweep the key whose values you want to compare" : suggestion(*key, others));
     }
     if (!is_among(sweep.keys, *key)) {
       throw Error("command line", fmt::format("--by: this sweep does not vary '{}'", *key),
@@ -101,8 +101,8 @@ void check_group_keys(const Sweep& sweep, const std::vector<std::string>& keys) 
 
 Column find_metric(const Sweep& sweep, const std::string& name, const std::vector<std::string>& columns) {
   if (is_among(sweep.keys, name) && (name == "seed" || find_summary_field(name) == nullptr)) {
-    throw Error("command line", fmt::format("--metric: '{}' is swept, so it was set and did not come out", name),
-                name == "seed" ? "name a field of the summary" : "give it to --by");
+    throw Error("command line", fmt::format("--metric: '{}' is a swept key, not a result", name),
+                name == "seed" ? "name a field of the summary" : "use it with --by");
   }
   return find_column(name, columns, "--metric");
 }

@@ -140,7 +140,7 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
     }
     if (!lacks) continue;
     out +=
-        fmt::format("{}: mean over the runs that have one{}.\n", name,
+        fmt::format("{}: mean over the runs that have a value{}.\n", name,
                     field != nullptr && !field->when_null.empty() ? fmt::format(" (else {})", field->when_null) : "");
   }
   int failed = 0;
@@ -152,8 +152,8 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
     unfinished += group.counts.of(Fate::unfinished);
   }
   if (failed + unfinished > 0)
-    out += fmt::format("{} jobs failed and {} have not ended: they are in no mean.\n", failed, unfinished);
-  if (never > 0) out += fmt::format("{} jobs never got there and count as they ended.\n", never);
+    out += fmt::format("{} jobs failed and {} have not ended: the means exclude them.\n", failed, unfinished);
+  if (never > 0) out += fmt::format("{} jobs never reached the goal and count with their final values.\n", never);
   return out;
 }
 

@@ -18,8 +18,8 @@ namespace {
 Column make_key(const std::string& name, const std::vector<std::string>& columns, const char* option) {
   Column column = find_column(name, columns, option);
   if (name == "coverage_95" || name == "surface_coverage_95") {
-    throw Error("command line", fmt::format("{}: {} is best at 0.95, neither small nor large", option, name),
-                "nlpd judges heights and intervals together");
+    throw Error("command line", fmt::format("{}: {} is best at 0.95, not at its least or greatest value", option, name),
+                "use nlpd, which rates heights and intervals together");
   }
   return column;
 }
@@ -80,15 +80,15 @@ void number_front(Pareto& pareto) {
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
                    const std::string& error, const Condition* where) {
   if (results.empty()) {
-    throw Error(sweep.directory.string(), "no job of this sweep has ended", "'palpate resume' carries on");
+    throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
   }
   Pareto pareto;
   const std::vector<std::string> columns = columns_of(results);
   pareto.cost = make_key(cost, columns, "--cost");
   pareto.error = make_key(error, columns, "--error");
   if (pareto.cost.better == RecordField::Better::more) {
-    throw Error("command line", fmt::format("--cost: more of {} is better, so it is no cost", cost),
-                "give it to --error");
+    throw Error("command line", fmt::format("--cost: more of {} is better, so it is not a cost", cost),
+                "use it with --error");
   }
   pareto.keys = setting_keys(sweep);
   const JobUnits units(sweep, results);
@@ -110,8 +110,8 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
     pareto.settings.push_back(std::move(setting));
   }
   if (pareto.settings.empty())
-    throw Error("command line", fmt::format("--where: leaves none of the {} jobs", sweep.jobs.size()),
-                "results.csv has the values that it is compared with");
+    throw Error("command line", fmt::format("--where: matches none of the {} jobs", sweep.jobs.size()),
+                "check the values in results.csv");
   std::stable_sort(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& a, const Setting& b) {
     if (a.scene != b.scene) return a.scene < b.scene;
     const bool has_a = a.cost.count > 0;
@@ -129,8 +129,7 @@ double read_bound(const Pareto& pareto, const std::string& within) {
     const std::string& scene = pareto.scenes.front();
     const auto end = scene.find('=');
     throw Error("command line",
-                fmt::format("--within: the sweep has {} scenes, and what is best on one is not best on another",
-                            pareto.scenes.size()),
+                fmt::format("--within: the sweep has {} scenes, whose best settings may differ", pareto.scenes.size()),
                 fmt::format("choose one: --where \"{} == {}\"", scene.substr(0, end),
                             scene.substr(end + 1, scene.find(", ") - end - 1)));
   }

@@ -63,11 +63,11 @@ std::string pareto_table(const Pareto& pareto) {
   }
   std::string out = aligned(lines, "rlrrrl");
   out += fmt::format(
-      "{}, with its 95 % interval (Student's t); {} of {} is better; numbered: no other setting is at least as good in "
-      "both and better in one\n",
+      "{}, with its 95 % interval (Student's t); {} of {} is better\nnumbered settings form the front: no other "
+      "setting is at least as good in both values and better in one\n",
       pareto.by_seed ? fmt::format("mean over {}", seeds_words(pareto)) : "the seed is not swept: mean over jobs",
       pareto.more_is_better() ? "more" : "less", pareto.error.name);
-  if (pareto.scenes.size() > 1) out += fmt::format("{} scenes, each with a front of its own\n", pareto.scenes.size());
+  if (pareto.scenes.size() > 1) out += fmt::format("{} scenes, each with its own front\n", pareto.scenes.size());
   out += few_words(seeds_of(pareto).first, pareto.by_seed, 2);
   bool equal = false;
   for (const Setting& one : pareto.settings) {
@@ -76,9 +76,8 @@ std::string pareto_table(const Pareto& pareto) {
     equal = equal || (one.error.clusters > 1 && !one.error.interval) || (one.cost.clusters > 1 && !one.cost.interval);
   }
   if (equal) {
-    out += fmt::format(
-        "a setting whose values are equal for all {} has no interval: that does not tell how far the next may lie\n",
-        pareto.by_seed ? "seeds" : "jobs");
+    out += fmt::format("a setting with equal values for all {} has no interval: the values show no spread\n",
+                       pareto.by_seed ? "seeds" : "jobs");
   }
   const bool all_complete =
       std::all_of(pareto.settings.begin(), pareto.settings.end(), [](const Setting& one) { return one.complete(); });
@@ -258,20 +257,19 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   draw("others", others, {"1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'"});
   if (bound) {
     plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '#c1440e' title {}", *bound / y.scale.factor,
-                     gnuplot_text((pareto.more_is_better() ? "wanted: at least " : "wanted: at most ") +
+                     gnuplot_text((pareto.more_is_better() ? "limit: at least " : "limit: at most ") +
                                   bound_words(pareto, *bound))));
   }
   for (std::size_t scene = 0; scene < fronts.size(); ++scene) {
     const char* const colour = kFrontColours[scene % kFrontColours.size()];
-    const std::string name =
-        pareto.scenes[scene].empty() ? "front: dominated by none" : "front: " + pareto.scenes[scene];
+    const std::string name = pareto.scenes[scene].empty() ? "front: not dominated" : "front: " + pareto.scenes[scene];
     draw(fmt::format("front_{}", scene + 1), fronts[scene],
          {fmt::format("1:4 with steps lw 2 lc rgb '{}' title {}", colour, gnuplot_text(name)),
           fmt::format("1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '{}' notitle", colour),
           fmt::format("1:4 with points pt 7 ps 2.4 lc rgb '{}' notitle", colour)});
   }
   draw("choice", choice,
-       {"1:4 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest whose 95 % bound keeps to it'"});
+       {"1:4 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest setting whose 95 % bound is within the limit'"});
   for (std::size_t scene = 0; scene < fronts.size(); ++scene) {
     if (fronts[scene].empty()) continue;
     plot(fmt::format("$front_{} using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle",

@@ -17,7 +17,7 @@ std::string units_words(std::size_t units, bool seeds) {
 }
 
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units) {
-  return fmt::format("{}: {} of {} jobs are copies of another run, which counts once in intervals and p\n", name,
+  return fmt::format("{}: {} of {} jobs are copies of another run; copies count once in intervals and p\n", name,
                      jobs - units, jobs);
 }
 
@@ -27,7 +27,7 @@ std::string few_words(std::size_t units, bool seeds, std::size_t least) {
     return fmt::format("only {}: too few for an interval; run {} or more\n", units_words(units, seeds), kEnoughUnits);
   }
   return fmt::format(
-      "only {}: an interval of so few (Student's t) misses the true mean more often than 5 times in 100; run {} or "
+      "only {}: an interval of this few (Student's t) can miss the true mean in more than 5 of 100 cases; run {} or "
       "more\n",
       units_words(units, seeds), kEnoughUnits);
 }

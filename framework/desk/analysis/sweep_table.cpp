@@ -123,9 +123,10 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
     if (longest > kLongest) std::rotate(line.begin(), line.begin() + 1, line.end());
   }
   std::string out = aligned(lines, longest > kLongest ? "rrrrrrrrl" : "lrrrrrrrr");
-  out += "no contact: no initial tap was on the object; rest: the other starts. Median (10 %-90 %).\n";
+  out += "no contact: runs without an initial tap on the object; rest: the other runs. Median (10 %-90 %).\n";
   if (rows.size() < 2 || medians.empty()) return out;
-  return out + fmt::format("The least {} first{}.\n", metric, places.size() > 1 ? ", scene by scene" : "");
+  return out +
+         fmt::format("Groups with the least {} come first{}.\n", metric, places.size() > 1 ? ", scene by scene" : "");
 }
 
 }  // namespace palpate

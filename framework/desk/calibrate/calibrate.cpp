@@ -86,8 +86,8 @@ class Calibrated {
     }
     if (contacts_.size() < kFewest) {
       throw Error(recordings.front().directory.string(),
-                  fmt::format("{} of {} taps are contacts, and it takes {}", contacts_.size(), sums_.taps, kFewest),
-                  "tap more of a scene that stands where the config has it: a bare desk, a block");
+                  fmt::format("{} of {} taps are contacts, but {} are needed", contacts_.size(), sums_.taps, kFewest),
+                  "make more taps on a scene that stands as in its config: a bare desk, a block");
     }
     double highest = 0.0;
     for (const Pair& pair : pairs_) highest = std::max(highest, pair.scene->highest() - pair.scene->desk());
@@ -107,9 +107,10 @@ class Calibrated {
     line("height_offset",
          fmt::format("{{constant: {:.4g} mm, drift: {:.4g} mm/min}}",
                      (fit_.offset.value - drift * fit_.mean_elapsed) / kMillimetre, drift / kMillimetrePerMinute),
-         fmt::format("halfway, beyond what is assumed below, {}; {}", words(fit_.offset, kMillimetre, "mm"),
+         fmt::format("offset halfway through the taps, on top of the assumed effects below, {}; {}",
+                     words(fit_.offset, kMillimetre, "mm"),
                      fit_.drift ? "drift " + words(*fit_.drift, kMillimetrePerMinute, "mm/min")
-                                : std::string("no drift is told")));
+                                : std::string("the drift cannot be estimated")));
     const auto less = [&](double noise) { return std::sqrt(std::max(0.0, noise * noise - simulated_variance_)); };
     const Estimated vertical{less(fit_.noise.value), less(fit_.noise.low), less(fit_.noise.high)};
     line("pose_noise",
@@ -117,13 +118,13 @@ class Calibrated {
                      (fit_.lateral ? fit_.lateral->value : 0.002) / kMillimetre, vertical.value / kMillimetre),
          fmt::format("lateral {}; vertical {}",
                      fit_.lateral ? words(*fit_.lateral, kMillimetre, "mm")
-                                  : std::string("is assumed: no tap was beside a step"),
+                                  : std::string("is assumed, because no tap was beside a step"),
                      words(vertical, kMillimetre, "mm")));
     const Estimated failed = share_of(sums_.failed, sums_.taps);
-    rate(line, "missed_contacts", failed, fmt::format("{:g} of {:g} taps came to nothing", sums_.failed, sums_.taps),
+    rate(line, "missed_contacts", failed, fmt::format("{:g} of {:g} taps made no contact", sums_.failed, sums_.taps),
          [](const Twin::Made& made) { return made.failed; });
     rate(line, "false_contacts", fit_.false_share,
-         fmt::format("{:.1f} of {:g} contacts are expected to be nowhere near the scene",
+         fmt::format("{:.1f} of {:g} contacts are estimated to be far from the scene",
                      fit_.false_share.value * static_cast<double>(contacts_.size()), sums_.contacts),
          [](const Twin::Made& made) { return made.far_off; });
     for (const auto& [effect, value] : kAssumed) line(effect, value, "assumed");
@@ -133,7 +134,7 @@ class Calibrated {
  private:
   /// Throws Error for a run whose scene does not stand as its config says.
   void check_scenes() const {
-    constexpr const char* kRemedy = "calibrate takes taps of a scene that stands as its config says";
+    constexpr const char* kRemedy = "use taps on a scene that stands as in its config";
     std::size_t next = 0;
     for (const Pair& pair : pairs_) {
       std::size_t far = 0;
@@ -145,20 +146,20 @@ class Calibrated {
         through += beyond < -Twin::kFarOff ? 1 : 0;
       }
       const auto refuse = [&](std::size_t count, const char* what, std::size_t one_in) {
-        throw Error(pair.recording.directory.string(),
-                    fmt::format("{} of {} contacts are {}, where one in {} may be", count, pair.contacts, what, one_in),
-                    kRemedy);
+        throw Error(
+            pair.recording.directory.string(),
+            fmt::format("{} of {} contacts are {}, but only one in {} may be", count, pair.contacts, what, one_in),
+            kRemedy);
       };
-      if (far * kFar > pair.contacts) refuse(far, "nowhere near its scene", kFar);
+      if (far * kFar > pair.contacts) refuse(far, "far from its scene", kFar);
       if (through > 1 && through * kThrough > pair.contacts) refuse(through, "within an object of its scene", kThrough);
     }
     if (std::abs(fit_.offset.value) <= kMostOffset) return;
     throw Error(
         pairs_.front().recording.directory.string(),
-        fmt::format("the heights are off by {:.1f} mm beyond what is assumed, and {:g} mm is the most that an arm "
-                    "errs by",
+        fmt::format("the heights are off by {:.1f} mm beyond the assumed effects, but an arm errs by at most {:g} mm",
                     fit_.offset.value / kMillimetre, kMostOffset / kMillimetre),
-        std::string("see to the desk's height in config and robot, ") + kRemedy);
+        std::string("check the height of the desk in config and robot, ") + kRemedy);
   }
 
   void add(Pair& pair) {
@@ -195,12 +196,13 @@ class Calibrated {
       all += shown(pair.twin.make(with_rate(effect), pair.made.error)) / static_cast<double>(pairs_.size());
     }
     if (all - none < kShown) {
-      return line(effect, "{probability: 0.02}", what + "; the rate is assumed: these motions hardly show it");
+      return line(effect, "{probability: 0.02}",
+                  what + "; the rate is assumed, because these motions hardly reveal it");
     }
     const auto rate_of = [&](double share) { return std::clamp((share - none) / (all - none), 0.0, 1.0); };
     const Estimated out{rate_of(seen.value), rate_of(seen.low), rate_of(seen.high)};
     line(effect, fmt::format("{{probability: {:.3g}}}", out.value),
-         fmt::format("{}; {}, of which these motions show {:.0f} %", what, words(out, 1.0, "per tap"),
+         fmt::format("{}; {}, of which these motions reveal {:.0f} %", what, words(out, 1.0, "per tap"),
                      100.0 * (all - none)));
   }
 
@@ -229,9 +231,9 @@ class Calibrated {
           fmt::format("#   {} ({})\n", pair.recording.directory.string(), pair.recording.config.options.backend.type);
     }
     return fmt::format(
-        "# Effects of an arm, by {:g} taps of\n{}# {:g} contacts with the desk, {:g} with an object. Values with "
-        "intervals of 95 %; what is assumed, these taps do\n# not tell. Their heights are off by {:.2f} mm on average, "
-        "those of the simulator with these effects by {:.2f} mm.\n",
+        "# Effects of an arm, by {:g} taps of\n{}# {:g} contacts with the desk, {:g} with an object. Values have 95 % "
+        "intervals; assumed values cannot be estimated\n# from these taps. Heights are off by {:.2f} mm on average, in "
+        "the simulator with these effects by {:.2f} mm.\n",
         sums_.taps, runs, sums_.on_desk, sums_.contacts - sums_.on_desk, error / std::max(1.0, near) / kMillimetre,
         twin_error / kMillimetre);
   }

@@ -44,8 +44,8 @@ Twin::Twin(const Workshop& workshop, const Recording& recording)
     : workshop_(workshop), recording_(recording), config_(recording.config.tree) {
   if (config_.find("motion") == nullptr) {
     throw Error(recording.directory.string(),
-                "its backend, " + recording.config.options.backend.type + ", has no motion to be simulated by",
-                "calibrate takes runs of backends with 'motion': baxter, process, simulator");
+                "its backend, " + recording.config.options.backend.type + ", has no motion to simulate",
+                "use runs of a backend with a motion: baxter, process, simulator");
   }
   config_.at("backend") = Tree::map({{"type", Tree::scalar("simulator")}});
   config_.erase("expect");

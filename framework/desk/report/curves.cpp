@@ -174,7 +174,7 @@ Curves curves_of(const Recording& recording, const History& history) {
     add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
         named_curves(history, [&](const Moment& moment) { return parameters_of(moment.result.*state.state); }));
   }
-  add(fmt::format("What footprint/{} tells", recording.config.options.footprint.type), "", CurveAxis::free,
+  add(fmt::format("Numbers of footprint/{}", recording.config.options.footprint.type), "", CurveAxis::free,
       named_curves(history, [](const Moment& moment) { return numbers_of(moment.result.footprint); }));
   add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
   if (history.moments.back().result.robot_seconds > 0.0)

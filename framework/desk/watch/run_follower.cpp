@@ -136,7 +136,7 @@ std::string RunFollower::at() const {
 
 std::string RunFollower::why_waiting() const {
   if (!trouble_.empty()) return trouble_;
-  return "No tap is recorded yet. This page draws the first one as soon as it is.";
+  return "No tap is recorded yet. This page updates after the first tap.";
 }
 
 std::string RunFollower::page() {

@@ -337,15 +337,17 @@ Server::Server(Site& site, const ServerOptions& options) : room_(std::make_uniqu
   beast::error_code trouble;
   const auto address = asio::ip::make_address(options.address, trouble);
   if (trouble)
-    throw Error("--bind", fmt::format("'{}' is no address", options.address), "write a number, as 127.0.0.1 or ::1");
+    throw Error("--bind", fmt::format("'{}' is not an address", options.address),
+                "write a numeric address, such as 127.0.0.1 or ::1");
   const tcp::endpoint place(address, static_cast<std::uint16_t>(options.port));
   room_->door.open(place.protocol(), trouble);
   if (!trouble) room_->door.set_option(tcp::acceptor::reuse_address(true), trouble);
   if (!trouble) room_->door.bind(place, trouble);
   if (!trouble) room_->door.listen(tcp::acceptor::max_listen_connections, trouble);
   if (trouble)
-    throw Error(fmt::format("{} port {}", options.address, options.port), "cannot be listened on: " + trouble.message(),
-                "take another --port, or none for any that is free", Error::Kind::run);
+    throw Error(fmt::format("{} port {}", options.address, options.port),
+                "cannot be opened for listening: " + trouble.message(),
+                "choose another --port, or omit it for any free port", Error::Kind::run);
 }
 
 Server::~Server() = default;

@@ -48,7 +48,8 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
     }));
     children.push_back(owned.back().get());
     if (owned.back()) continue;
-    throw Error("", fmt::format("no process for a part of the work: {}", std::strerror(errno)), {}, Error::Kind::run);
+    throw Error("", fmt::format("cannot start a child process for a part of the work: {}", std::strerror(errno)), {},
+                Error::Kind::run);
   }
   std::size_t done = 0;
   for (bool any = step > 0; any;) {
@@ -66,7 +67,8 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
     if (progress && done != before) progress(done);
     if (interrupted != nullptr && interrupted->load() && done < count) return false;
   }
-  if (done < count) throw Error("", "a process that did a part of the work was killed", "try again", Error::Kind::run);
+  if (done < count)
+    throw Error("", "a child process was killed during its part of the work", "try again", Error::Kind::run);
   return true;
 }
 

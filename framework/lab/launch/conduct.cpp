@@ -97,9 +97,8 @@ bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::
     progress(counts);
   } while (!counts.last);
   if (!gone && !is_gone(sweep)) return all_recorded;
-  throw Error(sweep.directory.string(), "was moved or removed while its jobs were under way",
-              "where it was moved to, 'palpate resume' carries on; otherwise begin it again with 'palpate sweep'",
-              Error::Kind::run);
+  throw Error(sweep.directory.string(), "was moved or removed while its jobs were running",
+              "run 'palpate resume' on its new path, or start it again with 'palpate sweep'", Error::Kind::run);
 }
 
 }  // namespace palpate

@@ -61,7 +61,8 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
   refuse_link(directory);
   std::error_code none;
   if (!fs::is_directory(directory, none)) {
-    throw Error(directory.string(), "is gone", "it has no config.yaml: 'palpate sweep' puts it back", Error::Kind::run);
+    throw Error(directory.string(), "is missing", "it has no config.yaml: run 'palpate sweep' to restore it",
+                Error::Kind::run);
   }
   std::optional<RunDirectory> held = hold(directory);
   if (!held) return JobEnd::busy;
@@ -73,10 +74,11 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
                              ? trouble_in([&] { restored = restore_files(workshop, *held); })
                              : std::nullopt;
     for (const std::string& name : restored.lost) {
-      std::fputs(fmt::format("{}: {} is gone or damaged, and this build makes another one from the same taps\n",
-                             directory.string(), name)
-                     .c_str(),
-                 stderr);
+      std::fputs(
+          fmt::format("{}: {} is missing or damaged, and this build computes a different one from the same taps\n",
+                      directory.string(), name)
+              .c_str(),
+          stderr);
     }
     // A damaged record ends the job as failed, and nothing can be made from it.
     if (trouble && !failed) throw *trouble;

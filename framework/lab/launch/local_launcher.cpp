@@ -81,7 +81,9 @@ bool LocalLauncher::start(std::size_t job) {
     std::exit(static_cast<int>(end));
   });
   if (!process && !running_.empty()) return false;
-  if (!process) throw Error("", fmt::format("no process for a job: {}", std::strerror(errno)), {}, Error::Kind::run);
+  if (!process)
+    throw Error("", fmt::format("cannot start a child process for a job: {}", std::strerror(errno)), {},
+                Error::Kind::run);
   running_.push_back({job, std::move(process)});
   return true;
 }
@@ -130,7 +132,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
 
 void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State& state) {
   const int wait_status = process.status();
-  if (wait_status < 0) throw Error("", "a job's process is lost", {}, Error::Kind::run);
+  if (wait_status < 0) throw Error("", "the child process of a job is lost", {}, Error::Kind::run);
   if (WIFSIGNALED(wait_status)) return was_killed(job, WTERMSIG(wait_status), state);
   const auto end = static_cast<JobEnd>(WEXITSTATUS(wait_status));
   if (end == JobEnd::busy && order_.options.wait_for_others && !cancelled_) {
@@ -165,7 +167,7 @@ void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
   } else if (attempts >= order_.options.most_attempts) {
     record_failure(directory_of(job),
                    fmt::format("was killed by {}{} in attempt {}", name,
-                               signal == SIGKILL ? ", as is done when memory runs out," : "", attempts));
+                               signal == SIGKILL ? ", as happens when memory runs out," : "", attempts));
   } else {
     waiting_.push_front(job);
     return;

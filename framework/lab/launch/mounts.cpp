@@ -69,11 +69,12 @@ void check_shared_locks(const fs::path& folder, std::string_view mountinfo) {
   boost::split(options, holds.options, boost::is_any_of(","));
   for (const char* local : {"nolock", "local_lock=posix", "local_lock=all"}) {
     if (std::find(options.begin(), options.end(), local) == options.end()) continue;
-    throw Error(folder.string(),
-                fmt::format("NFS at {} is mounted with '{}': no node sees the locks of another, and two could run the "
-                            "same job",
-                            holds.point, local),
-                "mount it without that, or put --runs on another file system");
+    throw Error(
+        folder.string(),
+        fmt::format(
+            "NFS at {} is mounted with '{}': nodes do not see each other's locks, and two could run the same job",
+            holds.point, local),
+        "mount it without this option, or put --runs on another file system");
   }
 }
 

@@ -21,8 +21,7 @@ namespace {
 constexpr double kPatience = 30.0;  ///< s for an answer
 constexpr std::chrono::seconds kPause{1};
 
-constexpr const char* kAskedElsewhere =
-    "run this where Slurm's commands work, on a cluster's login node, or leave out '--launcher slurm'";
+constexpr const char* kAskedElsewhere = "run this on the login node of a cluster, or leave out '--launcher slurm'";
 
 /// Lines, or the parts of a line between its '|'.
 std::vector<std::string> parts_of(const std::string& text, char end = '\n') {
@@ -74,8 +73,9 @@ std::string ask(const std::vector<std::string>& words, const std::string& hint =
 
 int parse_most_tasks(const std::string& config) {
   const std::optional<int> indices = setting(config, "MaxArraySize");
-  if (!indices) throw Error("scontrol", "does not say MaxArraySize", "see 'scontrol show config'");
-  if (*indices < 2) throw Error("scontrol", "this cluster takes no arrays", "its MaxArraySize would have to be raised");
+  if (!indices) throw Error("scontrol", "does not print MaxArraySize", "see 'scontrol show config'");
+  if (*indices < 2)
+    throw Error("scontrol", "this cluster accepts no job arrays", "ask its administrator to raise MaxArraySize");
   return std::clamp(setting(config, "max_array_tasks").value_or(*indices), 1, *indices);
 }
 
@@ -119,7 +119,7 @@ std::string words_of(const std::string& output) {
     if (line.find_first_not_of(" \t") == std::string::npos) continue;
     out += (out.empty() ? "" : "; ") + line;
   }
-  return out.empty() ? "failed and says nothing" : out;
+  return out.empty() ? "failed without a message" : out;
 }
 
 void check_installed() { ask({"sbatch", "--version"}); }
@@ -137,7 +137,8 @@ int submit(const std::vector<std::string>& words) {
   command->wait();  // however long it takes: cut off, it could have submitted or not
   const std::optional<int> id = parse_array_id(command->said());
   if (command->status() != 0 || !id) {
-    throw Error("sbatch", words_of(command->said()), "nothing of this array was submitted; 'sinfo' lists partitions");
+    throw Error("sbatch", words_of(command->said()),
+                "no job of this array was submitted; 'sinfo' lists the partitions");
   }
   return *id;
 }
@@ -145,7 +146,7 @@ int submit(const std::vector<std::string>& words) {
 void cancel(const std::vector<int>& arrays) {
   std::vector<std::string> words{"scancel"};
   for (const int array : arrays) words.push_back(std::to_string(array));
-  ask(words, fmt::format("the jobs may go on; say it again by hand: {}", fmt::join(words, " ")));
+  ask(words, fmt::format("the jobs may still run; repeat the command by hand: {}", fmt::join(words, " ")));
 }
 
 std::optional<std::vector<Task>> Watch::look(double seconds) {

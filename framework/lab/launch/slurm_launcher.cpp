@@ -31,16 +31,16 @@ struct OwnWord {
   const char* letter;
   const char* hint;
 };
-constexpr const char* kOwnOption = "palpate has an option of that name";
+constexpr const char* kOwnOption = "use palpate's own option of this name";
 constexpr std::array<OwnWord, 10> kOwnWords{{{"--partition", "-p", kOwnOption},
                                              {"--time", "-t", kOwnOption},
                                              {"--account", "-A", kOwnOption},
                                              {"--wait", "-W", kOwnOption},
-                                             {"--cpus-per-task", "-c", "-j says how many cores a task has"},
-                                             {"--array", "-a", "which jobs are missing is palpate's to say"},
-                                             {"--output", "-o", "logs are in the sweep's directory"},
-                                             {"--clusters", "-M", "submit on that cluster's own login node"},
-                                             {"--wrap", "--wrap", "what a task runs is palpate's to say"},
+                                             {"--cpus-per-task", "-c", "set the cores per task with -j"},
+                                             {"--array", "-a", "palpate itself chooses the missing jobs"},
+                                             {"--output", "-o", "palpate writes the logs into the sweep's directory"},
+                                             {"--clusters", "-M", "submit on the login node of that cluster"},
+                                             {"--wrap", "--wrap", "palpate itself sets the command of a task"},
                                              {"--parsable", "--parsable", "leave it out"}}};
 
 /// Every folder of the search path absolute: a task may begin elsewhere.
@@ -66,14 +66,14 @@ std::string shell_word(const std::string& text) {
 void check_sbatch_words(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word.size() < 2 || word.front() != '-' || word == "--") {
-      throw Error("command line", fmt::format("--sbatch: '{}' is no option of sbatch", word),
-                  "as in --sbatch=--mem=4G");
+      throw Error("command line", fmt::format("--sbatch: '{}' is not an option of sbatch", word),
+                  "write for example --sbatch=--mem=4G");
     }
     const bool is_long = word.compare(0, 2, "--") == 0;
     const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
     for (const OwnWord& own : kOwnWords) {
       if (name != own.name && name != own.letter) continue;
-      throw Error("command line", fmt::format("--sbatch: {} cannot be said there", name), own.hint);
+      throw Error("command line", fmt::format("--sbatch: {} cannot be set with --sbatch", name), own.hint);
     }
   }
 }
@@ -81,10 +81,9 @@ void check_sbatch_words(const std::vector<std::string>& words) {
 std::string task_script(const fs::path& program, const fs::path& directory, const fs::path& jobs,
                         const LaunchOptions& options, const std::optional<std::string>& plugin_path) {
   std::string out =
-      "#!/bin/sh\n"
-      "# A task of a Slurm array carries on the sweep's jobs on a line of a list: that of the first argument, 0 if "
-      "there\n"
-      "# is none, plus the array's index. Jobs that are done or in other hands are left alone.\n";
+      "#!/bin/sh\n# A task of a Slurm array resumes the jobs of the sweep that one line of a list names. The line "
+      "number is the first\n# argument, 0 if absent, plus the array index. Jobs that are done or held by another "
+      "process are skipped.\n";
   out += plugin_path ? fmt::format("export PALPATE_PLUGIN_PATH={}\n", shell_word(*plugin_path))
                      : "unset PALPATE_PLUGIN_PATH\n";
   const char* const instructions = std::getenv("PALPATE_INSTRUCTIONS");
@@ -109,11 +108,10 @@ void SlurmLauncher::check_cores() const {
       !options_.partition.empty() || elsewhere == nullptr ? options_.partition : std::string(elsewhere);
   const int most = slurm::most_cpus(partition);
   if (most == 0 || options_.workers <= most) return;
-  throw Error(
-      "command line",
-      fmt::format("-j {}: no node of {} has more than {} CPUs, and the task would wait for ever", options_.workers,
-                  partition.empty() ? "the default partition" : "partition " + partition, most),
-      fmt::format("give at most -j {}, or another --partition", most));
+  throw Error("command line",
+              fmt::format("-j {}: no node of {} has more than {} CPUs, so the task would never start", options_.workers,
+                          partition.empty() ? "the default partition" : "partition " + partition, most),
+              fmt::format("give at most -j {}, or another --partition", most));
 }
 
 fs::path SlurmLauncher::make_folder() const {
@@ -183,8 +181,8 @@ Launcher::State SlurmLauncher::poll(double seconds) {
   State state;
   const std::optional<std::vector<slurm::Task>> queue = tasks_.empty() ? std::nullopt : watch_.look(seconds);
   if (watch_.silence() > kMostSilence) {
-    throw Error("squeue", fmt::format("says nothing for ten minutes: {}", watch_.trouble()),
-                "the jobs go on; 'palpate status' shows them", Error::Kind::run);
+    throw Error("squeue", fmt::format("has not answered for ten minutes: {}", watch_.trouble()),
+                "the jobs continue; follow them with 'palpate status'", Error::Kind::run);
   }
   if (queue) {
     std::map<Place, bool> present;

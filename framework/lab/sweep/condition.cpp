@@ -58,8 +58,8 @@ class Reader {
   Formula read() {
     if (tokens_.empty()) throw refuse("it is empty");
     Formula out = any(0);
-    if (at(")")) throw refuse("a ')' without '('");
-    if (next_ < tokens_.size()) throw refuse(fmt::format("'{}' is not expected there", shown()));
+    if (at(")")) throw refuse("there is a ')' without a '('");
+    if (next_ < tokens_.size()) throw refuse(fmt::format("'{}' is not expected here", shown()));
     return out;
   }
 
@@ -139,17 +139,17 @@ class Reader {
   }
 
   Formula comparison() {
-    if (at_sign()) throw refuse(fmt::format("'{}' is not expected there", shown()), meant_by(shown()));
+    if (at_sign()) throw refuse(fmt::format("'{}' is not expected here", shown()), meant_by(shown()));
     if (!at_value()) throw refuse("a comparison is missing");
     Condition::Comparison out;
     out.name = shown();
     if (at_quoted() || (out.name[0] >= '0' && out.name[0] <= '9'))
-      throw refuse(fmt::format("'{}' is no name", out.name), "write the name first: taps >= 12");
+      throw refuse(fmt::format("'{}' is not a name", out.name), "write the name first: taps >= 12");
     ++next_;
-    if (!at_sign()) throw refuse(fmt::format("behind '{}' a comparison is missing", out.name));
+    if (!at_sign()) throw refuse(fmt::format("a comparison is missing after '{}'", out.name));
     out.sign = tokens_[next_++];
-    if (!relation_of(out.sign)) throw refuse(fmt::format("'{}' is no comparison", out.sign), meant_by(out.sign));
-    if (!at_value()) throw refuse(fmt::format("behind '{} {}' a value is missing", out.name, out.sign));
+    if (!relation_of(out.sign)) throw refuse(fmt::format("'{}' is not a comparison", out.sign), meant_by(out.sign));
+    if (!at_value()) throw refuse(fmt::format("a value is missing after '{} {}'", out.name, out.sign));
     out.quoted = at_quoted();
     out.value = shown();
     ++next_;
@@ -157,7 +157,7 @@ class Reader {
     while (!out.quoted && !at_quoted() && at_value()) out.value += " " + tokens_[next_++];
     if (at_sign()) {
       const bool joins = shown()[0] == '&' || shown()[0] == '|';
-      throw refuse(fmt::format("'{}' is not expected there", shown()),
+      throw refuse(fmt::format("'{}' is not expected here", shown()),
                    joins ? meant_by(shown()) : "join two comparisons by 'and'");
     }
     comparisons_.push_back(std::move(out));
@@ -190,7 +190,7 @@ bool Condition::holds(const Values& value_of, const std::vector<std::string>& kn
   // Names that no evaluation may reach are checked all the same.
   for (const Comparison& one : comparisons_) {
     if (value_of(one.name)) continue;
-    throw Error(place_, fmt::format("in the condition '{}' the name '{}' is not known", one.shown(), one.name),
+    throw Error(place_, fmt::format("the condition '{}' has the unknown name '{}'", one.shown(), one.name),
                 suggestion(one.name, known));
   }
   return formula_([&](std::size_t number) { return decide(comparisons_[number], value_of); }) == Logical::yes;
@@ -216,8 +216,9 @@ Condition::Logical Condition::decide(const Comparison& comparison, const Values&
   if (sign == sign_of(Relation::equal)) return decided(left.text == right.text);
   if (sign == sign_of(Relation::unequal)) return decided(left.text != right.text);
   throw Error(place_,
-              fmt::format("the condition '{}' orders texts: '{}' and '{}'", comparison.shown(), left.text, right.text),
-              "texts compare by == and != alone");
+              fmt::format("the condition '{}' compares the order of texts: '{}' and '{}'", comparison.shown(),
+                          left.text, right.text),
+              "compare texts with == or !=");
 }
 
 }  // namespace palpate

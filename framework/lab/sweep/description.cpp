@@ -66,12 +66,11 @@ void check_key(const Axis& axis) {
   const std::string place = place_of(axis).text();
   check_path(axis.key, place);
   if (is_below(axis.key, "expect")) {
-    throw Error(place, fmt::format("{}: what is expected cannot be swept", axis.key),
-                "it holds for the whole sweep: write it under 'expect:'");
+    throw Error(place, fmt::format("{}: expectations cannot be swept", axis.key),
+                "write it under 'expect:', which applies to the whole sweep");
   }
   if (is_below(axis.key, "sweep") || axis.key == "defaults") {
-    throw Error(place, fmt::format("'{}' cannot be swept", axis.key),
-                "name what it chooses, as in kernel: [rbf, matern52]");
+    throw Error(place, fmt::format("'{}' cannot be swept", axis.key), "list its names, as in kernel: [rbf, matern52]");
   }
 }
 
@@ -105,7 +104,7 @@ SweepWords parse_sweep_words(const std::vector<std::string>& words) {
     if (is_below(path, "sweep")) {
       Override block = parse_override(word);
       if (path == "sweep") {
-        throw Error("command line", "'sweep' is given as a whole", "give its blocks: \"sweep.where=taps > 12\"");
+        throw Error("command line", "'sweep' cannot be set as a whole", "set its blocks: \"sweep.where=taps > 12\"");
       }
       const std::string name = path.substr(std::string("sweep.").size());
       check_block(name, block.value.place);
@@ -118,7 +117,7 @@ SweepWords parse_sweep_words(const std::vector<std::string>& words) {
       continue;
     }
     if (axis.values.size() != 1) {
-      throw Error(place_of(axis).text(), fmt::format("{}: what is expected cannot be swept", axis.key),
+      throw Error(place_of(axis).text(), fmt::format("{}: expectations cannot be swept", axis.key),
                   "give it one value");
     }
     out.expectations.push_back({axis.key, axis.values.front()});
@@ -139,7 +138,8 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
   } else if (name == "sobol") {
     block.parts.push_back({sobol_axes(described, count), true});
   } else {
-    block.parts.push_back({read_axes(described, full, "write seed: range(0,10), a key a line", count), name == "zip"});
+    block.parts.push_back(
+        {read_axes(described, full, "write seed: range(0,10), one key per line", count), name == "zip"});
   }
   if (name == "zip") {
     const std::vector<Axis>& axes = block.parts.front().axes;
@@ -148,7 +148,7 @@ SweepDescription::Block SweepDescription::read_block(const std::string& name, co
       throw Error(place_of(axis).text(),
                   fmt::format("sweep.zip: '{}' has {} values, '{}' has {}", axis.key, axis.values.size(),
                               axes.front().key, axes.front().values.size()),
-                  "give every key as many, or multiply them in 'grid'");
+                  "give all keys the same number of values, or combine them in 'grid'");
     }
   }
   return block;
@@ -192,9 +192,9 @@ void SweepDescription::list_keys() {
         if (is_new) keys_.push_back(axis.key);
         if (twin->second.second == &block) continue;
         throw Error(place_of(axis).text(),
-                    fmt::format("'{}' stands in sweep.{} and, at {}, in sweep.{}", axis.key, block.name,
+                    fmt::format("'{}' is in sweep.{} and, at {}, in sweep.{}", axis.key, block.name,
                                 place_of(*twin->second.first).text(), twin->second.second->name),
-                    "a key may stand in one block only");
+                    "write each key in one block only");
       }
     }
   }

@@ -84,7 +84,7 @@ std::vector<Row> EarlierResults::write(const Occasion& occasion) const {
     summaries[job] = kept(job, occasion);
     if (summaries[job]) continue;
     throw Error(job_directory(sweep_, sweep_.jobs[job]).string(), fmt::format("has no summary {}", occasion.words()),
-                "it was removed while it was needed: ask again", Error::Kind::run);
+                "it was removed during the command: repeat the command", Error::Kind::run);
   }
   std::vector<Row> rows = sweep_results(sweep_, std::move(summaries));
   write_file(sweep_.directory / fmt::format("results_{}.csv", occasion.key()), to_csv(rows));

@@ -97,7 +97,7 @@ class Planner {
       if (takes_part || asker == nullptr) continue;
       const std::string hint = suggestion(last_key(keys_[i]), {siblings.begin(), siblings.end()});
       throw Error(asker->values.front().place.text(), fmt::format("no job of the sweep has an option '{}'", keys_[i]),
-                  hint.empty() ? "take it away" : hint);
+                  hint.empty() ? "remove it" : hint);
     }
   }
 
@@ -188,9 +188,9 @@ class Planner {
       if (twin.values[key] != job.values[key]) differing.push_back(keys_[key]);
     }
     const std::string reason = fmt::format("jobs {} and {} of the sweep are the same run", twin.index, job.index);
-    if (differing.empty()) return {file_.string(), reason, "a value stands twice: write it once"};
+    if (differing.empty()) return {file_.string(), reason, "a value occurs twice: write it once"};
     return {file_.string(), fmt::format("{} though they differ in {}", reason, fmt::join(differing, ", ")),
-            "that has no effect there: take it away, or what differs in writing alone"};
+            "this has no effect there: remove it, or values that are written differently but equal"};
   }
 
   Composer& composer_;
@@ -317,8 +317,8 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   }
   if (!first) {
     throw Error(description.where_place(),
-                fmt::format("sweep.where: it holds for none of the {} combinations", description.combinations().size()),
-                "ask for less, or sweep other values");
+                fmt::format("sweep.where: matches none of the {} combinations", description.combinations().size()),
+                "relax the condition, or sweep other values");
   }
   planner.finish();
   SweepPlan plan{{{}, description.keys(), planner.take_jobs()},

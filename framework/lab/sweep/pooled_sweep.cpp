@@ -166,7 +166,7 @@ class Pool {
       }
     }
     if (repeated > 0)
-      out_.notes.push_back(fmt::format("{} of {} jobs stand in an earlier record, too, and count once", repeated,
+      out_.notes.push_back(fmt::format("{} of {} jobs are also in an earlier record and count once", repeated,
                                        members_.size() + static_cast<std::size_t>(repeated)));
   }
 
@@ -178,8 +178,8 @@ class Pool {
     const std::string one = taps(first);
     const std::string other = taps(second);
     if (one.empty() || other.empty() || one == other) return;
-    throw Error(second.string(), fmt::format("has the id of {} and other taps", first.string()),
-                "give such runs a seed or a backend.label of their own, or leave one out", Error::Kind::run);
+    throw Error(second.string(), fmt::format("has the same id as {} but other taps", first.string()),
+                "give each run its own seed or backend.label, or leave one out", Error::Kind::run);
   }
 
   bool has_ended(std::size_t source, const Job& job) const {
@@ -215,7 +215,7 @@ class Pool {
     const PoolTexts others = other_differences();
     std::for_each(others.begin(), others.end(), add);
     if (!others.empty() && !contains(by_, kName))
-      out_.notes.push_back(fmt::format("beside what they sweep the records differ in {}", fmt::join(others, ", ")));
+      out_.notes.push_back(fmt::format("besides the swept keys, the records differ in {}", fmt::join(others, ", ")));
     keys_.emplace_back(kSeed);
   }
 
@@ -389,7 +389,7 @@ class Pool {
           if (sources.count(source) == 0 && !contains(lacking, sources_[source].name))
             lacking.push_back(sources_[source].name);
         }
-        out_.notes.push_back(fmt::format("{}={} is missing in {}: compare scene by scene, or leave it out by --where",
+        out_.notes.push_back(fmt::format("{}={} is missing in {}: compare scene by scene, or exclude it with --where",
                                          keys_[key], value, fmt::join(lacking, ", ")));
       }
     }
@@ -408,7 +408,7 @@ class Pool {
 }  // namespace
 
 PooledSweep read_pooled(const std::vector<fs::path>& records, const PoolTexts& by) {
-  if (records.empty()) throw Error("", "no sweep and no run is named", "name at least one");
+  if (records.empty()) throw Error("", "no sweep and no run is given", "name at least one");
   if (records.size() == 1 && is_sweep(records.front())) return {read_sweep(records.front()), {}};
   return Pool(records, by).take();
 }

@@ -115,7 +115,7 @@ Sweep read_sweep(const fs::path& directory) {
   // Complete before the first job began: a line without its end is damage, not work under way.
   if (lines.bytes != fs::file_size(file))
     throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
-  if (lines.rows.empty()) throw Error(file.string(), "lists no job", "the file is damaged");
+  if (lines.rows.empty()) throw Error(file.string(), "lists no jobs", "the file is damaged");
   sweep.keys = texts_at(lines.rows.front(), "key");
   const std::string id = lines.rows.front().text(kSweep);
   for (const Row& row : lines.rows) {
@@ -128,15 +128,15 @@ Sweep read_sweep(const fs::path& directory) {
       continue;
     }
     if (whole && says("")) {
-      throw Error(directory.string(), "an older palpate made this sweep: nothing tells whether its jobs were changed",
-                  "results.csv is good still; 'palpate sweep' on config.yaml in it makes it anew");
+      throw Error(directory.string(), "an older palpate made this sweep: later changes of its jobs cannot be detected",
+                  "results.csv is still valid; to repeat the sweep, run 'palpate sweep' on its config.yaml");
     }
-    throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is no job of this sweep",
+    throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is not a job of this sweep",
                 "the file is damaged: put it back as it was");
   }
   if (sweep_id(read_run_config(directory), sweep) != id) {
-    throw Error(directory.string(), "config.yaml or manifest.jsonl was changed since this sweep began",
-                "put the old one back, or run the changed config with 'palpate sweep'");
+    throw Error(directory.string(), "config.yaml or manifest.jsonl was changed after this sweep started",
+                "restore the old file, or run the changed config with 'palpate sweep'");
   }
   return sweep;
 }
@@ -221,7 +221,7 @@ std::vector<RunOutcome> outcomes_of(const Sweep& sweep) {
       run.name += fmt::format("{}{}={}", i == 0 ? ": " : ", ", sweep.keys[i], job.values[i]);
     run.summary = std::move(summaries[static_cast<std::size_t>(job.index)]);
     if (!run.summary) {
-      run.failure = "has not run to its end";
+      run.failure = "has not ended";
     } else if (run.summary->text("status") != "done") {
       run.failure = run.summary->text("stop_reason");
       if (run.failure.empty()) run.failure = "failed";

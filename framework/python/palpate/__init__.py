@@ -228,7 +228,7 @@ class Sweep:
         jobs = self.table
         metric = metric or _main_error(jobs)
         if metric not in jobs.dtype.names or jobs[metric].dtype.kind not in "biuf":
-            raise _error("plot", f"the table has no numbers '{metric}'", "name a column of sweep.table")
+            raise _error("plot", f"the table has no numeric column '{metric}'", "name a column of sweep.table")
         return _plotted(lambda: _show.draw_sweep(jobs, self.keys, metric))
 
     def __len__(self):
@@ -247,7 +247,7 @@ class Sweep:
         """Of a sweep of begin_sweep(): the Experiment of each job that has not ended, one after the other. Close each, as
         `with` does, before the next. `retry_failed` carries on failed jobs, too."""
         if len(self._directories) > 1:
-            raise _error("experiments", "several sweeps are read as one", "ask each sweep for its own")
+            raise _error("experiments", "this Sweep combines several sweeps", "call experiments() of each single sweep")
         try:
             for job, status in enumerate(self.table["status"].tolist()):
                 if status is None or retry_failed and status == "failed":
@@ -335,7 +335,7 @@ def sweep(config, *axes, runs="runs", workers=None, progress=None, **settings) -
     made = Sweep(directory)
     # 1: jobs failed, what the config expects does not hold, or the sweep itself did.
     if status not in (0, 1) or status == 1 and None in made.table["status"].tolist():
-        raise _error(directory, f"the sweep ended with status {status}: {said}", "the same call carries it on", Error)
+        raise _error(directory, f"the sweep ended with status {status}: {said}", "repeat the call to resume it", Error)
     return made
 
 
@@ -349,7 +349,7 @@ def begin_sweep(config, *axes, labels=None, runs="runs", **settings) -> Sweep:
     if labels is not None:
         names = [labels] if isinstance(labels, str) else list(labels)
         if not names or not all(isinstance(one, str) and one for one in names):
-            raise _error("labels", "has something that is no name", "give texts that are not empty")
+            raise _error("labels", "has a value that is not a name", "give non-empty texts")
         # A list of texts in YAML's single quotes, within which nothing has a meaning of its own.
         texts = ("'" + one.replace("'", "''") + "'" for one in names)
         words += [f"backend.label=[{', '.join(texts)}]"]
@@ -483,10 +483,10 @@ class Experiment:
         """
         if outcome is None:
             if height is None:
-                raise _error("tell", "neither a height nor an outcome is told", 'tell a height, or outcome="no_contact"')
+                raise _error("tell", "neither a height nor an outcome is given", 'give a height, or outcome="no_contact"')
             outcome = "contact"
         elif (outcome == "contact") != (height is not None):
-            raise _error("tell", "a height belongs to a contact, and to nothing else", "leave one of the two out")
+            raise _error("tell", "a height is valid only with the outcome contact", "leave one of the two out")
         self._asked.tell(outcome, float(height or 0.0), float(force or 0.0), float(seconds or 0.0), reason, ends_run)
 
     def finish(self) -> dict:

@@ -21,7 +21,7 @@ def plain(value):
         return os.fspath(value)
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise TypeError(f"a config has nothing for {value!r}")
+    raise TypeError(f"a config cannot contain {value!r}")
 
 
 def value_text(value):

@@ -84,10 +84,10 @@ ArmLock::ArmLock(const std::string& where, const std::string& arm) {
   }
   if (errno != EADDRINUSE) {
     throw Error(where, "the arm " + arm + " cannot be locked: " + std::strerror(errno),
-                "let palpate make unix sockets (unix(7))", Error::Kind::run);
+                "allow palpate to create unix sockets (unix(7))", Error::Kind::run);
   }
-  throw Error(where, "the arm " + arm + " is in the hands of " + holder_of(name),
-              "wait until that has ended, or end it", Error::Kind::busy);
+  throw Error(where, "the arm " + arm + " is used by " + holder_of(name),
+              "wait until that process has ended, or end it", Error::Kind::busy);
 }
 
 ArmLock::~ArmLock() {

@@ -125,12 +125,12 @@ ReadingWords words_of(const Reading& reading, std::uintmax_t most_bytes) {
     case Reading::Kind::not_regular:
       return {"is not a regular file", "put a file in its place, or remove it"};
     case Reading::Kind::link:
-      return {"is a link, and nothing in a record is read or written through one", "remove it"};
+      return {"is a symbolic link, and links in a record are not followed", "remove it"};
     case Reading::Kind::too_large: {
       const std::uintmax_t mebibyte = std::uintmax_t{1} << 20;
       const std::string most = most_bytes < mebibyte ? std::to_string(most_bytes) + " bytes"
                                                      : std::to_string(most_bytes / mebibyte) + " MiB";
-      return {"is too large for what it should hold: at most " + most + " are read",
+      return {"is too large for its purpose: at most " + most + " are read",
               "the file is damaged: put it back as it was"};
     }
     case Reading::Kind::whole:

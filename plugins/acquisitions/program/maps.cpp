@@ -132,7 +132,7 @@ const Map* find_map(const std::string& name) {
 
 std::size_t header_length(const std::string& start) {
   const std::optional<NpyPlace> place = npy_header_place(start);
-  if (!place || place->begin != kNpyStart) throw std::runtime_error("something that is no array in the format NPY 1.0");
+  if (!place || place->begin != kNpyStart) throw std::runtime_error("data that is not an array in the format NPY 1.0");
   return place->length;
 }
 

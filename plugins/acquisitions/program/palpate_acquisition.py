@@ -43,7 +43,7 @@ class Belief:
 
     def __getattr__(self, name):
         if SERVED:
-            raise AttributeError(f"the belief has no {name}: name it in reads=[...]")
+            raise AttributeError(f"the belief has no {name}: add it to reads=[...]")
         missing = "seed=1, tap=1" if name == "random" else f"{name}=..."
         raise AttributeError(f"this belief was made without {name}: add {missing} to its Belief(...)")
 
@@ -71,10 +71,10 @@ def serve(function, reads):
     for line in iter(sys.stdin.buffer.readline, b""):
         ask = json.loads(line)
         if ask["palpate"] != PROTOCOL:
-            sys.exit(f"{__file__} is of protocol {PROTOCOL}, palpate of {ask['palpate']}: remove that file")
+            sys.exit(f"{__file__} has protocol {PROTOCOL}, but palpate has {ask['palpate']}: remove that file")
         sent = [array["name"] for array in ask["arrays"]]
         if sent != list(reads):
-            sys.exit(f"the config says 'reads: {', '.join(sent)}', {function.__name__} has reads={list(reads)}")
+            sys.exit(f"the config has 'reads: {', '.join(sent)}', but {function.__name__} has reads={list(reads)}")
         arrays = {array["name"]: read_npy(sys.stdin.buffer.read(array["bytes"])) for array in ask["arrays"]}
         scores = numpy.asarray(function(Belief(**ask, **arrays)), dtype="<f8")
         if scores.shape != (ask["candidates"],):

@@ -124,7 +124,7 @@ struct ProgramOptions : Options {
                 Field("folder", "working folder of the program, as an absolute path; not given: the current folder")
                     .not_identifying());
     fields.require(folder.empty() || fs::path(folder).is_absolute(), "folder",
-                   "is no whole path: whoever carries the run on may be elsewhere; write it from /");
+                   "is not an absolute path, which a resume in another folder needs; begin it with /");
     programs::Content content;
     if (words) content = programs::content_of(*words, folder);
     if (words && checksum.empty()) checksum = content.checksum;
@@ -141,7 +141,7 @@ struct ProgramOptions : Options {
     for (const std::string& name : names_in(reads)) {
       fields.require(program::find_map(name) != nullptr, by_program ? "command" : "reads",
                      (by_program ? "reads=[...] in " + shown(content.file) + " has " : "has ") + shown(name) +
-                         ", which is none of " + all_names());
+                         ", which is not one of " + all_names());
     }
     fields.real(deadline,
                 Field("deadline", "time limit of the program's answer, after which the run fails; it can be resumed")
@@ -160,14 +160,14 @@ struct ProgramOptions : Options {
   std::string unsaid(const std::vector<std::string>& words, const std::string& program,
                      const std::set<std::string>& declared) const {
     if (program.empty() && lies_above(words, folder))
-      return "is not said, and " + shown(command) + " names no file in " + shown(folder) +
-             ": paths in it begin in the folder in which palpate is called, so call it in " +
+      return "is not given, and " + shown(command) + " names no file in " + shown(folder) +
+             ": relative paths start in the current folder, so call palpate in " +
              shown(fs::path(folder).parent_path().string());
     if (program.empty())
-      return "is not said, and " + shown(command) + " names no file in " + shown(folder) +
-             " that could say it: paths in it begin in the folder in which palpate is called";
-    return declared.empty() ? "is not said, neither here nor by reads=[...] in the program"
-                            : "is not said here, and the program has several reads=[...]";
+      return "is not given, and " + shown(command) + " names no file in " + shown(folder) +
+             " with reads=[...]: relative paths start in the current folder";
+    return declared.empty() ? "is given neither here nor by reads=[...] in the program"
+                            : "is not given here, and the program has several reads=[...]";
   }
 };
 
@@ -180,7 +180,7 @@ class ProgramAcquisition final : public Acquisition {
     for (const std::string& name : names_in(options.reads)) maps_.push_back(program::find_map(name));
     if (!from_above() && !any_side()) {
       throw Error("reads", "names arrays of taps from above and arrays of taps from any side",
-                  "no scene has both; the page strategies.md lists them");
+                  "choose arrays of one kind, see strategies.md");
     }
     if (context.directory.empty()) return;
     words_ = programs::split_command(options.command).value();
@@ -240,13 +240,13 @@ class ProgramAcquisition final : public Acquisition {
       fail(fate,
            "install NumPy for the Python of acquisition.command (Debian: apt install python3-numpy, for "
            "/usr/bin/python3)");
-    fail(fate, "correct it, what it said is in " + file);
+    fail(fate, "correct it, its output is in " + file);
   }
 
   /// Sends what there is to read, and takes the scores.
   void exchange(const std::string& fields, const std::vector<std::string>& arrays, VectorOut out) const {
     if (context_.directory.empty())
-      throw Error("", "no program is started outside a run", "look at what the run recorded", Error::Kind::run);
+      throw Error("", "programs are started in a run only", "use the values that the run recorded", Error::Kind::run);
     double seconds = options_.deadline;
     if (!child_) {
       seconds += options_.start;
@@ -263,7 +263,7 @@ class ProgramAcquisition final : public Acquisition {
     std::string bytes;
     // Whatever there is before the ask is no answer to it.
     if (child_->hear(bytes, 1, {Clock::now(), context_.interrupted}) == Heard::line)
-      fail("said more than its scores", "let it print to stderr");
+      fail("printed more than its scores", "print other text to stderr");
     check(child_->send(ask(fields, arrays, out.size()), patience), {});
     try {
       check(child_->hear(bytes, kNpyStart, patience), bytes);
@@ -305,13 +305,13 @@ class ProgramAcquisition final : public Acquisition {
       case Heard::ended:
         fail_ended(child_->fate());
       case Heard::late:
-        fail(bytes.empty() ? std::string("gave no scores in time") +
-                                 (answered_ ? "" : ", nor ever before: does it flush its output?")
-                           : "did not end its scores in time",
-             "correct it, or give it longer by acquisition.deadline; 'palpate resume --retry-failed' asks it again");
+        fail(bytes.empty() ? std::string("sent no scores in time") +
+                                 (answered_ ? "" : " and has never sent any, check that it flushes its output")
+                           : "sent incomplete scores until the deadline",
+             "correct it, or raise acquisition.deadline; then run 'palpate resume --retry-failed'");
       case Heard::too_long:
       case Heard::interrupted:
-        fail("was interrupted", "'palpate resume' carries on");
+        fail("was interrupted", "run 'palpate resume' to continue");
     }
   }
 
@@ -329,7 +329,7 @@ class ProgramAcquisition final : public Acquisition {
     programs::keep_copy(in_record(fs::path(content.file).extension().string()), content.program);
   }
 
-  static constexpr const char* kCorrect = "correct it; with another program it is another run";
+  static constexpr const char* kCorrect = "correct it; a changed program makes a new run";
 
   Options options_;
   const Context& context_;

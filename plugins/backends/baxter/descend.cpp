@@ -167,8 +167,8 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   measure_time();
   const tapping::MotionOptions motion = bounded(wanted, stiffness);
   note_(fmt::format(
-      "tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is noticed after {:.0f} ms and stopped {:.0f} "
-      "ms later, messages come up to {:.0f} ms late; at most {} are expected",
+      "tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is detected after {:.0f} ms and stopped {:.0f} ms "
+      "later, messages are up to {:.0f} ms late; at most {} are expected",
       request.number, 1e3 * motion.speed, 1e-3 * stiffness, 1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(),
       1e3 * reaction_.lateness(), newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
   lately_ = {std::abs(moving_), motion.speed};
@@ -220,11 +220,10 @@ void Tapper::expect_descent(const WayDown& way) const {
   if (way.quiet < kQuiet || way.tap.tap().done()) return;
   const double behind = way.periods.behind(reaction_.noticing() + reaction_.lateness());
   if (behind < std::max(kLeastBehind, 2.0 * (way.motion.threshold + kPressed) / way.stiffness)) return;
-  throw Fault{
-      fmt::format("the arm does not follow, it stays {:.1f} mm behind its set-point and feels nothing: see what "
-                  "blocks it, and whether others command it",
-                  1e3 * behind),
-      Then::hold};
+  throw Fault{fmt::format("the arm does not follow: it stays {:.1f} mm behind its set-point without a contact force. "
+                          "Check what blocks it, and whether other programs command it",
+                          1e3 * behind),
+              Then::hold};
 }
 
 /// Messages that come later than before, or a force that is renewed more seldom, leave less time to stop.
@@ -272,8 +271,7 @@ void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_dow
   way.pulled = coming_down && sign_ * (felt - zero) < -way.motion.threshold ? way.pulled + 1 : 0;
   if (way.pulled < std::clamp(kPulledFor / watch_.renewals().seconds(), kFewestPulled, kPulled)) return;
   throw Fault{
-      "the force fell by more than the threshold where nothing can pull: its zero moved, or force_sign is "
-      "wrong",
+      "the force fell by more than the threshold although nothing can pull: its zero moved, or force_sign is wrong",
       Then::retreat};
 }
 
@@ -285,8 +283,8 @@ Contact Tapper::judge(const WayDown& way, const Contact& contact) {
   const double most = std::max(kLeastMoved, 0.5 * way.motion.threshold);
   if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop)) {
     return failed(Outcome::aborted,
-                  "the force did not go back to its zero when the tool was clear: its zero moved during the tap, and "
-                  "the contact may be none");
+                  "the force did not return to its zero after the tool was clear: its zero moved during the tap, and "
+                  "the contact may be false");
   }
   if (way.moving) learn_moving(*way.moving);
   // The height of the other motions is not that of the beginning.

@@ -82,10 +82,10 @@ double Tapper::stiffness_at(const Target& place) const {
 double Tapper::greatest_speed(double threshold, double stiffness, Then then) const {
   const double greatest = reaction_.greatest_speed(threshold, stiffness);
   if (greatest >= reaction_.slowest()) return greatest;
-  const char* const assumed = reaction_.measured() ? "" : "until a contact was measured it is assumed that ";
-  throw Fault{fmt::format("{}a contact would be noticed after {:.0f} ms and stopped {:.0f} ms later, messages come up "
-                          "to {:.0f} ms late: at {:.1f} N that allows {:.2f} mm/s, and {:.0f} mm/s are needed. "
-                          "Connect by cable, end other load, or take a motion.threshold below {:.1f} N",
+  const char* const assumed = reaction_.measured() ? "" : "before the first measured contact it is assumed that ";
+  throw Fault{fmt::format("{}a contact would be detected after {:.0f} ms and stopped {:.0f} ms later, messages are up "
+                          "to {:.0f} ms late: at {:.1f} N this allows {:.2f} mm/s, but {:.0f} mm/s are needed. Connect "
+                          "by cable, end other load, or choose a motion.threshold below {:.1f} N",
                           assumed, 1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(), 1e3 * reaction_.lateness(),
                           threshold, 1e3 * greatest, 1e3 * reaction_.slowest(), threshold),
               then};
@@ -193,7 +193,7 @@ std::string Tapper::learnt_sign() const {
 void Tapper::learn_sign() {
   if (sign_ != 0.0) return;
   sign_ = shown_sign_;
-  note_("force_sign: when something presses the tool upwards, the force along z " +
+  note_("force_sign: when an object presses the tool upwards, the force along z " +
         std::string(sign_ > 0.0 ? "rises: positive" : "falls: negative"));
 }
 
@@ -203,11 +203,9 @@ void Tapper::learn_moving(double difference) {
   moving_ = much ? 0.0 : difference;
   if (told_ >= kTold) return;
   ++told_;
-  note_("coming down in the air the force along z reads " + newtons(difference) + " beside that at rest" +
-        (much
-             ? ", too much to be taken for its zero: calibrate the robot (rosrun baxter_tools tare.py) or take a lower "
-               "motion.speed"
-             : ": taken for its zero while the arm comes down, from the next tap on"));
+  note_("during the descent in air the force along z differs by " + newtons(difference) + " from its value at rest" +
+        (much ? ", too much for a zero: calibrate the robot (rosrun baxter_tools tare.py) or lower motion.speed"
+              : ": this is its zero during descents from the next tap on"));
 }
 
 /// The median of a few new readings, while the arm is where it is sent: one of them may be far off.
@@ -222,7 +220,7 @@ Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
     if (watch_.fresh()) readings.push_back(seen_.endpoint->force);
   }
   if (!enough()) {
-    throw Fault{"endpoint_state comes too seldom for the force at rest", Fault::Then::hold};
+    throw Fault{"endpoint_state is published too rarely to measure the force at rest", Fault::Then::hold};
   }
   return median(std::move(readings));
 }

@@ -162,24 +162,25 @@ struct BaxterOptions : Options {
   static void require_gentle(Fields& fields, const tapping::MotionOptions& motion, const std::string& at) {
     const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
     const bool adaptive = motion.adaptive_hover.has_value();
-    const char* noise = "is within the noise of the force, take at least 3 N";
-    const char* too_fast = "is too fast for an arm that feels late, take at most 10 cm/s";
+    const char* noise = "is within the noise of the force, choose at least 3 N";
+    const char* too_fast = "is too fast for the delay of the force, choose at most 10 cm/s";
     const auto require = [&](bool holds, const char* name, const char* why) {
       fields.require(holds, (at + name).c_str(), why);
     };
     require(motion.threshold <= kGreatestThreshold, "threshold",
-            "is too near to the 16 N at which the arm's firmware stops it, take at most 10 N");
+            "is too close to the 16 N at which the firmware stops the arm, choose at most 10 N");
     require(motion.threshold >= kLeastThreshold, "threshold", noise);
-    require(motion.tare >= kShortestTare, "tare", "is too short for a zero, take at least 100 ms");
+    require(motion.tare >= kShortestTare, "tare",
+            "is too short to measure the zero of the force, choose at least 100 ms");
     require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "travel_speed",
-            "and motion.retreat_speed must let the arm get away, take at least 1 cm/s");
+            "and motion.retreat_speed must be at least 1 cm/s, so that the arm can get away");
     require(!two_stage || motion.fine_threshold <= motion.threshold, "fine_threshold",
             "must not lie above motion.threshold");
     require(!two_stage || motion.fine_threshold >= kLeastThreshold, "fine_threshold", noise);
     require(motion.speed <= kFastest, "speed", too_fast);
     require(!two_stage || motion.fine_speed <= kFastest, "fine_speed", too_fast);
     require(!adaptive || motion.adaptive_hover->speed <= kFastest, "adaptive_hover.speed", too_fast);
-    require(motion.overrun <= kDeepest, "overrun", "lets the arm go on below the desk, take at most 10 cm");
+    require(motion.overrun <= kDeepest, "overrun", "lets the arm descend too far below the desk, choose at most 10 cm");
   }
 };
 

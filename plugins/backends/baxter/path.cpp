@@ -81,7 +81,7 @@ double Path::steepest() const {
 
 Joints Planner::solve(const Pose& tip, const Joints& seed, const char* what) const {
   const std::optional<Joints> found = inverse_(tip, seed);
-  if (!found) throw NoPath{"no position of the joints within their limits puts the tool upright at " + place_text(tip)};
+  if (!found) throw NoPath{"no joint position within the limits puts the tool upright at " + place_text(tip)};
   if (what != nullptr && (*found - seed).cwiseAbs().maxCoeff() > kJump) {
     throw NoPath{std::string("the joints would jump ") + what + " at " + place_text(tip)};
   }
@@ -106,7 +106,7 @@ Path Planner::column(const Target& place, const Target& middle, double hover, do
   Path out = vertical(solve(top, seed, nullptr), top, floor - hover, "on the way down");
   if (out.steepest() * speed > kJointSpeed) {
     throw NoPath{"a joint would have to turn faster than 0.4 rad/s on the way down to " +
-                 place_text(pose(place, floor)) + " at the speed of the motion: take a lower one"};
+                 place_text(pose(place, floor)) + " at the speed of the motion: lower it"};
   }
   return out;
 }
@@ -164,7 +164,7 @@ int check_reach(const Area& area, double spacing, const std::function<void(const
   if (missed == 0) return nx * ny;
   throw trouble("scene_pose",
                 fmt::format("{} of {} places of the area cannot be reached, the first at {}", missed, nx * ny, first),
-                "put the middle of the area near x = 60 cm, y = 20 cm of base");
+                "move the middle of the area near x = 60 cm, y = 20 cm of base");
 }
 
 }  // namespace palpate::baxter

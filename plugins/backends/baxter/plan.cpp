@@ -40,13 +40,12 @@ void check_gripper(const JointReading& joints, const EndpointReading& endpoint, 
     throw trouble("tool.gripper",
                   fmt::format("the robot has left_gripper {} from left_hand, the config has it at {}",
                               fine_centimetres(seen.z()), fine_centimetres(gripper)),
-                  "a gripper is configured on the robot that the config does not know: see what is mounted, then "
-                  "correct tool.gripper and tool.tip");
+                  "check what is mounted on the robot, then correct tool.gripper and tool.tip");
   }
   throw trouble("tool.gripper",
-                fmt::format("joints and endpoint_state disagree by {} about where left_gripper is",
+                fmt::format("joints and endpoint_state disagree by {} about the position of left_gripper",
                             fine_centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm())),
-                "this is another arm than the Baxter whose lengths are known, or its gripper is mounted askew");
+                "check that the arm is a Baxter's and that its gripper is mounted straight");
 }
 
 /// What others have left on the robot and what it takes to be mounted, one line each for the diary. Throws Error where
@@ -61,7 +60,7 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
   std::vector<std::string> out;
   for (const auto& [topic, setting, own] : settings) {
     out.push_back(setting ? fmt::format("{}: {:g} from {}", topic, setting->value, setting->sender)
-                          : fmt::format("{}: nobody says it now, taken for the robot's own {}", topic, own));
+                          : fmt::format("{}: not published, the robot's default of {} is assumed", topic, own));
   }
   if (seen.avoidance && (seen.avoidance->other_arm || !seen.avoidance->objects.empty())) {
     std::vector<std::string> from = seen.avoidance->objects;
@@ -71,8 +70,8 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
   }
   const EndEffector& mounted = seen.end_effector;
   out.push_back(fmt::format(
-      "mounted, as the robot has it: {}, {}; a tool of another mass moves the zero of the force with the posture",
-      mounted.product.empty() ? "no gripper that it knows" : mounted.product,
+      "mounted according to the robot: {}, {}; a tool of another mass shifts the zero of the force with the posture",
+      mounted.product.empty() ? "no known gripper" : mounted.product,
       mounted.mass ? fmt::format("{:g} kg beyond the flange", *mounted.mass) : "of unknown mass"));
   return out;
 }
@@ -94,7 +93,7 @@ double fastest(const BaxterOptions& options) {
 void Tapper::check() {
   const Area area = scene_.area();
   if (options_.calibration && (bare().x < 0.0 || bare().y < 0.0 || bare().x > area.width || bare().y > area.depth)) {
-    throw trouble("calibration.at", "lies outside of the area", "take a bare place within");
+    throw trouble("calibration.at", "is outside the area", "choose a bare position inside the area");
   }
   const std::optional<Fault> slow = listen();
   await_fit(!options_.dry_run);
@@ -111,7 +110,7 @@ void Tapper::check() {
     }
   } catch (const NoPath& none) {
     throw trouble("calibration.at", none.reason,
-                  "take another place, or move the area: its middle near x = 60 cm, y = 20 cm of base");
+                  "choose another position, or move the middle of the area near x = 60 cm, y = 20 cm of base");
   } catch (const Fault& fault) {
     throw trouble("", fault.reason);
   }
@@ -130,8 +129,7 @@ void Tapper::check_robot() const {
   if (!moving) return;
   const std::string breach = workspace_.breach(tip_);
   if (!breach.empty()) {
-    throw trouble("", breach,
-                  "bring the tool by hand to a place above the area; palpate moves the arm there and nowhere else");
+    throw trouble("", breach, "move the tool by hand to a position above the area; palpate moves the arm only there");
   }
   const Eigen::Vector3d down = arm_.tip(seen_.joints->position).rotation * Eigen::Vector3d::UnitZ();
   if (std::acos(std::clamp(-down.z(), -1.0, 1.0)) > kUpright) {
@@ -180,7 +178,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
                   tapping::newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness)),
                   1e-3 * stiffness, 1e3 * reaction_.seconds(), tapping::newtons(motion.threshold),
                   motion.speed < wanted.speed ? ", so that motion.speed is not reached" : ""));
-  out.push_back("stop on the way down when the force changes by " + tapping::newtons(options_.force_stop) +
+  out.push_back("stop the descent when the force changes by " + tapping::newtons(options_.force_stop) +
                 " upwards or downwards, and by half as much again sideways");
   return out;
 }

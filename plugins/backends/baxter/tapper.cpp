@@ -47,7 +47,7 @@ Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
           scene.desk() + options.motion.at(0).hover + kAboveTravel};
 }
 
-Fault standstill() { return {"the clock of the robot's network stands still: its sender is gone"}; }
+Fault standstill() { return {"the clock of the robot's network has stopped: its publisher has ended"}; }
 
 }  // namespace
 
@@ -116,19 +116,18 @@ Contact Tapper::attempt(const TapRequest& request) {
 /// The scene's zero moves to where a tap on the bare desk found it.
 void Tapper::calibrate(const Contact& contact) {
   if (contact.outcome != Outcome::contact) {
-    throw Fault{"the calibration tap met no desk: " + contact.reason, Then::hold};
+    throw Fault{"the calibration tap found no desk: " + contact.reason, Then::hold};
   }
   const double off = contact.height - scene_.desk();
   if (std::abs(off) > options_.calibration->tolerance) {
-    throw Fault{
-        fmt::format("the calibration tap found the desk {} {} than scene_pose.height has it: measure again, see that "
-                    "nothing lies there, or raise calibration.tolerance",
-                    centimetres(std::abs(off)), off > 0.0 ? "higher" : "lower"),
-        Then::hold};
+    throw Fault{fmt::format("the calibration tap found the desk {} {} than scene_pose.height: measure again, check "
+                            "that nothing lies there, or raise calibration.tolerance",
+                            centimetres(std::abs(off)), off > 0.0 ? "higher" : "lower"),
+                Then::hold};
   }
   planner_.raise(off);
   calibrated_ = true;
-  note_("calibration: the desk lies " + centimetres(off) + " above where the config has it");
+  note_("calibration: the desk is " + centimetres(off) + " above its height in the config");
 }
 
 /// Takes over the arm where it is and brings it over a place at the height of travel: straight up first if it is below,
@@ -162,7 +161,7 @@ void Tapper::await_height(const Joints& top) {
   const double begin = seen_.now;
   while (height() < travel_height() - kNearTravel) {
     if (seen_.now > begin + kSettling) {
-      throw Fault{"the arm did not come up to the height of travel: see what holds it", Then::hold};
+      throw Fault{"the arm did not reach the height of travel: check what holds it", Then::hold};
     }
     step(top);
   }
@@ -189,7 +188,7 @@ void Tapper::settle(const Joints& goal) {
     }
     if (seen_.now - since >= kStillFor && (now - goal).cwiseAbs().maxCoeff() < kAtGoal) return;
   }
-  throw Fault{"the arm did not come to rest where it was sent: see what holds it", Then::hold};
+  throw Fault{"the arm did not come to rest at its target: check what holds it", Then::hold};
 }
 
 void Tapper::expect_fit() {

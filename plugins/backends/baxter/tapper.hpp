@@ -53,7 +53,7 @@ class Tapper {
   static constexpr double kNearTravel = 0.01;  ///< m that the tip may be below the height of travel
   static constexpr double kGently = 0.01;      ///< m that an arm which may press goes up gently; and
   static constexpr double kMostGentle = 0.02;  ///< m, at most, since nothing that is touched gives way by more
-  static constexpr const char* kSilent = "nothing more is sent, the arm stays where it is";
+  static constexpr const char* kSilent = "no more commands are sent, the arm stays where it is";
   /// m above `hover` that the arm travels: from there it comes down to where it rests and feels its zero.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
   static constexpr double kTurned = 0.01;  ///< m of a way over which most_pull() looks

@@ -36,9 +36,9 @@ std::optional<Fault> state_forbids(const StateReading& state, const std::optiona
       {state.estop_button == Button::pressed, "the emergency stop is pressed: release it, then {reset}"},
       {state.estop_button == Button::released, "the emergency stop was pressed and is released: {reset}"},
       // An error alone stops nothing, by Rethink's own reference: an enabled robot may report one and move.
-      {state.error && !state.enabled, "the robot reports an error and is disabled: see its screen, then {reset}"},
+      {state.error && !state.enabled, "the robot reports an error and is disabled: check its screen, then {reset}"},
       {state.stopped && state.estop_button == Button::unknown,
-       "a program stopped the robot (/robot/set_super_stop), a safety node perhaps: see why, then {reset}"},
+       "a program, perhaps a safety node, stopped the robot (/robot/set_super_stop): find out why, then {reset}"},
       {state.stopped, "the robot is stopped: {reset}"},
       {stays_disabled && shoulder < -1.6,
        "the robot is disabled and its arm is tucked (left_s1 at {shoulder:.1f} deg): untuck it, which enables it"},
@@ -54,31 +54,30 @@ std::optional<Fault> state_forbids(const StateReading& state, const std::optiona
 }
 
 constexpr const char* kOwnSlowness =
-    ": end what else keeps this computer busy, and let palpate have real-time scheduling (see its baxter.txt)";
+    ": end other programs that keep this computer busy, and allow real-time scheduling (see baxter.txt of the run)";
 
 /// `gap`: how long ago the driver itself looked last. What is old only by that is nobody else's fault.
 std::optional<Fault> stale(const char* stream, double age, double most, double gap, Then then = Then::silence) {
   if (age <= most) return std::nullopt;
   if (gap > most && age <= gap + most) {
-    return Fault{fmt::format("this computer did not get to the arm for {:.2f} s{}", gap, kOwnSlowness), then};
+    return Fault{fmt::format("this computer could not serve the arm for {:.2f} s{}", gap, kOwnSlowness), then};
   }
-  return Fault{
-      fmt::format("{} did not come for {:.2f} s: see to the network and to the robot's processes", stream, age), then};
+  return Fault{fmt::format("{} did not arrive for {:.2f} s: check the network and the robot's processes", stream, age),
+               then};
 }
 
 std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Delay& best, Then then) {
   const double delay = arrival.received - arrival.stamp;
-  if (!std::isfinite(delay)) return Fault{fmt::format("{} has a stamp that is no number", stream), then};
+  if (!std::isfinite(delay)) return Fault{fmt::format("{} has a time stamp that is not a number", stream), then};
   // Two clocks that nobody sets drift apart, by more than kLate within hours.
   best.least = std::min(delay, best.least + Watch::kDrift * std::max(0.0, arrival.received - best.at));
   best.at = arrival.received;
   best.excess = delay - best.least;
   if (best.excess <= Watch::kLate) return std::nullopt;
-  return Fault{
-      fmt::format("{} comes with stamps {:.2f} s older than before: its data are stale, see to the network and "
-                  "to the robot's processes",
-                  stream, best.excess),
-      then};
+  return Fault{fmt::format("{} arrives with time stamps {:.2f} s older than before: its data are stale, check the "
+                           "network and the robot's processes",
+                           stream, best.excess),
+               then};
 }
 
 constexpr const char* kJoints = "/robot/joint_states of the left arm";
@@ -98,7 +97,7 @@ std::optional<Fault> many(const Senders& senders, Then then) {
                  {"collision_avoidance_state of the left arm", senders.avoidance, Then::hold}};
   for (const auto& one : streams) {
     if (one.then != then || one.nodes.size() < 2) continue;
-    return Fault{fmt::format("{} comes from more than one node, {}: one of them is no robot, end it", one.stream,
+    return Fault{fmt::format("{} comes from more than one node, {}: end the node that is not the robot", one.stream,
                              listed(one.nodes)),
                  then};
   }
@@ -113,7 +112,7 @@ std::string Workspace::breach(const Eigen::Vector3d& tip) const {
   const std::string where =
       fmt::format("the tip is at ({:.1f}, {:.1f}, {:.1f}) cm of the scene, ", at.x(), at.y(), at.z());
   if (beyond(tip.x(), -kSideways, width + kSideways) || beyond(tip.y(), -kSideways, depth + kSideways)) {
-    return fmt::format("{}more than {:.0f} cm beside the area", where, 100 * kSideways);
+    return fmt::format("{}more than {:.0f} cm outside the area", where, 100 * kSideways);
   }
   if (!(tip.z() >= floor)) return fmt::format("{}below the floor of {:.1f} cm", where, 100 * floor);
   if (!(tip.z() <= ceiling)) return fmt::format("{}above the ceiling of {:.1f} cm", where, 100 * ceiling);
@@ -176,20 +175,19 @@ std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
     return fmt::format("{} times in the last {:.1f} s, {} are needed", times, Stream::kWindow, needed);
   };
   if (looks < Stream::kFewest && !seen.simulated) {
-    return Fault{fmt::format("this computer got to the arm {}{}", in_window(looks), kOwnSlowness), Then::hold};
+    return Fault{fmt::format("this computer served the arm {}{}", in_window(looks), kOwnSlowness), Then::hold};
   }
   const int fewest = seen.simulated ? std::min(Stream::kFewest, looks / 2) : Stream::kFewest;
   for (const auto& [name, stream] : {std::pair{kJoints, &joint_stream_}, std::pair{kEndpoint, &endpoint_stream_}}) {
     if (stream->heard() >= fewest) continue;
-    return Fault{
-        fmt::format("{} came only {}: see to the network, and to /robot/joint_state_publish_rate, which should be 100",
-                    name, in_window(stream->heard())),
-        Then::hold};
+    return Fault{fmt::format("{} arrived only {}: check the network, and that /robot/joint_state_publish_rate is 100",
+                             name, in_window(stream->heard())),
+                 Then::hold};
   }
   const int needed = std::min(fewest, renewals_.needed());
   if (renewals_.heard() >= needed) return std::nullopt;
-  return Fault{fmt::format("endpoint_state came {} times and had another force only {}: a contact would be felt too "
-                           "late, see what filters or repeats the force, or restart the robot",
+  return Fault{fmt::format("endpoint_state arrived {} times, but with a new force only {}: contacts would be detected "
+                           "too late. Check what filters or repeats the force, or restart the robot",
                            endpoint_stream_.heard(), in_window(renewals_.heard(), needed)),
                Then::hold};
 }
@@ -197,16 +195,16 @@ std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
 /// Whatever forbids to command even the measured joints.
 std::optional<Fault> Watch::known(const Snapshot& seen, bool moving, double gap) {
   if (!seen.malformed.empty()) return Fault{seen.malformed};
-  if (!seen.state || !seen.joints || !seen.endpoint) return Fault{"not all of joints, endpoint and state were heard"};
+  if (!seen.state || !seen.joints || !seen.endpoint) return Fault{"joints, endpoint and state were not all received"};
   if (auto fault = stale("/robot/state", seen.now - seen.state->received, kStateFresh, gap)) return fault;
   if (auto fault = state_forbids(*seen.state, seen.joints, moving)) return fault;
   if (auto fault = many(seen.senders, Then::silence)) return fault;
   if (!seen.commanders.empty()) {
-    return Fault{fmt::format("the arm is commanded by {}, too: end that first", listed(seen.commanders))};
+    return Fault{fmt::format("the arm is also commanded by {}: end that program first", listed(seen.commanders))};
   }
   if (auto fault = stale(kJoints, seen.now - seen.joints->received, kFresh, gap)) return fault;
   if (seen.joints->position.allFinite()) return std::nullopt;
-  return Fault{"/robot/joint_states has a position that is no number: restart the robot"};
+  return Fault{"/robot/joint_states has a position that is not a number: restart the robot"};
 }
 
 /// Where the arm is, is known: it may be held there.
@@ -215,11 +213,12 @@ std::optional<Fault> Watch::feels(const Snapshot& seen, double gap) {
   if (auto fault = many(seen.senders, Then::hold)) return fault;
   if (auto fault = stale(kEndpoint, seen.now - endpoint.received, kFresh, gap, Then::hold)) return fault;
   if (!endpoint.force.allFinite() || !endpoint.pose.position.allFinite()) {
-    return Fault{"endpoint_state has a force or a place that is no number: restart the robot", Then::hold};
+    return Fault{"endpoint_state has a force or a position that is not a number: restart the robot", Then::hold};
   }
   if (!endpoint.force.isZero(0.0)) return std::nullopt;
-  return Fault{"endpoint_state has a force of exactly zero: this robot, a Gazebo simulation perhaps, does not feel",
-               Then::hold};
+  return Fault{
+      "endpoint_state has a force of exactly zero: this robot, perhaps a Gazebo simulation, measures no forces",
+      Then::hold};
 }
 
 /// What another program has told the robot, and the robot keeps, so that the arm would not do what it is sent.
@@ -231,11 +230,9 @@ std::optional<Fault> Watch::settings(const Snapshot& seen) {
     double least, most;
     const char* reason;
     const char* own;
-  } rules[] = {{"set_speed_ratio", seen.speed_ratio, kLeastRatio, kAny, ", at which the arm cannot follow", "0.3"},
+  } rules[] = {{"set_speed_ratio", seen.speed_ratio, kLeastRatio, kAny, ", too low for the arm to follow", "0.3"},
                {"joint_command_timeout", seen.command_timeout, kLeastTimeout, kMostTimeout,
-                " s; palpate counts on an arm that holds by itself soon after the last set-point, and not before the "
-                "next",
-                "0.2"}};
+                " s; the arm must stop by itself soon after the last set-point, but not before the next one", "0.2"}};
   for (const auto& [topic, setting, least, most, reason, own] : rules) {
     if (!setting || (setting->value >= least && setting->value <= most)) continue;
     return Fault{fmt::format("{0}: {1} has set it to {2:g}{3}: set it to {4}, on /robot/limb/left/{0}", topic,
@@ -262,7 +259,7 @@ std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& ti
                  Then::hold};
   }
   const std::string breach = workspace_.breach(tip);
-  if (!breach.empty()) return Fault{breach + ": see whether place and tool are as the config has them", Then::hold};
+  if (!breach.empty()) return Fault{breach + ": check that position and tool agree with the config", Then::hold};
   if (auto fault = follows(seen)) return fault;
   if (!motion_.collision_expected && seen.collision && seen.collision->collision) return reflex(seen, tip);
   return force(seen, tip);
@@ -272,8 +269,8 @@ std::optional<Fault> Watch::joints(const Snapshot& seen) {
   if (auto fault = late("/robot/joint_states", *seen.joints, joint_delay_, Then::silence)) return fault;
   const double jump = motion_.joints ? (seen.joints->position - motion_.joints->position).cwiseAbs().maxCoeff() : 0.0;
   if (jump > kJump) {
-    return Fault{fmt::format("/robot/joint_states jumped by {:.1f} deg: no joint turns so fast, restart the robot",
-                             degrees(jump))};
+    return Fault{fmt::format(
+        "/robot/joint_states jumped by {:.1f} deg, faster than any joint can turn: restart the robot", degrees(jump))};
   }
   motion_.joints = seen.joints;
   return std::nullopt;
@@ -305,7 +302,7 @@ std::optional<Fault> Watch::follows(const Snapshot& seen) const {
   for (const Sent& one : motion_.sent) nearest = std::min(nearest, from(one.target));
   const double behind = from(motion_.sent.back().target);
   if (behind <= kFollowing && nearest <= kOffTheWay) return std::nullopt;
-  return Fault{fmt::format("the arm does not follow, a joint is {:.1f} deg from where it was sent{}", degrees(behind),
+  return Fault{fmt::format("the arm does not follow: a joint is {:.1f} deg from its target{}", degrees(behind),
                            why_behind(now, seen.now)),
                Then::hold};
 }
@@ -324,12 +321,11 @@ std::string Watch::why_behind(const Joints& now, double time) const {
   const double turns = (now(joint) - then.arm(joint)) / taken;
   const double led = (last.target(joint) - then.target(joint)) / taken;
   if (turns * (last.target(joint) - now(joint)) <= 0.0 || std::abs(turns) < kTurning) {
-    return ": see what blocks it, and whether others command it";
+    return ": check what blocks it, and whether other programs command it";
   }
   return fmt::format(
-      " and turns at {:.0f} deg/s where it is led at {:.0f}: it is slower than a Baxter is at its own speed "
-      "ratio, so set that to 0.3 on /robot/limb/left/set_speed_ratio, or take a lower "
-      "motion.travel_speed",
+      " and turns at {:.0f} deg/s instead of {:.0f}: set its speed ratio to 0.3, a Baxter's default, on "
+      "/robot/limb/left/set_speed_ratio, or lower motion.travel_speed",
       degrees(std::abs(turns)), degrees(std::abs(led)));
 }
 

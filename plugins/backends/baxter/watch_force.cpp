@@ -20,11 +20,10 @@ double pull_of(const Watch::Rise& rise, const EndpointReading& endpoint) {
 
 /// `reflex`: the arm's own has stopped it, too.
 Fault held(double newtons, const Eigen::Vector3d& tip, bool reflex) {
-  return {
-      fmt::format("something holds the tool: it pulls with {:.0f} N at ({:.1f}, {:.1f}, {:.1f}) cm of the scene: see "
-                  "what the tool hangs on to, and free it by hand before the arm goes up again",
-                  newtons, 100 * tip.x(), 100 * tip.y(), 100 * tip.z()),
-      Then::hold, true, reflex};
+  return {fmt::format("the tool is caught: it is pulled with {:.0f} N at ({:.1f}, {:.1f}, {:.1f}) cm of the scene. "
+                      "Find what holds the tool, and free it by hand before the arm moves up again",
+                      newtons, 100 * tip.x(), 100 * tip.y(), 100 * tip.z()),
+          Then::hold, true, reflex};
 }
 
 }  // namespace
@@ -52,11 +51,10 @@ std::optional<Fault> Watch::frozen(const EndpointReading& endpoint, double now) 
   const long equal = renewals_.equal(endpoint);
   const double times = static_cast<double>(equal) / renewals_.messages();
   if (times < kFewestFrozen || (times < kFrozen && renewals_.equal_for(now) < kFrozenFor)) return std::nullopt;
-  return Fault{
-      fmt::format("endpoint_state has had the same force to the last digit for {} messages, and before another "
-                  "every {:.1f}: its sender is frozen, restart the robot",
-                  equal, renewals_.messages()),
-      Then::hold};
+  return Fault{fmt::format("endpoint_state has had exactly the same force for {} messages, but changed every {:.1f} "
+                           "before: its publisher is frozen, restart the robot",
+                           equal, renewals_.messages()),
+               Then::hold};
 }
 
 /// What the arm's own reflex is about: an arm that it stops on its way up may be held by what it touched.
@@ -66,8 +64,8 @@ std::optional<Fault> Watch::reflex(const Snapshot& seen, const Eigen::Vector3d& 
     if (pulls > 0.25 * motion_.rise->limit) return held(pulls, tip, true);
   }
   return Fault{
-      "the arm's own reflex stopped it, at 16 N or at an impact: take a lower motion.speed or "
-      "motion.threshold, or see what the arm met",
+      "the arm's own reflex stopped it, at 16 N or at an impact: lower motion.speed or motion.threshold, or check what "
+      "the arm hit",
       Then::retreat, true, true};
 }
 
@@ -98,8 +96,8 @@ std::optional<Fault> Watch::force(const Snapshot& seen, const Eigen::Vector3d& t
   if (zero_ == Zero::follows) *motion_.tare += felt * std::min(1.0, since / kZeroFollows);
   motion_.too_strong = change > force_stop_ ? motion_.too_strong + 1 : 0;
   if (motion_.too_strong < kForceSamples) return std::nullopt;
-  return Fault{fmt::format("the force changed by {:.1f} N, more than force_stop allows: take a lower motion.speed or "
-                           "motion.threshold, or see what the arm met",
+  return Fault{fmt::format("the force changed by {:.1f} N, more than force_stop allows: lower motion.speed or "
+                           "motion.threshold, or check what the arm hit",
                            change),
                Then::retreat};
 }

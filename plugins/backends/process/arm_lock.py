@@ -25,7 +25,7 @@ def hold_arm(arm):
         lock.close()
         if error.errno != errno.EADDRINUSE:
             raise
-        raise Held(f"the arm {arm} is in the hands of {holder_of(name)}") from None
+        raise Held(f"the arm {arm} is used by {holder_of(name)}") from None
     os.register_at_fork(after_in_child=lock.close)
     return lock
 

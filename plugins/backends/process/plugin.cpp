@@ -84,7 +84,7 @@ class Process final : public Backend {
     if (!answer.in_step) {
       child_.reset();
       if (answer.contact.ends_run)
-        answer.contact.reason += "; see to the robot, then 'palpate resume --retry-failed' starts it again";
+        answer.contact.reason += "; check the robot, then run 'palpate resume --retry-failed'";
     }
     if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.contact);
@@ -135,8 +135,8 @@ class Process final : public Backend {
 
   process::Answer left_behind() const {
     if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
-    process::Answer answer =
-        failed("of an earlier attempt, process " + programs::noted_holder(recorded(kLock)) + ", still runs: end it");
+    process::Answer answer = failed("of an earlier attempt, process " + programs::noted_holder(recorded(kLock)) +
+                                    ", is still running: end it");
     answer.contact.ends_run = true;
     return answer;
   }
@@ -152,7 +152,7 @@ class Process final : public Backend {
     process::Answer answer;
     // Whatever there is before the ask is no answer to it, and then the arm had better not move.
     Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
-    if (heard == Child::Heard::line) return failed("said more than its answer: " + programs::shown(line));
+    if (heard == Child::Heard::line) return failed("printed more than its answer: " + programs::shown(line));
     if (heard == Child::Heard::late) {
       tapping::MotionOptions motion = options_.motion.of_request(request);
       heard = child_->send(process::ask_line(request, context_, motion), patience);
@@ -167,10 +167,11 @@ class Process final : public Backend {
       case Child::Heard::ended:
         return failed(child_->fate());
       case Child::Heard::late:
-        return failed(line.empty() ? not_answered() : "did not end its answer in time: " + programs::shown(line),
-                      Outcome::timeout);
+        return failed(
+            line.empty() ? not_answered() : "sent an incomplete answer until the deadline: " + programs::shown(line),
+            Outcome::timeout);
       case Child::Heard::too_long:
-        return failed("answered with an endless line: " + programs::shown(line));
+        return failed("answered with a line that is too long: " + programs::shown(line));
       case Child::Heard::interrupted:
         break;
     }
@@ -180,7 +181,7 @@ class Process final : public Backend {
   /// What keeps a program's first answer from arriving is most often its own buffer.
   std::string not_answered() const {
     return std::string("did not answer in time") +
-           (answered_ ? "" : ", nor ever before: does it flush its output after each line?");
+           (answered_ ? "" : " and has never answered, check that it flushes its output after each line");
   }
 
   static process::Answer interrupted() { return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}}; }

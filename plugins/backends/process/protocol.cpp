@@ -92,7 +92,7 @@ class Reader {
   /// Words for the record, at least one.
   std::string reason() {
     std::string words = plain_line(text("reason"));
-    if (words.find_first_not_of(' ') == std::string::npos) refuse("has no words in 'reason'");
+    if (words.find_first_not_of(' ') == std::string::npos) refuse("has no text in 'reason'");
     return words;
   }
 
@@ -125,7 +125,7 @@ Contact read_contact(Reader& reader, const HeightBounds& bounds) {
   }
   out.ends_run = reader.flag("ends_run");
   if (out.outcome != Outcome::contact || out.ends_run) out.reason = reader.reason();
-  if (const auto fault = find_fault(out, bounds)) reader.refuse("is refused, " + fault->reason + ", " + fault->remedy);
+  if (const auto fault = find_fault(out, bounds)) reader.refuse("is rejected, " + fault->reason + ", " + fault->remedy);
   return out;
 }
 
@@ -173,7 +173,7 @@ Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds)
   if (!json.is_object()) return refused(line, "is not a JSON object", false, false);
   const bool ends_run = wants_end(json);
   if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
-  if (json["tap"] != Json(tap)) return refused(line, "is not that to tap " + std::to_string(tap), false, ends_run);
+  if (json["tap"] != Json(tap)) return refused(line, "does not belong to tap " + std::to_string(tap), false, ends_run);
   Reader reader(json);
   Contact contact = read_contact(reader, bounds);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);

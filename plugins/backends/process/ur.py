@@ -65,7 +65,7 @@ class Tapper:
         try:
             self.approach(here, high, above, motion)
         except TimeoutError:
-            raise Fault(f"the arm does not get above the place: {arm.slider()}, is the way free? {RETRY}") from None
+            raise Fault(f"the arm does not reach the position above the tap: {arm.slider()}; clear its path, {RETRY}") from None
         try:
             contact = self.descend(floor, motion, arm.stamp + motion["timeout"])
         except TimeoutError:
@@ -74,14 +74,14 @@ class Tapper:
         try:
             arm.follow(above, motion["retreat_speed"])
         except TimeoutError:
-            raise Fault(f"the arm does not get up again: {arm.slider()}, is the way free? {RETRY}") from None
+            raise Fault(f"the arm does not move up again: {arm.slider()}; clear its path, {RETRY}") from None
         if outcome:
             raise outcome
         if not contact:
             raise Failed("no_contact", f"no contact down to {1000 * motion['overrun']:g} mm below the desk")
         left = arm.rest(motion["tare"])[2]
         if abs(left) > motion["threshold"] / 2:
-            raise Failed("aborted", f"{left:.1f} N were left after the tap: its contact is not believed")
+            raise Failed("aborted", f"{left:.1f} N remained after the tap: its contact is rejected")
         height, force = contact
         return {"outcome": "contact", "height": height - self.corner[2], "force": force, "seconds": arm.stamp - begin}
 
@@ -113,7 +113,7 @@ class Tapper:
         """It does not know what else stands in the room: it begins above the area, tool down, or not at all."""
         motion, area, pose = ask["motion"], ask["area"], self.arm.pose()
         if motion["type"] != "continuous" or motion["adaptive_hover"]:
-            raise Fault("this program knows motion.type continuous without adaptive_hover: change the config")
+            raise Fault("this program supports only motion.type continuous without adaptive_hover: change the config")
         if not self.arm.approached:
             self.check_tool()
         if -tool_axis(pose) < UPRIGHT:
@@ -123,14 +123,14 @@ class Tapper:
         x, y, height = c * dx + s * dy, c * dy - s * dx, pose[2] - self.corner[2] - ask["desk"]
         beside = max(-x, x - area["width"], -y, y - area["depth"])
         if beside > MARGIN or height < -motion["overrun"] - MARGIN:
-            raise Fault(f"the tip stands at x {x:.3f}, y {y:.3f}, {height:.3f} m above the desk, not above the area: "
-                        f"bring it there by hand, {RETRY}")
+            raise Fault(f"the tip stands at x {x:.3f}, y {y:.3f}, {height:.3f} m above the desk, outside the area: "
+                        f"move it above the area by hand, {RETRY}")
 
     def check_tool(self):
         """Without a TCP the robot would bring its flange to where the tip should go, and the tool into the desk."""
         tcp = self.arm.control.getTCPOffset()
         if not tcp:
-            raise Fault(f"the robot does not say what its TCP is: look at the pendant's log, {RETRY}")
+            raise Fault(f"the robot does not report its TCP: check the pendant's log, {RETRY}")
         if length(tcp[:3]) < NO_TOOL:
             raise Fault(f"the robot's TCP is its flange: set that of the tool, the tip, on the pendant, {RETRY}")
         millimetres = ", ".join(f"{1000 * value:.1f}" for value in tcp[:3])
@@ -149,9 +149,9 @@ def connect(host, asks, force_limit):
     try:
         lock = hold_arm(f"UR {host}")
     except Held as held:
-        raise Fault(f"{held}; wait until that has ended, or end it, {RETRY}") from None
+        raise Fault(f"{held}; wait until that process has ended, or end it, {RETRY}") from None
     except OSError as error:
-        raise Fault(f"the arm UR {host} cannot be locked: {error}; let Python make unix sockets, {RETRY}") from None
+        raise Fault(f"the arm UR {host} cannot be locked: {error}; allow Python to create unix sockets, {RETRY}") from None
     try:
         import rtde_control
         import rtde_receive
@@ -188,7 +188,7 @@ def serve(arguments, asks, answers):
                 answer = {"outcome": failed.outcome, "reason": str(failed)}
             except (Fault, RuntimeError) as fault:
                 known = isinstance(fault, Fault)
-                reason = str(fault) if known else f"ur_rtde: {fault}; look at the arm, {RETRY}"
+                reason = str(fault) if known else f"ur_rtde: {fault}; check the arm, {RETRY}"
                 if arm and not known:
                     arm.lost = True
                 answer = {"outcome": "aborted", "reason": reason, "ends_run": True}

@@ -19,7 +19,7 @@ WINDOW = 0.1  # s over which the speed of the tip is averaged: single samples of
 AT_REST = 0.001  # m/s
 STOPPING = 1.0  # s in which a stop has to be done
 
-RETRY = "then 'palpate resume --retry-failed'"
+RETRY = "then run 'palpate resume --retry-failed'"
 
 
 class Fault(Exception):
@@ -87,7 +87,7 @@ class Arm:
                 break
             if late:
                 self.lost = True
-                raise Fault(f"no new state of the robot for {FRESH} s: look at cable and arm, it should stand, {RETRY}")
+                raise Fault(f"no new state from the robot for {FRESH} s: check the cable, and that the arm stands still, {RETRY}")
             time.sleep(0.0005)
         self.stamp = stamp
         self.poses.append((stamp, self.pose()))
@@ -102,7 +102,7 @@ class Arm:
         """Keeps the watchdog quiet, and raises what the robot says against moving."""
         check(self.receive)
         if not self.control.kickWatchdog():
-            raise Fault(f"ur_rtde's script no longer runs on the robot: look at the pendant's log, {RETRY}")
+            raise Fault(f"ur_rtde's script no longer runs on the robot: check the pendant's log, {RETRY}")
 
     def idle(self):
         """The same between two taps. What is wrong there is the answer to the next ask: somebody may have stopped the
@@ -141,7 +141,7 @@ class Arm:
             self.look()
             patience = patience or self.stamp + seconds + 5.0
             if self.stamp > patience:
-                raise Fault(f"the arm does not come to rest: look what moves it, {RETRY}")
+                raise Fault(f"the arm does not come to rest: check what moves it, {RETRY}")
             if self.moves():
                 since = None
             elif since is None:
@@ -156,7 +156,7 @@ class Arm:
         """Takes the force at rest for zero: first the sensor, then what is left of it."""
         self.rest(seconds)
         if not self.control.zeroFtSensor():
-            raise Fault(f"the robot does not zero its force sensor: is it an e-Series or newer? {RETRY}")
+            raise Fault(f"the robot does not zero its force sensor: use an e-Series or newer, {RETRY}")
         self.zero_force = [0.0] * 3
         self.zero_force = self.rest(seconds)
 
@@ -172,10 +172,10 @@ class Arm:
         # For every move: ur_rtde reconnects by itself, and then there is no watchdog until it is set again.
         if not self.control.setWatchdog(WATCHDOG):
             check(self.receive)
-            raise Fault(f"the robot takes no watchdog: look at the pendant's log, {RETRY}")
+            raise Fault(f"the robot rejects the watchdog: check the pendant's log, {RETRY}")
         if not self.control.moveL(target, speed, ACCELERATION, True):
             check(self.receive)
-            raise Fault(f"the robot did not take a move: look at the pendant's log, {RETRY}")
+            raise Fault(f"the robot rejected a move: check the pendant's log, {RETRY}")
         contacts, pushed = [], 0
         try:
             while True:
@@ -186,7 +186,7 @@ class Arm:
                 if len(contacts) == READINGS:
                     break
                 if pushed == READINGS:
-                    raise Fault(f"something pushes the arm with {length(force):.0f} N on its way: free it, {RETRY}")
+                    raise Fault(f"the arm is pushed with {length(force):.0f} N on its way: free it, {RETRY}")
                 if self.stamp > until:
                     break
                 if distance(pose, target) < ARRIVED and not self.moves():
@@ -217,7 +217,7 @@ class Arm:
         while self.moves():
             self.look()
             if self.stamp > until:
-                raise Fault(f"the arm does not stand {STOPPING:g} s after its stop: look what moves it, {RETRY}")
+                raise Fault(f"the arm still moves {STOPPING:g} s after its stop: check what moves it, {RETRY}")
 
     def leave(self):
         """Ends the script on the robot, after which nobody keeps the watchdog quiet."""

@@ -24,9 +24,9 @@ Simulator::Simulator(const Options& options, const Context& context)
                effects.height_offset || effects.foreign_objects || effects.push);
   if (!scene_.any_side() && scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
     throw Error("motion.hover",
-                fmt::format("an object is {:g} cm high, and the arm travels at {:g} cm",
+                fmt::format("an object is {:g} cm high, but the arm travels at {:g} cm",
                             100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.at(0).hover),
-                "raise it or lower the object");
+                "raise motion.hover or lower the object");
   }
 }
 

@@ -72,9 +72,9 @@ void BackendMotion::list(Fields& fields) {
                          inner.sections(of, Field("of", "list of motions to choose from, each with its own options"));
                        }}});
   if (type != Type::per_tap) return list_rest(fields);
-  fields.require(of.size() >= 2, "of", "names the motions to choose from, at least two");
+  fields.require(of.size() >= 2, "of", "must name at least two motions to choose from");
   const auto same = [this](const MotionOptions& one) { return one.hover == of.front().hover; };
-  fields.require(std::all_of(of.begin(), of.end(), same), "of", "all travel at one height, give them the same hover");
+  fields.require(std::all_of(of.begin(), of.end(), same), "of", "must all have the same hover");
 }
 
 void MotionOptions::list_types(Fields& fields, const std::vector<Case>& more) {

@@ -216,7 +216,7 @@ class Ceres final : public Fitting {
     FitSummary summary;
     const Model model = model_of(problem, options_.mean == Options::Mean::fit);
     if (model.outputs() == 0) {
-      summary.reason = "the targets do not differ from the mean: they tell nothing";
+      summary.reason = "the targets equal the mean and contain no information";
       return summary;
     }
     const std::vector<Expectation> expected = expectations(model);
@@ -244,7 +244,7 @@ class Ceres final : public Fitting {
     if (searched) {
       const std::vector<Spot> spots = search(model, objective, expected, now, random, summary.evaluations);
       best = spots.front();
-      summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent came to a finite value";
+      summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent reached a finite value";
     }
     if (problem.memory != nullptr && best.valid) {
       // The metric of a search among few points is that of its start, which may be far away.
@@ -252,7 +252,7 @@ class Ceres final : public Fitting {
       Memory{searched ? taps : memory.searched, best.metric}.keep(*problem.memory);
     }
     summary.evaluations += objective.evaluations();
-    if (model.used.size() < problem.outputs.size()) summary.reason += "; outputs that tell nothing were left out";
+    if (model.used.size() < problem.outputs.size()) summary.reason += "; outputs without information were left out";
     if (best.valid && (!known || best.value > value_now)) {
       summary.changed = true;
       summary.objective = model.total(best.value);
@@ -262,7 +262,7 @@ class Ceres final : public Fitting {
     problem.kernel.set_parameters(Eigen::Map<const Eigen::VectorXd>(old.data(), static_cast<Eigen::Index>(old.size())));
     summary.failed = !best.valid;
     summary.objective = known ? model.total(value_now) : 0.0;
-    if (best.valid) summary.reason = "nothing is better than the present values; " + summary.reason;
+    if (best.valid) summary.reason = "no values are better than the present ones; " + summary.reason;
     return summary;
   }
 

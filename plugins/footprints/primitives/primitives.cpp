@@ -130,12 +130,12 @@ class Primitives final : public Footprint {
       const Particles::Pushed pushed = particles_.pushed();
       if (pushed.share <= 0.5) return {};
       return fmt::format(
-          "the object was pushed after touch {:.0f}, by {:.1f} cm (probability {:.2f}): what was "
-          "touched before counts as if made where it is now",
+          "the object was pushed after touch {:.0f}, by {:.1f} cm (probability {:.2f}): earlier contacts are moved "
+          "along with it",
           pushed.before, 100.0 * pushed.shift, pushed.share);
     }
     return "gp_classifier has taken over at contact " + std::to_string(handed_over_at_) +
-           ": no few primitives agree with the contacts";
+           ": no small number of primitives fits the contacts";
   }
 
  private:

@@ -31,7 +31,8 @@ namespace {
 constexpr const char* kExportAgain = "write it again";
 
 [[noreturn]] void refuse_size(const std::string& file, std::uint64_t rows, std::uint64_t columns) {
-  throw Error(file, fmt::format("has {} x {} values, between 2 x 2 and {} in all are read", rows, columns, kMostNodes));
+  throw Error(file,
+              fmt::format("has {} x {} values, but must have between 2 x 2 and {} in all", rows, columns, kMostNodes));
 }
 
 void check_size(const std::string& file, std::uint64_t rows, std::uint64_t columns) {
@@ -65,7 +66,7 @@ Grid from_csv(std::string bytes, const std::string& file) {
       const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
       if (read.ec != std::errc() || read.ptr != cell.data() + cell.size() || cell.empty()) {
         throw Error(fmt::format("{}:{}", file, rows), fmt::format("'{}' is not a number", cell.substr(0, 40)),
-                    "a row of numbers a line, with commas between them, and no header");
+                    "write one row of numbers per line, separated by commas, without a header");
       }
       values.push_back(value);
       begin = end + 1;
@@ -103,14 +104,14 @@ const BinaryNumber* scalar_named(const std::string& type) {
 Grid from_npy(const std::string& bytes, const std::string& file) {
   const std::optional<NpyPlace> place = npy_header_place(bytes);
   if (!place || place->length > bytes.size() - place->begin)
-    throw Error(file, "is no array of NumPy, or cut short", kExportAgain);
+    throw Error(file, "is not a NumPy array, or is cut short", kExportAgain);
   const std::size_t begin = place->begin + place->length;
   const NpyHeader header = read_npy_header(std::string_view(bytes).substr(place->begin, place->length));
-  if (header.sizes.size() != 2) throw Error(file, "has no two dimensions", "save an array of rows and columns");
+  if (header.sizes.size() != 2) throw Error(file, "does not have two dimensions", "save an array of rows and columns");
   const bool by_columns = header.order == "True";
   const BinaryNumber* const scalar = by_columns || header.order == "False" ? scalar_named(header.type) : nullptr;
   if (scalar == nullptr)
-    throw Error(file, "has values of a type that is not read", "save it as float64: array.astype(float)");
+    throw Error(file, "has values of an unsupported type", "save it as float64: array.astype(float)");
   const std::uint64_t rows = header.sizes[0];
   const std::uint64_t columns = header.sizes[1];
   check_size(file, rows, columns);
@@ -170,7 +171,7 @@ bool decode(png_structp png, png_infop info, Source& source, Grid& out, std::vec
 }
 
 Grid from_png(const std::string& bytes, const std::string& file) {
-  Source source{bytes, "is no PNG"};
+  Source source{bytes, "is not a PNG"};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, note, [](png_structp, png_const_charp) {});
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   const struct Guard {
@@ -184,15 +185,14 @@ Grid from_png(const std::string& bytes, const std::string& file) {
   bool is_grey = true;
   if (decode(png, info, source, out, row, is_grey, file)) return out;
   if (!is_grey)
-    throw Error(file, "is no image of grey levels of 8 or 16 bits", "export it as grey, 16 bits, not interlaced");
+    throw Error(file, "is not a grey image of 8 or 16 bits", "export it as a grey image of 16 bits, not interlaced");
   throw Error(file, "cannot be read as PNG: " + source.reason, kExportAgain);
 }
 
 #else
 
 Grid from_png(const std::string&, const std::string& file) {
-  throw Error(file, "is a PNG, which this build does not read",
-              "install libpng-dev and build again, or save it as .npy");
+  throw Error(file, "is a PNG, which this build cannot read", "install libpng-dev and build again, or save it as .npy");
 }
 
 #endif
@@ -202,9 +202,8 @@ void check_values(const Grid& values, const std::string& file) {
     for (Eigen::Index column = 0; column < values.cols(); ++column) {
       const double value = values(row, column);
       if (value >= 0.0 && std::isfinite(value)) continue;
-      throw Error(
-          file, fmt::format("row {}, column {} is {}, and a height is a number from 0 on", row + 1, column + 1, value),
-          "write 0 where the desk is");
+      throw Error(file, fmt::format("row {}, column {} is {}, but a height is at least 0", row + 1, column + 1, value),
+                  "write 0 where the desk is");
     }
   }
   if (values.maxCoeff() <= 0.0) throw Error(file, "is 0 everywhere: there is no object");
@@ -216,7 +215,7 @@ Grid read_grid(const std::string& bytes, const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending != ".csv" && ending != ".npy" && ending != ".png")
-    throw Error(file, "has no ending of a format that is read", "save it as .csv, .npy or .png");
+    throw Error(file, "has no supported file extension", "save it as .csv, .npy or .png");
   Grid out = ending == ".csv"   ? from_csv(bytes, file)
              : ending == ".npy" ? from_npy(bytes, file)
                                 : from_png(bytes, file);

@@ -60,7 +60,7 @@ class HeightMap final : public Shape {
     const double size = std::max({2 * half_length_, 2 * half_width_, highest_});
     if (size > kLargest) {
       throw Error(options.file, "is " + std::to_string(size) + " m large, at most 2 m are allowed",
-                  "are unit and spacing right?");
+                  "check unit and spacing");
     }
   }
 

@@ -57,7 +57,7 @@ std::string format_of(const std::string& file) {
   for (const char* known : {"stl", "obj", "ply"}) {
     if (ending == std::string(".") + known) return known;
   }
-  throw Error(file, ending.empty() ? "has no ending that tells its format" : "the format '" + ending + "' is not read",
+  throw Error(file, ending.empty() ? "has no file extension" : "the format '" + ending + "' is not supported",
               "export it as .stl, .obj or .ply");
 }
 
@@ -77,7 +77,7 @@ void make_stl_plain(std::string& bytes, const std::string& file) {
   const std::string_view text(bytes);
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos || text.substr(begin, 5) != "solid") {
-    throw Error(file, "is no STL, neither text nor binary, or cut short", kExportAgain);
+    throw Error(file, "is not an STL file, neither text nor binary, or is cut short", kExportAgain);
   }
   if (text.rfind("endsolid") == std::string_view::npos) {
     throw Error(file, "is cut short: the word 'endsolid' is missing", kExportAgain);
@@ -101,7 +101,7 @@ void check_ply(const std::string& bytes, const std::string& file) {
   while (header != std::string::npos && bytes[header - 1] != '\n' && bytes[header - 1] != '\r')
     header = bytes.find(last, header + 1);
   if (header == std::string::npos) {
-    throw Error(file, "is no PLY or cut short: the line 'end_header' is missing", kExportAgain);
+    throw Error(file, "is not a PLY file or is cut short: the line 'end_header' is missing", kExportAgain);
   }
   std::string lines = bytes.substr(0, header);
   std::replace(lines.begin(), lines.end(), '\r', '\n');
@@ -116,14 +116,14 @@ void check_ply(const std::string& bytes, const std::string& file) {
     if (word != "element") continue;
     // Nine digits: more rows than the longest file that is read has bytes need ten.
     if (count.empty() || count.size() > 9 || count.find_first_not_of("0123456789") != std::string::npos)
-      throw Error(file, "its header does not say how many rows of '" + name + "' follow", kExportAgain);
+      throw Error(file, "its header does not give the number of rows of '" + name + "' follow", kExportAgain);
     rows += std::stoul(count);
   }
   const std::string_view body = std::string_view(bytes).substr(header + last.size());
   // The last row may lack its line break, the line end_header has one. A row of bytes has one at least.
   const std::size_t there =
       text ? line_ends(body) - (body.empty() || (body.back() != '\n' && body.back() != '\r') ? 0 : 1) : body.size();
-  if (there < rows) throw Error(file, "is cut short: its header promises more rows than there are", kExportAgain);
+  if (there < rows) throw Error(file, "is cut short: its header announces more rows than there are", kExportAgain);
 }
 
 Soup triangles_by_assimp(const std::string& bytes, const std::string& file, const std::string& format) {
@@ -144,7 +144,7 @@ Soup triangles_by_assimp(const std::string& bytes, const std::string& file, cons
       if (out.size() == 3 * kMostTriangles) refuse_number(file, kMostTriangles + 1);
       for (unsigned i = 0; i < 3; ++i) {
         if (face.mIndices[i] >= mesh.mNumVertices)
-          throw Error(file, "a triangle has a corner that is not there", kExportAgain);
+          throw Error(file, "a triangle refers to a corner that does not exist", kExportAgain);
         const aiVector3D& corner = mesh.mVertices[face.mIndices[i]];
         out.push_back({corner.x, corner.y, corner.z});
       }
@@ -190,7 +190,7 @@ int answer(const ChildProcess::Say& say, const std::string& bytes, const std::st
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // a failed assertion of assimp would be a second line
   say_in_child = &say;
   limit_memory(bytes.size(), [] {
-    (*say_in_child)("Etakes more memory than any sound file of its size\nexport it again");
+    (*say_in_child)("Eneeds more memory than any valid file of its size\nexport it again");
     _exit(0);
   });
   try {
@@ -215,16 +215,18 @@ Soup import_triangles(std::string bytes, const std::string& file) {
   const std::unique_ptr<ChildProcess> reader =
       ChildProcess::fork([&](const ChildProcess::Say& say) { return answer(say, bytes, file, format); });
   if (!reader)
-    throw Error(file, std::string("no process to read it in: ") + std::strerror(errno), "", Error::Kind::run);
+    throw Error(file, std::string("cannot start a child process to read it: ") + std::strerror(errno), "",
+                Error::Kind::run);
   reader->wait();  // which it sees to itself that is not for ever
   const std::string& said = reader->said();
   const int status = reader->status();
   if (status != 0 || said.empty()) {
     const bool endless = WIFSIGNALED(status) &&
                          (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGKILL);
-    throw Error(file,
-                "cannot be read as " + format + ": assimp " + (endless ? "came to no end" : "broke down") + " over it",
-                kExportAgain);
+    throw Error(
+        file,
+        "cannot be read as " + format + ": assimp " + (endless ? "did not finish" : "crashed") + " while reading it",
+        kExportAgain);
   }
   if (said[0] == 'E') {
     const std::size_t line = std::min(said.find('\n'), said.size() - 1);

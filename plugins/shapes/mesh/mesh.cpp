@@ -170,7 +170,7 @@ class Mesh final : public Shape {
     const RTCError code = rtcGetDeviceError(device_.get());
     if (code == RTC_ERROR_NONE) return;
     throw Error("", "Embree failed with code " + std::to_string(static_cast<int>(code)),
-                code == RTC_ERROR_OUT_OF_MEMORY ? "the memory does not suffice for the mesh" : "", Error::Kind::run);
+                code == RTC_ERROR_OUT_OF_MEMORY ? "the mesh does not fit into memory" : "", Error::Kind::run);
   }
 
   static constexpr std::size_t kFew = 64;

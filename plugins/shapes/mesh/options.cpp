@@ -52,7 +52,7 @@ std::string bytes_of(const std::string& file) {
     throw Error(file, "no such file", hint);
   }
   if (reading.kind == Reading::Kind::not_regular) throw Error(file, "not a regular file", "name a file");
-  if (reading.kind == Reading::Kind::too_large) throw Error(file, "has more than 500 MB", "reduce what it holds");
+  if (reading.kind == Reading::Kind::too_large) throw Error(file, "is larger than 500 MB", "reduce its content");
   if (!reading) throw Error(file, words_of(reading, kMostMeshBytes).reason);
   if (reading.text.empty()) throw Error(file, "is empty", "export it again");
   return std::move(reading.text);
@@ -69,7 +69,7 @@ std::string read_file(const std::string& file, const std::string& checksum) {
   }
   const std::string found = checksum_of(bytes);
   if (checksum.empty() || found == checksum) return bytes;
-  throw Error("checksum", "is not that of " + file + ", which has " + found);
+  throw Error("checksum", "does not match " + file + ", whose checksum is " + found);
 }
 
 void list_checksum(const std::string& file, std::string& checksum, Fields& fields) {

@@ -38,8 +38,8 @@ void check_size(const Vector3d& extent, double furthest, double unit, const std:
   if (size > kLargest) throw Error(file, "is " + text(size) + " m large, at most 2 m are allowed", remedy);
   if (size < kSmallest) throw Error(file, "is " + text(size) + " m large, at least 1 mm is needed", remedy);
   if (furthest * 0x1p-24 > kPrecision) {
-    throw Error(file, "lies " + text(furthest) + " m from its origin, where single precision is coarser than 1e-6 m",
-                "move it to the origin before it is exported");
+    throw Error(file, "lies " + text(furthest) + " m from its origin, where single precision has errors above 1e-6 m",
+                "move it to the origin before the export");
   }
 }
 
@@ -58,7 +58,7 @@ void check_areas(const Triangles& mesh, const std::string& file) {
   throw Error(file,
               fmt::format("{} of {} triangles have no area, the first is triangle {} at {} from the middle of its base",
                           degenerate, mesh.corners.size(), first + 1, place(mesh.points[mesh.corners[first][0]])),
-              "remove degenerate triangles where the mesh was made");
+              "remove degenerate triangles in the program that made the mesh");
 }
 
 void check_doubles(const Triangles& mesh, const std::string& file) {
@@ -67,8 +67,8 @@ void check_doubles(const Triangles& mesh, const std::string& file) {
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (twice == sorted.end()) return;
-  throw Error(file, "a triangle is there twice, at " + place(mesh.points[(*twice)[0]]) + " from the middle of its base",
-              "remove doubled triangles where the mesh was made");
+  throw Error(file, "a triangle occurs twice, at " + place(mesh.points[(*twice)[0]]) + " from the middle of its base",
+              "remove duplicate triangles in the program that made the mesh");
 }
 
 void check_closed(const Triangles& mesh, const std::string& file) {
@@ -93,7 +93,7 @@ void check_closed(const Triangles& mesh, const std::string& file) {
                 "has holes: " + std::to_string(open) + " edges belong to one triangle only, one from " +
                     place(mesh.points[first_open >> 32]) + " to " + place(mesh.points[first_open & 0xffffffff]) +
                     " from the middle of its base",
-                "close them where the mesh was made, or write `holes: allow`");
+                "close them in the program that made the mesh, or write `holes: allow`");
   }
 }
 

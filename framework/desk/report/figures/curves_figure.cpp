@@ -206,7 +206,7 @@ std::string name_variable(std::size_t entry, std::size_t line) {
 /// The names, to be changed by whoever reads the script; how wide each is; and a height of the panels below them, which
 /// begin at `top` and have less room where changed names take more rows. Lengths are points from the upper left corner.
 std::string legend_variables(const Sheet& sheet, const std::vector<LegendEntry>& entries, double top) {
-  std::string out = "# The names in the legend; longer ones move those behind them.\n";
+  std::string out = "# The names in the legend; longer names move the following ones.\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {
     for (std::size_t line = 0; line < entries[i].lines.size(); ++line)
       out += fmt::format("{} = {}\n", name_variable(i, line), gnuplot_text(entries[i].lines[line]));
@@ -265,8 +265,8 @@ std::vector<std::string> panel_title(const GroupCurves& curves, const std::strin
 std::string caption_of(const GroupCurves& curves, const std::string& title) {
   const std::string better = curves.metric.better_words();
   return fmt::format(
-      "# {}\n# {} against {}{}.\n# Lines: means over {}. Bands: their 95 % intervals.\n"
-      "# Change what you like in a copy: 'palpate curves' writes this file again.\n",
+      "# {}\n# {} against {}{}.\n# Lines: means over {}. Bands: their 95 % intervals.\n# Edit a copy: 'palpate curves' "
+      "overwrites this file.\n",
       one_line(title), curves.metric.words(), curves.against.words(), better.empty() ? "" : "; " + better,
       curve_units_words(curves));
 }
@@ -434,8 +434,8 @@ std::string write_curves_figure(const GroupCurves& curves, const std::string& ti
              caption_of(curves, title) + headers_of(sheet, file) + script);
   const std::string trouble = draw_picture(script, sheet.width(), sheet.height(), file, PictureUnit::point);
   if (!trouble.empty())
-    throw Error(file.string(), "was not drawn: " + trouble, "a CSV, '-o NAME.csv', takes no other program",
-                Error::Kind::run);
+    throw Error(file.string(), "was not drawn: " + trouble,
+                "write a CSV with '-o NAME.csv', which needs no other program", Error::Kind::run);
   return layout.left_out;
 }
 

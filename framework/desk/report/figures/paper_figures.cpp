@@ -162,7 +162,7 @@ Figure progress_figure(const std::string& name, const std::string& title, const 
   return panels_figure(name, title, {{progress, &Snapshot::surface}, {progress, &Snapshot::scores}});
 }
 
-constexpr const char* kAllOfThem = "configs/paper/figures.yaml has them all";
+constexpr const char* kAllOfThem = "run configs/paper/figures.yaml, which has all of them";
 
 /// The jobs of this scene and strategy that ended well, in the order of the sweep.
 std::vector<const Job*> finished_jobs(const Sweep& sweep, const std::string& scene, const std::string& acquisition) {

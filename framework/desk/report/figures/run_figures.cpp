@@ -30,7 +30,7 @@ Figure surface_figure(const ExperimentOptions& options, const Ground& ground, co
   sheet.text(options.name, 30, 16, 15);
   const auto behind = last.marks.size() - seen.marks.size();
   sheet.text(map_titles(options).at("height") + " " + after_words(last) +
-                 (behind > 0 ? fmt::format("; {} of them behind it", behind) : ""),
+                 (behind > 0 ? fmt::format("; {} of them hidden behind it", behind) : ""),
              30, 44, 11);
   const Colours colours = deviation_colours(last.deviation.minCoeff(), last.deviation.maxCoeff());
   sheet.surface({90, 80, 740, 510}, ground, "surface", "last", colours, relief_of({last}, ground));
@@ -56,7 +56,7 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
   };
   const auto outside = [](const Eigen::VectorXd& values, double high) {
     if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
-    return fmt::format("\nit goes from {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
+    return fmt::format("\nrange: {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
   };
   // The strategy's score is u w only where there is a w.
   const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
@@ -156,7 +156,7 @@ Figure curves_figure(const Recording& recording, const History& history) {
   // What never changes is no panel, but a line below them.
   const int width = 70 + columns * 365;
   std::vector<std::string> words;
-  if (!constants.empty()) words.emplace_back("The same after every tap:");
+  if (!constants.empty()) words.emplace_back("Constant over all taps:");
   for (const std::string& one : constants) {
     for (std::string& line : wrapped(one, static_cast<std::size_t>(width - 90) / 8)) words.push_back(std::move(line));
   }

@@ -344,7 +344,7 @@ std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Fi
     const std::string trouble = draw_picture(sheet.script(), sheet.width(), sheet.height(), pictures.back());
     if (trouble.empty()) continue;
     throw Error(pictures.back().string(), "was not drawn: " + trouble,
-                fmt::format("'gnuplot {}.gnuplot' in that folder draws it later", name), Error::Kind::run);
+                fmt::format("run 'gnuplot {}.gnuplot' in that folder to draw it later", name), Error::Kind::run);
   }
   return pictures;
 }

@@ -47,10 +47,10 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
   constexpr const char* kPolicy =
       "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:";
   std::string out = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}{}\">\n{}"
-      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n"
-      "<body>\n<noscript>This page draws itself by a script, which your browser does not run.</noscript>\n",
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+      "http-equiv=\"Content-Security-Policy\" content=\"{}{}\">\n{}<meta name=\"viewport\" "
+      "content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n<body>\n<noscript>This "
+      "page needs JavaScript, which your browser does not run.</noscript>\n",
       kPolicy, of == PageOf::server ? "; connect-src 'self'" : "",
       // Or the browser would ask for one.
       of == PageOf::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);

@@ -46,45 +46,44 @@ int first_drift(const Recording& recording, const History& history) {
 void warn_of_end(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
   if (recording.failed()) {
     const std::string reason = recording.summary->text("stop_reason");
-    out.push_back("The run failed" + (reason.empty() ? " and does not say why." : ": " + reason));
+    out.push_back("The run failed" + (reason.empty() ? " without a reason." : ": " + reason));
   } else if (!recording.summary) {
-    out.push_back(fmt::format("The run has not ended: this is how it stands after {}.", counted(last.taps, "tap")));
+    out.push_back(fmt::format("The run has not ended: this page shows its state after {}.", counted(last.taps, "tap")));
   }
   const bool any_side = is_any_side(recording);
   if (last.object_taps + last.desk_taps == 0) {
-    out.push_back(any_side ? "No tap touched anything." : "No tap touched anything: the maps show what was assumed.");
+    out.push_back(any_side ? "No tap touched anything." : "No tap touched anything: the maps show the prior.");
   } else if (last.object_taps == 0) {
     out.push_back(any_side ? "No tap touched an object." : "No tap touched an object: the maps show where it is not.");
   }
-  tell(out, last.failed_taps, "tap", " brought no contact and did not reach the models.");
+  tell(out, last.failed_taps, "tap", " made no contact and did not reach the models.");
   tell(out, diagnostics(last, "heights_rejected"), "tap",
-       any_side ? " brought a height that is no number, or an end off its way, and was refused."
-                : " brought a height that is no number, and was refused.");
+       any_side ? " returned a height that is not a number, or an end off its path, and was rejected."
+                : " returned a height that is not a number, and was rejected.");
 }
 
 void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
   const bool any_side = is_any_side(recording);
   const RunResult& last = history.moments.back().result;
   if (const int fallbacks = diagnostics(last, "fallback"); fallbacks > 0) {
-    out.push_back(fmt::format(
-        "{} of {} {} chosen by the fallback, the largest uncertainty, because the acquisition's scores told "
-        "no candidate apart (so it is until the first hit).",
-        fallbacks, counted(last.taps, "tap"), fallbacks == 1 ? "was" : "were"));
+    out.push_back(
+        fmt::format("{} of {} {} chosen by the fallback, the largest uncertainty, because the acquisition's scores did "
+                    "not distinguish the candidates (as before the first hit).",
+                    fallbacks, counted(last.taps, "tap"), fallbacks == 1 ? "was" : "were"));
   }
   const auto without_reason = [](const Row& row) {
     return row.text("source") == source_name(Source::acquisition) && row.number("score").value_or(1.0) <= 0.0;
   };
   if (const auto stalled = std::count_if(recording.rows.begin(), recording.rows.end(), without_reason); stalled > 0) {
-    out.push_back(fmt::format(
-        "{} chosen by the acquisition although no {} had a positive score: where nothing speaks for any of them the "
-        "first one is taken.{}",
-        counted(stalled, "tap") + (stalled == 1 ? " was" : " were"), any_side ? "approach" : "candidate",
-        any_side ? "" : " fallback=uncertainty looks for the object instead."));
+    out.push_back(
+        fmt::format("{} chosen by the acquisition although no {} had a positive score: then the first one is taken.{}",
+                    counted(stalled, "tap") + (stalled == 1 ? " was" : " were"), any_side ? "approach" : "candidate",
+                    any_side ? "" : " Choose fallback=uncertainty to search for the object instead."));
   }
   if (const int drift = first_drift(recording, history); drift > 0) {
     out.push_back(
-        fmt::format("From the same taps this build would have made tap {} elsewhere: the run was made by another build "
-                    "or on another instruction path. The {} are those of the recorded taps.",
+        fmt::format("From the same earlier taps, this build would choose another position for tap {}: the run used "
+                    "another build or instruction set. The {} show the recorded taps.",
                     drift, any_side ? "surfaces" : "maps"));
   }
 }
@@ -99,9 +98,9 @@ void warn_of_weights(const Recording& recording, const History& history, std::ve
   if (*least->least_weight >= -kRounding && *most->most_weight <= 1.0 + kRounding) return;
   out.push_back(
       fmt::format("The weight leaves [0, 1]: from {:.2g} after tap {} to {:.2g} after tap {}. It is a regression on "
-                  "labels, no probability; {}.",
+                  "labels, not a probability; {}.",
                   *least->least_weight, least->taps, *most->most_weight, most->taps,
-                  recording.config.options.label.clip ? "the strategy sees it clipped (label.clip)"
+                  recording.config.options.label.clip ? "the strategy uses it clipped (label.clip)"
                                                       : "label.clip=true would clip it for the strategy"));
 }
 
@@ -117,9 +116,9 @@ void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
     out.push_back(fmt::format("{} left out: to machine precision the other taps determine {}.",
                               counted(aside, "tap") + (aside == 1 ? " was" : " were"), aside == 1 ? "it" : "them"));
   if (const int clamped = diagnostics(last, "variance_clamped"); clamped > 0)
-    out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; shown are the bounds.",
+    out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; the bounds are shown.",
                               counted(clamped, "candidate")));
-  tell(out, diagnostics(last, "fit_failed"), "fit", " came to no finite values and kept the old hyperparameters.");
+  tell(out, diagnostics(last, "fit_failed"), "fit", " found no finite values and kept the old hyperparameters.");
 }
 
 }  // namespace
@@ -130,8 +129,8 @@ std::vector<std::string> warnings_of(const Recording& recording, const History& 
   warn_of_end(recording, last, out);
   warn_of_choices(recording, history, out);
   if (last.footprint && !last.footprint->remark.empty())
-    out.push_back(
-        fmt::format("The footprint, {}, says: {}.", recording.config.options.footprint.type, last.footprint->remark));
+    out.push_back(fmt::format("Remark of the footprint {}: {}.", recording.config.options.footprint.type,
+                              last.footprint->remark));
   warn_of_weights(recording, history, out);
   warn_of_numbers(last, out);
   if (history.truth_lost) out.push_back(truth_lost_words(*history.truth_lost) + ".");

@@ -25,9 +25,9 @@ void explain_place(Page& page, const Row& row, const std::string& footprint) {
   const auto say = [&](const char* name, const std::string& before, const std::string& meaning) {
     if (row.number(name)) said.push_back(fmt::format("{}{} ({})", before, number_words(row, name), meaning));
   };
-  say("u", "u = ", "how little is known of the height: 0 all, 1 nothing");
-  say("p", "p = ", "the probability that an object is there, by footprint/" + footprint);
-  say("w", "w = ", "what speaks for an object: 0 desk, 1 object");
+  say("u", "u = ", "variance of the height relative to its prior: 0 known, 1 unknown");
+  say("p", "p = ", "probability of an object there, by footprint/" + footprint);
+  say("w", "w = ", "mean of the label GP: 0 desk, 1 object");
   if (row.number("w") && row.number("e")) said.push_back("e = u w = " + number_words(row, "e"));
   if (!said.empty()) page.say(fmt::format("There {}.", fmt::join(said, ", ")));
 }
@@ -45,14 +45,14 @@ class FromAboveExplained final : public Explanation {
     page_.heading(heading(place_words(tap_.target.x, tap_.target.y)));
     page_.heading("Why there");
     explain_choice();
-    page_.heading(fmt::format("The models that it was chosen from: {}, {} of them on an object",
+    page_.heading(fmt::format("The models used for the choice, from {}, {} of them on an object",
                               counted(hits_before() + before().desk_taps, "contact"), hits_before()));
-    if (recorded_quantities(row_) == Quantities()) page_.say("This choice read no model.");
+    if (recorded_quantities(row_) == Quantities()) page_.say("This choice used no model.");
     explain_models(page_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
-    page_.heading("What was expected and what was found");
+    page_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
-    page_.heading("What it changed");
+    page_.heading("Effect of the tap");
     // The errors after the tap are recorded with the next one, or at the end of the run.
     const bool last = number_ == static_cast<int>(recording_.rows.size());
     explain_errors("Error of the surface (rms)", row_,
@@ -93,8 +93,8 @@ class FromAboveExplained final : public Explanation {
     explain_repeats();
     if (const std::optional<double> seconds = row_.number("expected_seconds")) {
       page_.say(
-          fmt::format("It was made by motion {} of motion.of, which tells most here in its time: {} "
-                      "were expected.",
+          fmt::format("It was made by motion {} of motion.of, which was expected to give the most information per "
+                      "second here, in {}.",
                       tap_.motion, seconds_words(*seconds)));
     }
   }
@@ -102,8 +102,8 @@ class FromAboveExplained final : public Explanation {
   void explain_design() {
     if (options_.initial.searches()) {
       page_.say(
-          fmt::format("It is tap {} of the search for an object, before any model has a say: the place where most "
-                      "of what nobody has looked at yet could be hidden, or the middle of the widest gap (seed {}).",
+          fmt::format("It is tap {} of the search for an object, which uses no model: it taps where an object could "
+                      "hide in most of the unexplored area, or in the middle of the widest gap (seed {}).",
                       number_, options_.seed));
       return;
     }
@@ -111,7 +111,7 @@ class FromAboveExplained final : public Explanation {
     constexpr const char* kHow[] = {"random: drawn from the candidates by the seed alone",
                                     "sobol: a sequence that spreads evenly, shifted by the seed",
                                     "grid: a lattice over the area"};
-    page_.say(fmt::format("It is initial tap {} of {}, placed by the design before any model has a say ({}, seed {}).",
+    page_.say(fmt::format("It is initial tap {} of {}, placed by the initial design without a model ({}, seed {}).",
                           number_, options_.initial.count, kHow[static_cast<std::size_t>(options_.initial.design)],
                           options_.seed));
   }
@@ -127,9 +127,9 @@ class FromAboveExplained final : public Explanation {
     const bool of_caller = why.rfind(kOfCaller, 0) == 0;
     if (of_caller) why.erase(0, std::string(kOfCaller).size());
     page_.say(
-        fmt::format("{} had nothing to go by: {}.",
+        fmt::format("{} gave no usable scores: {}.",
                     of_caller ? "The scores of the caller" : fmt::format("The acquisition, {},", acquisition_words()),
-                    why.empty() ? "its scores told no candidate from another" : why));
+                    why.empty() ? "its scores do not distinguish the candidates" : why));
     const double greatest = row_.number("max_weight").value_or(1.0);
     if (hits_before() == 0)
       page_.say("No tap has hit an object yet" +
@@ -137,8 +137,8 @@ class FromAboveExplained final : public Explanation {
                                 : fmt::format(": every label is 0, and so the weight w is nowhere above {}.",
                                               plain_words(greatest))));
     page_.say(
-        "So the fallback chose it (fallback: uncertainty), which looks where the height is least known: its score "
-        "is u.");
+        "So the fallback chose it (fallback: uncertainty), which taps where the height is least certain: its score is "
+        "u.");
   }
 
   /// How many candidates may not be tapped again, by the rule of the loop.
@@ -169,8 +169,8 @@ class FromAboveExplained final : public Explanation {
                           counted(allowed, "candidate"), bound);
     } else {
       text += fmt::format(
-          ". {} of {} are tied: within {:.2g} of the best (tie_tolerance), where rounding must not decide. Of these "
-          "the lowest index is taken (they are counted along x, row by row).",
+          ". {} of {} are tied: within {:.2g} of the best (tie_tolerance), so that rounding does not decide. The one "
+          "with the lowest index is taken (candidates are counted along x, row by row).",
           ties == allowed ? "All" : fmt::format("{}", ties), counted(allowed, "candidate"), bound);
     }
     page_.say(text);
@@ -187,10 +187,11 @@ class FromAboveExplained final : public Explanation {
   void explain_flatness(double best, double bound, bool equal) {
     if (options_.fallback == ExperimentOptions::Fallback::none) {
       if (best > 0.0 && !equal) return;
-      page_.say(fmt::format("{}: such scores tell nothing, but the config has the rule stand (fallback: none).",
-                            best > 0.0 ? "Every score is equal" : "No score is positive"));
+      page_.say(fmt::format(
+          "{}: such scores do not distinguish candidates, but the config uses no fallback (fallback: none).",
+          best > 0.0 ? "Every score is equal" : "No score is positive"));
     } else if (best > 0.0 && best <= bound) {
-      page_.say(fmt::format("The best score, {}, is as good as 0, but it is positive: so no fallback stepped in.",
+      page_.say(fmt::format("The best score, {}, is nearly 0 but positive, so the fallback was not used.",
                             plain_words(best)));
     }
   }
@@ -235,8 +236,8 @@ class FromAboveExplained final : public Explanation {
     const Contact& contact = tap_.contact;
     if (contact.outcome != Outcome::contact) {
       page_.say(
-          fmt::format("Found: nothing, the tap failed: {}{}. It took {} of the robot. No model learns from "
-                      "it, and its place is left out from then on.",
+          fmt::format("Found: nothing, the tap failed: {}{}. It took {} of robot time. No model uses it, and its "
+                      "position is excluded afterwards.",
                       outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason,
                       seconds_words(contact.seconds)));
     } else {
@@ -253,10 +254,10 @@ class FromAboveExplained final : public Explanation {
         fmt::format("Found: contact at {}, {}", length_words(contact.height), on ? "on an object" : "on the desk");
     const double height = row_.number("corrected_height").value_or(contact.height);
     if (height != contact.height)
-      text += fmt::format(", {} without what motion and arm were thought to add", length_words(height));
+      text += fmt::format(", {} after correction for the estimated offset of motion and arm", length_words(height));
     if (const double more = height - expected_.value_or(height); more != 0.0)
       text += fmt::format(", {} {} than expected", length_words(std::abs(more)), more > 0.0 ? "higher" : "lower");
-    text += fmt::format("; greatest force {}, {} of the robot.", readable(contact.force, Unit::newton),
+    text += fmt::format("; greatest force {}, {} of robot time.", readable(contact.force, Unit::newton),
                         seconds_words(contact.seconds));
     if (row_.flag("true_on_object").value_or(on) != on)
       text += fmt::format(" In truth {} is there: the label is wrong.", on ? "the desk" : "an object");
@@ -276,8 +277,8 @@ class FromAboveExplained final : public Explanation {
       return std::string("is not suspected");
     };
     const auto all = static_cast<int>(recording_.rows.size());
-    page_.say(fmt::format("Right after it, it {}.", said(number_)));
-    if (all > number_) page_.say(fmt::format("By all {} taps it {}.", all, said(all)));
+    page_.say(fmt::format("Right after the tap, it {}.", said(number_)));
+    if (all > number_) page_.say(fmt::format("After all {} taps, it {}.", all, said(all)));
   }
 
   std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk
@@ -289,7 +290,7 @@ std::string explain_tap(const Workshop& workshop, const Recording& recording, in
   const auto taps = static_cast<int>(recording.rows.size());
   if (tap < 1 || tap > taps) {
     throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),
-                taps == 1 ? "ask for tap 1" : fmt::format("ask for one of 1 to {}", taps));
+                taps == 1 ? "choose tap 1" : fmt::format("choose one of 1 to {}", taps));
   }
   if (recording.config.options.scene.touch == SceneOptions::Touch::any)
     return explain_approach(workshop, recording, tap);

@@ -51,13 +51,13 @@ class ApproachExplained final : public Explanation {
     page_.heading("Why there");
     explain_choice();
     explain_place();
-    page_.heading(fmt::format("What was believed after {}, {} of them on an object", counted(number_ - 1, "tap"),
+    page_.heading(fmt::format("The belief after {}, {} of them on an object", counted(number_ - 1, "tap"),
                               experiment_.counts().object_taps));
     explain_belief();
-    page_.heading("What was expected and what was found");
+    page_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
-    page_.heading("What it changed");
+    page_.heading("Effect of the tap");
     Row before;
     add_errors(before, experiment_.errors());
     playback_.advance_to(number_);
@@ -69,20 +69,20 @@ class ApproachExplained final : public Explanation {
   void explain_choice() {
     const std::optional<TapRecord> now = experiment_.choose_next();
     if (tap_.source == Source::initial) {
-      page_.say(number_ <= options_.initial.count
-                    ? fmt::format("It is initial tap {} of {}, along a line anywhere through the region (seed {}).",
-                                  number_, options_.initial.count, options_.seed)
-                    : fmt::format("No tap had hit an object: until one does, lines go anywhere through the region "
-                                  "(seed {}).",
-                                  options_.seed));
+      page_.say(
+          number_ <= options_.initial.count
+              ? fmt::format("It is initial tap {} of {}, along a random line through the region (seed {}).", number_,
+                            options_.initial.count, options_.seed)
+              : fmt::format("No tap had hit an object yet, so this is a random line through the region (seed {}).",
+                            options_.seed));
       return;
     }
     page_.say(fmt::format("The acquisition chose it: {}.", acquisition_words()));
     if (!experiment_.has_scores()) return explain_score();
     if (!now || !now->approach || now->approach->line.origin != approach_.line.origin)
       return page_.say(
-          "From the same taps this build would tap elsewhere: the run was made by another build or on "
-          "another instruction path, and what else was scored is not known.");
+          "From the same earlier taps, this build would choose another line: the run used another build or instruction "
+          "set, so the other scores are unknown.");
     const Eigen::VectorXd scores = experiment_.scores();
     const double score = scores(now->candidate);
     std::string text =
@@ -92,17 +92,17 @@ class ApproachExplained final : public Explanation {
     page_.say(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
     const Eigen::VectorXd& expected_discovery = experiment_.belief().expected_discovery();
     if (expected_discovery.size() == scores.size()) {
-      page_.say(fmt::format(
-          "Of one piece more than is believed, as far as no touch has contradicted it, the line is expected to "
-          "find {}, as a mean over lines from all sides; the best of all finds {}.",
-          length_words(expected_discovery(now->candidate)), length_words(expected_discovery.maxCoeff())));
+      page_.say(
+          fmt::format("Of one further solid that no contact contradicts, this line is expected to find {} (mean over "
+                      "lines from all sides); the best line finds {}.",
+                      length_words(expected_discovery(now->candidate)), length_words(expected_discovery.maxCoeff())));
     }
     const Eigen::VectorXd& std_reduction = experiment_.belief().std_reduction();
     if (std_reduction.size() == scores.size()) {
-      page_.say(fmt::format(
-          "Of the standard deviation of the surface that is believed, the mean over all of it, a touch there is "
-          "expected to take off {}; the best of all takes off {}.",
-          length_words(std_reduction(now->candidate)), length_words(std_reduction.maxCoeff())));
+      page_.say(
+          fmt::format("A contact there is expected to reduce the mean standard deviation of the surface by {}; the "
+                      "best line reduces it by {}.",
+                      length_words(std_reduction(now->candidate)), length_words(std_reduction.maxCoeff())));
     }
     if (scores.size() < 2) return;
     Eigen::Index second = now->candidate == 0 ? 1 : 0;
@@ -119,7 +119,8 @@ class ApproachExplained final : public Explanation {
   /// What the record has of a score, where a program gave it.
   void explain_score() {
     if (const auto score = row_.number("score"))
-      page_.say(fmt::format("Its score is {}; what the program gave the others is not recorded.", plain_words(*score)));
+      page_.say(fmt::format("Its score is {}; the program's scores of the other lines are not recorded.",
+                            plain_words(*score)));
   }
 
   const Composition& best() const { return experiment_.belief().solids().best(); }
@@ -132,15 +133,14 @@ class ApproachExplained final : public Explanation {
   /// What rules read of the place where the surface is met.
   void explain_place() {
     const double along = experiment_.belief().meeting(approach_, best());
-    if (!met(along)) return page_.say("By the most probable composition no object is there.");
+    if (!met(along)) return page_.say("According to the most probable particle, no object is there.");
     const Vector3d at =
         approach_.line.origin + along * approach_.line.direction - Vector3d(0.0, 0.0, experiment_.scene().desk());
     const Vector3d normal = Skin::normal(best(), at);
     const double deviation = std::sqrt(experiment_.belief().skin().variance({at, normal}));
     page_.say(fmt::format(
-        "Where it would meet the surface, the skin knows it along its normal with a standard deviation of {}, far from "
-        "all "
-        "touches with one of {}. The cosine between the line and the normal is {:.3f}: 1 is square onto the surface.",
+        "Where the line meets the surface, the standard deviation along the surface normal is {}; far from all "
+        "contacts it is {}. The cosine between line and normal is {:.3f} (1: perpendicular to the surface).",
         length_words(deviation), length_words(experiment_.belief().skin().signal()),
         std::abs(normal.dot(approach_.line.direction))));
   }
@@ -154,7 +154,7 @@ class ApproachExplained final : public Explanation {
     for (const Composition::Part& part : best().parts) pieces += (pieces.empty() ? "" : ", ") + piece_words(part.piece);
     const std::string most_words = counted(static_cast<long>(most->parts.size()), "piece");
     const bool alike = least->parts.size() == most->parts.size();
-    page_.say(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all.size()), "composition"),
+    page_.say(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all.size()), "particle"),
                           alike ? most_words : fmt::format("{} to {}", least->parts.size(), most_words), pieces));
   }
 
@@ -169,7 +169,7 @@ class ApproachExplained final : public Explanation {
     const std::string what = met(along)                 ? fmt::format("an object after {}", length_words(along))
                              : along < approach_.length ? fmt::format("the desk after {}", length_words(along))
                                                         : fmt::format("nothing in {}", length_words(along));
-    std::string text = fmt::format("Expected, by the most probable composition: {}. ", what);
+    std::string text = fmt::format("Expected, by the most probable particle: {}. ", what);
     if (hits.empty()) {
       text += fmt::format("None of {} has an object there.", all.size());
     } else {
@@ -188,11 +188,11 @@ class ApproachExplained final : public Explanation {
   void explain_outcome() {
     const Contact& contact = tap_.contact;
     const double along = contact.along.value_or(approach_.length);
-    const std::string robot = fmt::format("{} of the robot", seconds_words(contact.seconds));
+    const std::string robot = fmt::format("{} of robot time", seconds_words(contact.seconds));
     if (contact.outcome == Outcome::no_contact) {
-      page_.say(fmt::format("Found: nothing in {}; all of the way is free. {}.", length_words(along), robot));
+      page_.say(fmt::format("Found: nothing in {}; the whole path is free. {}.", length_words(along), robot));
     } else if (contact.outcome != Outcome::contact) {
-      page_.say(fmt::format("Found: nothing, the tap failed: {}{}. {}. No model learns from it.",
+      page_.say(fmt::format("Found: nothing, the tap failed: {}{}. {}. No model uses it.",
                             outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, robot));
     } else {
       const bool on = row_.flag("on_object").value_or(false);

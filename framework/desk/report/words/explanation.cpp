@@ -33,7 +33,7 @@ void Explanation::explain_label() {
   for (const Relabelled& one : relabelled_in(recording_.summary.value_or(Row{}))) {
     if (one.tap != number_) continue;
     page_.say(fmt::format(
-        "By all {} taps it is read as a contact {}: what motion and arm add to all heights is known better by then.",
+        "After all {} taps it is read as a contact {}, because the offset of motion and arm is known better by then.",
         recording_.rows.size(), one.on_object ? "with an object" : "with the desk"));
   }
 }
@@ -45,8 +45,7 @@ void Explanation::explain_failure() {
 }
 
 void Explanation::explain_errors(const std::string& what, const Row& before, const Row& after) {
-  if (!recording_.truth_known())
-    return page_.say("The truth is not known, so nobody can say by how much the surface is off.");
+  if (!recording_.truth_known()) return page_.say("The truth is not known, so neither is the error of the surface.");
   std::vector<std::string> lengths;
   std::vector<std::string> others;
   for (const RecordField& error : error_fields()) {

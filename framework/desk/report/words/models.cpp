@@ -97,11 +97,10 @@ std::string rounding_words(const Subject& subject) {
   return fmt::format(
       "Posterior engine: {}; it adds {} to the rounding{}. {}", subject.text("engine"),
       bound > 0.0 ? fmt::format("at most {:.1e}", bound) : "nothing", bound > 0.0 ? ", in signals" : "",
-      jitter > 0.0
-          ? fmt::format("Its matrix was singular in double precision, so jitter was added to the diagonal, as if every "
-                        "tap had a noise of {} more: the model is a little less sure of its taps.",
-                        subject.amount(std::sqrt(jitter)))
-          : "No jitter was needed.");
+      jitter > 0.0 ? fmt::format("Its matrix was singular in double precision, so jitter was added to the diagonal, as "
+                                 "if every tap had a noise of {} more: the model trusts its taps slightly less.",
+                                 subject.amount(std::sqrt(jitter)))
+                   : "No jitter was needed.");
 }
 
 void explain_process(Page& page, const Subject& subject) {
@@ -136,9 +135,10 @@ void explain_footprint(Page& page, const Row& row, const std::string& type) {
   std::vector<std::string> numbers = numbers_below(row, prefix);
   for (std::string& one : numbers) one = fmt::format("{} {}", parameter_words(one), number_words(row, prefix + one));
   page.say(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
-                       numbers.empty() ? "" : fmt::format(". It tells: {}", fmt::join(numbers, ", "))));
+                       numbers.empty() ? "" : fmt::format(". Its numbers: {}", fmt::join(numbers, ", "))));
   if (const auto left = row.number("footprint.undiscovered_probability"))
-    page.say(fmt::format("{:.0f} % that something of 3 cm or more is left that nobody has touched.", 100.0 * *left));
+    page.say(fmt::format("The probability that an object of 3 cm or more is still undiscovered is {:.0f} %.",
+                         100.0 * *left));
   if (const std::string remark = row.text("footprint.remark"); !remark.empty())
     page.say(fmt::format("Its remark: {}.", remark));
 }
@@ -160,7 +160,7 @@ void explain_models(Page& page, const Row& row, const ExperimentOptions& options
   explain_process(page, {"Label GP", "label_gp.", false, label_kernel, label_fitting, now.label_gp, row});
   explain_range_of_weight(page, row, label.clip);
   if (row.number("p")) explain_footprint(page, row, options.footprint.type);
-  explain_process(page, {"Surface GP (of the taps on an object alone, whose level is free)", "surface_gp.", true,
+  explain_process(page, {"Surface GP (from the taps on an object alone, with a free mean level)", "surface_gp.", true,
                          height_kernel, height_fitting, now.surface_gp, row});
 }
 

@@ -6,8 +6,8 @@ namespace palpate {
 std::map<std::string, std::string> map_titles(const ExperimentOptions& options) {
   return {{"height", "Reconstructed surface"},
           {"deviation", "Standard deviation of the height"},
-          {"u", "Uncertainty u: what is not known of the height"},
-          {"w", "Weight w: whether there is an object"},
+          {"u", "Uncertainty u: relative variance of the height"},
+          {"w", "Weight w: 1 on an object, 0 on the desk"},
           {"p", "Probability p of an object, by footprint/" + options.footprint.type},
           {"e", "Exploration e = u w: where to tap"},
           {"score", "Score of acquisition/" + options.acquisition.type + ": where to tap"}};

@@ -17,7 +17,7 @@ std::string length_words(double metres) { return readable(metres, Unit::metre, 4
 std::string error_words(double metres) { return readable(metres, Unit::metre, 3, LengthKind::error); }
 
 std::string truth_lost_words(const Error& lost) {
-  return fmt::format("The truth is not known any more, and errors are those of the record: {}", lost.what());
+  return fmt::format("The truth is no longer known, so the errors are those of the record: {}", lost.what());
 }
 
 std::string seconds_words(double seconds) { return usual_scale(Unit::second).quantity(seconds); }
@@ -33,8 +33,8 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
 
 std::string doubt_words(const TapBelief::SuspectedOutlier& one) {
   const char* const why = 2.0 * one.by_label > one.probability
-                              ? "by where it is: outlines that agree with the other taps have no object there"
-                              : "by its height, which those of the other taps do not lead to";
+                              ? "by its position: outlines that fit the other taps have no object there"
+                              : "by its height, which does not fit the heights of the other taps";
   return fmt::format("{:.0f} %, {}", 100.0 * one.probability, why);
 }
 

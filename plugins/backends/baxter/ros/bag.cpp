@@ -26,7 +26,7 @@ Bag::~Bag() {
 }
 
 void Bag::open(const std::string& file) {
-  if (writer_) throw trouble(file, "there is a bag being recorded already");
+  if (writer_) throw trouble(file, "a bag is already being recorded");
   file_ = file;
   bag_ = std::make_unique<rosbag::Bag>();
   try {
@@ -52,7 +52,7 @@ void Bag::abandon_file() {
 
 void Bag::add(Job job) {
   if (!recording_) return;
-  if (++waiting_ > kMostWaiting) return give_up("the disk does not keep up");
+  if (++waiting_ > kMostWaiting) return give_up("the disk is too slow");
   boost::asio::post(*writer_, [this, job = std::move(job)] {
     --waiting_;
     if (recording_) attempt(job);

@@ -53,8 +53,7 @@ class Visit {
       expect_all_heard(*link);
       return link;
     } catch (const Unreached& reason) {
-      throw trouble(network_.where(), fmt::format("the master does not answer any more: {}", reason.what()),
-                    "start it again");
+      throw trouble(network_.where(), fmt::format("the master no longer answers: {}", reason.what()), "start it again");
     }
   }
 
@@ -67,20 +66,21 @@ class Visit {
     for (const Topic& needed : Link::needed()) {
       if (Graph::of(graph.publishers, needed.name).empty()) missing.emplace_back(needed.name);
     }
-    const Error nobody =
-        trouble(network_.where(), "nobody publishes " + listed(missing),
-                missing.size() == Link::needed().size() ? "is it the master of a Baxter?"
-                                                        : "the robot may be starting, or a node of it has ended");
+    const Error nobody = trouble(network_.where(), "no node publishes " + listed(missing),
+                                 missing.size() == Link::needed().size()
+                                     ? "check that it is the master of a Baxter"
+                                     : "wait until the robot has started, or restart it if a node has ended");
     if (missing.size() == Link::needed().size()) return nobody;
     const auto version = network_.master.told("getParam", kVersionParameter, until(kTold));
-    if (!version) return trouble(kVersionParameter, "is not set at the master", "is it the master of a Baxter?");
+    if (!version)
+      return trouble(kVersionParameter, "is not set at the master", "check that it is the master of a Baxter");
     if (version->rfind("1.2.", 0) != 0) {
       throw trouble(kVersionParameter, "the robot's software is " + *version,
-                    "this driver knows 1.2: update the robot");
+                    "update the robot to 1.2, which this driver needs");
     }
     if (!missing.empty()) return nobody;
     if (wishes_.inverse_kinematics && Graph::of(graph.services, kSolverService).empty()) {
-      return trouble(kSolverService, "nobody offers this service",
+      return trouble(kSolverService, "no node offers this service",
                      "set inverse_kinematics: own, or start the robot again");
     }
     return {};
@@ -103,7 +103,7 @@ class Visit {
       const auto& nodes = Graph::of(graph.publishers, topic);
       if (nodes.size() < 2) continue;
       throw trouble(topic, "comes from more than one node, " + listed(nodes),
-                    "end what is no robot; rosnode cleanup removes what has ended already");
+                    "end the nodes that are not the robot; rosnode cleanup removes ended ones");
     }
   }
 
@@ -143,7 +143,7 @@ class Visit {
       const bool palpate = node.rfind(std::string("/") + kNodeName + "_", 0) == 0;
       if (!palpate || node == node_name() || !answers(node)) continue;
       throw trouble(kCommandTopic, "another palpate moves this arm, the node " + node,
-                    "let it end, or interrupt it; rosnode cleanup removes what has ended already");
+                    "let it end, or interrupt it; rosnode cleanup removes ended nodes");
     }
   }
 
@@ -175,8 +175,8 @@ class Visit {
 
   Error why_not_heard(Link& link) const {
     if (link.read().now == 0.0) {
-      return trouble("/use_sim_time", "is set, but no time comes on /clock",
-                     "start what simulates the time, or delete the parameter and start all nodes again");
+      return trouble("/use_sim_time", "is set, but /clock publishes no time",
+                     "start the simulated clock, or delete the parameter and restart all nodes");
     }
     const Graph graph = network_.master.graph(until(kTold));
     const auto came = heard(link);
@@ -185,14 +185,14 @@ class Visit {
     }
     const auto& nodes = Graph::of(graph.subscribers, kCommandTopic);
     if (nodes.empty()) {
-      return trouble(kCommandTopic, "nobody listens to it",
-                     "the robot may be starting; set dry_run: true to do without");
+      return trouble(kCommandTopic, "no node subscribes to it",
+                     "wait until the robot has started; dry_run: true works without");
     }
     const std::string name = network_.own_name.empty() ? boost::asio::ip::host_name() : network_.own_name;
-    return trouble(
-        kCommandTopic,
-        listed(nodes) + " listens to it but has not come to this machine, which it is told to find as " + name,
-        "set ROS_IP to this machine's address on the robot's network");
+    return trouble(kCommandTopic,
+                   listed(nodes) +
+                       " subscribes to it but has not connected to this machine, whose address is announced as " + name,
+                   "set ROS_IP to this machine's address on the robot's network");
   }
 
   Error why_silent(const Topic& needed, const Graph& graph, const std::string& malformed) const {
@@ -204,27 +204,27 @@ class Visit {
       try {
         const Offer offer = ask_publisher(*place, needed.name, within(kOnePublisher, until(kTold)));
         if (offer.md5 != needed.md5) {
-          return trouble(needed.name,
-                         fmt::format("{} sends {} with md5 sum {}, this driver knows {} with {}", node, offer.type,
-                                     offer.md5, needed.type, needed.md5),
-                         offer.md5 == kOldState ? "which came with the robot's software 1.2: update the robot"
-                                                : "the robot's software must be 1.2");
+          return trouble(
+              needed.name,
+              fmt::format("{} sends {} with md5 sum {}, but this driver needs {} with {}", node, offer.type, offer.md5,
+                          needed.type, needed.md5),
+              offer.md5 == kOldState ? "update the robot to software 1.2" : "update the robot to software 1.2");
         }
         mute.push_back(node);
       } catch (const Unreached& reason) {
         why = no_publisher(needed.name, node, *place, reason);
       }
     }
-    if (!malformed.empty()) return trouble(network_.where(), malformed, "is it a Baxter?");
+    if (!malformed.empty()) return trouble(network_.where(), malformed, "check that it is a Baxter");
     if (mute.empty() && why) return *why;
-    return trouble(needed.name, listed(mute) + " publishes it, but nothing that is needed has come",
-                   "look at it with rostopic echo; the robot may be starting");
+    return trouble(needed.name, listed(mute) + " publishes it, but no message has arrived",
+                   "check it with rostopic echo; the robot may still be starting");
   }
 
   static Error no_publisher(const std::string& topic, const std::string& node, const Place& place,
                             const Unreached& reason) {
     return unreachable(topic, "its publisher " + node, place, reason,
-                       "start it again, or remove what is left of it with rosnode cleanup");
+                       "restart it, or remove its remains with rosnode cleanup");
   }
 
   Wishes wishes_;

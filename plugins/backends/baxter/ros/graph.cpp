@@ -34,7 +34,7 @@ constexpr const char* kCaller = "/palpate";
 constexpr std::size_t kLongest = 4'000'000;  ///< bytes of an answer; a whole network's description has some 10'000
 constexpr std::size_t kDeepest = 64;         ///< elements within elements; that description has 17
 
-Unreached no_ros() { return {Why::nonsense, "what answers there is no ROS"}; }
+Unreached no_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
 
 /// The first address of a name. With AI_NUMERICHOST it needs nobody's help.
 Address first_address(const std::string& host, int flags) {
@@ -124,7 +124,7 @@ auto understood(const std::string& xml, const Read& read) {
     XmlRpcValue failure;
     return read(static_cast<int>(parts[0]) == 1 ? parts[2] : failure);
   } catch (const XmlRpc::XmlRpcException& exception) {
-    throw Unreached(Why::nonsense, "its answer makes no sense: " + exception.getMessage());
+    throw Unreached(Why::nonsense, "its answer is invalid: " + exception.getMessage());
   }
 }
 
@@ -200,7 +200,7 @@ Address look_up(const std::string& host, int port, Deadline deadline) {
     std::future<Address> found = task->get_future();
     deaf_thread([task] { (*task)(); }).detach();
     if (found.wait_until(deadline) != std::future_status::ready) {
-      throw Unreached(Why::name, "looking it up takes too long");
+      throw Unreached(Why::name, "looking up its host takes too long");
     }
     out = found.get();
   }
@@ -302,7 +302,7 @@ Offer ask_publisher(const Place& node, const std::string& topic, Deadline deadli
                               {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
   return understood(xml, [&](XmlRpcValue& way) {
     if (way.getType() != XmlRpcValue::TypeArray || way.size() < 3) {
-      throw Unreached(Why::nonsense, "it says that it does not publish it");
+      throw Unreached(Why::nonsense, "the node denies that it publishes the topic");
     }
     Wire wire(look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline), deadline);
     Header answer = exchange_headers(

@@ -52,10 +52,10 @@ std::string own_name(Deadline deadline) {
   const std::string ip = variable("ROS_IP");
   const std::string name = variable("ROS_HOSTNAME");
   if (!ip.empty() && !name.empty()) {
-    throw trouble("ROS_IP=" + ip, "is set beside ROS_HOSTNAME=" + name, "unset one of them");
+    throw trouble("ROS_IP=" + ip, "is set together with ROS_HOSTNAME=" + name, "unset one of them");
   }
   if (!ip.empty() && !is_own_address(ip)) {
-    throw trouble("ROS_IP=" + ip, "is no address of this machine, so the robot could not reach it",
+    throw trouble("ROS_IP=" + ip, "is not an address of this machine, so the robot cannot reach it",
                   "set it to the address of the interface on the robot's network (ip -brief address)");
   }
   if (!name.empty()) {
@@ -131,7 +131,7 @@ Network find_network(Deadline deadline) {
     master.greet(within(kAnswer, deadline));
     return {uri, master, name};
   } catch (const Unreached& reason) {
-    throw unreachable(where, "the master", *place, reason, "start the robot, or mend the variable");
+    throw unreachable(where, "the master", *place, reason, "start the robot, or correct the variable");
   }
 }
 
@@ -144,7 +144,7 @@ Error unreachable(const std::string& where, const std::string& who, const Place&
           "check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in /etc/hosts");
     case Unreached::Why::silent:
       return trouble(where, fmt::format("{} at {}:{} does not answer in time", who, place.host, place.port),
-                     "check that the robot is on and that no firewall lies between");
+                     "check that the robot is on and that no firewall blocks the connection");
     default:
       return trouble(where, fmt::format("{} is not at {}:{} ({})", who, place.host, place.port, reason.what()), remedy);
   }
@@ -154,11 +154,12 @@ void start_node(const Network& network) {
   static const Node node(network);
   running = &node;
   if (node.network.uri != network.uri) {
-    throw trouble(network.where(), "this process has been a node of " + node.network.uri + " and cannot change",
-                  "start another one");
+    throw trouble(network.where(),
+                  "this process is already a node of " + node.network.uri + " and cannot change its master",
+                  "start another process");
   }
   if (!ros::ok()) {
-    throw trouble(network.where(), "this process' node has been told to shut down", "start it again");
+    throw trouble(network.where(), "the ROS node of this process was told to shut down", "start it again");
   }
   point_roscpp_at(network.uri);  // an earlier connection may have left it for gone
 }

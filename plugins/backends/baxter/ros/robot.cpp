@@ -225,7 +225,7 @@ class RosRobot final : public Link {
   std::string answer(const std::string& request, Deadline deadline) {
     const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
     const auto uri = master_.told("lookupService", kSolverService, deadline);
-    if (!uri) throw Unreached(Unreached::Why::refused, "nobody offers it");
+    if (!uri) throw Unreached(Unreached::Why::refused, "no node offers it");
     const auto place = parse_uri(*uri, "rosrpc");
     if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
     return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);

@@ -179,7 +179,7 @@ function plot(id, traces, more = {}) {
 
 /// Says on the page what went wrong; what comes next may still be drawn.
 function complain(trouble) {
-  document.body.prepend(element("p", { class: "trouble" }, `Something could not be drawn: ${trouble}`));
+  document.body.prepend(element("p", { class: "trouble" }, `A part of this page could not be drawn: ${trouble}`));
   console.error(trouble);
 }
 

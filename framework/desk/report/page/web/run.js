@@ -73,7 +73,7 @@ function story(data, moment, drawn) {
   if (tap) {
     const reason = tap.reason ? `: ${tap.reason}` : "";
     const touched = `touched ${labelAt(moment, tap) ? "the object" : "the desk"} at ${shown(tap.height * kCentimetres, 4)} cm`;
-    const what = tap.on_object === null ? `brought no contact (${tap.outcome}${reason})` : touched;
+    const what = tap.on_object === null ? `made no contact (${tap.outcome}${reason})` : touched;
     const motion = tap.motion === undefined ? "" : `, by motion ${tap.motion}`;
     out.push(`Tap ${tap.tap} ${whereTo(tap)}, chosen by ${kChosenBy[tap.source]}${tap.why ? ` (${tap.why})` : ""}${motion}, ${what}.`);
   } else {
@@ -82,22 +82,22 @@ function story(data, moment, drawn) {
   out.push(`So far ${moment.object_taps} on the object, ${moment.desk_taps} on the desk.`);
   for (const number of moment.relabelled) {
     const on = labelAt(moment, data.taps[number - 1]);
-    out.push(`Tap ${number} is read as ${on ? "on the object" : "on the desk"} by now, and was not when it was made.`);
+    out.push(`Tap ${number} is now read as ${on ? "on the object" : "on the desk"}, unlike when it was made.`);
   }
   if (moment.next) {
     const score = moment.next.score === null ? "" : `, score ${shown(moment.next.score)}`;
     const ties = moment.next.ties > 1 ? `, one of ${moment.next.ties} that are tied` : "";
     out.push(`Next: ${whereTo(moment.next)}, by ${kChosenBy[moment.next.source]}${score}${ties}.`);
   } else {
-    out.push(moment.is_next_known ? "No candidate is left." : "The next tap is chosen by a program, which is not started to show a record.");
+    out.push(moment.is_next_known ? "No candidate is left." : "The next tap is chosen by a program, which reports do not start.");
   }
   for (const one of moment.suspected_outliers ?? []) out.push(`Tap ${one.tap} may be an outlier: ${one.words}.`);
-  if (moment.remark) out.push(`The footprint, ${data.footprint}, says: ${moment.remark}.`);
+  if (moment.remark) out.push(`Remark of the footprint ${data.footprint}: ${moment.remark}.`);
   if (moment.least_weight < -1e-6 || moment.most_weight > 1 + 1e-6) {
     out.push(`w leaves [0, 1] here: ${shown(moment.least_weight, 3)} to ${shown(moment.most_weight, 3)}; its colours end at 0 and 1.`);
   }
   if (data.any_side && !moment.surface_drawn) out.push("No tap has hit an object yet: it may be anywhere, and no surface is drawn.");
-  if (drawn !== moment) out.push(data.any_side ? `The surface is that after tap ${drawn.taps}.` : `The maps are those after tap ${drawn.taps}.`);
+  if (drawn !== moment) out.push(data.any_side ? `The surface shown is that after tap ${drawn.taps}.` : `The maps shown are those after tap ${drawn.taps}.`);
   return element("p", { class: "story", id: "story" }, foreign(out.join(" ")));
 }
 
@@ -138,7 +138,7 @@ class Slider {
 
   controls() {
     const out = element("div", { class: "controls" }, this.output, this.player.button, this.input, liveNote(this.data));
-    if (this.data.truth) out.append(element("label", {}, this.truth, this.surface.spatial || this.data.any_side ? " truth as wireframe" : " truth instead"));
+    if (this.data.truth) out.append(element("label", {}, this.truth, this.surface.spatial || this.data.any_side ? " show truth as wireframe" : " show truth instead"));
     return out;
   }
 
@@ -193,7 +193,7 @@ class Slider {
 }
 
 /// A line about what is no plot because it never changes.
-const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "The same after every tap: ", foreign(texts.join("; ")), ".")] : []);
+const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "Constant over all taps: ", foreign(texts.join("; ")), ".")] : []);
 
 /// The maps over the plane, of a run from above.
 function mapSection(slider) {
@@ -214,7 +214,7 @@ function drawRun(data, bytes) {
   if (data.waiting !== undefined) return drawWaiting(data);
   const slider = new Slider(data, unpackMoments(data, data, bytes));
   const what = data.any_side ? "surfaces" : "maps";
-  const thinned = data.shown.length < data.moments.length ? ` There are ${what} of ${data.shown.length} of ${data.moments.length} moments, so that this page stays small.` : "";
+  const thinned = data.shown.length < data.moments.length ? ` To stay small, this page has ${what} of ${data.shown.length} of ${data.moments.length} moments.` : "";
   const foreignTable = (header, rows) => table(header, rows.map((line) => line.map(foreign)));
   document.body.append(
     element("div", { id: "standing" }, ...standing(data)),
@@ -223,11 +223,11 @@ function drawRun(data, bytes) {
     element("div", { class: "tall" }, figure("surface", slider.surface.caption())),
     ...(data.any_side ? [] : mapSection(slider)),
     element("p", { class: "sub" }, `${data.any_side ? "" : "Discs: taps on the object, crosses: taps on the desk, squares: failed taps, star: the next tap. "}Arrow keys move the slider.${thinned}`),
-    element("h2", {}, "By tap"),
+    element("h2", {}, "Curves over taps"),
     element("div", { class: "row small", id: "curves" }),
     element("div", { id: "curve_constants" }),
-    section("Config", foreignTable(["key", "value", "where it was said"], data.config)),
-    section("Made by", foreignTable(["", ""], data.build.filter(([, value]) => value !== ""))),
+    section("Config", foreignTable(["key", "value", "source"], data.config)),
+    section("Build", foreignTable(["", ""], data.build.filter(([, value]) => value !== ""))),
     footer(data),
   );
   slider.listen();

@@ -187,7 +187,7 @@ class SurfaceView {
     if (this.flat) return "Reconstructed height.";
     return this.spatial
       ? "Reconstructed surface, coloured by the standard deviation of its height; on pins, discs: taps on the object, crosses: taps on the desk, star: the next tap. Drag to turn" + (kFingers.matches ? "." : ", Ctrl and wheel to zoom.")
-      : "Reconstructed height. (This browser has no WebGL: the surface is a map instead of a picture in three dimensions.)";
+      : "Reconstructed height. (This browser has no WebGL: the page shows a map instead of a picture in three dimensions.)";
   }
 
   traces(frame, moment) {

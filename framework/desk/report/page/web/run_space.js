@@ -163,9 +163,9 @@ class SpaceView {
   }
 
   caption() {
-    const what = "Closed surface as reconstructed, coloured by its standard deviation; arrows: taps, their tips where the tool stopped, on the object, on the desk (grey) or nowhere (orange); magenta: the next tap.";
+    const what = "Reconstructed closed surface, coloured by its standard deviation. Arrows: taps, with tips where the tool stopped, on the object, on the desk (grey) or without a contact (orange). Magenta: the next tap.";
     if (this.spatial) return `${what} Drag to turn${kFingers.matches ? "." : ", Ctrl and wheel to zoom."}`;
-    return `${what} (This browser has no WebGL: these are points of the surface, seen from above.)`;
+    return `${what} (This browser has no WebGL: the page shows points of the surface, seen from above.)`;
   }
 
   /// The end of the way of a tap, its last few centimetres, or, of one that met nothing, what of it crosses the picture.

@@ -83,9 +83,9 @@ class Surfaces {
   }
 
   differences() {
-    const those = this.data.runs.flatMap((_, index) => (this.like[index] ? [figure(`difference_${index}`, `${letterOf(index)} less A, height [cm]`)] : []));
+    const those = this.data.runs.flatMap((_, index) => (this.like[index] ? [figure(`difference_${index}`, `${letterOf(index)} minus A, height [cm]`)] : []));
     const others = this.data.runs.flatMap((_, index) => (index > 0 && !this.like[index] ? [letterOf(index)] : []));
-    const note = others.length > 0 ? [element("p", { class: "sub" }, `Of other candidates than A, so without a difference: ${others.join(", ")}.`)] : [];
+    const note = others.length > 0 ? [element("p", { class: "sub" }, `Without a difference, because their candidates differ from A's: ${others.join(", ")}.`)] : [];
     return [element("div", { class: "row" }, ...those), ...note];
   }
 
@@ -136,7 +136,7 @@ function drawRuns(data, bytes) {
   const letters = data.runs.map((_, index) => letterOf(index));
   const differences = data.differences.length > 0
     ? table(["key", ...letters], data.differences.map((line) => line.map((cell) => foreign(cell))), 1 + letters.length)
-    : element("p", { class: "sub" }, "Nothing: the same config.");
+    : element("p", { class: "sub" }, "The configs are equal.");
   document.body.append(
     standings(data),
     section("Error", ...errors.elements()),
@@ -144,7 +144,7 @@ function drawRuns(data, bytes) {
     surfaces.controls(),
     element("div", { class: "row" }, ...surfaces.figures()),
     section("Differences", ...surfaces.differences()),
-    section("What differs in their configs", differences),
+    section("Differences between the configs", differences),
     element("p", { class: "sub" }, "Directories: ", foreign(data.runs.map((run, index) => `${letterOf(index)} ${run.directory}`).join("; ")), "."),
     footer(data),
   );

@@ -93,13 +93,13 @@ function meansWords(sweep, settings) {
   const rest = "numbered: no other setting is at least as good in both.";
   const counts = settings.map((one) => one.error.clusters);
   const equal = settings.some(({ cost, error }) => [cost, error].some((one) => one.clusters > 1 && one.half === null))
-    ? " No bar where all values of a setting are equal: that does not tell how far the next may lie."
+    ? " A setting with equal values has no bar, because the values show no spread."
     : "";
   const copies = settings.some(({ error }) => !sweep.seeds && error.clusters < error.count) ? " Copies of a run count once." : "";
   if (!sweep.seeds || counts.length === 0) return `The seed is not swept: means over the jobs of each setting; ${rest}${copies}${equal}`;
   const [fewest, most] = extent(counts);
   const over = fewest === most ? many(most, "seed") : `${fewest} to ${many(most, "seed")}`;
-  const few = fewest < kFew ? ` Of fewer than ${kFew} seeds such an interval misses the true mean more often than 5 times in 100.` : "";
+  const few = fewest < kFew ? ` With fewer than ${kFew} seeds such an interval can miss the true mean in more than 5 of 100 cases.` : "";
   return `Means over ${over} with 95 % intervals (Student's t); ${rest}${few}${equal}`;
 }
 
@@ -113,10 +113,10 @@ function sayOfFront(sweep, choice, settings, placed) {
   say(
     "front",
     meansWords(sweep, settings),
-    open > 0 ? ` Not compared, for jobs that failed, have not ended or lack a value: ${many(open, "setting")}.` : "",
+    open > 0 ? ` Not compared, because jobs failed, have not ended or lack a value: ${many(open, "setting")}.` : "",
     empty > 0 ? ` Without any value: ${many(empty, "setting")}.` : "",
-    edged > 0 ? ` ${edged} failed runs came to no error and stand at the ${end} edge.` : "",
-    gone > 0 ? ` ${gone} failed runs came to no cost either and are not drawn.` : "",
+    edged > 0 ? ` ${edged} failed runs have no error and are drawn at the ${end} edge.` : "",
+    gone > 0 ? ` ${gone} failed runs have no cost either and are not drawn.` : "",
   );
 }
 
@@ -185,7 +185,7 @@ class JobTable {
     const folder = `${this.sweep.folder}/jobs/${bare.id}`;
     const word = /^[\w./+:@=-]+$/.test(folder) ? folder : `'${folder.replace(/'/g, "'\\''")}'`;
     const command = element("code", {}, foreign(`palpate report ${word}`));
-    return [element("p", { class: "sub", id: "how_to_report" }, `A job's number links to its own page, where it has one. Job ${bare.index} has none yet: `, command, " makes it, and this page, made again, links to it.")];
+    return [element("p", { class: "sub", id: "how_to_report" }, `A job's number links to its own page, if it exists. Job ${bare.index} has no page yet: `, command, " makes it. Make this page again to link to it.")];
   }
 
   /// The jobs that the filter leaves, in the chosen order.
@@ -225,7 +225,7 @@ class JobTable {
     });
     this.table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...rows));
     const left = jobs.length < this.sweep.jobs.length ? ` of ${this.sweep.jobs.length}` : "";
-    const rest = this.sweep.sampled ? `, one of ${this.sweep.sampled.step} of ${this.sweep.sampled.jobs}: the others stand in results.csv` : "";
+    const rest = this.sweep.sampled ? `, one of ${this.sweep.sampled.step} of ${this.sweep.sampled.jobs}: the others are in results.csv` : "";
     this.note.textContent = `${drawn.length < jobs.length ? `the first ${drawn.length} of ` : ""}${jobs.length}${left} jobs${rest}`;
     this.more.hidden = drawn.length === jobs.length;
   }
@@ -250,12 +250,12 @@ function troubles(sweep) {
     foreign(reason),
   ]);
   const more = (sweep.sampled?.reasons ?? failures.length) - out.length;
-  if (more > 0) out.push([`${more} more reasons stand in ${sweep.sampled ? "results.csv" : "the table of jobs"}.`]);
+  if (more > 0) out.push([`${more} more reasons are in ${sweep.sampled ? "results.csv" : "the table of jobs"}.`]);
   const some = sweep.counts().filter(([, state]) => state !== "done" && state !== "failed");
   const open = some.reduce((sum, [count]) => sum + count, 0);
   if (open > 0) {
     const states = some.map((count) => count.join(" ")).join(", ");
-    out.push([`${open} of ${sweep.sampled?.jobs ?? sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows the sweep as it stood" : ""}; 'palpate resume' carries on what nobody runs.`]);
+    out.push([`${open} of ${sweep.sampled?.jobs ?? sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows an earlier state" : ""}; 'palpate resume' runs the jobs that no process is running.`]);
   }
   return out;
 }
@@ -263,7 +263,7 @@ function troubles(sweep) {
 /// Of very many jobs, which of them the page has.
 function sampleNote({ sampled, jobs }) {
   if (!sampled) return [];
-  const words = `This page has ${jobs.length} of ${sampled.jobs} jobs, one of ${sampled.step}, taken evenly from all settings: plots, means and the table below are of these. Counts and failures here are of all jobs, and results.csv, 'palpate compare' and 'palpate pareto' have all of them.`;
+  const words = `This page has ${jobs.length} of ${sampled.jobs} jobs, one of ${sampled.step}, taken evenly from all settings: plots, means and the table below show only these. Counts and failures cover all jobs, and so do results.csv, 'palpate compare' and 'palpate pareto'.`;
   return [element("p", { class: "sub", id: "sampled" }, words)];
 }
 
@@ -291,7 +291,7 @@ function drawSweep(data) {
 /// A sweep of which no job has ended.
 function noPanels(sweep) {
   const jobs = new JobTable(sweep);
-  document.body.append(element("p", { id: "nothing" }, "No job has come to a result yet: there is nothing to draw."), jobs.place());
+  document.body.append(element("p", { id: "nothing" }, "No job has a result yet: there is nothing to draw."), jobs.place());
   jobs.choose({});
   sweep.refresh = () => jobs.show();
   return () => tellDrawn(1);

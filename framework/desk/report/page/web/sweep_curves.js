@@ -27,7 +27,7 @@ function noCurves(sweep) {
   if (sweep.live !== undefined || sweep.sampled || sweep.done.length === 0) return [];
   const word = /^[\w./+:@=-]+$/.test(sweep.folder) ? sweep.folder : `'${sweep.folder.replace(/'/g, "'\\''")}'`;
   const command = element("code", {}, foreign(`palpate curves ${word}`));
-  return [section(kOverTaps, element("p", { class: "sub", id: "how_to_curves" }, command, " computes errors after each tap from the record, and this page, made again, shows them."))];
+  return [section(kOverTaps, element("p", { class: "sub", id: "how_to_curves" }, command, " computes the errors after each tap from the record. Make this page again to show them."))];
 }
 
 /// Band, then line, of a group; `place` is its number among the groups of all scenes.
@@ -50,7 +50,7 @@ function drawCurves(sweep, { curve_of: metric, against, curves_by: by }) {
   const set = sweep.curves.sets.find((one) => one.metric === metric && one.against === against && one.by === by);
   const scenes = scenesOfCurves(sweep);
   const names = [...new Set(set.curves.map(({ name }) => name))];
-  document.getElementById("curves_note").textContent = `Lines: means over ${set.over}; bands: their 95 % intervals (Student's t). A job that has ended counts as it ended. ${set.remarks.trim().split("\n").map((line) => line && `${line[0].toUpperCase()}${line.slice(1)}.`).join(" ")}`;
+  document.getElementById("curves_note").textContent = `Lines: means over ${set.over}; bands: their 95 % intervals (Student's t). A job that has ended counts with its final value. ${set.remarks.trim().split("\n").map((line) => line && `${line[0].toUpperCase()}${line.slice(1)}.`).join(" ")}`;
   return Promise.all(
     scenes.map((scene, i) => {
       const curves = set.curves.filter((one) => one.scene === scene);

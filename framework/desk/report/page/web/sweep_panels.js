@@ -48,7 +48,7 @@ function plotNothing(id, words) {
 /// What a column says where it says the same of every job.
 function constantWords(sweep, column) {
   const values = sweep.numbers(column, sweep.done);
-  if (values.length === 0) return `No job that is done has a value of ${column}.`;
+  if (values.length === 0) return `No finished job has a value of ${column}.`;
   return `${withUnit(column)}: ${shown(values[0])} ${values.length === 1 ? "in the one job that has it" : `in each of ${values.length} jobs`}.`;
 }
 
@@ -73,7 +73,7 @@ function drawCells(sweep, { across, up, metric }) {
   });
   // All other keys are taken together.
   const rest = sweep.all.filter((key) => !keys.includes(key)).map((key) => brief(key.name));
-  const over = foreign(rest.length > 0 ? `over ${rest.join(", ")} of the jobs that are done` : "of the job that is done");
+  const over = foreign(rest.length > 0 ? `over ${rest.join(", ")} of the finished jobs` : "of the finished job");
   document.getElementById("cells_spread").closest("figure").hidden = keys.length < 2 || !differs(sweep, metric) || !hasSpread(cells);
   if (!differs(sweep, metric)) return plotNothing("cells_mean", constantWords(sweep, metric));
   return keys.length < 2 ? drawPoints(sweep, keys[0], metric, cells, over) : drawMaps(sweep, keys, metric, cells, over);
@@ -172,7 +172,7 @@ function drawGroups(sweep, { group, then, metric }) {
     "groups",
     "Boxes: quartiles and median; points: jobs.",
     rest > 0 ? ` ${rest} more groups are not shown: choose fewer keys.` : "",
-    without > 0 ? ` ${without} of their jobs have no value: failed, not ended, or without it.` : "",
+    without > 0 ? ` ${without} of their jobs have no value: failed, not ended, or no value.` : "",
   );
   return plotOfHeight("groups", Math.max(260, 90 + 30 * groups.length), traces, {
     xaxis: roomyAxis(judged(sweep, metric)),
@@ -209,15 +209,15 @@ function drawParallel(sweep, { metric }) {
   const { axes, jobs, left, step } = parallelAxes(sweep, metric, spatial ? 20000 : 5000);
   say(
     "parallel",
-    "A line a job that is done, coloured by ",
+    "One line per finished job, coloured by ",
     foreign(withUnit(metric)),
     spatial ? ". Drag along an axis to pick lines, drag a name to move an axis." : ".",
     left > 0 ? ` ${left} jobs lack one of the values and are left out.` : "",
-    step > 1 ? ` Drawn is one of ${step} jobs.` : "",
+    step > 1 ? ` One of ${step} jobs is drawn.` : "",
   );
   document.getElementById("parallel").style.minWidth = `${90 * axes.length}px`; // on a narrow page it scrolls
   if (jobs.length === 0) return plotNothing("parallel");
-  if (axes.every((one) => one.least === one.most)) return plotNothing("parallel", "Nothing tells the jobs that are done apart.");
+  if (axes.every((one) => one.least === one.most)) return plotNothing("parallel", "All finished jobs have equal values.");
   const { least, most, title } = axes[axes.length - 1];
   const scale = { colorscale: "Viridis", cmin: least, cmax: most, showscale: true, colorbar: colourBar(plain(brief(title))) };
   return (spatial ? plotDimensions : plotLines)(axes, jobs, scale);
