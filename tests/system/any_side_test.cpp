@@ -125,7 +125,7 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
     says(fmt::format("from x {:.2f} cm, y {:.2f} cm, z {:.2f} cm, ", 100 * rows[i].number("x").value(),
                      100 * rows[i].number("y").value(), 100 * rows[i].number("z").value()));
     says(fmt::format("The belief after {} tap", i));
-    says("24 compositions of ");
+    says("24 particles of ");
     says("Expected, by the most probable particle: ");
     says("Error of the surface: on the object ");
     if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; the whole path is free.");

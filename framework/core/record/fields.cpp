@@ -63,8 +63,8 @@ const std::vector<ErrorField>& error_list() {
            "from any side: mean distance from points of the reconstructed surface to the nearest true point and vice "
            "versa, each at most 10 cm. It is 10 cm before an object is known. Points of the true surface are those "
            "where lines from all sides first meet the scene. Reconstructed points are those where the lines meet the "
-           "most probable composition, then moved along its normal by the skin's mean. Each cloud has one point per "
-           "cube of 1 mm; the points whose distance counts are one per cube of 3 mm")
+           "most probable particle, then moved along its normal by the residual GP's mean. Each cloud has one point "
+           "per cube of 1 mm; the points whose distance counts are one per cube of 3 mm")
            .in(Unit::metre)
            .less()
            .called("to the nearest point"),

@@ -152,7 +152,7 @@ class ApproachExplained final : public Explanation {
     });
     std::string pieces;
     for (const Composition::Part& part : best().parts) pieces += (pieces.empty() ? "" : ", ") + piece_words(part.piece);
-    const std::string most_words = counted(static_cast<long>(most->parts.size()), "piece");
+    const std::string most_words = counted(static_cast<long>(most->parts.size()), "solid");
     const bool alike = least->parts.size() == most->parts.size();
     page_.say(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all.size()), "particle"),
                           alike ? most_words : fmt::format("{} to {}", least->parts.size(), most_words), pieces));
