@@ -136,11 +136,11 @@ TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoes
   EXPECT_THAT(trouble("import numpy"), HasSubstr("Debian: apt install python3-numpy")) << "-S finds no packages";
   EXPECT_THAT(trouble("os.kill(os.getpid(), 9)"), HasSubstr("the program was ended by signal 9 (Killed)"));
   EXPECT_THAT(trouble("time.sleep(600)", ", deadline: 0.2 s, start: 0 s"),
-              AllOf(StartsWith("acquisition/program: the program sent no scores in time, nor ever before"),
+              AllOf(StartsWith("acquisition/program: the program sent no scores in time and has never sent any"),
                     HasSubstr("acquisition.deadline")));
   EXPECT_THAT(trouble("sys.stdout.buffer.write(npy([1.0] * 6)[:-1]); sys.stdout.buffer.flush(); time.sleep(600)",
                       ", deadline: 0.2 s, start: 0 s"),
-              HasSubstr(" scores in time"));
+              HasSubstr("incomplete scores until the deadline"));
   const auto chatty = open(command(
       "for ask in asks():\n    sys.stdout.buffer.write(npy([1.0] * 6) + b'more')\n    sys.stdout.buffer.flush()\n"));
   EXPECT_EQ(scores(*chatty), std::vector<double>(6, 1.0));
