@@ -332,8 +332,7 @@ void add_compare(CommandLine& line) {
   sub->add_option("--baseline", line.compare.baseline, "group with which every other group is compared: uncertainty")
       ->type_name("GROUP");
   CLI::Option* at =
-      list("--at", line.compare.at, "NUMBERS",
-           "numbers of taps after which the jobs are compared: 17 or 17,30; computed once from the recorded taps")
+      list("--at", line.compare.at, "NUMBERS", "numbers of taps after which the jobs are compared: 17 or 17,30")
           ->check(from(1, kMany));
   sub->add_option("--until", line.compare.until,
                   "value of a summary field at which each job is compared: rmse_m=8mm; a job that never reaches the "

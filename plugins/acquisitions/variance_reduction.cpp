@@ -126,8 +126,8 @@ struct ForesightOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {
     fields.real(new_object_weight, Field("new_object_weight",
-                                         "weight of finding new objects relative to settling known outlines, for an "
-                                         "area of 23 cm x 23 cm; larger areas raise it in proportion to their sides")
+                                         "weight of finding new objects, given for an area of 23 cm x 23 cm and scaled "
+                                         "with its side length; refining known outlines has the weight 1")
                                        .at_least(0));
   }
 };

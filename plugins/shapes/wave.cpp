@@ -18,7 +18,7 @@ struct WaveOptions : Options {
                             .above(0)
                             .from("Sun and Min 2021: 16 cm"));
     fields.real(width,
-                Field("width", "extent across the wave").in(Unit::metre).above(0).from("Sun and Min 2021: 6 cm"));
+                Field("width", "extent parallel to the crests").in(Unit::metre).above(0).from("Sun and Min 2021: 6 cm"));
     fields.real(height, Field("height", "mean height of the top above the desk").in(Unit::metre).above(0));
     fields.real(
         amplitude,

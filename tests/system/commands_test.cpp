@@ -146,7 +146,7 @@ TEST_F(CommandLine, SeveralDirectoriesWhereACommandTakesOneAreOneLineWithARemedy
             std::string("command line: ") + command +
             " takes one (DIR|RUN), but 'runs/a/2' is given as well, if a \\* matches several, name one of them\n"));
   }
-  EXPECT_THAT(refused("explain runs/a/1 runs/a/2 3"), HasSubstr(" takes one RUN and one TAP, and "));
+  EXPECT_THAT(refused("explain runs/a/1 runs/a/2 3"), HasSubstr(" takes one RUN and one TAP, but "));
   EXPECT_THAT(refused("report runs/a/1 --fig"), Not(HasSubstr("takes one DIR"))) << "an option is no directory";
 }
 

@@ -311,14 +311,14 @@ TEST(Readme, TheFirstCommandPrintsTheLinesOfTheLogAndItsErrorFalls) {
   EXPECT_NEAR(std::stod(ended.out.substr(ended.out.find(at_last) + at_last.size())), 2.6, 0.5);
 }
 
-TEST(Readme, GivesTheErrorOfThePapersExperiment) {
+TEST(Readme, ExplainsATapThatThePapersStrategyChose) {
   const TemporaryFolder folder;
   imitate_checkout(folder.path());
-  const std::string readme = text_of(test::source_folder() / "README.md");
-  EXPECT_THAT(readme, HasSubstr("the paper's experiment, whose 17 taps leave an error of 32 mm"));
-  const test::Ended ended = test::run_program({"sh", "-c", "./palpate run configs/paper/object_i.yaml"}, folder.path());
-  EXPECT_THAT(ended.out, HasSubstr("first hit at tap 8\nerror: 32.0 mm over the scene"));
-  EXPECT_THAT(ended.out, HasSubstr("\ndone: tap budget after 17 taps"));
+  const std::string commands = "./palpate run configs/paper/object_i.yaml name=first\n   ./palpate explain first 9\n";
+  EXPECT_THAT(text_of(test::source_folder() / "README.md"), HasSubstr(commands));
+  const test::Ended ended = test::run_program({"sh", "-c", commands}, folder.path());
+  EXPECT_THAT(ended.out, HasSubstr("Tap 9 of 17, run first"));
+  EXPECT_THAT(ended.out, HasSubstr("The acquisition chose it: weighted"));
 }
 
 /// Returns the cells of the first row that begins so, without blanks around them; none if there is no such row.

@@ -79,7 +79,7 @@ TEST_F(Received, ARecordDoesNotLeadToFilesOfItsReader) {
   const fs::path run = run_again();
   fs::rename(run / "config.yaml", here() / "private.yaml");
   fs::create_symlink(here() / "private.yaml", run / "config.yaml");
-  EXPECT_THAT(refusal_of({"report", run}), HasSubstr("config.yaml: is a link"));
+  EXPECT_THAT(refusal_of({"report", run}), HasSubstr("config.yaml: is a symbolic link"));
   EXPECT_FALSE(fs::exists(run / "report.html"));
 
   const fs::path sweep = swept("seed=1,2 taps=3");

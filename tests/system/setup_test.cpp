@@ -175,7 +175,7 @@ TEST_F(SetUp, TestsNothingWhereHabitsAreBroken) {
   write("tests/habits.sh", "echo 'a.cpp: is not as it should be' >&2\nexit 1\n");
   const Ended ended = script_ended("check", "--no-install");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, HasSubstr("\na.cpp: is not as it should be\nthese habits are broken"));
+  EXPECT_THAT(ended.err, HasSubstr("\na.cpp: is not as it should be\nthese coding rules are broken"));
   EXPECT_FALSE(fs::exists(here() / "tested"));
 }
 

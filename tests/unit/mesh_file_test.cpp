@@ -106,7 +106,7 @@ TEST_F(MeshFile, OfNothingGarbageAnotherFormatOrNoTrianglesIsRefused) {
       {"a.ply",
        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nelement face 2\n"
        "property list uchar int vertex_indices\nend_header\nabcdef",
-       "cannot be read as ply: assimp broke down over it, export it again"}};
+       "cannot be read as ply: assimp crashed while reading it, export it again"}};
   for (const auto& [name, content, words] : cases) EXPECT_THAT(refusal(name, content), HasSubstr(words));
   EXPECT_NE(refusal("a.obj", garbage), "accepted");
   EXPECT_NE(refusal("a.stl", "solid nothing\nendsolid nothing\n"), "accepted");

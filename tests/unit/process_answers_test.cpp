@@ -36,16 +36,16 @@ std::vector<Odd> odd_answers() {
   const std::string endless(70000, 'x');
   const std::string nan = "is not JSON, which has no NaN and no Infinity";
   const auto height = [](const std::string& value) {
-    return "is refused, height " + value +
+    return "is rejected, height " + value +
            " m is outside -0.04 to 0.135 m (1 cm below desk - overrun to desk + hover), " +
            "give metres in the scene's frame (are these millimetres?)";
   };
   const auto force = [](const std::string& value) {
-    return "is refused, force " + value +
+    return "is rejected, force " + value +
            " N is outside 0 to 1000 N, give the size of the push in newtons (are these " + "millinewtons?)";
   };
   const auto seconds = [](const std::string& value) {
-    return "is refused, seconds " + value + " is outside 0 to 86400, give the time of the tap in seconds (are these " +
+    return "is rejected, seconds " + value + " is outside 0 to 86400, give the time of the tap in seconds (are these " +
            "milliseconds?)";
   };
   return {

@@ -117,7 +117,7 @@ void MotionOptions::list_rest(Fields& fields) {
   fields.real(
       speed,
       positive(
-          "speed", "speed of the descent, of its steps (paper) or of its first stage (two_stage)",
+          "speed", "speed of the descent; type paper: of each step; type two_stage: of the first stage",
           Unit::metre_per_second,
           "2.4 cm/s: with a lag of 0.35 s and 1500 N/m the paper's motion then has its known 13 mm and 6.4 s per tap"));
   fields.real(threshold, positive("threshold", "force above the tare at which contact is declared", Unit::newton,
