@@ -155,7 +155,7 @@ TEST(Compare, ComparesGroupsOfOneSceneWithEachOtherAlone) {
   EXPECT_THAT(names(made), testing::ElementsAre("b, rbf - a, rbf", "b, matern - a, matern"));
   const std::vector<double> adjusted = holm_adjusted({*made.pairs[0].test.p, *made.pairs[1].test.p});
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(*made.pairs[i].p_holm, adjusted[i]) << "for the pairs that there are";
-  EXPECT_THAT(compare_tables(made), HasSubstr("4 groups: each is compared with those of its scene\n"));
+  EXPECT_THAT(compare_tables(made), HasSubstr("4 groups: each is compared with the others of its scene\n"));
   EXPECT_THAT(names(sweep.by({"acquisition", "scene"}, "rmse_m", "b")),
               testing::ElementsAre("a, rbf - b, rbf", "a, matern - b, matern"));
   EXPECT_THAT(names(sweep.by({"acquisition", "scene"}, "rmse_m", "b, rbf")), testing::ElementsAre("a, rbf - b, rbf"));
@@ -291,8 +291,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
             "command line: --metric: the column 'status' holds done, not numbers, name a column of numbers");
   EXPECT_EQ(
       made.refusal({"acquisition"}, "nlpd"),
-      "command line: --metric: no job has a value of 'nlpd', no truth is known, or no cell of the object was left "
-      "untapped");
+      "command line: --metric: no job has a value of 'nlpd', no truth is known, or every cell on an object was tapped");
   EXPECT_EQ(MadeSweep({{"a", "k", 1, 0.1, "absent"}}).refusal({"acquisition"}),
             "runs/x/0123456789ab: no job of this sweep has ended, run it with 'palpate resume'");
   EXPECT_EQ(MadeSweep({{"a", "k", 1, 0.1, "failed"}}).refusal({"acquisition"}),
