@@ -494,7 +494,7 @@ class Experiment:
         return _json.loads(self._asked.finish())
 
     def close(self) -> None:
-        """Lets go of the record. What is not finished can be carried on."""
+        """Closes the record. An unfinished run can be resumed."""
         self._asked.close(False)
 
 
