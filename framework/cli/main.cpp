@@ -348,8 +348,8 @@ void add_compare(CommandLine& line) {
       list("--at", line.compare.at, "NUMBERS", "numbers of taps after which the jobs are compared, for example 17,30")
           ->check(from(1, kMany));
   sub->add_option("--until", line.compare.until,
-                  "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap where it reaches "
-                  "the value, or at its end if it never does")
+                  "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
+                  "value. A job that never reaches the value is compared at its end")
       ->type_name("COLUMN=VALUE")
       ->excludes(at);
   sub->add_flag("--ratio", line.compare.ratio, "also print the ratio of the means of each pair");
@@ -449,10 +449,9 @@ void add_about_one(CommandLine& line) {
   sub->add_option("TAP", line.tap, "number of the tap, counted from 1")->type_name("N")->required();
   show(sub, {"palpate explain runs/object_i/422cd70eb5f7 9", "palpate explain runs/first/* 9"});
 
-  sub =
-      line.add("calibrate",
-               "Estimate the errors of a real arm from its recorded taps, and write an effects file for the simulator",
-               &Needs::everything, calibrate, line.runs);
+  sub = line.add("calibrate",
+                 "Estimate the errors of a real arm from recorded taps, and print an effects file for the simulator",
+                 &Needs::everything, calibrate, line.runs);
   line.add_record(sub, "RUN", line.runs, Wanted::run,
                   "runs of a real arm in scenes exactly as configured, for example a bare desk or a block");
   show(sub, {"palpate calibrate runs/bare_desk/*", "palpate calibrate runs/bare_desk/* runs/block/*"});

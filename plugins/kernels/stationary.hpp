@@ -19,7 +19,7 @@ struct StationaryOptions : Options {
 
   void list(Fields& fields) override {
     fields.real(length_scale,
-                Field("length_scale", "length scale: distance over which heights are correlated")
+                Field("length_scale", "length scale, the distance over which heights are correlated")
                     .in(Unit::metre)
                     .above(0)
                     .from("Sun and Min 2021 give 'sigma^2 = 0.017' without unit; 1.7 cm reproduces their counts"));

@@ -58,9 +58,10 @@ std::optional<std::vector<std::string>> list_command(std::string& command, Field
 }
 
 void list_checksum(std::string& checksum, Fields& fields) {
-  fields.text(checksum, Field("checksum",
-                              "checksum of the command and of the content of the program file. If the program is an "
-                              "interpreter, the checksum covers the script; not given: computed from the files"));
+  fields.text(checksum,
+              Field("checksum",
+                    "checksum of the command and of the content of the program file; not given: computed from the "
+                    "files. If the program is an interpreter, the checksum covers the script instead"));
 }
 
 namespace {

@@ -63,6 +63,6 @@ class Slope final : public Shape {
   double length_, low_, high_, half_length_, half_width_;
 };
 
-PALPATE_PLUGIN(Shape, Slope, "slope", "block with a sloping top: object II of the paper")
+PALPATE_PLUGIN(Shape, Slope, "slope", "block with a sloping top (object II of the paper)")
 
 }  // namespace palpate::shapes

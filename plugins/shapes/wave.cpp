@@ -136,6 +136,6 @@ class Wave final : public Shape {
   double k_ = 2.0 * kPi / o_.period;  ///< angle per metre along the wave
 };
 
-PALPATE_PLUGIN(Shape, Wave, "wave", "block with a wavy top: object I of the paper")
+PALPATE_PLUGIN(Shape, Wave, "wave", "block with a wavy top (object I of the paper)")
 
 }  // namespace palpate::shapes

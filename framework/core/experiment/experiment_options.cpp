@@ -166,7 +166,7 @@ void EngineOptions::list(Fields& fields) {
   fields.real(accuracy,
               Field("accuracy",
                     "maximum error of the engine that `type: auto` chooses, compared with `dense`. The error is "
-                    "relative to the prior standard deviation or variance. It is also limited to tie_tolerance / 10")
+                    "relative to the prior standard deviation or variance. The maximum is at most tie_tolerance / 10")
                   .at_least(0)
                   .at_most(1));
   fields.integer(threads,
@@ -232,8 +232,8 @@ void StopOptions::list(Fields& fields) {
   fields.real(robot_time, Field("robot_time", "robot time after which the run stops").in(Unit::second).above(0));
   fields.integer(failed_in_a_row, Field("failed_in_a_row",
                                         "number of consecutive failed taps at which the run fails; not given: 3 if the "
-                                        "backend's taps cannot be repeated, else no limit. Taps with outcome "
-                                        "`unreachable`, and taps from any side without contact, do not count")
+                                        "backend cannot repeat a tap, else no limit. Taps with outcome `unreachable`, "
+                                        "and taps from any side without contact, do not count as failed")
                                       .at_least(1)
                                       .at_most(100000)
                                       .from("an estimate: a healthy robot may fail one tap, but not three in a row"));
@@ -241,8 +241,8 @@ void StopOptions::list(Fields& fields) {
 
 void LogOptions::list(Fields& fields) {
   fields.choice(sync, Field("sync", "times at which the record is forced to disk"),
-                {{"auto", "before and after each tap if the backend's taps cannot be repeated, else never", {}},
-                 {"tap", "after each tap. If the backend's taps cannot be repeated, also before each tap", {}},
+                {{"auto", "before and after each tap if the backend cannot repeat a tap, else never", {}},
+                 {"tap", "after each tap. If the backend cannot repeat a tap, also before each tap", {}},
                  {"none", "never", {}}});
   fields.flag(maps, Field("maps", "whether to write the maps used to choose each tap to maps/tap_NNN.csv"));
   fields.flag(
@@ -287,16 +287,17 @@ void ExperimentOptions::list(Fields& fields) {
                     .of_strategy(),
                 {{"single", "one GP for the heights of object and desk, as in the paper", {}},
                  {"two_part",
-                  "one GP for the heights of taps on objects. It gives the surface where the footprint's probability "
-                  "is at least 1/2; elsewhere, the surface is the desk",
+                  "one GP for the heights of taps on objects. This GP gives the surface where the footprint's "
+                  "probability is at least 1/2. Elsewhere, the surface is the desk",
                   {}},
                  {"implicit", "closed surfaces in 3-D space. Requires `scene.touch: any`", {}}});
   if (surface == Surface::implicit && !space) space.emplace();
   fields.section(space, Field("space", "model settings of `surface: implicit`").of_strategy());
   fields.section(
       engine, Field("engine", "settings of the engine, which computes the posterior at the candidates").of_strategy());
-  fields.plugin(acquisition,
-                Field("acquisition", "acquisition function. It scores a tap at each candidate").of_strategy().group());
+  fields.plugin(
+      acquisition,
+      Field("acquisition", "acquisition function, which scores a tap at each candidate").of_strategy().group());
   fields.plugin(
       fitting,
       Field("fitting", "method that sets the hyperparameters of the height GP and the label GP").of_strategy().group());

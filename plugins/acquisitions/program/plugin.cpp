@@ -131,8 +131,8 @@ struct ProgramOptions : Options {
     const std::set<std::string> declared = declarations(content.program);
     if (declared.size() == 1) reads = *declared.begin();
     fields.text(reads, Field("reads",
-                             "names of the arrays that the program receives, separated by commas. `none` means that it "
-                             "receives no arrays; not given: read from reads=[...] in the program"));
+                             "names of the arrays that the program receives, separated by commas; not given: read from "
+                             "reads=[...] in the program. With `none`, the program receives no arrays"));
     fields.require(!words || !reads.empty(), "reads",
                    unsaid(words.value_or(std::vector<std::string>()), content.program, declared));
     // A config seldom has names of its own: those of the program are corrected there.

@@ -55,7 +55,7 @@ struct ProcessOptions : Options {
                                   "palpate records each tap before the arm moves"));
     fields.flag(restart, Field("restart",
                                "whether a program that ended is started again for the next tap, even with `repeatable: "
-                               "false`. If both are false, the run fails"));
+                               "false`. If `restart` and `repeatable` are false, the run fails"));
     fields.flag(
         scene_is_truth,
         Field("scene_is_truth",

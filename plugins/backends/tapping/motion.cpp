@@ -45,17 +45,17 @@ void AdaptiveHover::list(Fields& fields) {
                               .at_least(0)
                               .from("2: the surface is higher in about 2 % of the taps"));
   fields.real(clearance, positive("clearance",
-                                  "distance added to the height of the slow descent's start. The arm also moves up by "
-                                  "this distance if it makes contact above the start",
+                                  "distance added to the height of the slow descent's start. After a contact above the "
+                                  "start, the arm also moves up by this distance",
                                   Unit::metre, "an estimate: several times the error of a good tap"));
   fields.real(speed,
               positive("speed", "speed of the fast descent from the travel height to the start of the slow descent",
                        Unit::metre_per_second,
                        "a third of travel_speed, as the arm hits a wrongly predicted surface at this speed"));
   fields.real(certainty, Field("certainty",
-                               "minimum probability at which the descent relies on the footprint. If an object is that "
-                               "probable, the descent ends below the object. If no object is that probable, only the "
-                               "desk is expected; not given: an object is expected everywhere")
+                               "minimum probability at which the descent relies on the footprint; not given: an object "
+                               "is expected everywhere. If an object is this probable, the descent ends below the "
+                               "object. If the bare desk is this probable, only the desk is expected")
                              .above(0.5)
                              .at_most(1));
 }
@@ -122,8 +122,8 @@ void MotionOptions::list_rest(Fields& fields) {
       speed,
       positive(
           "speed",
-          "speed of the descent. With `type: paper`, it is the speed of each step. With `type: two_stage`, it is the "
-          "speed of the first stage",
+          "speed of the descent. With `type: paper`, this is the speed of each step. With `type: two_stage`, this is "
+          "the speed of the first stage",
           Unit::metre_per_second,
           "2.4 cm/s: with a lag of 0.35 s and 1500 N/m the paper's motion then has its known 13 mm and 6.4 s per tap"));
   fields.real(threshold, positive("threshold", "force above the tare at which a contact is detected", Unit::newton,
