@@ -42,7 +42,8 @@ Need all_about(const std::string& directory) {
   };
 }
 
-constexpr const char* kMeantBy = ": its directory, a folder that contains it, its NAME in runs/, or NAME@latest";
+constexpr const char* kMeantBy =
+    ". Give the directory, a folder that contains the directory, NAME in runs/, or NAME@latest";
 
 /// The commands with what they are called with.
 struct CommandLine {
@@ -86,7 +87,7 @@ struct CommandLine {
 
   /// Arguments that say which sweeps and runs are taken as one sweep: see find_records().
   static void add_records(CLI::App* sub, std::vector<std::string>& words) {
-    sub->add_option("DIR", words, "sweep, or several sweeps and runs that are pooled; each" + std::string(kMeantBy))
+    sub->add_option("DIR", words, "one sweep, or several sweeps and runs to pool" + std::string(kMeantBy))
         ->type_name("SWEEP")
         ->required();
   }
@@ -105,12 +106,14 @@ struct CommandLine {
 };
 
 constexpr const char* kStepHelp =
-    "for a robot: show position, path and force limits before each tap and wait; Enter makes the tap, q ends the run "
-    "('palpate resume' continues it)";
+    "for a robot: before each tap, show position, path and force limits, and wait for an answer. Enter makes the tap, "
+    "and "
+    "q ends the run. 'palpate resume' continues an ended run";
 constexpr const char* kWatchHelp =
-    "serve a web page that follows the run or sweep, as 'palpate watch --until-left' does, and print its address";
+    "serve a web page that follows the run or sweep, and print the address of the page. The server ends as with "
+    "'palpate watch --until-left'";
 constexpr const char* kRunsHelp = "folder in which the run directories are made";
-constexpr const char* kJunitHelp = "file for the results of all runs and expectations, as JUnit XML";
+constexpr const char* kJunitHelp = "output file in JUnit XML format, with the results of all runs and expectations";
 constexpr int kMany = 1000000;
 constexpr int kManyWorkers = 1024;
 
@@ -133,21 +136,22 @@ void add_run(CommandLine& line) {
   CLI::App* sub = line.add("run", "Run one experiment", takes, run, line.run);
   sub->add_option("CONFIG", line.run.config, "YAML file of the experiment")->type_name("CONFIG")->required();
   sub->add_option("OVERRIDE", line.run.overrides,
-                  "value of a key (kernel.length_scale=2cm) or name of a config group (kernel=matern52), in place of "
-                  "the config's")
+                  "value that replaces the value in the config, for example kernel.length_scale=2cm for a key, or "
+                  "kernel=matern52 for a config group")
       ->type_name("KEY=VALUE");
   sub->add_option("--runs", line.run.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
   sub->add_flag("--json", line.run.json, "print summary.json and nothing else");
   CLI::Option* quiet = sub->add_flag("--quiet", line.run.quiet, "print nothing");
-  sub->add_flag("--dry-run", line.run.dry_run, "print what would run and in which directory; move nothing");
-  sub->add_flag("--force", line.run.force, "move an existing run with the same id aside and run again");
+  sub->add_flag("--dry-run", line.run.dry_run, "print the planned run and its directory; nothing moves");
+  sub->add_flag("--force", line.run.force,
+                "run again even if a run with the same id exists. The existing run is moved to another folder");
   sub->add_flag("--step", line.run.step, kStepHelp)->excludes(quiet);
   sub->add_flag("--watch", line.run.watch, kWatchHelp);
   CLI::Option* print = sub->add_flag("--print-config", line.run.print_config, "print the resolved config and stop");
   CLI::Option* origins = sub->add_flag("--origins", line.run.origins,
-                                       "print the resolved values with the file or argument that set each of them")
+                                       "print each resolved value with the file or argument that set the value")
                              ->needs(print);
-  sub->add_flag("--identity", line.run.identity, "print the text whose hash becomes the id of the run")
+  sub->add_flag("--identity", line.run.identity, "print the text that is hashed to make the id of the run")
       ->needs(print)
       ->excludes(origins);
   sub->add_option("--junit", line.run.junit, kJunitHelp)->type_name("FILE");
@@ -158,10 +162,11 @@ void add_run(CommandLine& line) {
 /// What `sweep` and `resume` say alike.
 void add_launch(CLI::App* sub, LaunchArguments& launch) {
   sub->add_option("-j", launch.workers,
-                  "number of jobs that a sweep runs at a time; default: number of cores, or 1 in a Slurm task")
+                  "number of jobs that a sweep runs in parallel; default: number of cores, or 1 in a Slurm task")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
-  sub->add_option("--attempts", launch.attempts, "maximum number of starts of a job before it counts as failed")
+  sub->add_option("--attempts", launch.attempts,
+                  "maximum number of starts per job. After this number, the job counts as failed")
       ->type_name("N")
       ->check(from(1, kMany))
       ->capture_default_str();
@@ -177,33 +182,34 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
                   "Slurm partition for the jobs; default: the cluster's default partition")
       ->type_name("NAME")
       ->group(group);
-  sub->add_option("--time", launch.time, "time limit of a Slurm task, in the format of sbatch: 1:30:00")
+  sub->add_option("--time", launch.time, "time limit of a Slurm task, in the format of sbatch, for example 1:30:00")
       ->type_name("TIME")
       ->group(group);
   sub->add_option("--account", launch.account, "Slurm account that is charged for the jobs")
       ->type_name("NAME")
       ->group(group);
-  sub->add_option("--sbatch", launch.sbatch, "further option for sbatch, with its dashes: --sbatch=--mem=4G")
+  sub->add_option("--sbatch", launch.sbatch,
+                  "further option for sbatch, dashes included, for example --sbatch=--mem=4G")
       ->type_name("OPTION")
       ->allow_extra_args(false)
       ->group(group);
   sub->add_option("--jobs-per-task", launch.jobs_per_task,
-                  "number of jobs per Slurm task, of which -j run at a time; default: 1")
+                  "number of jobs per Slurm task; default: 1. Option -j sets how many of these jobs run in parallel")
       ->type_name("N")
       ->check(from(1, kMany))
       ->group(group);
-  sub->add_flag("--wait", launch.wait, "wait until all jobs have ended; Ctrl-C cancels them")->group(group);
+  sub->add_flag("--wait", launch.wait, "wait until all jobs have ended; Ctrl-C cancels the jobs")->group(group);
 }
 
 void add_sweep(CommandLine& line) {
-  CLI::App* sub = line.add("sweep", "Run many experiments: all combinations of given values", &Needs::everything, sweep,
-                           line.sweep);
+  CLI::App* sub =
+      line.add("sweep", "Run one experiment per combination of given values", &Needs::everything, sweep, line.sweep);
   sub->add_option("CONFIG", line.sweep.config, "YAML file of the experiment, optionally with a 'sweep:' block")
       ->type_name("CONFIG")
       ->required();
   sub->add_option("AXIS", line.sweep.axes,
-                  "key and the values to vary: seed=range(0,10), acquisition=weighted,random, "
-                  "kernel.length_scale=logspace(1cm,5cm,8)")
+                  "key and the values that the sweep uses for the key, for example seed=range(0,10) or "
+                  "acquisition=weighted,random or kernel.length_scale=logspace(1cm,5cm,8)")
       ->type_name("KEY=VALUES");
   sub->add_option("--runs", line.sweep.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
   sub->add_flag("--list", line.sweep.list, "list the jobs and stop");
@@ -219,10 +225,11 @@ void add_resume(CommandLine& line) {
   };
   CLI::App* sub = line.add("resume", "Resume an interrupted run or sweep", takes, resume, line.resume);
   line.add_record(sub, "DIR", line.resume.directory, Wanted::any, "run or sweep");
-  sub->add_flag("--retry-failed", line.resume.options.retry_failed, "resume failed runs, too");
+  sub->add_flag("--retry-failed", line.resume.options.retry_failed, "also resume failed runs");
   sub->add_flag("--force", line.resume.options.force, "resume even if another build of palpate started the run");
-  sub->add_option("--jobs", line.resume.jobs,
-                  "numbers of the sweep's jobs to resume: 0-7,12; jobs that run elsewhere are skipped")
+  sub->add_option(
+         "--jobs", line.resume.jobs,
+         "numbers of the sweep's jobs to resume, for example 0-7,12. Jobs that another process runs are skipped")
       ->type_name("NUMBERS");
   add_launch(sub, line.resume.launch);
   sub->add_flag("--step", line.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
@@ -230,15 +237,15 @@ void add_resume(CommandLine& line) {
 }
 
 void add_list(CommandLine& line) {
-  CLI::App* sub = line.add("list", "List the runs and sweeps in a folder, in the order of their start", &Needs::whole,
+  CLI::App* sub = line.add("list", "List the runs and sweeps in a folder, sorted by start time", &Needs::whole,
                            list_runs, line.list);
   sub->add_option("FOLDER", line.list.folder,
-                  "folder that is searched three levels deep: runs, runs/NAME, or a parent folder")
+                  "folder to search, three levels deep, for example runs, runs/NAME, or a parent folder")
       ->type_name("FOLDER")
       ->capture_default_str();
   sub->add_option("--where", line.list.where,
-                  "list only runs that satisfy a condition on columns, summary fields and config keys: \"rmse_m < 8 mm "
-                  "and kernel.type == rbf\"")
+                  "list only runs that satisfy a condition on columns, summary fields and config keys, for example "
+                  "\"rmse_m < 8 mm and kernel.type == rbf\"")
       ->type_name("CONDITION");
   sub->add_flag("--json", line.list.json, "print the list as JSON");
   show(sub, {"palpate list", "palpate list runs/first --where \"rmse_m < 8 mm and seed > 3\""});
@@ -255,7 +262,7 @@ void add_rest(CommandLine& line) {
   show(sub, {"palpate status runs/object_i/422cd70eb5f7", "palpate status runs/first/*"});
 
   sub = line.add(
-      "replay", "Recompute a run from its recorded taps and compare every number",
+      "replay", "Recompute a run from its recorded taps and compare every number with the record",
       [&line](Needs& needs) { needs.record(line.directory); }, replay, line.directory);
   line.add_record(sub, "DIR", line.directory, Wanted::run, "run");
   show(sub, {"palpate replay runs/object_i/422cd70eb5f7", "palpate replay runs/first/*"});
@@ -270,9 +277,10 @@ void add_rest(CommandLine& line) {
   show(sub, {"palpate validate configs/default.yaml", "palpate validate configs/paper/*.yaml"});
 
   sub = line.add(
-      "plugins", "List the plugins, or the options of one plugin",
+      "plugins", "List all plugins, or show the options of one plugin",
       [&line](Needs& needs) { needs.listing(line.plugin); }, plugins, line.plugin, line.json);
-  sub->add_option("PLUGIN", line.plugin, "plugin kind (kernel) or plugin (kernel/rbf)")->type_name("KIND[/NAME]");
+  sub->add_option("PLUGIN", line.plugin, "plugin kind, for example kernel, or plugin, for example kernel/rbf")
+      ->type_name("KIND[/NAME]");
   sub->add_flag("--json", line.json, "print the list as JSON");
   show(sub, {"palpate plugins", "palpate plugins kernel/rbf"});
 
@@ -282,72 +290,77 @@ void add_rest(CommandLine& line) {
   sub->add_option("KIND", line.kind, fmt::format("kind of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
       ->type_name("KIND")
       ->required();
-  sub->add_option("NAME", line.to, "name of the plugin, and of the new folder for its files")
+  sub->add_option("NAME", line.to, "name of the plugin; the new folder has the same name")
       ->type_name("NAME")
       ->required();
   sub->add_flag("--python", line.python,
-                "create an acquisition as a Python function with a test, which needs no compilation");
+                "create the acquisition as a Python function with a test; no compilation is needed");
   show(sub,
        {"palpate new kernel my_kernel", "palpate new acquisition curious", "palpate new acquisition --python curious"});
 
-  sub = line.add("pareto", "Show the settings of a sweep that are Pareto-optimal in cost and error", &Needs::whole,
-                 pareto, line.pareto);
+  sub = line.add("pareto", "Show which settings of a sweep are Pareto-optimal in cost and error", &Needs::whole, pareto,
+                 line.pareto);
   line.add_records(sub, line.pareto.records);
   sub->add_option("--cost", line.pareto.cost,
-                  "column of results.csv that is the cost: robot_seconds, compute_seconds, taps")
+                  "column of results.csv to use as the cost, for example robot_seconds, compute_seconds or taps")
       ->type_name("COLUMN")
       ->required();
   sub->add_option("--error", line.pareto.error,
-                  "column of results.csv that is the error or the quality: rmse_m, footprint_iou")
+                  "column of results.csv to use as the error or the quality, for example rmse_m or footprint_iou")
       ->type_name("COLUMN")
       ->required();
   sub->add_option("--within", line.pareto.within,
-                  "print the config of the cheapest setting whose 95 % interval of the error is within this bound: 5mm")
+                  "bound on the error, for example 5mm. Print the config of the cheapest setting with a 95 % interval "
+                  "of the error within the bound")
       ->type_name("VALUE");
-  sub->add_option("--where", line.pareto.where, "use only jobs that satisfy this condition: \"scene == ring\"")
+  sub->add_option("--where", line.pareto.where,
+                  "use only jobs that satisfy this condition, for example \"scene == ring\"")
       ->type_name("CONDITION");
   show(sub, {"palpate pareto runs/many/* --cost robot_seconds --error rmse_m",
              "palpate pareto runs/many/* --cost taps --error rmse_m --within 5mm"});
 
-  sub = line.add("schema", "Print the JSON Schema of config files, for editors", &Needs::every_plugin, schema);
+  sub = line.add("schema", "Print the JSON Schema of config files, for completion and checks in editors",
+                 &Needs::every_plugin, schema);
   show(sub, {"palpate schema > palpate.schema.json", "palpate schema | grep length_scale"});
 }
 
 void add_compare(CommandLine& line) {
   CLI::App* sub = line.add(
-      "compare", "Compare groups of a sweep's jobs, with intervals and paired tests",
+      "compare", "Compare groups of jobs of a sweep, with confidence intervals and paired tests",
       [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
       compare, line.compare);
   line.add_records(sub, line.compare.records);
   const auto list = [&](const char* name, auto& values, const char* of, const char* help) {
     return sub->add_option(name, values, help)->type_name(of)->delimiter(',')->allow_extra_args(false);
   };
-  list("--by", line.compare.by, "KEYS", "swept keys that define the groups: acquisition or acquisition,kernel")
+  list("--by", line.compare.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel")
       ->required();
-  list("--metric", line.compare.metrics, "COLUMNS", "columns of results.csv to compare: object_taps,footprint_iou")
+  list("--metric", line.compare.metrics, "COLUMNS",
+       "columns of results.csv to compare, for example object_taps,footprint_iou")
       ->required();
   sub->add_option("--where", line.compare.where,
-                  "compare only jobs that satisfy this condition: \"first_hit_tap <= 3\"")
+                  "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"")
       ->type_name("CONDITION");
-  sub->add_option("--baseline", line.compare.baseline, "group with which every other group is compared: uncertainty")
+  sub->add_option("--baseline", line.compare.baseline,
+                  "group with which every other group is compared, for example uncertainty")
       ->type_name("GROUP");
   CLI::Option* at =
-      list("--at", line.compare.at, "NUMBERS", "numbers of taps after which the jobs are compared: 17 or 17,30")
+      list("--at", line.compare.at, "NUMBERS", "numbers of taps after which the jobs are compared, for example 17,30")
           ->check(from(1, kMany));
   sub->add_option("--until", line.compare.until,
-                  "value of a summary field at which each job is compared: rmse_m=8mm; a job that never reaches the "
-                  "value counts as it ended")
+                  "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
+                  "value. A job that never reaches the value is compared at its end")
       ->type_name("COLUMN=VALUE")
       ->excludes(at);
-  sub->add_flag("--ratio", line.compare.ratio, "print the ratio of the means of each pair, too");
+  sub->add_flag("--ratio", line.compare.ratio, "also print the ratio of the means of each pair");
   sub->add_option("--format", line.compare.format,
-                  "output format: text (also writes CSV files beside results.csv), csv and json (groups and pairs), "
-                  "latex (booktabs table of means, intervals and n), markdown (table of means)")
+                  "output format. text also writes CSV files next to results.csv. csv and json contain groups and "
+                  "pairs. latex is a booktabs table of means, intervals and n. markdown is a table of means")
       ->type_name("NAME")
       ->check(CLI::IsMember({"text", "markdown", "csv", "json", "latex"}))
       ->capture_default_str();
   sub->add_option("-j", line.compare.workers,
-                  "number of jobs computed at a time with --at or --until; default: number of cores")
+                  "number of jobs that --at or --until computes in parallel; default: number of cores")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate compare runs/many/* --by acquisition --metric object_taps",
@@ -355,36 +368,38 @@ void add_compare(CommandLine& line) {
 }
 
 void add_curves(CommandLine& line) {
-  CLI::App* sub =
-      line.add("curves", "Draw curves of groups of a sweep's jobs over the taps, with bands, and write them as CSV",
-               &Needs::everything, curves, line.curves);
+  CLI::App* sub = line.add(
+      "curves", "Draw one curve per group of a sweep's jobs over the taps, with a band, and write the curves as CSV",
+      &Needs::everything, curves, line.curves);
   line.add_records(sub, line.curves.records);
   sub->add_option("--by", line.curves.by,
-                  "swept keys that define the groups: acquisition or acquisition,kernel; default: all varied keys "
-                  "except the seed and the scene; each scene has its own panel")
+                  "swept keys that define the groups, for example acquisition,kernel; default: all swept keys except "
+                  "the seed and the scene. Each scene has its own panel")
       ->type_name("KEYS")
       ->delimiter(',')
       ->allow_extra_args(false);
   sub->add_option("--metric", line.curves.metric,
-                  "column of results.csv to draw: footprint_iou; default: rmse_m, or rms_surface_distance_m for runs "
-                  "from any side")
+                  "column of results.csv to draw, for example footprint_iou; default: rmse_m, or "
+                  "rms_surface_distance_m if the tool taps from any side")
       ->type_name("COLUMN");
-  sub->add_option("--against", line.curves.against, "quantity on the horizontal axis: number of taps, or robot time")
+  sub->add_option("--against", line.curves.against,
+                  "quantity on the horizontal axis: taps is the number of taps, robot_seconds is the robot time")
       ->type_name("COLUMN")
       ->check(CLI::IsMember({"taps", "robot_seconds"}))
       ->capture_default_str();
-  sub->add_option("--where", line.curves.where, "draw only jobs that satisfy this condition: \"first_hit_tap <= 3\"")
+  sub->add_option("--where", line.curves.where,
+                  "draw only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"")
       ->type_name("CONDITION");
-  sub->add_option("-o", line.curves.outputs,
-                  "output file that ends in .png, .pdf, .svg or .csv; default: a PNG and a CSV beside results.csv")
+  sub->add_option(
+         "-o", line.curves.outputs,
+         "output file that ends in .png, .pdf, .svg or .csv; default: one PNG and one CSV file next to results.csv")
       ->type_name("FILE")
       ->allow_extra_args(false);
   sub->add_option("--width", line.curves.width,
-                  "printed width of the figure, with unit: 8.8cm for one column; default: 17.8 cm, two columns; panels "
-                  "that do not fit side by side wrap into rows")
+                  "printed width of the figure, with unit, for example 8.8cm for one column; default: 17.8 cm, which "
+                  "is two columns. Panels that do not fit side by side continue in a further row")
       ->type_name("LENGTH");
-  sub->add_option("-j", line.curves.workers,
-                  "number of jobs replayed at a time; default: number of cores; each job is replayed only once")
+  sub->add_option("-j", line.curves.workers, "number of jobs replayed in parallel; default: number of cores")
       ->type_name("N")
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate curves runs/many/*",
@@ -400,12 +415,14 @@ void add_watch(CommandLine& line) {
   sub->add_option("--port", line.watch.port, "port of the web page; default: any free port")
       ->type_name("N")
       ->check(from(1, kMostPort));
-  sub->add_option("--bind", line.watch.bind,
-                  "numeric IP address to serve at; other machines can open the page if they reach this address")
+  sub->add_option(
+         "--bind", line.watch.bind,
+         "numeric IP address of the web page's server. Other machines can open the page if they can reach this address")
       ->type_name("ADDRESS")
       ->capture_default_str();
   sub->add_flag("--until-left", line.watch.until_left,
-                "end two minutes after the run has ended and the last page was closed; otherwise only Ctrl-C ends it");
+                "end the server two minutes after the run has ended and the last page was closed. Without this option, "
+                "only Ctrl-C ends the server");
   show(sub, {"palpate watch runs/object_i/422cd70eb5f7", "palpate watch many@latest --port 8000"});
 }
 
@@ -414,39 +431,40 @@ void add_about_one(CommandLine& line) {
     needs.whole();
     for (const std::string& directory : line.report.directories) needs.record(directory);
   };
-  CLI::App* sub =
-      line.add("report", "Write an HTML page, and figures, of a run or sweep; or a page of several runs side by side",
-               all_of_them, report, line.report);
-  line.add_record(sub, "DIR", line.report.directories, Wanted::any, "run or sweep, or several runs; each");
-  sub->add_flag("--figures", line.report.figures, "draw the panels as PNG files, too, with gnuplot");
-  sub->add_flag("--paper", line.report.paper, "draw figures in the layout of the paper's figures");
+  CLI::App* sub = line.add(
+      "report", "Write an HTML page of a run or sweep, optionally with figures, or one page that compares several runs",
+      all_of_them, report, line.report);
+  line.add_record(sub, "DIR", line.report.directories, Wanted::any, "run or sweep, or several runs");
+  sub->add_flag("--figures", line.report.figures, "also draw the panels as PNG files, with gnuplot");
+  sub->add_flag("--paper", line.report.paper, "draw figures in the layout of the figures in the paper");
   sub->add_option("--to", line.report.to,
-                  "output folder; default: the record's own folder, or the folder that contains all of several runs")
+                  "output folder; default: the folder of the run or sweep. For several runs, the default is the folder "
+                  "that contains all of them")
       ->type_name("FOLDER");
   show(sub, {"palpate report runs/object_i/422cd70eb5f7 --figures", "palpate report runs/first/* runs/second/*"});
 
-  sub = line.add("explain", "Explain in words why a run made a tap at its position", all_about(line.directory), explain,
-                 line.directory, line.tap);
+  sub = line.add("explain", "Explain in words why a run chose the position of a tap", all_about(line.directory),
+                 explain, line.directory, line.tap);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "run");
   sub->add_option("TAP", line.tap, "number of the tap, counted from 1")->type_name("N")->required();
   show(sub, {"palpate explain runs/object_i/422cd70eb5f7 9", "palpate explain runs/first/* 9"});
 
   sub = line.add("calibrate",
-                 "Estimate the effects of a real arm from its recorded taps, as an effects file for the simulator",
+                 "Estimate the errors of a real arm from recorded taps, and print an effects file for the simulator",
                  &Needs::everything, calibrate, line.runs);
   line.add_record(sub, "RUN", line.runs, Wanted::run,
-                  "runs whose scenes stood exactly as configured, such as a bare desk or a block; each");
+                  "runs of a real arm in scenes exactly as configured, for example a bare desk or a block");
   show(sub, {"palpate calibrate runs/bare_desk/*", "palpate calibrate runs/bare_desk/* runs/block/*"});
 
   sub = line.add("export", "Export the surface and the taps of a run for other programs", all_about(line.directory),
                  export_run, line.directory, line.format, line.to);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "run");
   sub->add_option("--format", line.format,
-                  "file format: ply, for mesh viewers, or csv, for tables of the taps, timings, objects and attempts")
+                  "file format: ply is for mesh viewers, csv writes tables of the taps, timings, objects and attempts")
       ->type_name("NAME")
       ->check(CLI::IsMember({"ply", "csv"}))
       ->capture_default_str();
-  sub->add_option("--to", line.to, "output folder; default: export/ in the run's folder")->type_name("FOLDER");
+  sub->add_option("--to", line.to, "output folder; default: export/ in the run directory")->type_name("FOLDER");
   show(sub, {"palpate export runs/first/*", "palpate export runs/first/* --to surfaces",
              "palpate export runs/first/* --format csv"});
 }

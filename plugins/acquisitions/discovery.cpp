@@ -9,11 +9,12 @@ namespace palpate::acquisitions {
 struct DiscoveryOptions : Options {
   double travel_cost_exponent = 0.0;
   void list(Fields& fields) override {
-    fields.real(travel_cost_exponent, Field("travel_cost_exponent",
-                                            "exponent of the tool's expected path length, by which the score is "
-                                            "divided: 0 maximises the gain per tap, 1 the gain per metre")
-                                          .at_least(0)
-                                          .at_most(1));
+    fields.real(travel_cost_exponent,
+                Field("travel_cost_exponent",
+                      "exponent of the expected path length. The score is divided by the path length to this exponent. "
+                      "0 maximises the gain per tap, and 1 maximises the gain per metre")
+                    .at_least(0)
+                    .at_most(1));
   }
 };
 

@@ -22,6 +22,6 @@ class FootprintEntropy final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, FootprintEntropy, "footprint_entropy",
-               "entropy of the footprint: tap where the presence of an object is least certain")
+               "entropy of the footprint, which is largest where the presence of an object is least certain")
 
 }  // namespace palpate::acquisitions

@@ -12,10 +12,12 @@ struct GridOptions : Options {
 
   void list(Fields& fields) override {
     fields.integer(
-        count, Field("count", "points per side of the first lattice; each further lattice has twice as many per side")
-                   .at_least(1)
-                   .at_most(1000)
-                   .from("4 x 4 covers an area within the 14 taps of the paper, nearly"));
+        count,
+        Field("count",
+              "number of points per side of the first lattice. Each further lattice has twice as many points per side")
+            .at_least(1)
+            .at_most(1000)
+            .from("4 x 4 covers an area within the 14 taps of the paper, nearly"));
   }
 };
 

@@ -12,7 +12,7 @@ struct ScaleOptions : Options {
   PluginChoice acquisition{"acquisition", {}, nullptr};
   void list(Fields& fields) override {
     fields.real(factor, Field("factor", "factor by which the score is multiplied").above(0).needed());
-    fields.plugin(acquisition, Field("acquisition", "acquisition whose score is multiplied").needed());
+    fields.plugin(acquisition, Field("acquisition", "acquisition that gives the score to multiply").needed());
   }
 };
 

@@ -25,6 +25,6 @@ class Uncertainty final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, Uncertainty, "uncertainty",
-               "variance of the height or, from any side, of the surface along its normal")
+               "variance of the height; for taps from any side, variance of the surface along its normal")
 
 }  // namespace palpate::acquisitions

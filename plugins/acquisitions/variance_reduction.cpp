@@ -125,10 +125,11 @@ std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
 struct ForesightOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {
-    fields.real(new_object_weight, Field("new_object_weight",
-                                         "weight of finding new objects, given for an area of 23 cm x 23 cm and scaled "
-                                         "with its side length; refining known outlines has the weight 1")
-                                       .at_least(0));
+    fields.real(new_object_weight,
+                Field("new_object_weight",
+                      "weight of the discovery of new objects, for an area of 23 cm x 23 cm. For other areas, the "
+                      "weight is scaled with the side length. The refinement of known outlines has the weight 1")
+                    .at_least(0));
   }
 };
 

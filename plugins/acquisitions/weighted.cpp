@@ -27,6 +27,6 @@ class Weighted final : public Acquisition {
 };
 
 PALPATE_PLUGIN(Acquisition, Weighted, "weighted",
-               "variance of the height times the label GP's mean: the acquisition of the paper")
+               "variance of the height times the mean of the label GP, as in the paper")
 
 }  // namespace palpate::acquisitions

@@ -18,26 +18,24 @@ struct CallerOptions : Options {
   std::string label;
 
   void list(Fields& fields) override {
-    fields.real(hover,
-                Field("hover", "height above the desk at which the caller's arm travels; higher contacts are rejected")
-                    .in(Unit::metre)
-                    .above(0)
-                    .from("as motion.hover of the other backends"));
-    fields.real(overrun,
-                Field("overrun",
-                      "maximum depth of the caller's arm below the desk; contacts more than 1 cm deeper are rejected")
-                    .in(Unit::metre)
-                    .at_least(0)
-                    .from("as motion.overrun of the other backends"));
-    fields.flag(
-        scene_is_truth,
-        Field(
-            "scene_is_truth",
-            "whether the caller taps the objects of `scene`, as in a simulation; errors are then computed for each tap")
-            .neutral(false));
+    fields.real(hover, Field("hover", "travel height of the caller's arm above the desk. Higher contacts are rejected")
+                           .in(Unit::metre)
+                           .above(0)
+                           .from("as motion.hover of the other backends"));
+    fields.real(
+        overrun,
+        Field("overrun",
+              "maximum depth of the caller's arm below the desk. Contacts more than 1 cm below this depth are rejected")
+            .in(Unit::metre)
+            .at_least(0)
+            .from("as motion.overrun of the other backends"));
+    fields.flag(scene_is_truth, Field("scene_is_truth",
+                                      "whether the caller taps the objects of `scene`, as in a simulation. If true, "
+                                      "errors are computed for each tap")
+                                    .neutral(false));
     fields.text(
         label,
-        Field("label", "name of the caller's strategy; runs with different labels are different runs").neutral(""));
+        Field("label", "name of the caller's strategy. Runs with different names have different ids").neutral(""));
   }
 };
 
@@ -58,6 +56,7 @@ class Caller final : public Backend {
   bool scene_is_truth_;
 };
 
-PALPATE_PLUGIN(Backend, Caller, "caller", "taps by your own program, which asks for positions and reports the results")
+PALPATE_PLUGIN(Backend, Caller, "caller",
+               "taps by your own program. The program asks for positions and reports the results")
 
 }  // namespace palpate::backends

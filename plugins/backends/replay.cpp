@@ -33,9 +33,11 @@ struct ReplayOptions : Options {
     fields.real(
         tolerance,
         Field("tolerance", "maximum distance between a target and the recorded tap").in(Unit::metre).at_least(0));
-    fields.flag(scene_is_truth,
-                Field("scene_is_truth",
-                      "whether the recorded taps are of the scene of the config, so that errors can be computed"));
+    fields.flag(
+        scene_is_truth,
+        Field(
+            "scene_is_truth",
+            "whether the taps were recorded in the scene of the config. If true, errors are computed from this scene"));
   }
 };
 

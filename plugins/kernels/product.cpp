@@ -39,6 +39,6 @@ class Product final : public Composed<Multiply> {
 };
 
 PALPATE_PLUGIN(Kernel, Product, "product",
-               "product of kernels: points are correlated only if every factor correlates them")
+               "product of kernels. Two points are correlated only if every factor correlates the points")
 
 }  // namespace palpate::kernels

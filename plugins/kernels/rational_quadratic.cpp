@@ -12,9 +12,10 @@ struct RationalQuadraticOptions : StationaryOptions {
 
   void list(Fields& fields) override {
     StationaryOptions::list(fields);
-    fields.real(alpha, Field("alpha", "shape parameter: small values mix many length scales, large values approach rbf")
-                           .at_least(1e-4)
-                           .at_most(1e4));
+    fields.real(alpha,
+                Field("alpha", "shape parameter. Small values mix many length scales, and large values approach rbf")
+                    .at_least(1e-4)
+                    .at_most(1e4));
   }
 };
 
@@ -54,6 +55,6 @@ class RationalQuadraticShape {
 
 using RationalQuadratic = Stationary<RationalQuadraticShape>;
 PALPATE_PLUGIN(Kernel, RationalQuadratic, "rational_quadratic",
-               "rational quadratic: smooth surfaces with a mixture of length scales")
+               "rational quadratic kernel, for smooth surfaces with a mixture of length scales")
 
 }  // namespace palpate::kernels

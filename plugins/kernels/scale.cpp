@@ -11,7 +11,7 @@ struct ScaleOptions : Options {
 
   void list(Fields& fields) override {
     fields.real(factor, Field("factor", "factor by which covariances are multiplied").at_least(1e-12).at_most(1e12));
-    fields.plugin(kernel, Field("kernel", "kernel that is multiplied, {type: ..., ...}").needed());
+    fields.plugin(kernel, Field("kernel", "kernel to multiply, written as {type: ..., ...}").needed());
   }
 };
 
@@ -68,6 +68,6 @@ class Scale final : public Kernel {
   std::shared_ptr<Kernel> inner_;
 };
 
-PALPATE_PLUGIN(Kernel, Scale, "scale", "kernel times a constant factor, for example as a term of a sum")
+PALPATE_PLUGIN(Kernel, Scale, "scale", "kernel times a constant factor, for example for a term of a sum of kernels")
 
 }  // namespace palpate::kernels

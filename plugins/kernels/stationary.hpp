@@ -19,15 +19,15 @@ struct StationaryOptions : Options {
 
   void list(Fields& fields) override {
     fields.real(length_scale,
-                Field("length_scale", "length scale: distance over which heights are correlated")
+                Field("length_scale", "length scale, the distance over which heights are correlated")
                     .in(Unit::metre)
                     .above(0)
                     .from("Sun and Min 2021 give 'sigma^2 = 0.017' without unit; 1.7 cm reproduces their counts"));
-    fields.real(
-        length_scale_y,
-        Field("length_scale_y", "length scale along y, if it differs from length_scale, which is then that along x")
-            .in(Unit::metre)
-            .above(0));
+    fields.real(length_scale_y,
+                Field("length_scale_y",
+                      "length scale along y; not given: length_scale. If given, length_scale applies along x only")
+                    .in(Unit::metre)
+                    .above(0));
   }
 };
 

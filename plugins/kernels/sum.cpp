@@ -16,6 +16,6 @@ struct Add {
 };
 
 using Sum = Composed<Add>;
-PALPATE_PLUGIN(Kernel, Sum, "sum", "sum of kernels: sum of independent surfaces")
+PALPATE_PLUGIN(Kernel, Sum, "sum", "sum of kernels, for a surface that is the sum of independent surfaces")
 
 }  // namespace palpate::kernels

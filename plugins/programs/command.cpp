@@ -48,8 +48,8 @@ std::optional<std::vector<std::string>> split_command(const std::string& text) {
 
 std::optional<std::vector<std::string>> list_command(std::string& command, Fields& fields) {
   fields.text(command, Field("command",
-                             "program and its arguments, split at blanks; 'single' or \"double\" quotes keep blanks; "
-                             "no shell interprets the text")
+                             "program and its arguments, separated by blanks. 'single' or \"double\" quotes keep "
+                             "blanks. No shell interprets the text")
                            .needed()
                            .not_identifying());
   auto words = split_command(command);
@@ -58,9 +58,10 @@ std::optional<std::vector<std::string>> list_command(std::string& command, Field
 }
 
 void list_checksum(std::string& checksum, Fields& fields) {
-  fields.text(checksum, Field("checksum",
-                              "checksum of the command and of the content of its program (or of the script that an "
-                              "interpreter runs); not given: computed from the files"));
+  fields.text(checksum,
+              Field("checksum",
+                    "checksum of the command and of the content of the program file; not given: computed from the "
+                    "files. If the program is an interpreter, the checksum covers the script instead"));
 }
 
 namespace {

@@ -16,12 +16,13 @@ struct PartOptions : Options {
     fields.adopt(shape, Field("type", "shape of the part").needed());
     fields.reals(at, 2,
                  Field("at",
-                       "x, y of the centre of the rectangle around the part's outline before its rotation; the "
-                       "rectangle around all parts is centred at the object's `at`")
+                       "x, y of the part's centre. The centre is the middle of the rectangle around the part's outline "
+                       "before the part is rotated. The rectangle around all parts is centred at the object's `at`")
                      .in(Unit::metre));
-    fields.real(rotation,
-                Field("rotation", "rotation of the part about the vertical through its `at`, counter-clockwise")
-                    .in(Unit::radian));
+    fields.real(
+        rotation,
+        Field("rotation", "counter-clockwise rotation of the part about the vertical axis through the part's `at`")
+            .in(Unit::radian));
   }
 };
 
@@ -29,11 +30,10 @@ struct CompoundOptions : Options {
   std::vector<PartOptions> parts;
 
   void list(Fields& fields) override {
-    fields.sections(
-        parts,
-        Field("parts",
-              "list of parts, each {type: ..., at: [...], rotation: ...}; where parts overlap, the highest one counts")
-            .needed());
+    fields.sections(parts, Field("parts",
+                                 "list of parts, each {type: ..., at: [...], rotation: ...}. Where parts overlap, the "
+                                 "highest part is the surface")
+                               .needed());
     fields.require(!parts.empty(), "parts", "needs at least one part");
   }
 };

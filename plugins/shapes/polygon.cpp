@@ -86,7 +86,8 @@ struct PolygonOptions : Options {
   void list(Fields& fields) override {
     fields.table(
         outline,
-        Field("outline", "x, y of the corners of the outline, in order; the rectangle around them is centred at `at`")
+        Field("outline",
+              "x, y of the corners of the outline, in order. The rectangle around the corners is centred at `at`")
             .in(Unit::metre)
             .needed());
     const std::string trouble = trouble_of_outline(outline);

@@ -64,8 +64,11 @@ struct BarsOptions : Options {
   double height = 0.05;
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "outer extent along the first bar").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "outer extent across the first bar").in(Unit::metre).above(0));
+    fields.real(length,
+                Field("length", "outer size along the first bar, the object's x axis").in(Unit::metre).above(0));
+    fields.real(
+        width,
+        Field("width", "outer size perpendicular to the first bar, the object's y axis").in(Unit::metre).above(0));
     fields.real(thickness, Field("thickness", "thickness of both bars, seen from above").in(Unit::metre).above(0));
     list_height(height, fields);
     fields.require(thickness < length && thickness < width, "thickness",

@@ -17,17 +17,17 @@ struct RandomOutlineOptions : Options {
   void list(Fields& fields) override {
     fields.real(length,
                 Field("length", "longer side of the rectangle around the outline").in(Unit::metre).at_least(0.05));
-    fields.real(
-        height,
-        Field("height",
-              "height of the top above the desk, without its wave, in the middle of the rectangle around the outline")
-            .in(Unit::metre)
-            .at_least(0.02));
-    fields.real(
-        roughness,
-        Field("roughness", "roughness of the outline: 0 is a bent ellipse, 1 has deep lobes").at_least(0).at_most(1));
-    fields.integer(number,
-                   Field("number", "number of the outline in the sequence that the run's seed generates").at_least(0));
+    fields.real(height, Field("height",
+                              "height of the top above the desk, in the middle of the rectangle around the outline. "
+                              "The wave of the top is not included")
+                            .in(Unit::metre)
+                            .at_least(0.02));
+    fields.real(roughness, Field("roughness", "roughness of the outline, from 0 (a bent ellipse) to 1 (deep lobes)")
+                               .at_least(0)
+                               .at_most(1));
+    fields.integer(
+        number,
+        Field("number", "index of the outline. The seed of the run and this index determine the outline").at_least(0));
   }
 };
 

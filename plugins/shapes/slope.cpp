@@ -11,14 +11,17 @@ struct SlopeOptions : Options {
   double high = 0.08;
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent in the direction of the rise")
+    fields.real(length, Field("length", "size along x, the direction of the rise")
                             .in(Unit::metre)
                             .above(0)
                             .from("Sun and Min 2021: 17 cm"));
-    fields.real(width,
-                Field("width", "extent across the rise").in(Unit::metre).above(0).from("Sun and Min 2021: 6 cm"));
-    fields.real(low, Field("low", "height above the desk at the beginning of the rise").in(Unit::metre).at_least(0));
-    fields.real(high, Field("high", "height above the desk at the end of the rise")
+    fields.real(width, Field("width", "size along y, perpendicular to the direction of the rise")
+                           .in(Unit::metre)
+                           .above(0)
+                           .from("Sun and Min 2021: 6 cm"));
+    fields.real(low,
+                Field("low", "height above the desk at the -x end, where the rise begins").in(Unit::metre).at_least(0));
+    fields.real(high, Field("high", "height above the desk at the +x end, where the rise ends")
                           .in(Unit::metre)
                           .above(0)
                           .from("Sun and Min 2021: 8 cm"));
@@ -60,6 +63,6 @@ class Slope final : public Shape {
   double length_, low_, high_, half_length_, half_width_;
 };
 
-PALPATE_PLUGIN(Shape, Slope, "slope", "block with a sloping top: object II of the paper")
+PALPATE_PLUGIN(Shape, Slope, "slope", "block with a sloping top (object II of the paper)")
 
 }  // namespace palpate::shapes

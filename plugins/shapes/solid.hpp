@@ -67,8 +67,8 @@ struct ExtentOptions : Options {
   ExtentOptions(double along, double across, double up) : length(along), width(across), height(up) {}
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent along x, before the rotation").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "extent along y, before the rotation").in(Unit::metre).above(0));
+    fields.real(length, Field("length", "size along x, before the object is rotated").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "size along y, before the object is rotated").in(Unit::metre).above(0));
     list_height(height, fields);
   }
 };

@@ -22,6 +22,6 @@ class T final : public Prism {
               {}, o.height) {}
 };
 
-PALPATE_PLUGIN(Shape, T, "t", "T of two bars: the second begins at the middle of the first")
+PALPATE_PLUGIN(Shape, T, "t", "T of two bars. The second bar begins at the middle of the first bar")
 
 }  // namespace palpate::shapes

@@ -13,16 +13,17 @@ struct WaveOptions : Options {
   double period = 0.08;
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent in the direction of the wave")
+    fields.real(length, Field("length", "size along x, the direction of the wave")
                             .in(Unit::metre)
                             .above(0)
                             .from("Sun and Min 2021: 16 cm"));
-    fields.real(width,
-                Field("width", "extent parallel to the crests").in(Unit::metre).above(0).from("Sun and Min 2021: 6 cm"));
+    fields.real(
+        width,
+        Field("width", "size along y, parallel to the crests").in(Unit::metre).above(0).from("Sun and Min 2021: 6 cm"));
     fields.real(height, Field("height", "mean height of the top above the desk").in(Unit::metre).above(0));
     fields.real(
         amplitude,
-        Field("amplitude", "amplitude of the wave, which has a crest at the centre").in(Unit::metre).at_least(0));
+        Field("amplitude", "amplitude of the wave. The centre of the block is on a crest").in(Unit::metre).at_least(0));
     fields.real(period, Field("period", "distance from one crest to the next").in(Unit::metre).above(0));
     fields.require(amplitude <= height, "amplitude",
                    "is larger than the mean height, so the top would be below the desk");
@@ -135,6 +136,6 @@ class Wave final : public Shape {
   double k_ = 2.0 * kPi / o_.period;  ///< angle per metre along the wave
 };
 
-PALPATE_PLUGIN(Shape, Wave, "wave", "block with a wavy top: object I of the paper")
+PALPATE_PLUGIN(Shape, Wave, "wave", "block with a wavy top (object I of the paper)")
 
 }  // namespace palpate::shapes

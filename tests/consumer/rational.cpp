@@ -12,7 +12,7 @@ struct RationalOptions : Options {
     fields.real(length_scale,
                 Field("length_scale", "distance over which heights are correlated").in(Unit::metre).above(0));
     fields.real(alpha,
-                Field("alpha", "shape parameter: small values mix many length scales").at_least(0.01).at_most(1e6));
+                Field("alpha", "shape parameter. Small values mix many length scales").at_least(0.01).at_most(1e6));
   }
 };
 

@@ -229,13 +229,13 @@ std::vector<Case> cases() {
       line("PluginWithoutType", "height: {kernel: }",
            "10:10: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
       whole("NoScene", without("  - scene"),
-            "1:1: 'scene.area' is missing, rectangle of the desk in which taps are allowed"),
+            "1:1: 'scene.area' is missing, set it to the rectangle of the desk in which taps are allowed"),
       line("ObjectWithoutType", "scene: {objects: [{height: 5 cm}]}",
-           "10:19: 'scene.objects.0.type' is missing, shape of the object"),
+           "10:19: 'scene.objects.0.type' is missing, set it to the shape of the object"),
 
       // Laws between options
       whole("BothCountAndSpacing", without("candidates") + "candidates: {count: 8, spacing: 5 mm}\n",
-            "9:33: candidates.spacing: give either count or spacing; set the other one to none"),
+            "9:33: candidates.spacing: is given together with count. Set count or spacing to none"),
       whole("TooFineASpacing", without("candidates") + "candidates: {spacing: 1 um}\n",
             "9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 per side are possible"),
       line("FewerTapsThanInitialOnes", "initial: {count: 6}",
@@ -257,11 +257,11 @@ std::vector<Case> cases() {
            "motion.hover or lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",
-           "10:42: label.kernel: the labels use the kernel of the heights when hyperparameters are shared; remove it, "
-           "or choose own"),
+           "10:42: label.kernel: has no effect with label.hyperparameters: shared. Remove label.kernel, or set "
+           "label.hyperparameters: own"),
       line("LabelsOfTheirOwnFittingThatShare", "label: {hyperparameters: shared, fitting: {type: fixed}}",
-           "10:43: label.fitting: the labels are fitted together with the heights when hyperparameters are shared; "
-           "remove it, or choose own"),
+           "10:43: label.fitting: has no effect with label.hyperparameters: shared. Remove label.fitting, or set "
+           "label.hyperparameters: own"),
 
       // Plugins inside plugins, and how the surface is made
       line("UnknownSurface", "surface: two_parts",
@@ -270,7 +270,7 @@ std::vector<Case> cases() {
            "10:26: label.hyperparameters: unknown value 'both', known: own, shared"),
       line("NoKernelInASum", "kernel: {type: sum, kernels: []}", "10:30: kernel.kernels: needs at least one kernel"),
       line("SumWithoutKernels", "kernel: {type: sum}",
-           "10:16: 'kernel.kernels' is missing, list of the kernels to combine, each {type: ..., ...}"),
+           "10:16: 'kernel.kernels' is missing, set it to the list of the kernels to combine, each {type: ..., ...}"),
       line("SumOfSomethingElse", "kernel: {type: sum, kernels: rbf}",
            "10:30: kernel.kernels: expects a list, write [{type: ...}, {type: ...}]"),
       line("NameWhereAKernelBelongs", "kernel: {type: sum, kernels: [rbf, matern32]}",
@@ -285,7 +285,7 @@ std::vector<Case> cases() {
       line("FactorOfZero", "kernel: {type: scale, factor: 0, kernel: {type: rbf}}",
            "10:31: kernel.factor: 0 is out of range, it must be at least 1e-12"),
       line("ScaleOfNothing", "kernel: {type: scale}",
-           "10:16: 'kernel.kernel' is missing, kernel that is multiplied, {type: ..., ...}"),
+           "10:16: 'kernel.kernel' is missing, set it to the kernel to multiply, written as {type: ..., ...}"),
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 

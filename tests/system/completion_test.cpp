@@ -49,7 +49,7 @@ TEST_F(Completion, OfCommandsAndOptionsSaysWhatTheyAreFor) {
   EXPECT_THAT(offered({"re"}), UnorderedElementsAre(Key("resume"), Key("replay"), Key("report")));
   EXPECT_THAT(offered({""}), Contains(Pair("run", "Run one experiment")));
   EXPECT_THAT(offered({"run", "--dry"}),
-              Contains(Pair("--dry-run", "print what would run and in which directory; move nothing")));
+              Contains(Pair("--dry-run", "print the planned run and its directory; nothing moves")));
   EXPECT_THAT(offered({"resume", "x", "--launcher", ""}), UnorderedElementsAre(Key("local"), Key("slurm")));
   EXPECT_THAT(offered({"resume", "x", "--launcher=s"}), UnorderedElementsAre(Key("--launcher=slurm")));
   EXPECT_THAT(offered({"nonsense", ""}), IsEmpty());

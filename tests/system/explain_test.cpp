@@ -183,9 +183,8 @@ TEST_F(Explain, NamesSuspectedOutliersSinceWhenAndWhy) {
     const double doubt = one["probability"];
     taps.insert(tap);
     sure += doubt >= 0.9 ? 1 : 0;
-    EXPECT_THAT(explain(directory, tap),
-                ContainsRegex("After all 30 taps, it may be an outlier: " + printed("%.0f", 100 * doubt) +
-                              " %, by its (height|position)"));
+    EXPECT_THAT(explain(directory, tap), ContainsRegex("After all 30 taps, it may be an outlier: " +
+                                                       printed("%.0f", 100 * doubt) + " %, by its (height|position)"));
   }
   EXPECT_GE(sure, 1) << "a lie that all others contradict";
   for (int tap = 1; tap <= 30; tap += test::brief() ? 7 : 1) {
@@ -219,7 +218,7 @@ TEST_F(Explain, ExpectsOfTheSurfaceOfAnObjectNothingBeforeOneIsTouchedNorOfTheDe
 
 TEST_F(Explain, SaysWhyTheFallbackHadToChoose) {
   EXPECT_THAT(explain(ran(), 8),
-              AllOf(HasSubstr("The acquisition, weighted (variance of the height times the label GP"),
+              AllOf(HasSubstr("The acquisition, weighted (variance of the height times the mean"),
                     HasSubstr("No tap has hit an object yet: every label is 0"),
                     HasSubstr("503 of 2202 candidates are tied: within 2e-08 of the best (tie_tolerance)"),
                     HasSubstr("- 7 candidates are left out, because tapped before (repeat: forbid).")));

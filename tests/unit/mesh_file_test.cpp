@@ -249,8 +249,9 @@ TEST_F(MeshFile, IsKnownAgainByItsChecksum) {
 
 TEST_F(MeshFile, MustHaveItsUnitGiven) {
   const fs::path file = folder_.write("a.ply", ply(block()));
-  EXPECT_EQ(error_of([&] { choose(shared_host(), "shape", "mesh", "{file: '" + file.string() + "'}"); }),
-            "options.yaml:1:1: 'plugin.unit' is missing, length of one unit of the file, for example 1 mm");
+  EXPECT_EQ(
+      error_of([&] { choose(shared_host(), "shape", "mesh", "{file: '" + file.string() + "'}"); }),
+      "options.yaml:1:1: 'plugin.unit' is missing, set it to the length of one unit of the file, for example 1 mm");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace palpate::test {
 struct Several : Options {
   std::vector<PluginChoice> parts;
   void list(Fields& fields) override {
-    fields.plugins(parts, "kernel", Field("parts", "some kernels").needed());
+    fields.plugins(parts, "kernel", Field("parts", "list of kernels").needed());
     fields.require(!parts.empty(), "parts", "needs at least one kernel");
   }
 };

@@ -60,26 +60,29 @@ void InitialOptions::list(Fields& fields) {
     inner.real(smallest, Field("smallest", "minimum width of the object to search for").in(Unit::metre).above(0));
   };
   fields.choice(
-      design, Field("design", "design of the initial taps, each of which is at a different candidate"),
-      {{"random", "uniformly random positions, which depend on the seed alone", counted},
+      design, Field("design", "design of the initial taps. No candidate is tapped twice"),
+      {{"random", "uniformly random positions that depend only on the seed", counted},
        {"sobol", "Sobol sequence with a random shift from the seed", counted},
        {"grid", "square lattice", counted},
-       {"search", "search for an object in as few taps as possible, until the first contact with one", until_hit}});
+       {"search",
+        "search for an object in as few taps as possible. The search ends at the first contact with an object",
+        until_hit}});
 }
 
 void CandidateOptions::list(Fields& fields) {
-  fields.real(spacing, Field("spacing", "side length of a grid cell; replaces count").in(Unit::metre).above(0));
+  fields.real(spacing,
+              Field("spacing", "side length of a grid cell; an alternative to `count`").in(Unit::metre).above(0));
   // The default belongs into the resolved config, unless spacing takes its place.
   if (!spacing && !count) count = kPaperCount;
   fields.integer(count, Field("count", "number of grid cells per side").at_least(1).at_most(kMaxCellsPerSide));
-  fields.require(!(count && spacing), "spacing", "give either count or spacing; set the other one to none");
+  fields.require(!(count && spacing), "spacing", "is given together with count. Set count or spacing to none");
 }
 
 void ProcessOptions::list_plugins(Fields& fields) {
   fields.plugin(kernel, "kernel",
-                Field("kernel", "kernel of this GP alone; the top-level kernel if not given").inherits("kernel"));
+                Field("kernel", "kernel of this GP; not given: the top-level `kernel`").inherits("kernel"));
   fields.plugin(fitting, "fitting",
-                Field("fitting", "fitting of this GP alone; the top-level fitting if not given").inherits("fitting"));
+                Field("fitting", "fitting of this GP; not given: the top-level `fitting`").inherits("fitting"));
 }
 
 void OffsetOptions::list(Fields& fields) {
@@ -108,13 +111,13 @@ void HeightOptions::list(Fields& fields) {
                          .at_least(0)
                          .at_most(kMostSignal));
   fields.real(outlier_probability, Field("outlier_probability",
-                                         "prior probability that a contact's height is an outlier; not given: no "
-                                         "outliers; only with surface: two_part")
+                                         "prior probability that the height of a contact is an outlier; not given: no "
+                                         "outliers. Requires `surface: two_part`")
                                        .above(0)
                                        .at_most(0.5));
   fields.section(offset, Field("offset",
-                               "estimation of the height offset of motion and arm from taps on the desk; not given: "
-                               "heights are used as measured"));
+                               "estimation of the height offset from taps on the desk. The offset is caused by the "
+                               "motion and the arm; not given: heights are used as measured"));
   list_plugins(fields);
 }
 
@@ -123,56 +126,64 @@ void LabelOptions::list(Fields& fields) {
               Field("signal", "prior standard deviation of the label").at_least(kLeastSignal).at_most(kMostSignal));
   fields.real(noise, Field("noise", "standard deviation of the noise of one label").at_least(0).at_most(kMostSignal));
   fields.real(prior_mean, Field("prior_mean", "prior mean of the label").from("Sun and Min 2021: 0"));
-  fields.flag(clip, Field("clip", "whether acquisitions read the weight (the label GP's mean) clipped to [0, 1]"));
-  fields.choice(hyperparameters, Field("hyperparameters", "hyperparameters that a fit gives to the label GP"),
-                {{"own", "kernel and noise fitted to the labels alone", {}},
+  fields.flag(
+      clip, Field("clip",
+                  "whether the weight is clipped to [0, 1] for acquisitions. The weight is the mean of the label GP"));
+  fields.choice(hyperparameters, Field("hyperparameters", "source of the fitted hyperparameters of the label GP"),
+                {{"own", "kernel and noise are fitted to the labels only", {}},
                  {"shared",
-                  "kernel and noise-to-signal ratio of the height GP, fitted to heights and labels together; signals "
-                  "stay separate",
+                  "kernel and noise-to-signal ratio are shared with the height GP and fitted to heights and labels "
+                  "together. The signals stay separate",
                   {}}});
   list_plugins(fields);
   const bool shared = hyperparameters == Hyperparameters::shared;
-  fields.require(!shared || !kernel, "kernel",
-                 "the labels use the kernel of the heights when hyperparameters are shared; remove it, or choose own");
+  fields.require(
+      !shared || !kernel, "kernel",
+      "has no effect with label.hyperparameters: shared. Remove label.kernel, or set label.hyperparameters: own");
   fields.require(
       !shared || !fitting, "fitting",
-      "the labels are fitted together with the heights when hyperparameters are shared; remove it, or choose own");
+      "has no effect with label.hyperparameters: shared. Remove label.fitting, or set label.hyperparameters: own");
 }
 
 void EngineOptions::list(Fields& fields) {
-  fields.choice(
-      type, Field("type", "engine that computes the posterior over the candidates"),
-      {{"auto", "fastest engine whose error is within `accuracy`", {}},
-       {"dense", "engine for any kernel; time and memory grow with taps times candidates", {}},
-       {"grid", "as exact as dense; memory grows with candidates alone; needs a separable kernel, such as rbf", {}},
-       {"lowrank",
-        "time per tap grows with candidates alone, not with taps; needs a separable kernel, such as rbf",
-        {}}});
-  fields.real(
-      tolerance,
-      Field("tolerance", "share of the variance below which lowrank drops a direction of the covariance along one axis")
-          .above(0)
-          .at_most(1)
-          .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
-  fields.real(accuracy, Field("accuracy",
-                              "maximum error of the engine that `type: auto` chooses, relative to dense, in prior "
-                              "standard deviations or variances; also limited to tie_tolerance / 10")
-                            .at_least(0)
-                            .at_most(1));
-  fields.integer(threads, Field("threads", "number of threads that update the maps; it does not change the results")
-                              .at_least(1)
-                              .at_most(64)
-                              .not_identifying());
+  fields.choice(type, Field("type", "algorithm that computes the posterior at the candidates"),
+                {{"auto", "fastest engine with an error within `accuracy`", {}},
+                 {"dense", "for any kernel. Time and memory grow with taps times candidates", {}},
+                 {"grid",
+                  "as exact as `dense`. Memory grows only with the number of candidates. Requires a separable kernel, "
+                  "such as rbf",
+                  {}},
+                 {"lowrank",
+                  "low-rank approximation. Time per tap grows only with the number of candidates. Requires a separable "
+                  "kernel, such as rbf",
+                  {}}});
+  fields.real(tolerance, Field("tolerance",
+                               "truncation threshold of `lowrank`. Along each axis, eigenvectors of the covariance "
+                               "with a smaller share of the variance are dropped")
+                             .above(0)
+                             .at_most(1)
+                             .from("keeps variances within 1e-12 and heights within 1e-9 of dense after 1000 taps"));
+  fields.real(accuracy,
+              Field("accuracy",
+                    "maximum error of the engine that `type: auto` chooses, compared with `dense`. The error is "
+                    "relative to the prior standard deviation or variance. The maximum is at most tie_tolerance / 10")
+                  .at_least(0)
+                  .at_most(1));
+  fields.integer(threads,
+                 Field("threads", "number of threads that update the maps. The number does not change the results")
+                     .at_least(1)
+                     .at_most(64)
+                     .not_identifying());
 }
 
 void SideViewOptions::list(Fields& fields) {
   constexpr double kUpright = 3.14159265358979323846 / 2;
   fields.real(azimuth, Field("azimuth",
-                             "azimuth of the camera seen from the middle of the area, counter-clockwise from x; not "
-                             "given: drawn from the seed")
+                             "azimuth of the camera, seen from the middle of the area and counter-clockwise from the x "
+                             "axis; not given: drawn from the seed")
                            .in(Unit::radian));
   fields.real(elevation,
-              Field("elevation", "elevation of the camera above the horizon, seen from the middle of the area")
+              Field("elevation", "elevation angle of the camera above the horizontal, seen from the middle of the area")
                   .in(Unit::radian)
                   .at_least(0)
                   .at_most(kUpright * (1 + 1e-12)));
@@ -180,68 +191,77 @@ void SideViewOptions::list(Fields& fields) {
 }
 
 void SpaceOptions::list(Fields& fields) {
-  fields.integer(approaches,
-                 Field("approaches", "number of approaches drawn before every tap, among which the next one is chosen")
-                     .at_least(1)
-                     .at_most(100000));
-  fields.integer(particles,
-                 Field("particles", "number of hypotheses (assemblies of simple solids), each about equally probable")
-                     .at_least(2)
-                     .at_most(1000));
-  fields.integer(moves,
-                 Field("moves", "number of Monte Carlo moves per hypothesis after a tap, which fit it to the contacts")
-                     .at_least(0)
-                     .at_most(100000));
-  fields.real(model_discrepancy,
-              Field("model_discrepancy", "standard deviation of the objects' surfaces from the simple solids")
-                  .in(Unit::metre)
-                  .at_least(1e-6));
+  fields.integer(
+      approaches,
+      Field("approaches", "number of approaches drawn before each tap. The next tap is one of these approaches")
+          .at_least(1)
+          .at_most(100000));
+  fields.integer(
+      particles,
+      Field("particles", "number of particles. A particle is one hypothesis of the scene, made of simple solids")
+          .at_least(2)
+          .at_most(1000));
+  fields.integer(
+      moves,
+      Field("moves",
+            "number of Monte Carlo moves per particle after each tap. The moves fit the particle to the contacts")
+          .at_least(0)
+          .at_most(100000));
+  fields.real(
+      model_discrepancy,
+      Field("model_discrepancy", "standard deviation between the objects' surfaces and the simple solids of the model")
+          .in(Unit::metre)
+          .at_least(1e-6));
   fields.section(view, Field("view",
-                             "view of a camera at 60 cm distance, taken before the first tap; only with backend: "
-                             "simulator; not given: no view"));
+                             "view of a camera at 60 cm distance, taken before the first tap; not given: no view. "
+                             "Requires `backend: simulator`"));
 }
 
 void StopOptions::list(Fields& fields) {
   fields.real(max_standard_deviation, Field("max_standard_deviation",
-                                            "maximum standard deviation of the height over all candidates at which the "
-                                            "run stops; adds the height GP to the models")
+                                            "bound on the standard deviation of the height. The run stops when no "
+                                            "candidate exceeds the bound. The bound adds the height GP to the models")
                                           .in(Unit::metre)
                                           .above(0));
-  fields.real(expected_rmse, Field("expected_rmse",
-                                   "RMSE of the reconstructed scene, desk included: the run stops once it is probably "
-                                   "smaller, an object was touched, and probably no other is left to find")
-                                 .in(Unit::metre)
-                                 .above(0));
+  fields.real(expected_rmse,
+              Field("expected_rmse",
+                    "bound on the expected RMSE of the scene, desk included. The run stops when the expected RMSE is "
+                    "safely below the bound, an object was touched, and no further object is likely")
+                  .in(Unit::metre)
+                  .above(0));
   fields.real(robot_time, Field("robot_time", "robot time after which the run stops").in(Unit::second).above(0));
-  fields.integer(failed_in_a_row,
-                 Field("failed_in_a_row",
-                       "consecutive failed taps at which the run fails; `unreachable` and, from any side, taps without "
-                       "contact do not count; not given: 3 if taps cannot be repeated, else no limit")
-                     .at_least(1)
-                     .at_most(100000)
-                     .from("an estimate: a healthy robot may fail one tap, but not three in a row"));
+  fields.integer(failed_in_a_row, Field("failed_in_a_row",
+                                        "number of consecutive failed taps at which the run fails; not given: 3 if the "
+                                        "backend cannot repeat a tap, else no limit. Taps with outcome `unreachable`, "
+                                        "and taps from any side without contact, do not count as failed")
+                                      .at_least(1)
+                                      .at_most(100000)
+                                      .from("an estimate: a healthy robot may fail one tap, but not three in a row"));
 }
 
 void LogOptions::list(Fields& fields) {
   fields.choice(sync, Field("sync", "times at which the record is forced to disk"),
-                {{"auto", "before and after each tap if taps cannot be repeated, else never", {}},
-                 {"tap", "after each tap, and also before it if taps cannot be repeated", {}},
+                {{"auto", "before and after each tap if the backend cannot repeat a tap, else never", {}},
+                 {"tap", "after each tap. If the backend cannot repeat a tap, also before each tap", {}},
                  {"none", "never", {}}});
-  fields.flag(maps, Field("maps", "whether to write the maps behind each choice of a tap to maps/tap_NNN.csv"));
-  fields.flag(surface, Field("surface", "whether to write surface.csv; false by default in a sweep"));
+  fields.flag(maps, Field("maps", "whether to write the maps used to choose each tap to maps/tap_NNN.csv"));
+  fields.flag(
+      surface,
+      Field("surface", "whether to write the reconstructed surface to surface.csv. In a sweep the default is false"));
 }
 
 void ExperimentOptions::list(Fields& fields) {
   fields.integer(complete, Field("complete",
-                                 "record version; palpate writes it into config.yaml, where a missing option then "
-                                 "means the behaviour before that option existed")
+                                 "record version that palpate writes into config.yaml. With this key, an option "
+                                 "missing in the file means the behaviour before the option existed")
                                .of_run()
                                .at_least(1)
                                .at_most(kRecordVersion)
                                .not_identifying());
-  fields.text(name, Field("name", "name of the experiment; the folder of its runs has this name as a slug")
-                        .of_run()
-                        .not_identifying());
+  fields.text(name,
+              Field("name", "name of the experiment. The name, as a slug, is also the name of the folder for the runs")
+                  .of_run()
+                  .not_identifying());
   fields.integer(seed, seed_field());
   fields.integer(
       taps, Field("taps", "maximum number of taps, the initial taps included").of_run().at_least(1).at_most(100000));
@@ -249,51 +269,57 @@ void ExperimentOptions::list(Fields& fields) {
                  Field("initial", "initial taps, drawn from the candidates without replacement").of_strategy());
   fields.section(
       candidates,
-      Field("candidates", "positions among which the next tap is chosen: the cell centres of a grid").of_run());
+      Field("candidates", "grid of candidates. A candidate is a cell centre and a possible position of the next tap")
+          .of_run());
   fields.plugin(kernel,
                 Field("kernel", "covariance kernel, shared by the height GP and the label GP").of_strategy().group());
-  fields.section(height, Field("height", "GP of the heights above the desk").of_strategy());
   fields.section(
-      label, Field("label", "GP of the labels, 1 on an object and 0 on the desk; its mean is the weight w of the paper")
-                 .of_strategy());
+      height,
+      Field("height", "settings of the height GP, the Gaussian process of the heights above the desk").of_strategy());
+  fields.section(label, Field("label",
+                              "settings of the label GP, the Gaussian process of the contact labels. A label is 1 on "
+                              "an object and 0 on the desk. The mean of the label GP is the weight w of the paper")
+                            .of_strategy());
   fields.section(prior, Field("prior", "view of a depth camera before the first tap; not given: no view").of_run());
-  fields.choice(
-      surface,
-      Field("surface", "method of surface reconstruction; the taps of the shipped strategies do not depend on it")
-          .of_strategy(),
-      {{"single", "one GP for the heights of object and desk, as in the paper", {}},
-       {"two_part",
-        "GP of the heights of taps on objects where the footprint is at least 1/2, desk height elsewhere",
-        {}},
-       {"implicit", "closed surfaces in space; for `scene.touch: any` only", {}}});
+  fields.choice(surface,
+                Field("surface",
+                      "method of surface reconstruction. The method does not change the taps of the shipped strategies")
+                    .of_strategy(),
+                {{"single", "one GP for the heights of object and desk, as in the paper", {}},
+                 {"two_part",
+                  "one GP for the heights of taps on objects. This GP gives the surface where the footprint's "
+                  "probability is at least 1/2. Elsewhere, the surface is the desk",
+                  {}},
+                 {"implicit", "closed surfaces in 3-D space. Requires `scene.touch: any`", {}}});
   if (surface == Surface::implicit && !space) space.emplace();
   fields.section(space, Field("space", "model settings of `surface: implicit`").of_strategy());
-  fields.section(engine,
-                 Field("engine", "engine settings: computation of the posterior over the candidates").of_strategy());
-  fields.plugin(acquisition,
-                Field("acquisition", "acquisition function: score of a tap at each candidate").of_strategy().group());
-  fields.plugin(fitting, Field("fitting", "choice of the hyperparameters, shared by the height GP and the label GP")
-                             .of_strategy()
-                             .group());
-  fields.plugin(footprint,
-                Field("footprint", "footprint: probability of an object at every position").of_strategy().group());
+  fields.section(
+      engine, Field("engine", "settings of the engine, which computes the posterior at the candidates").of_strategy());
+  fields.plugin(
+      acquisition,
+      Field("acquisition", "acquisition function, which scores a tap at each candidate").of_strategy().group());
+  fields.plugin(
+      fitting,
+      Field("fitting", "method that sets the hyperparameters of the height GP and the label GP").of_strategy().group());
+  fields.plugin(footprint, Field("footprint", "model of the footprint, the probability of an object at every position")
+                               .of_strategy()
+                               .group());
   fields.choice(fallback,
-                Field("fallback", "choice of the tap if all scores are equal or none is positive").of_strategy(),
-                {{"uncertainty", "candidate with the most uncertain height", {}},
-                 {"none", "first candidate, as in the paper; the search then stalls", {}}});
-  fields.choice(
-      repeat,
-      Field(
-          "repeat",
-          "rule for tapping a candidate twice; failed candidates are never repeated, suspected outliers always may be")
-          .of_strategy(),
-      {{"forbid", "each candidate is tapped at most once", {}},
-       {"allow", "candidates may be tapped again, with independent noise", {}}});
+                Field("fallback", "choice of the tap if all scores are equal or no score is positive").of_strategy(),
+                {{"uncertainty", "candidate with the largest height uncertainty", {}},
+                 {"none", "first candidate, as in the paper. The search may stall", {}}});
+  fields.choice(repeat,
+                Field("repeat",
+                      "rule for repeated taps of one candidate. Failed candidates are never repeated, and suspected "
+                      "outliers may always be repeated")
+                    .of_strategy(),
+                {{"forbid", "each candidate is tapped at most once", {}},
+                 {"allow", "candidates may be tapped again, with independent noise", {}}});
   fields.real(
       tie_tolerance,
       Field("tie_tolerance",
-            "relative tolerance of ties: scores within this times (|best| + the score's prior scale) of the best are "
-            "tied")
+            "relative tolerance of ties. A score is tied with the best score if the difference is at most tolerance "
+            "times (|best score| + prior scale of the scores)")
           .of_strategy()
           .at_least(0)
           .at_most(1)
@@ -302,8 +328,8 @@ void ExperimentOptions::list(Fields& fields) {
   fields.section(stop, Field("stop", "conditions that stop a run before its tap budget is spent").of_strategy());
   fields.section(
       scene,
-      Field("scene", "scene: area, desk and objects; a robot backend reads only area and desk").of_run().group());
-  fields.plugin(backend, Field("backend", "backend that makes the taps: a simulator, a robot or a program")
+      Field("scene", "scene with area, desk and objects. A robot backend reads only area and desk").of_run().group());
+  fields.plugin(backend, Field("backend", "backend that makes the taps, for example a simulator, a robot or a program")
                              .of_run()
                              .with_beside("motion")
                              .group());
@@ -339,21 +365,24 @@ void ExperimentOptions::list(Fields& fields) {
 Field seed_field() { return Field("seed", "seed of all random draws").at_least(0).of_run(); }
 
 std::vector<Field> keys_beside_options() {
-  return {
-      Field("defaults",
-            "list of config groups: '- kernel: rbf' reads kernel/rbf.yaml; later entries override earlier ones, and "
-            "this file overrides all")
-          .of_strategy(),
-      Field(kStrategy,
-            "strategy (choice of taps and models) by the name NAME of strategy/NAME.yaml, or by a whole config file")
-          .of_strategy()
-          .group(),
-      Field("sweep", "keys and values that 'palpate sweep' varies; blocks are combined with each other in their order")
-          .of_run(),
-      Field("expect",
-            "expected results in the summary, for example first_hit_tap: '<= 9'; of a sweep, median(taps): '<= 17'")
-          .of_run()
-          .group()};
+  return {Field("defaults",
+                "list of config groups to read, for example '- kernel: rbf' for kernel/rbf.yaml. Later entries "
+                "override earlier entries, and this file overrides all entries")
+              .of_strategy(),
+          Field(kStrategy,
+                "strategy, which sets the choice of taps and the models. The value is NAME for strategy/NAME.yaml, or "
+                "the path of a config file")
+              .of_strategy()
+              .group(),
+          Field("sweep",
+                "keys and values that 'palpate sweep' varies. Jobs are all combinations of the blocks, in the order of "
+                "the blocks")
+              .of_run(),
+          Field("expect",
+                "expected values of summary fields, for example first_hit_tap: '<= 9'. For a sweep, statistics are "
+                "possible, for example median(taps): '<= 17'")
+              .of_run()
+              .group()};
 }
 
 const ConfigKeys& config_keys() {

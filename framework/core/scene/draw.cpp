@@ -30,7 +30,8 @@ struct DrawOptions : Options {
     constexpr double kMost = 1000;
     fields.integer(least, Field("least", "minimum number of objects").at_least(0).at_most(kMost).needed());
     fields.integer(most, Field("most", "maximum number of objects").at_least(0).at_most(kMost).needed());
-    fields.sections(of, Field("of", "list of objects from which each object is drawn").needed());
+    fields.sections(of,
+                    Field("of", "list of possible objects. Each object of the scene is drawn from this list").needed());
     fields.require(least <= most, "most", fmt::format("is less than 'least', which is {}", least));
     fields.require(!of.empty(), "of", "is empty, name at least one object");
   }

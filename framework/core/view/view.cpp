@@ -70,9 +70,9 @@ Offset offset_of(const std::vector<double>& of_desk, double noise, double bias) 
 }  // namespace
 
 void ViewPose::list(Fields& fields) {
-  fields.real(x, Field("x", "x of the point cloud's origin in the area").in(Unit::metre));
-  fields.real(y, Field("y", "y of the point cloud's origin in the area").in(Unit::metre));
-  fields.real(z, Field("z", "z (upwards) of the point cloud's origin").in(Unit::metre));
+  fields.real(x, Field("x", "x of the point cloud's origin in the frame of the area").in(Unit::metre));
+  fields.real(y, Field("y", "y of the point cloud's origin in the frame of the area").in(Unit::metre));
+  fields.real(z, Field("z", "z (upwards) of the point cloud's origin in the frame of the area").in(Unit::metre));
   fields.real(roll,
               Field("roll", "rotation of the point cloud about the area's x axis, applied first").in(Unit::radian));
   fields.real(pitch,
@@ -82,8 +82,8 @@ void ViewPose::list(Fields& fields) {
 
 void PriorOptions::list(Fields& fields) {
   fields.text(depth, Field("depth",
-                           "PLY file with the points of a depth camera; a relative path starts in the working folder "
-                           "or beside the config")
+                           "PLY file with the points of a depth camera. A relative path starts in the working folder "
+                           "or in the folder of the config")
                          .needed()
                          .names_file()
                          .not_identifying());
@@ -92,14 +92,17 @@ void PriorOptions::list(Fields& fields) {
                          .in(Unit::metre)
                          .at_least(0)
                          .from("3 mm: structured light at 1 m, an estimate"));
-  fields.real(bias, Field("bias", "standard deviation of the common offset of all heights measured by the camera")
+  fields.real(bias, Field("bias", "standard deviation of the camera's height offset, which is the same for all points")
                         .in(Unit::metre)
                         .at_least(0)
                         .from("5 mm: error of the camera's assumed position, an estimate"));
-  fields.section(pose,
-                 Field("pose", "pose of the point cloud in the frame of the area; not given: the frames are the same"));
+  fields.section(
+      pose,
+      Field(
+          "pose",
+          "pose of the point cloud in the frame of the area; not given: the point cloud is in the frame of the area"));
   const auto trouble = trouble_in([&] { checksum = depth.empty() ? "" : hash_of(bytes_of(depth)); });
-  fields.text(checksum, Field("checksum", "checksum of the file's content; not given: computed from the file"));
+  fields.text(checksum, Field("checksum", "checksum of the file content; not given: computed from the file"));
   // A record has the checksum, and is read without the file. The error has the place of the file, but not of who names
   // it.
   fields.require(!trouble || !checksum.empty(), "depth", trouble ? trouble->what() : "");

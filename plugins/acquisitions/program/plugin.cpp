@@ -120,9 +120,8 @@ struct ProgramOptions : Options {
   void list(Fields& fields) override {
     const auto words = programs::list_command(command, fields);
     if (words && folder.empty()) folder = fs::current_path().string();
-    fields.text(folder,
-                Field("folder", "working folder of the program, as an absolute path; not given: the current folder")
-                    .not_identifying());
+    fields.text(folder, Field("folder", "working folder of the program (absolute path); not given: the current folder")
+                            .not_identifying());
     fields.require(folder.empty() || fs::path(folder).is_absolute(), "folder",
                    "is not an absolute path, which a resume in another folder needs; begin it with /");
     programs::Content content;
@@ -132,8 +131,8 @@ struct ProgramOptions : Options {
     const std::set<std::string> declared = declarations(content.program);
     if (declared.size() == 1) reads = *declared.begin();
     fields.text(reads, Field("reads",
-                             "names of the arrays that the program receives, separated by commas, or none; not given: "
-                             "taken from reads=[...] in the program"));
+                             "names of the arrays that the program receives, separated by commas; not given: read from "
+                             "reads=[...] in the program. With `none`, the program receives no arrays"));
     fields.require(!words || !reads.empty(), "reads",
                    unsaid(words.value_or(std::vector<std::string>()), content.program, declared));
     // A config seldom has names of its own: those of the program are corrected there.
@@ -143,13 +142,14 @@ struct ProgramOptions : Options {
                      (by_program ? "reads=[...] in " + shown(content.file) + " has " : "has ") + shown(name) +
                          ", which is not one of " + all_names());
     }
-    fields.real(deadline,
-                Field("deadline", "time limit of the program's answer, after which the run fails; it can be resumed")
-                    .in(Unit::second)
-                    .above(0)
-                    .at_most(86400)
-                    .not_identifying());
-    fields.real(start, Field("start", "additional time before the deadline for the first scores of a program")
+    fields.real(deadline, Field("deadline",
+                                "time limit of the program's answer. After this time the run fails. 'palpate resume "
+                                "--retry-failed' continues the run")
+                              .in(Unit::second)
+                              .above(0)
+                              .at_most(86400)
+                              .not_identifying());
+    fields.real(start, Field("start", "time added to the deadline of the program's first scores")
                            .in(Unit::second)
                            .at_least(0)
                            .at_most(86400)

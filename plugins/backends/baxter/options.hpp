@@ -36,16 +36,15 @@ struct ToolOptions : Options {
   double gripper = 0.025;           ///< left_gripper as the robot has it, from left_hand along z, metres
   void list(Fields& fields) override {
     const char* meaning =
-        "touching point of the tool in the frame left_hand: x, y, z, with z pointing away from the flange";
+        "x, y, z of the tool's contact point in the frame left_hand. The z axis points away from the flange";
     fields.reals(tip, 3, mandatory(Field("tip", meaning).in(Unit::metre).at_least(-0.6).at_most(0.6)));
-    fields.real(
-        gripper,
-        Field("gripper",
-              "distance from left_hand to left_gripper, the frame whose pose the robot reports; checked at the start")
-            .in(Unit::metre)
-            .at_least(0)
-            .at_most(0.6)
-            .from("baxter.urdf: 2.5 cm; 0 without a gripper, more with an electric one"));
+    fields.real(gripper, Field("gripper",
+                               "distance from the frame left_hand to the frame left_gripper. The robot reports the "
+                               "pose of left_gripper. The distance is checked at the start")
+                             .in(Unit::metre)
+                             .at_least(0)
+                             .at_most(0.6)
+                             .from("baxter.urdf: 2.5 cm; 0 without a gripper, more with an electric one"));
   }
 };
 
@@ -59,17 +58,20 @@ struct ScenePoseOptions : Options {
     return Eigen::Translation3d(corner[0], corner[1], height) * Eigen::AngleAxisd(rotation, Eigen::Vector3d::UnitZ());
   }
   void list(Fields& fields) override {
-    const char* corner_is = "x, y of the area's corner (0, 0) in the robot's frame base: x forward, y to the left";
+    const char* corner_is =
+        "x, y of the area's corner (0, 0) in the robot's frame base. In this frame, x points forward and y points to "
+        "the left";
     fields.reals(corner, 2, mandatory(Field("corner", corner_is).in(Unit::metre).at_least(-1.5).at_most(1.5)));
     const char* height_is =
-        "height of the scene's zero in the robot's frame base; the desk and all heights are relative to it";
+        "height of the scene's origin in the robot's frame base. All heights of the scene, including the desk, are "
+        "relative to the origin";
     fields.real(height, mandatory(Field("height", height_is).in(Unit::metre).at_least(-1).at_most(1)));
-    fields.real(
-        rotation,
-        Field("rotation", "rotation of the scene about the vertical, from the x axis of base to that of the scene")
-            .in(Unit::radian)
-            .at_least(-6.3)
-            .at_most(6.3));
+    fields.real(rotation, Field("rotation",
+                                "rotation of the scene about the vertical axis: the angle from the x axis of the frame "
+                                "base to the x axis of the scene")
+                              .in(Unit::radian)
+                              .at_least(-6.3)
+                              .at_most(6.3));
   }
 };
 
@@ -79,13 +81,14 @@ struct CalibrationOptions : Options {
   double tolerance = 0.01;    ///< how far the desk may be from where the config has it, metres
   void list(Fields& fields) override {
     fields.reals(at, 2,
-                 Field("at", "position of the calibration tap in the area, where nothing lies on the desk")
+                 Field("at", "position of the calibration tap in the area. The desk must be bare at this position")
                      .in(Unit::metre)
                      .needed());
     fields.real(
         tolerance,
-        Field("tolerance",
-              "maximum difference between the measured desk height and that of `scene_pose`; a larger one ends the run")
+        Field(
+            "tolerance",
+            "maximum difference between the measured and the configured desk height. A larger difference ends the run")
             .in(Unit::metre)
             .above(0)
             .at_most(0.05)
@@ -126,32 +129,36 @@ struct BaxterOptions : Options {
     fields.section(
         calibration,
         Field("calibration",
-              "tap on the bare desk before the run, whose height then replaces the configured height of the desk"));
+              "tap on the bare desk before the run. The measured height replaces the configured desk height"));
     ForceSign chosen = sign();
-    fields.choice(
-        chosen,
-        Field("force_sign", "sign of the force along z in endpoint_state when something presses the tool upwards")
-            .from("Rethink documents no sign; five public programs for Baxter expect a falling force. With a "
-                  "calibration tap the default is learn"),
-        {{"negative", "negative: the force falls", {}},
-         {"positive", "positive: the force rises", {}},
-         {"learn", "sign of the force at the first contact; until then a change in either direction counts", {}}});
+    fields.choice(chosen,
+                  Field("force_sign", "sign of the z force in endpoint_state when an object presses the tool upwards")
+                      .from("Rethink documents no sign; five public programs for Baxter expect a falling force. With a "
+                            "calibration tap the default is learn"),
+                  {{"negative", "negative: the force falls", {}},
+                   {"positive", "positive: the force rises", {}},
+                   {"learn",
+                    "learned at the first contact. Until the first contact, a rise and a fall of the force both count "
+                    "as a contact",
+                    {}}});
     force_sign = chosen;
-    fields.real(force_stop, Field("force_stop",
-                                  "change of the force since the tare at which the arm stops if it is not in contact; "
-                                  "1.5 times as much sideways during vertical motion")
-                                .in(Unit::newton)
-                                .above(0)
-                                .at_most(kGreatestStop)
-                                .from("the arm's firmware stops it at 16 N"));
+    fields.real(force_stop,
+                Field("force_stop",
+                      "maximum change of the force since the tare while the arm is not in contact. A larger change "
+                      "stops the arm. For sideways forces during vertical motion, the limit is 1.5 times as large")
+                    .in(Unit::newton)
+                    .above(0)
+                    .at_most(kGreatestStop)
+                    .from("the arm's firmware stops it at 16 N"));
     for (int i = 0; i < motion.count(); ++i)
       fields.require(force_stop > motion.at(i).threshold, "force_stop", "must lie above motion.threshold");
     fields.choice(
         inverse_kinematics,
         Field("inverse_kinematics", "solver of the inverse kinematics, from a pose to joint angles"),
-        {{"own", "solver of palpate", {}}, {"robot", "IKService of the robot, whose answers palpate checks", {}}});
+        {{"own", "solver of palpate", {}}, {"robot", "IKService of the robot; palpate checks the answers", {}}});
     fields.flag(dry_run, Field("dry_run",
-                               "whether to connect, check and compute every pose of the area without moving anything"));
+                               "whether to make a dry run. A dry run connects to the robot, makes all checks and "
+                               "computes every pose of the area, but moves nothing"));
     fields.flag(view, Field("view", "whether to publish the surface, its standard deviation and the taps for RViz"));
     fields.flag(bag,
                 Field("bag", "whether to record the messages and commands of the robot in a rosbag in the run's folder")

@@ -38,25 +38,28 @@ struct ProcessOptions : Options {
     const auto words = programs::list_command(command, fields);
     if (words && checksum.empty()) checksum = programs::content_of(*words).checksum;
     programs::list_checksum(checksum, fields);
-    fields.real(deadline, Field("deadline", "time after which an unanswered tap fails and the program is ended")
-                              .in(Unit::second)
-                              .above(0)
-                              .at_most(86400)
-                              .from("longer than motion.timeout, which the program itself should report"));
-    fields.real(start, Field("start", "additional time before the deadline for a tap that has to start the program")
+    fields.real(deadline,
+                Field("deadline",
+                      "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")
+                    .in(Unit::second)
+                    .above(0)
+                    .at_most(86400)
+                    .from("longer than motion.timeout, which the program itself should report"));
+    fields.real(start, Field("start", "time added to the deadline of a tap that has to start the program")
                            .in(Unit::second)
                            .at_least(0)
                            .at_most(86400)
                            .from("an estimate: drivers of robots take seconds"));
     fields.flag(repeatable, Field("repeatable",
-                                  "whether a tap can be repeated without risk and with the same answer; taps are then "
-                                  "not announced in the record before they move"));
+                                  "whether a tap can be repeated without risk and with the same answer. If false, "
+                                  "palpate records each tap before the arm moves"));
     fields.flag(restart, Field("restart",
-                               "whether a program that ended is started again for the next tap even if taps are not "
-                               "repeatable; otherwise the run fails"));
+                               "whether a program that ended is started again for the next tap, even with `repeatable: "
+                               "false`. If `restart` and `repeatable` are false, the run fails"));
     fields.flag(
         scene_is_truth,
-        Field("scene_is_truth", "whether the program taps the scene of the config, so that errors can be computed"));
+        Field("scene_is_truth",
+              "whether the program taps the scene of the config. If true, errors are computed from this scene"));
     fields.section(motion, Field("motion", "motion of the arm in a tap, sent to the program in SI units"));
   }
 };
@@ -198,6 +201,7 @@ class Process final : public Backend {
   bool answered_ = false;  ///< at least once, by any process of it
 };
 
-PALPATE_PLUGIN(Backend, Process, "process", "any program that answers requests for taps, in JSON lines")
+PALPATE_PLUGIN(Backend, Process, "process",
+               "any program that answers requests for taps. Requests and answers are JSON lines")
 
 }  // namespace palpate::backends

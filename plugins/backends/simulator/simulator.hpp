@@ -16,7 +16,7 @@ struct SimulatorOptions : Options {
   double pace = 0.0;
   void list(Fields& fields) override {
     fields.section(motion, Field("motion", "motion of the arm in a tap"));
-    fields.real(pace, Field("pace", "real time per second of robot time, in seconds; 0 for the highest speed")
+    fields.real(pace, Field("pace", "seconds of real time per second of robot time; 0 for the highest speed")
                           .at_least(0)
                           .not_identifying());
   }

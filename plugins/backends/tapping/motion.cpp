@@ -39,26 +39,25 @@ std::string touch(const MotionOptions& motion) {
 }  // namespace
 
 void AdaptiveHover::list(Fields& fields) {
-  fields.real(
-      deviations,
-      Field("deviations",
-            "distance of the slow descent's start from the predicted height, in standard deviations of that height")
-          .at_least(0)
-          .from("2: the surface is higher in about 2 % of the taps"));
-  fields.real(
-      clearance,
-      positive("clearance",
-               "additional distance of the slow descent's start; the arm also backs off by it after an earlier contact",
-               Unit::metre, "an estimate: several times the error of a good tap"));
-  fields.real(speed, positive("speed", "speed from the travel height down to the start of the slow descent",
-                              Unit::metre_per_second,
-                              "a third of travel_speed, as the arm hits a wrongly predicted surface at this speed"));
-  fields.real(certainty,
-              Field("certainty",
-                    "probability at which the descent relies on the footprint: with an object it ends below the "
-                    "object, without one it expects only the desk; not given: an object is expected everywhere")
-                  .above(0.5)
-                  .at_most(1));
+  fields.real(deviations, Field("deviations",
+                                "height of the slow descent's start above the predicted height, in standard deviations "
+                                "of the predicted height")
+                              .at_least(0)
+                              .from("2: the surface is higher in about 2 % of the taps"));
+  fields.real(clearance, positive("clearance",
+                                  "distance added to the height of the slow descent's start. After a contact above the "
+                                  "start, the arm also moves up by this distance",
+                                  Unit::metre, "an estimate: several times the error of a good tap"));
+  fields.real(speed,
+              positive("speed", "speed of the fast descent from the travel height to the start of the slow descent",
+                       Unit::metre_per_second,
+                       "a third of travel_speed, as the arm hits a wrongly predicted surface at this speed"));
+  fields.real(certainty, Field("certainty",
+                               "minimum probability at which the descent relies on the footprint; not given: an object "
+                               "is expected everywhere. If an object is this probable, the descent ends below the "
+                               "object. If the bare desk is this probable, only the desk is expected")
+                             .above(0.5)
+                             .at_most(1));
 }
 
 void MotionOptions::list(Fields& fields) {
@@ -67,10 +66,11 @@ void MotionOptions::list(Fields& fields) {
 }
 
 void BackendMotion::list(Fields& fields) {
-  list_types(fields, {{"per_tap", "motion with the highest information gain per second, chosen for each tap",
-                       [this](Fields& inner) {
-                         inner.sections(of, Field("of", "list of motions to choose from, each with its own options"));
-                       }}});
+  list_types(
+      fields,
+      {{"per_tap", "motion with the highest information gain per second, chosen for each tap", [this](Fields& inner) {
+          inner.sections(of, Field("of", "list of motions to choose from. Each motion has its own options"));
+        }}});
   if (type != Type::per_tap) return list_rest(fields);
   fields.require(of.size() >= 2, "of", "must name at least two motions to choose from");
   const auto same = [this](const MotionOptions& one) { return one.hover == of.front().hover; };
@@ -82,32 +82,36 @@ void MotionOptions::list_types(Fields& fields, const std::vector<Case>& more) {
     inner.real(pause, Field("pause", meaning).in(Unit::second).at_least(0).from("Sun and Min 2021: 0.5 s"));
   };
   std::vector<Case> types{
-      {"paper", "steps with a pause after each, until the force rises; the height is read after the last pause",
+      {"paper",
+       "downward steps with a pause after each step, until the force rises. The height is measured after the last "
+       "pause",
        [&, this](Fields& inner) {
          inner.real(step, positive("step", "length of one downward step", Unit::metre, "Sun and Min 2021: 3 cm"));
          pause_after(inner, "pause after each step");
        }},
-      {"two_stage", "descent until the force rises, a short retreat, and a second, slower and gentler descent",
+      {"two_stage", "descent until the force rises, a short retreat, and a second descent that is slower and gentler",
        [&, this](Fields& inner) {
          inner.real(back_off, positive("back_off", "distance of the retreat between the two stages", Unit::metre,
                                        "2 cm: the joint springs relax, and a false contact is noticed"));
-         pause_after(inner, "pause before the second stage, with a new tare");
+         pause_after(inner, "pause before the second stage. The tare is repeated during the pause");
          inner.real(fine_speed, positive("fine_speed", "speed of the second stage", Unit::metre_per_second,
                                          "2 cm/s: 5 mm of set-point ahead of the arm at a lag of 0.3 s"));
          inner.real(fine_threshold, positive("fine_threshold", "force above the tare at which the second stage ends",
                                              Unit::newton, "6 N: four deviations of 1.5 N of noise"));
        }},
-      {"continuous", "descent at constant speed until the force rises; the height is where the force began to rise",
+      {"continuous",
+       "descent at constant speed until the force rises. The measured height is the height at which the force began to "
+       "rise",
        [this](Fields& inner) {
          inner.real(brake, Field("brake",
-                                 "height above the arm to which the set-point jumps at a contact, so that a lagging "
-                                 "arm stops sooner and presses less")
+                                 "distance of the set-point above the arm after a contact. The set-point jumps to this "
+                                 "height, so that a lagging arm stops sooner and presses less")
                                .in(Unit::metre)
                                .at_least(0)
                                .from("0: the set-point jumps to the arm's position"));
          inner.flag(confirm, Field("confirm",
-                                   "whether a contact counts only if the force lasts for 0.1 s, which rules out jerks; "
-                                   "real arms always require it"));
+                                   "whether a contact counts only if the force lasts for 0.1 s. This condition rules "
+                                   "out jerks. Real arms always use the condition"));
        }}};
   types.insert(types.end(), more.begin(), more.end());
   fields.choice(type, Field("type", "type of the tapping motion"), types);
@@ -117,26 +121,32 @@ void MotionOptions::list_rest(Fields& fields) {
   fields.real(
       speed,
       positive(
-          "speed", "speed of the descent; type paper: of each step; type two_stage: of the first stage",
+          "speed",
+          "speed of the descent. With `type: paper`, this is the speed of each step. With `type: two_stage`, this is "
+          "the speed of the first stage",
           Unit::metre_per_second,
           "2.4 cm/s: with a lag of 0.35 s and 1500 N/m the paper's motion then has its known 13 mm and 6.4 s per tap"));
-  fields.real(threshold, positive("threshold", "force above the tare at which contact is declared", Unit::newton,
+  fields.real(threshold, positive("threshold", "force above the tare at which a contact is detected", Unit::newton,
                                   "10 N: used with Baxter, whose firmware stops the arm at 16 N"));
-  fields.real(hover, positive("hover", "height above the desk at which the arm travels and the descent begins",
-                              Unit::metre, "13.5 cm: 2.5 cm above the highest of the paper's objects"));
-  fields.section(
-      adaptive_hover,
-      Field("adaptive_hover", "start of the slow descent just above the predicted surface; not given: at `hover`"));
+  fields.real(
+      hover,
+      positive("hover", "height above the desk of the arm's travel between taps. Each descent begins at this height",
+               Unit::metre, "13.5 cm: 2.5 cm above the highest of the paper's objects"));
+  fields.section(adaptive_hover, Field("adaptive_hover",
+                                       "fast descent to just above the predicted surface, followed by the slow "
+                                       "descent; not given: the slow descent starts at `hover`"));
   fields.real(travel_speed, positive("travel_speed", "speed of the tool at travel height", Unit::metre_per_second,
                                      "30 cm/s: Baxter's default speed ratio is 0.3 of about 1 m/s"));
   fields.real(retreat_speed,
               positive("retreat_speed", "speed of the tool on its way up", Unit::metre_per_second, "as travel_speed"));
-  fields.real(tare,
-              Field("tare", "duration of the rest before the descent, in which the force is averaged to set its zero")
-                  .in(Unit::second)
-                  .at_least(0)
-                  .from("20 samples at Baxter's 100 Hz: 1.5 N of noise become 0.3 N"));
-  fields.real(overrun, Field("overrun", "depth below the desk at which a descent without contact ends")
+  fields.real(
+      tare,
+      Field("tare",
+            "duration of the rest before the descent. The mean force during the rest becomes the zero of the force")
+          .in(Unit::second)
+          .at_least(0)
+          .from("20 samples at Baxter's 100 Hz: 1.5 N of noise become 0.3 N"));
+  fields.real(overrun, Field("overrun", "depth below the desk. A descent without contact ends at this depth")
                            .in(Unit::metre)
                            .at_least(0)
                            .from("3 cm: 1500 N/m reach 10 N after 0.7 cm, and a lag adds 1 cm"));
@@ -144,8 +154,8 @@ void MotionOptions::list_rest(Fields& fields) {
                                 "ten times the duration of the paper's motion")
                            .at_most(3600));
   fields.real(force_limit, Field("force_limit",
-                                 "maximum force of a tap: the arm stops by itself at three quarters of it, even if it "
-                                 "feels no contact; not given: no limit")
+                                 "maximum force of a tap; not given: no limit. At three quarters of this force the arm "
+                                 "stops, even if no contact is detected")
                                .in(Unit::newton)
                                .above(0)
                                .from("16 N: where Baxter's firmware stops the arm"));

@@ -26,19 +26,20 @@ struct CeresOptions : Options {
                    {"loo", "leave-one-out log predictive density of the targets", {}}});
     fields.choice(priors, Field("priors", "prior densities of the hyperparameters"),
                   {{"touch",
-                    "log-normal, with median and factor of one standard deviation: length scales 1/12 of the area's "
-                    "longer side, 1.5; signal the largest deviation of a target from the mean, 1.35; noise 0.3 of the "
-                    "signal, or 0.05 if the level of the surface is unknown, 1.5; other kernel parameters 1, 2.7; a "
-                    "fitted mean is normal around the mean of the targets, within their largest deviation",
+                    "log-normal priors. Length scales have the median 1/12 of the area's longer side and the factor "
+                    "1.5 per standard deviation. Signal: the largest deviation of a target from the mean, factor 1.35. "
+                    "Noise: 0.3 of the signal (0.05 if the level of the surface is unknown), factor 1.5. Other kernel "
+                    "parameters: 1, factor 2.7. A fitted mean has a normal prior around the mean of the targets; the "
+                    "standard deviation is the largest deviation of a target",
                     {}},
-                   {"none", "no priors; the fit needs more taps than hyperparameters", {}}});
+                   {"none", "no priors. The fit needs more taps than hyperparameters", {}}});
     fields.choice(mean, Field("mean", "prior mean of the GP"),
-                  {{"keep", "mean that the config gives", {}},
+                  {{"keep", "mean from the config", {}},
                    {"fit", "constant mean, fitted together with the other hyperparameters", {}}});
     fields.integer(every, Field("every", "number of taps from one fit to the next").at_least(1).at_most(100000));
     fields.integer(starts, Field("starts",
-                                 "number of ascents: one starts at or near the present values, the others at random "
-                                 "values within the range of the priors")
+                                 "number of optimisation starts. One start is at or near the present values. The other "
+                                 "starts are random values within the range of the priors")
                                .at_least(1)
                                .at_most(1000));
   }

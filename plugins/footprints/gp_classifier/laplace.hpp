@@ -37,8 +37,8 @@ struct LaplaceOptions : Options {
     fields.real(signal,
                 Field("signal", "prior standard deviation of the classifier's latent function").above(0).at_most(100));
     fields.real(prior_mean, Field("prior_mean",
-                                  "prior mean of the classifier's latent function; at -1, with a signal of 2, a third "
-                                  "of the area is expected to be object"));
+                                  "prior mean of the classifier's latent function. For example, with -1 and a signal "
+                                  "of 2, a third of the area is expected to be object"));
   }
 };
 

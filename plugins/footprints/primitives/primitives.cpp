@@ -34,19 +34,18 @@ struct PrimitivesOptions : LaplaceOptions {
                     .at_most(20));
     fields.real(
         hole_probability,
-        Field("hole_probability", "prior probability that a primitive has a hole, which is a box or an ellipse, too")
+        Field("hole_probability", "prior probability that a primitive has a hole. The hole is also a box or an ellipse")
             .at_least(0)
             .at_most(0.9));
     fields.real(label_error_probability,
                 Field("label_error_probability", "probability that the label of a contact is wrong")
                     .at_least(1e-6)
                     .at_most(0.4));
-    fields.real(
-        false_contact_probability,
-        Field("false_contact_probability",
-              "probability that a contact with the desk is labelled as an object; not given: label_error_probability")
-            .at_least(1e-6)
-            .at_most(0.4));
+    fields.real(false_contact_probability, Field("false_contact_probability",
+                                                 "probability that a contact with the desk is labelled as an object; "
+                                                 "not given: equal to label_error_probability")
+                                               .at_least(1e-6)
+                                               .at_most(0.4));
     fields.real(position_noise,
                 Field("position_noise", "standard deviation of the position of a contact, along x and y")
                     .in(Unit::metre)
@@ -55,14 +54,18 @@ struct PrimitivesOptions : LaplaceOptions {
                 Field("push_probability", "probability that the objects are pushed between two contacts")
                     .at_least(0)
                     .at_most(0.5));
-    fields.flag(heights, Field("heights", "whether contacts of different height count as evidence for two primitives"));
+    fields.flag(heights,
+                Field("heights", "whether a height difference between contacts is evidence for two primitives"));
     fields.real(
         max_contradictions,
-        Field("max_contradictions",
-              "mean number of wrong labels, in excess of label_error_probability, at which gp_classifier takes over")
+        Field(
+            "max_contradictions",
+            "maximum number of unexpected wrong labels, averaged over the particles. Above this maximum, gp_classifier "
+            "replaces the primitives. label_error_probability times the number of contacts is the expected number")
             .above(0));
     fields.integer(particles, Field("particles",
-                                    "number of outline hypotheses; twice as many for ten contacts after each discovery")
+                                    "number of particles. A particle is one hypothesis of the outlines. The number is "
+                                    "doubled for ten contacts after each discovery of an object")
                                   .at_least(100)
                                   .at_most(100000));
     LaplaceOptions::list(fields);
@@ -159,8 +162,8 @@ class Primitives final : public Footprint {
   int handed_over_at_ = 0;  ///< touches; 0: not yet
 };
 
-PALPATE_PLUGIN(
-    Footprint, Primitives, "primitives",
-    "Bayesian inference of boxes and ellipses in any number; gp_classifier takes over if the contacts contradict them")
+PALPATE_PLUGIN(Footprint, Primitives, "primitives",
+               "Bayesian inference of any number of boxes and ellipses. If the contacts contradict every such model, "
+               "gp_classifier replaces the inference")
 
 }  // namespace palpate::footprints

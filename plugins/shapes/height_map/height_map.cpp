@@ -29,14 +29,13 @@ struct HeightMapOptions : Options {
 
   void list(Fields& fields) override {
     fields.text(file, Field("file",
-                            "CSV, NPY or PNG file (8 or 16 bits, grey), with its first row at the far side; a relative "
-                            "path starts in the working folder or beside the config")
+                            "CSV, NPY or PNG file (8 or 16 bits, grey). The first row is at the largest y. A relative "
+                            "path starts in the working folder or in the folder of the config")
                           .needed()
                           .names_file()
                           .not_identifying());
-    fields.real(unit,
-                Field("unit", "height that a value of 1 in the file stands for").in(Unit::metre).above(0).needed());
-    fields.real(spacing, Field("spacing", "distance between neighbouring values, along x and along y")
+    fields.real(unit, Field("unit", "height of the value 1 in the file").in(Unit::metre).above(0).needed());
+    fields.real(spacing, Field("spacing", "distance between neighbouring values of the grid, along x and along y")
                              .in(Unit::metre)
                              .above(0)
                              .needed());

@@ -80,24 +80,27 @@ void list_checksum(const std::string& file, std::string& checksum, Fields& field
   } catch (const Error& error) {
     trouble = error.what();
   }
-  fields.text(checksum, Field("checksum", "checksum of the file's content; not given: computed from the file"));
+  fields.text(checksum, Field("checksum", "checksum of the file content; not given: computed from the file"));
   // A record has the checksum, and is read without the file.
   fields.require(trouble.empty() || !checksum.empty(), "file", trouble);
 }
 
 void MeshOptions::list(Fields& fields) {
-  fields.text(file,
-              Field("file", "STL, OBJ or PLY file; a relative path starts in the working folder or beside the config")
-                  .needed()
-                  .names_file()
-                  .not_identifying());
+  fields.text(
+      file,
+      Field("file", "STL, OBJ or PLY file. A relative path starts in the working folder or in the folder of the config")
+          .needed()
+          .names_file()
+          .not_identifying());
   fields.real(unit,
               Field("unit", "length of one unit of the file, for example 1 mm").in(Unit::metre).above(0).needed());
-  fields.choice(up, Field("up", "axis of the file that points upwards; the length lies along the x axis of the file"),
-                {{"z", "z axis, as in most STL files", {}}, {"y", "y axis, as in most OBJ files", {}}});
-  fields.choice(holes, Field("holes", "treatment of holes in the surface, whose edges belong to one triangle only"),
-                {{"refuse", "error with the number of such edges and the first of them", {}},
-                 {"allow", "holes are accepted, and taps pass through them", {}}});
+  fields.choice(
+      up, Field("up", "axis of the file that points upwards. The x axis of the file becomes the object's own x axis"),
+      {{"z", "z axis, as in most STL files", {}}, {"y", "y axis, as in most OBJ files", {}}});
+  fields.choice(holes,
+                Field("holes", "treatment of holes in the surface. An edge of a hole belongs to one triangle only"),
+                {{"refuse", "holes are an error. The message gives the number of such edges and the first edge", {}},
+                 {"allow", "holes are accepted, and taps pass through the holes", {}}});
   list_checksum(file, checksum, fields);
 }
 

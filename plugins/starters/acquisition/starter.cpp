@@ -9,10 +9,9 @@ struct MyAcquisitionOptions : Options {
   double trust = 0.5;
 
   void list(Fields& fields) override {
-    fields.real(trust,
-                Field("trust", "weight (exponent) of the object probability; 0 taps wherever the height is unknown")
-                    .at_least(0)
-                    .at_most(10));
+    fields.real(trust, Field("trust", "exponent of the object probability. At 0, only the height uncertainty counts")
+                           .at_least(0)
+                           .at_most(10));
   }
 };
 

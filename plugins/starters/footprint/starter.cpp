@@ -12,9 +12,9 @@ struct MyFootprintOptions : Options {
   double prior = 0.2;
 
   void list(Fields& fields) override {
-    fields.real(
-        reach,
-        Field("reach", "distance over which a contact informs about its neighbourhood").in(Unit::metre).above(0));
+    fields.real(reach, Field("reach", "distance over which the label of a contact influences the probability")
+                           .in(Unit::metre)
+                           .above(0));
     fields.real(prior, Field("prior", "probability of an object far from all contacts").at_least(0).at_most(1));
   }
 };

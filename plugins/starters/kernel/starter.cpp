@@ -10,7 +10,7 @@ struct MyKernelOptions : Options {
   void list(Fields& fields) override {
     fields.real(
         length_scale,
-        Field("length_scale", "length scale: distance over which heights are correlated").in(Unit::metre).above(0));
+        Field("length_scale", "length scale, the distance over which heights are correlated").in(Unit::metre).above(0));
   }
 };
 

@@ -14,8 +14,8 @@ struct MyShapeOptions : Options {
   double height = 0.05;
 
   void list(Fields& fields) override {
-    fields.real(length, Field("length", "extent along x, before the rotation").in(Unit::metre).above(0));
-    fields.real(width, Field("width", "extent along y, before the rotation").in(Unit::metre).above(0));
+    fields.real(length, Field("length", "size along x, before the object is rotated").in(Unit::metre).above(0));
+    fields.real(width, Field("width", "size along y, before the object is rotated").in(Unit::metre).above(0));
     fields.real(height, Field("height", "height of the top above the desk").in(Unit::metre).above(0));
   }
 };
