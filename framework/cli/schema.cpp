@@ -94,7 +94,7 @@ void sweep_schema(Tree& sweep) {
   blocks.at("grid") =
       of_type("object", "keys whose values are combined each with each: lists, range(0,10), logspace(1cm,5cm,8)");
   blocks.at("zip") = of_type("object", "keys whose lists have equal length and are combined item by item");
-  blocks.at("list") = of_type("array", "list of settings, each of which is a grid of its own");
+  blocks.at("list") = of_type("array", "list of maps from keys to values; the values of each map form a grid");
   blocks.at("list").at("items") = of_type("object");
   Tree& sobol = blocks.at("sobol") = of_type("object", "points of a Sobol sequence in continuous ranges");
   sobol.at("additionalProperties") = Tree::scalar("false");

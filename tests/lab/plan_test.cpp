@@ -209,7 +209,7 @@ TEST(Plan, AsksTheConfigForNamesThatAreNotSwept) {
   EXPECT_EQ(rows(plan_of({"seed=1,2", "sweep.where=surface == single or seed == 1"})).size(), 2U)
       << "a default that the config does not write";
   EXPECT_EQ(rows(plan_of({"seed=1,2", "sweep.where=kernel.length_scale == 17 mm and seed < 2"})).size(), 1U);
-  EXPECT_EQ(refused({"seed=1,2", "sweep.where=surfaces == single"}).substr(0, 87),
+  EXPECT_EQ(refused({"seed=1,2", "sweep.where=surfaces == single"}).substr(0, 86),
             "command line: the condition 'surfaces == single' has the unknown name 'surfaces', know");
 }
 

@@ -232,8 +232,8 @@ void StopOptions::list(Fields& fields) {
   fields.real(robot_time, Field("robot_time", "robot time after which the run stops").in(Unit::second).above(0));
   fields.integer(failed_in_a_row, Field("failed_in_a_row",
                                         "number of consecutive failed taps at which the run fails; not given: 3 if the "
-                                        "backend cannot repeat a tap, else no limit. Taps with outcome `unreachable`, "
-                                        "and taps from any side without contact, do not count as failed")
+                                        "backend cannot repeat a tap, else no limit. A tap that is `unreachable` does "
+                                        "not count, nor does a tap from any side that meets nothing")
                                       .at_least(1)
                                       .at_most(100000)
                                       .from("an estimate: a healthy robot may fail one tap, but not three in a row"));
