@@ -151,7 +151,7 @@ int compare(Program& program, const CompareArguments& arguments);
 struct CurvesArguments {
   std::vector<std::string> records;  ///< sweeps and runs, taken as one sweep: see find_records()
   std::vector<std::string> by;       ///< none: all keys that vary but the seed and the scene's
-  std::string metric;  ///< "": main_error() of the results
+  std::string metric;                ///< "": main_error() of the results
   std::string against = "taps";
   std::optional<std::string> where;
   std::vector<std::string> outputs;  ///< files; none: a picture and a table beside results.csv

@@ -107,8 +107,7 @@ struct CommandLine {
 
 constexpr const char* kStepHelp =
     "for a robot: before each tap, show position, path and force limits, and wait for an answer. Enter makes the tap, "
-    "and "
-    "q ends the run. 'palpate resume' continues an ended run";
+    "q interrupts the run. 'palpate resume' continues the run";
 constexpr const char* kWatchHelp =
     "serve a web page that follows the run or sweep, and print the address of the page. The server ends as with "
     "'palpate watch --until-left'";
@@ -226,7 +225,8 @@ void add_resume(CommandLine& line) {
   CLI::App* sub = line.add("resume", "Resume an interrupted run or sweep", takes, resume, line.resume);
   line.add_record(sub, "DIR", line.resume.directory, Wanted::any, "run or sweep");
   sub->add_flag("--retry-failed", line.resume.options.retry_failed, "also resume failed runs");
-  sub->add_flag("--force", line.resume.options.force, "resume even if another build of palpate started the run");
+  sub->add_flag("--force", line.resume.options.force,
+                "resume even if another build of palpate or its plugins started the run");
   sub->add_option(
          "--jobs", line.resume.jobs,
          "numbers of the sweep's jobs to resume, for example 0-7,12. Jobs that another process runs are skipped")
@@ -451,10 +451,10 @@ void add_about_one(CommandLine& line) {
   show(sub, {"palpate explain runs/object_i/422cd70eb5f7 9", "palpate explain runs/first/* 9"});
 
   sub = line.add("calibrate",
-                 "Estimate the errors of a real arm from recorded taps, and print an effects file for the simulator",
+                 "Estimate the errors of an arm from recorded taps, and print an effects file for the simulator",
                  &Needs::everything, calibrate, line.runs);
   line.add_record(sub, "RUN", line.runs, Wanted::run,
-                  "runs of a real arm in scenes exactly as configured, for example a bare desk or a block");
+                  "runs in scenes exactly as configured, for example a bare desk or a block");
   show(sub, {"palpate calibrate runs/bare_desk/*", "palpate calibrate runs/bare_desk/* runs/block/*"});
 
   sub = line.add("export", "Export the surface and the taps of a run for other programs", all_about(line.directory),
@@ -613,7 +613,6 @@ int run_main(int argc, char** argv) {
     mention(help_text(usage_of(app)));
     return kUsage;
   }
-  lanes_in_use();  // what is wrong with PALPATE_INSTRUCTIONS is said before anything begins
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {
@@ -621,6 +620,7 @@ int run_main(int argc, char** argv) {
   } catch (const CLI::Error& trouble) {
     return usage_error(app, trouble, first);
   }
+  if (!asked) lanes_in_use();     // what is wrong with PALPATE_INSTRUCTIONS is said before anything begins
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
   return perform(line, asked, argc, argv);
 }

@@ -40,8 +40,8 @@ int replay(Program& program, const std::string& directory) {
   const std::optional<Tree> manifest = read_manifest(directory);
   const Tree* const recorded = manifest ? manifest->find("instruction_path") : nullptr;
   if (recorded != nullptr && recorded->text != loops_in_use().name)
-    print_out("the run used the instruction set {}, this command uses {}: the last digits may differ\n", recorded->text,
-              loops_in_use().name);
+    print_out("the run began with the instruction set {}, this command uses {}: the last digits may differ\n",
+              recorded->text, loops_in_use().name);
   return kFailed;
 }
 

@@ -135,11 +135,12 @@ INSTANTIATE_TEST_SUITE_P(
                      {"--fault", "old_state"},
                      "/robot/state: /realtime_loop sends baxter_core_msgs/AssemblyState with md5 sum "
                      "d7ff2b9fa7d5f688665ce44db4ee2af8, but this driver needs baxter_core_msgs/AssemblyState with "
-                     "356d9dd237ce73b2667da9235f541933, update the robot to software 1.2"},
-        BeforeFlight{"OldSoftware",
-                     {"--fault", "software=1.1.1.5"},
-                     "/rethink/software_version: the robot's software is 1.1.1.5, update the robot to 1.2, which this "
-                     "driver needs"},
+                     "356d9dd237ce73b2667da9235f541933, install the robot's software 1.2"},
+        BeforeFlight{
+            "OldSoftware",
+            {"--fault", "software=1.1.1.5"},
+            "/rethink/software_version: the robot's software is 1.1.1.5, install software 1.2 on the robot, which this "
+            "driver needs"},
         BeforeFlight{"NoEndpoint",
                      {"--fault", "no_data=endpoint"},
                      "/robot/limb/left/endpoint_state: /realtime_loop publishes it, but no message has arrived, check "

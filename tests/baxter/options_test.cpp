@@ -45,7 +45,7 @@ TEST(BaxterOptions, ThatComeDownTooFastOrTooFarAreRefused) {
   EXPECT_THAT(refusal("{type: continuous, speed: 20 cm/s}"), HasSubstr("choose at most 10 cm/s"));
   EXPECT_THAT(refusal("{type: two_stage, fine_speed: 20 cm/s}"), HasSubstr("choose at most 10 cm/s"));
   EXPECT_THAT(refusal("{type: paper, adaptive_hover: {speed: 20 cm/s}}"), HasSubstr("choose at most 10 cm/s"));
-  EXPECT_THAT(refusal("{type: paper, overrun: 20 cm}"), HasSubstr("choose at most 10 cm"));
+  EXPECT_THAT(refusal("{type: paper, overrun: 20 cm}"), HasSubstr("choose an overrun of at most 10 cm"));
   EXPECT_EQ(refusal("{type: per_tap, of: [{type: continuous}, {type: paper}]}"), "");
   EXPECT_THAT(refusal("{type: per_tap, of: [{type: continuous}, {type: continuous, speed: 20 cm/s}]}"),
               AllOf(HasSubstr("motion.of.1.speed"), HasSubstr("choose at most 10 cm/s")));
@@ -55,7 +55,7 @@ TEST(BaxterOptions, WithWhichATapWouldMeanNothingOrNeverEndAreRefused) {
   EXPECT_THAT(refusal("{type: paper, threshold: 1 N}"), HasSubstr("choose at least 3 N"));
   EXPECT_THAT(refusal("{type: two_stage, fine_threshold: 1 N}"), HasSubstr("choose at least 3 N"));
   EXPECT_THAT(refusal("{type: paper, tare: 0 s}"), HasSubstr("choose at least 100 ms"));
-  EXPECT_THAT(refusal("{type: paper, travel_speed: 0.1 mm/s}"), HasSubstr("at least 1 cm/s"));
+  EXPECT_THAT(refusal("{type: paper, travel_speed: 0.1 mm/s}"), HasSubstr("choose at least 1 cm/s for both"));
   EXPECT_THAT(refusal("{type: paper, retreat_speed: 0.1 mm/s}"), HasSubstr("at least 1 cm/s"));
 }
 

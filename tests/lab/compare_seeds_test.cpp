@@ -110,7 +110,7 @@ TEST(CompareSeeds, SaysHowManySeedsThereAreAndWhatFewMean) {
   const Comparison few = MadeSweep(seeds_that_matter(6, {"k", "l"})).by({"acquisition"});
   EXPECT_THAT(compare_tables(few), HasSubstr("   n  seeds  mean [95 % interval]"));
   EXPECT_THAT(compare_tables(few),
-              HasSubstr("only 6 seeds: an interval of this few (Student's t) can miss the true mean"));
+              HasSubstr("only 6 seeds: an interval over so few (Student's t) can miss the true mean"));
   EXPECT_THAT(compare_tables(MadeSweep(seeds_that_matter(3, {"k", "l"})).by({"acquisition"})),
               HasSubstr("only 3 seeds: too few for an interval; run 10 or more\n"));
   const Comparison enough = MadeSweep(seeds_that_matter(10, {"k", "l"})).by({"acquisition"});

@@ -263,7 +263,7 @@ TEST(Description, RefusesKeysThatAreNone) {
 
 TEST(Description, RefusesMoreThanAMillionCombinations) {
   EXPECT_EQ(refused("", {"a=range(0,1001)", "b=range(0,1000)"}),
-            "command line: b: the sweep has more than a million jobs, take fewer values");
+            "command line: b: the sweep has more than a million jobs, use fewer values");
   EXPECT_EQ(refused(" {grid: {a: 'range(0,1001)'}, zip: {b: 'range(0,1000)', c: 'range(0,1000)'}}").substr(0, 40),
             "c.yaml:1:46: b: the sweep has more than ");
   EXPECT_EQ(refused(" {list: [{a: 'range(0,500000)'}, {a: 'range(0,500001)'}]}").substr(0, 40),

@@ -87,7 +87,7 @@ TEST(GroupCurves, HaveJobsThatEndedEarlyAsTheyEndedAndNoneThatFailedAndSaySo) {
   EXPECT_EQ(curve.points[2].mean.mean, (0.1 + 0.4) / 2);
   EXPECT_EQ(curve.points[2].mean.count, 2U);
   const std::string table = curves_table(curves);
-  EXPECT_THAT(table, HasSubstr("a: of 3 jobs, those in no point are: 1 failed\n"));
+  EXPECT_THAT(table, HasSubstr("a: jobs in no point, of 3: 1 failed\n"));
   EXPECT_THAT(table,
               HasSubstr("a: 1 of 2 jobs made fewer taps than others and count afterwards with their final values\n"));
   const Row last = curves_rows(curves).back();

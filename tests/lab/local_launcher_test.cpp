@@ -50,13 +50,13 @@ class Returning : public Launcher {
 
 TEST_F(TwoJobs, StayOpenWhileAnotherProcessHasTheirArmWhichIsSaidOnce) {
   LocalLauncher local = launcher([](std::size_t) -> ResolvedConfig {
-    throw Error("backend", "the arm \xc2\x9b[31mleft is in the hands of process 7", "wait until that has ended",
+    throw Error("backend", "the arm \xc2\x9b[31mleft is used by process 7", "wait until that process has ended",
                 Error::Kind::busy);
   });
   testing::internal::CaptureStderr();
   const bool all_recorded = conduct(local, sweep_, standing_of(sweep_, {0, 1}), nullptr, [](const SweepProgress&) {});
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "job 0: backend: the arm \\x9b[31mleft is in the hands of process 7, wait until that has ended\n");
+            "job 0: backend: the arm \\x9b[31mleft is used by process 7, wait until that process has ended\n");
   EXPECT_TRUE(all_recorded);
   EXPECT_THAT(standing_of(sweep_, {0, 1}).open, testing::ElementsAre(0, 1));
 }

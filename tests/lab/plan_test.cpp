@@ -315,10 +315,12 @@ TEST(Plan, DoesNotAskTheConfigForTheMotionThatASweptBackendDecides) {
 TEST(Plan, NamesASweepAlikeOnAnyNumberOfThreads) {
   const test::TemporaryFolder folder;
   const auto directory = [&](const std::string& engine) {
-    const fs::path file = folder.write("c.yaml", test::text_of(kPaper) + "engine: {" + engine + "}\n");
+    const std::string block = engine.empty() ? "" : "engine: {" + engine + "}\n";
+    const fs::path file = folder.write("c.yaml", test::text_of(kPaper) + block);
     return planned(file, {"seed=1,2"}).plan.sweep.directory;
   };
   EXPECT_EQ(directory("type: auto, threads: 1"), directory("type: auto, threads: 2"));
+  EXPECT_EQ(directory("threads: 2"), directory(""));
   EXPECT_NE(directory("type: dense, threads: 1"), directory("type: auto, threads: 1"));
 }
 

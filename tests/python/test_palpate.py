@@ -222,7 +222,7 @@ class Module(InFolder):
         text = record.read_text(encoding="utf-8")
         record.write_text(re.sub(r'"build": "[0-9a-f]+"', '"build": "0123456789abcdef"', text), encoding="utf-8")
         self.assertNotEqual(record.read_text(encoding="utf-8"), text)
-        self.refuses(directory, "another build", "force to move it aside and run again",
+        self.refuses(directory, "another build", "add force=True to move it aside and run again",
                      lambda: palpate.run(DEFAULT, "taps=3", runs=self.folder))
         self.assertEqual(len(palpate.run(DEFAULT, "taps=3", runs=self.folder, force=True).taps), 3)
 

@@ -67,7 +67,7 @@ std::string SlurmLab::missing() {
                                                                    {"munged", "munge"},
                                                                    {"mungekey", "munge"}}};
   for (const auto& [name, package] : wanted) {
-    if (program(name).empty()) return std::string(name) + " is not installed, the package " + package + " has it";
+    if (program(name).empty()) return std::string(name) + " is not installed, install the package " + package;
   }
   return {};
 }

@@ -128,6 +128,7 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
     says("24 particles of ");
     says("Expected, by the most probable particle: ");
     says("Error of the surface: on the object ");
+    says("to the nearest point (RMS) ");
     if (rows[i].text("outcome") == "no_contact") says("Found: nothing in 35.88 cm; the whole path is free.");
     if (rows[i].text("source") == "initial") {
       says("through the region");
@@ -408,7 +409,7 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
               testing::HasSubstr("discovery only scores approaches from any side"));
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
-              testing::HasSubstr("kernel: does not depend on the distance alone"));
+              testing::HasSubstr("kernel: depends on more than the distance"));
   const fs::path run = touched("taps=4");
   EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, but --figures"));
   EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, but pages of several"));

@@ -229,19 +229,19 @@ std::vector<Case> cases() {
       line("PluginWithoutType", "height: {kernel: }",
            "10:10: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
       whole("NoScene", without("  - scene"),
-            "1:1: 'scene.area' is missing, set it to the rectangle of the desk in which taps are allowed"),
+            "1:1: 'scene.area' is missing, set it: rectangle of the desk in which taps are allowed"),
       line("ObjectWithoutType", "scene: {objects: [{height: 5 cm}]}",
-           "10:19: 'scene.objects.0.type' is missing, set it to the shape of the object"),
+           "10:19: 'scene.objects.0.type' is missing, set it: shape of the object"),
 
       // Laws between options
       whole("BothCountAndSpacing", without("candidates") + "candidates: {count: 8, spacing: 5 mm}\n",
-            "9:33: candidates.spacing: is given together with count. Set count or spacing to none"),
+            "9:33: candidates.spacing: is given together with count, set one of them to none"),
       whole("TooFineASpacing", without("candidates") + "candidates: {spacing: 1 um}\n",
             "9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 per side are possible"),
       line("FewerTapsThanInitialOnes", "initial: {count: 6}",
            "8:7: taps: the budget is smaller than the 6 initial taps, raise it or lower initial.count"),
       whole("MoreInitialTapsThanCandidates", without("candidates") + "candidates: {count: 1}\ninitial: {count: 2}\n",
-            "10:18: initial.count: 2 taps, but there are only 1 candidates, take fewer first taps or more candidates"),
+            "10:18: initial.count: 2 taps, but there are only 1 candidates, use fewer initial taps or more candidates"),
       line("ASearchOfSomeTaps", "initial: {design: search, count: 3}",
            "10:27: unknown option 'count' of initial, known: design, smallest"),
       line("ASearchForWhatIsTooLarge", "initial: {design: search, smallest: 23 cm}",
@@ -257,10 +257,10 @@ std::vector<Case> cases() {
            "motion.hover or lower the object"),
 
       line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",
-           "10:42: label.kernel: has no effect with label.hyperparameters: shared. Remove label.kernel, or set "
+           "10:42: label.kernel: has no effect with label.hyperparameters: shared, remove it or set "
            "label.hyperparameters: own"),
       line("LabelsOfTheirOwnFittingThatShare", "label: {hyperparameters: shared, fitting: {type: fixed}}",
-           "10:43: label.fitting: has no effect with label.hyperparameters: shared. Remove label.fitting, or set "
+           "10:43: label.fitting: has no effect with label.hyperparameters: shared, remove it or set "
            "label.hyperparameters: own"),
 
       // Plugins inside plugins, and how the surface is made
@@ -270,7 +270,7 @@ std::vector<Case> cases() {
            "10:26: label.hyperparameters: unknown value 'both', known: own, shared"),
       line("NoKernelInASum", "kernel: {type: sum, kernels: []}", "10:30: kernel.kernels: needs at least one kernel"),
       line("SumWithoutKernels", "kernel: {type: sum}",
-           "10:16: 'kernel.kernels' is missing, set it to the list of the kernels to combine, each {type: ..., ...}"),
+           "10:16: 'kernel.kernels' is missing, set it: list of the kernels to combine, each {type: ..., ...}"),
       line("SumOfSomethingElse", "kernel: {type: sum, kernels: rbf}",
            "10:30: kernel.kernels: expects a list, write [{type: ...}, {type: ...}]"),
       line("NameWhereAKernelBelongs", "kernel: {type: sum, kernels: [rbf, matern32]}",
@@ -285,15 +285,17 @@ std::vector<Case> cases() {
       line("FactorOfZero", "kernel: {type: scale, factor: 0, kernel: {type: rbf}}",
            "10:31: kernel.factor: 0 is out of range, it must be at least 1e-12"),
       line("ScaleOfNothing", "kernel: {type: scale}",
-           "10:16: 'kernel.kernel' is missing, set it to the kernel to multiply, written as {type: ..., ...}"),
+           "10:16: 'kernel.kernel' is missing, set it: kernel to multiply, written as {type: ..., ...}"),
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
       line("GridPosteriorWithANonSeparableKernel", "engine: {type: grid}\nkernel: {type: matern32}",
-           "10:16: engine.type: grid cannot be used with the kernel matern32, which is not a product of a factor along "
+           "10:16: engine.type: grid cannot be used with the kernel matern32: the kernel is not a product of a factor "
+           "along "
            "x and a factor along y, engine: {type: dense} serves every kernel"),
       line("LowrankPosteriorWithASum", "engine: {type: lowrank}\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
-           "10:16: engine.type: lowrank cannot be used with the kernel sum, which is not a product of a factor along x "
+           "10:16: engine.type: lowrank cannot be used with the kernel sum: the kernel is not a product of a factor "
+           "along x "
            "and a factor along y, engine: {type: dense} serves every kernel"),
       line("NoThreads", "engine: {threads: 0}", "10:19: engine.threads: 0 is out of range, it must be at least 1"),
       line("LowrankThatKeepsNothing", "engine: {tolerance: 0}",

@@ -122,8 +122,9 @@ TEST_F(CommandLine, HelpGoesToStdoutWithStatus0) {
 TEST_F(CommandLine, HelpSaysWhatItTakesWithNamesThatEveryVersionOfItsLibraryAccepts) {
   // CLI11 2.4 refuses names of positional arguments with '=' or '/' in them before it has read any.
   EXPECT_THAT(palpate("run --help").out, AllOf(ContainsRegex("Usage: palpate run .* CONFIG \\[OVERRIDE\\.\\.\\.\\]\n"),
-                                               ContainsRegex("\n +OVERRIDE KEY=VALUE \\.\\.\\. +value of a key")));
-  EXPECT_THAT(palpate("sweep --help").out, ContainsRegex("\n +AXIS KEY=VALUES \\.\\.\\. +key and the values to vary"));
+                                               ContainsRegex("\n +OVERRIDE KEY=VALUE \\.\\.\\. +value that replaces")));
+  EXPECT_THAT(palpate("sweep --help").out,
+              ContainsRegex("\n +AXIS KEY=VALUES \\.\\.\\. +key and the values that the sweep uses"));
   EXPECT_THAT(palpate("plugins --help").out, ContainsRegex("\n +PLUGIN KIND\\[/NAME\\] +plugin kind"));
 }
 

@@ -200,7 +200,8 @@ TEST_F(Compare, RefusesInOneLineWhatCannotBeCompared) {
             "command line: --by: this sweep does not vary 'aquisition', did you mean 'acquisition'?\n");
   EXPECT_EQ(refused(compare + "--by acquisition --metric rmse_m,rsme_m"),
             "command line: --metric: results.csv has no column 'rsme_m', did you mean 'rmse_m'?\n");
-  EXPECT_THAT(refused(compare + "--by taps --metric acquisition"), HasSubstr("'acquisition' is a swept key, not a result, use it with --by"));
+  EXPECT_THAT(refused(compare + "--by taps --metric acquisition"),
+              HasSubstr("'acquisition' is a swept key, not a result, use it with --by"));
   EXPECT_THAT(refused(compare + "--by acquisition"), StartsWith("--metric is required"));
   const Words where = compare + "--by acquisition --metric rmse_m --where";
   EXPECT_THAT(refused(where + Words{"taps >"}), StartsWith("command line: --where: the condition 'taps >'"));

@@ -48,7 +48,7 @@ TEST_F(Pareto, PrintsATableAndLeavesAPictureAndTheTableAsCsv) {
   const Ended ended = pareto(directory);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(lines(ended.out), 1 + 4 + 3);
-  EXPECT_THAT(ended.out, HasSubstr("\nonly 4 seeds: an interval of this few (Student's t) can miss the true mean"));
+  EXPECT_THAT(ended.out, HasSubstr("\nonly 4 seeds: an interval over so few (Student's t) can miss the true mean"));
   EXPECT_THAT(ended.out, AllOf(StartsWith("front  setting "), HasSubstr("    1  acquisition="),
                                HasSubstr("robot_seconds [s]"), HasSubstr("rmse_m [mm]")));
   EXPECT_THAT(ended.err, StartsWith("picture: "));

@@ -122,7 +122,7 @@ TEST_F(Received, ASweepIsCountedBeforeItIsExpanded) {
   std::string list = "name: a\nsweep:\n  list:\n";
   for (int i = 0; i < 100; ++i) list += "  - {seed: 'range(0, 1000000)'}\n";
   EXPECT_THAT(refusal_of({"validate", write("list.yaml", list)}),
-              HasSubstr("list.yaml:6:12: seed: the sweep names more than two million values, take fewer values"));
+              HasSubstr("list.yaml:6:12: seed: the sweep names more than two million values, use fewer values"));
   std::string words = "seed=range(0,1000000)";
   for (int i = 0; i < 100; ++i) words += ",range(0,1000000)";
   EXPECT_THAT(refusal_of({"sweep", test::paper(), words}), HasSubstr("names more than two million values"));

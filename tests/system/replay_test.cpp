@@ -66,7 +66,7 @@ TEST_F(Replay, NamesTheInstructionsOfARunThatUsedOthers) {
   EXPECT_THAT(differing("tap", "\"robot_seconds\": ", "\"invented\": 1, \"robot_seconds\": "),
               Not(HasSubstr("instruction set")));
   EXPECT_THAT(differing("manifest", "\"instruction_path\": \"", "\"instruction_path\": \"old "),
-              HasSubstr("the run used the instruction set old "));
+              HasSubstr("the run began with the instruction set old "));
 }
 
 TEST_F(Replay, OfARunThatEndedEarlyTakesTheEngineOfItsWholeBudget) {

@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
               "no job of the sweep has an option 'acquisition.conut', did you mean 'count'?"},
         Wrong{"AnUnknownBlock", "sweep.sobl={}", "unknown option 'sobl' of sweep, did you mean 'sobol'?"},
         Wrong{"MillionsOfJobs", "seed=range(0,2000) taps=range(3,1000)",
-              "taps: the sweep has more than a million jobs, take fewer values"}),
+              "taps: the sweep has more than a million jobs, use fewer values"}),
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST_F(SweepDescription, WithAKeyInTwoBlocksIsRefusedWithBothPlaces) {

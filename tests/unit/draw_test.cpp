@@ -155,7 +155,7 @@ TEST(Draw, RefusesNumbersThatAreNone) {
   EXPECT_EQ(drawn_from("{type: block}", "{least: 1, most: 2000, of: "),
             "c.yaml:3:28: scene.objects.draw.most: 2000 is out of range, it must be at most 1000");
   EXPECT_EQ(drawn_from("{type: block}", "{most: 2, of: "),
-            "c.yaml:3:11: 'scene.objects.draw.least' is missing, set it to the minimum number of objects");
+            "c.yaml:3:11: 'scene.objects.draw.least' is missing, set it: minimum number of objects");
   EXPECT_EQ(drawn_from(""), "c.yaml:3:35: scene.objects.draw.of: is empty, name at least one object");
 }
 

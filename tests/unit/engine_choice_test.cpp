@@ -115,7 +115,8 @@ TEST(Engine, ThatCannotServeIsRefusedWithTheReason) {
   for (const Kind kind : {Kind::grid, Kind::lowrank}) {
     EXPECT_THROW(Process(matern, kOutputs, square, settings_of(kind)), Error);
     EXPECT_THROW(Process(rbf(), kOutputs, any, settings_of(kind)), Error);
-    EXPECT_THAT(objection(settings_of(kind), *matern, square), testing::HasSubstr("not a product of a factor along x and a factor along y"));
+    EXPECT_THAT(objection(settings_of(kind), *matern, square),
+                testing::HasSubstr("not a product of a factor along x and a factor along y"));
     EXPECT_THAT(objection(settings_of(kind), *rbf(), any), testing::HasSubstr("product grid"));
     EXPECT_EQ(objection(settings_of(kind), *rbf(), square), "");
   }

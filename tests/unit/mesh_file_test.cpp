@@ -146,7 +146,7 @@ TEST_F(MeshFile, WhoseHeaderCountsNoRowsIsRefused) {
   for (const char* count : {"-5", "4e9", "9999999999", ""}) {
     std::string other = whole;
     other.replace(at, other.find('\n', at) - at, count);
-    EXPECT_THAT(refusal("a.ply", other), HasSubstr("its header does not give the number of rows of 'vertex' follow"));
+    EXPECT_THAT(refusal("a.ply", other), HasSubstr("its header does not give the number of rows of 'vertex'"));
   }
 }
 
@@ -249,9 +249,8 @@ TEST_F(MeshFile, IsKnownAgainByItsChecksum) {
 
 TEST_F(MeshFile, MustHaveItsUnitGiven) {
   const fs::path file = folder_.write("a.ply", ply(block()));
-  EXPECT_EQ(
-      error_of([&] { choose(shared_host(), "shape", "mesh", "{file: '" + file.string() + "'}"); }),
-      "options.yaml:1:1: 'plugin.unit' is missing, set it to the length of one unit of the file, for example 1 mm");
+  EXPECT_EQ(error_of([&] { choose(shared_host(), "shape", "mesh", "{file: '" + file.string() + "'}"); }),
+            "options.yaml:1:1: 'plugin.unit' is missing, set it: length of one unit of the file, for example 1 mm");
 }
 
 }  // namespace

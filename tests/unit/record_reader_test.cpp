@@ -150,7 +150,7 @@ TEST_F(Record, Law2CountsItsAttemptsWithTheirTapsAndSetsEachUp) {
             ":3: has attempt 3 instead of attempt 2: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.first(3) + R"({"attempt": 2, "after_tap": 1})"
                                      "\n"),
-            ":4: starts after tap 1, but 0 taps precede it: a line is missing" + kPutBack);
+            ":4: starts after tap 1, but the taps before it are 0: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.without(Sound::kAttempt)), ":7: does not follow its attempt: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.first(2) + R"({"attempt": 2, "after_tap": 0})"
                                      "\n"),
@@ -207,7 +207,7 @@ TEST_F(Record, Law6HasNothingBehindAnEndThatIsDone) {
     EXPECT_EQ(refusal(joined(sound.lines) + line + "\n"), ":14: follows the end of a finished run" + kPutBack);
   EXPECT_EQ(refusal(sound.first(6) + R"({"end": "done", "summary": {"taps": 2}})"
                                      "\n"),
-            ":7: ends a run of 2 taps, but 1 taps precede it: a line is missing" + kPutBack);
+            ":7: ends a run of 2 taps, but the taps before it are 1: a line is missing" + kPutBack);
   EXPECT_EQ(refusal(sound.without(Sound::kLastTap)).substr(0, 3), ":10");
   for (const char* how : {"failed", "interrupted"}) {
     const std::string ended = sound.first(6) + fmt::format("{{\"end\": \"{}\"}}\n", how);

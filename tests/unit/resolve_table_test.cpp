@@ -71,7 +71,7 @@ TEST(ResolveAdopted, ReadsThePluginAmongTheFieldsAtHand) {
 }
 
 TEST(ResolveAdopted, TellsTheLineOfWhatIsWrongAndTheNearestName) {
-  EXPECT_EQ(refusal<Adopting>("last: 3\n"), "c.yaml:1:1: 'type' is missing, set it to the type of the part");
+  EXPECT_EQ(refusal<Adopting>("last: 3\n"), "c.yaml:1:1: 'type' is missing, set it: type of the part");
   EXPECT_EQ(refusal<Adopting>("typ: rough\n"), "c.yaml:1:1: unknown option 'typ', did you mean 'type'?");
   EXPECT_EQ(refusal<Adopting>("type: ruff\n"), "c.yaml:1:7: no plugin kernel/ruff, known: rough, smooth");
   EXPECT_EQ(refusal<Adopting>("type: [rough]\n"),
@@ -80,7 +80,7 @@ TEST(ResolveAdopted, TellsTheLineOfWhatIsWrongAndTheNearestName) {
   EXPECT_EQ(refusal<Adopting>("type: smooth\nnu: 2.5\n"), "c.yaml:2:1: unknown option 'nu', known: type, scale, last");
   EXPECT_EQ(refusal<Adopting>("type: rough\nscale: 0 m\n"),
             "c.yaml:2:8: scale: 0 m is out of range, it must be above 0 m");
-  EXPECT_EQ(refusal<Adopting>("last: 2\ntype: many\n"), "c.yaml:2:7: 'parts' is missing, set it to the list of kernels")
+  EXPECT_EQ(refusal<Adopting>("last: 2\ntype: many\n"), "c.yaml:2:7: 'parts' is missing, set it: list of kernels")
       << "what a type needs is missing where it was chosen";
 }
 

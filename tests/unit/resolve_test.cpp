@@ -144,8 +144,8 @@ TEST(Resolve, RefusesWhatNoGroupIsOrWhatAGroupLacksAtTheGroupOrAtTheConfigThatLa
       {"group: {width: 1 m, depth: 2 m}", "c.yaml:1:21: unknown option 'depth' of group, known: width"},
       {"group: {width: 0 cm}", "c.yaml:1:16: group.width: 0 cm is out of range, it must be above 0 m"},
       {"group: 3", "c.yaml:1:8: group is not a group of options, write {key: value, ...} or group.KEY=VALUE"},
-      {"real: 0\ngroup: {}\n", "c.yaml:2:8: 'group.width' is missing, set it to the width of the group"},
-      {"# only this\nreal: 0\n", "c.yaml:2:1: 'group.width' is missing, set it to the width of the group"},
+      {"real: 0\ngroup: {}\n", "c.yaml:2:8: 'group.width' is missing, set it: width of the group"},
+      {"# only this\nreal: 0\n", "c.yaml:2:1: 'group.width' is missing, set it: width of the group"},
       {"group: {widht: 1 m}\n", "c.yaml:1:9: unknown option 'widht', did you mean 'width'?"}};
   for (const auto& [text, message] : cases) EXPECT_EQ(refusal<Everything>(text), message) << text;
 }
@@ -243,7 +243,7 @@ TEST(ResolvePlugins, RefusesWhatIsNoListOfPluginsAndPlacesABadItemAtTheItemWithI
       {"parts: {type: rough}\n", "1:8: " + list},
       {"# none\nparts:\n", "2:1: " + list},
       {"parts: []\n", "1:8: parts: needs at least one kernel"},
-      {"# nothing\n{}\n", "2:1: 'parts' is missing, set it to the list of kernels"},
+      {"# nothing\n{}\n", "2:1: 'parts' is missing, set it: list of kernels"},
       {"part: []\n", "1:1: unknown option 'part', did you mean 'parts'?"},
       {"parts: [{type: rough}, rough]\n", "1:24: parts.1 is not a group of options, write {type: ...}"},
       {"parts: [{type: rough}, {scale: 1 cm}]\n",

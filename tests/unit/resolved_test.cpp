@@ -132,9 +132,9 @@ TEST(ResolvedConfig, RefusesAGridThatIsTooFineForAnyComputer) {
 }
 
 TEST(ResolvedConfig, RefusesMoreInitialTapsThanCandidates) {
-  EXPECT_EQ(
-      refused_config({"candidates.count=2", "initial.count=5"}),
-      "command line: initial.count: 5 taps, but there are only 4 candidates, take fewer first taps or more candidates");
+  EXPECT_EQ(refused_config({"candidates.count=2", "initial.count=5"}),
+            "command line: initial.count: 5 taps, but there are only 4 candidates, use fewer initial taps or more "
+            "candidates");
   EXPECT_EQ(refused_config({"candidates.count=2", "initial.count=4"}), "accepted");
 }
 

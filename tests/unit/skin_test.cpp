@@ -244,7 +244,8 @@ std::string refusal(const std::string& type, const std::string& options) {
 
 TEST(SkinAndKernels, ThoseThatAreNotOfTheDistanceAloneAreRefused) {
   const char* const line =
-      "kernel: does not depend on the distance alone, as surface: implicit requires, choose one with a single length "
+      "kernel: depends on more than the distance, but surface: implicit needs a kernel of the distance alone, choose "
+      "one with a single length "
       "scale, such as matern32";
   EXPECT_EQ(refusal("rbf", "{length_scale: 3 cm, length_scale_y: 2.9 cm}"), line);
   EXPECT_EQ(refusal("product", "{kernels: [{type: rbf, length_scale: 1 mm, length_scale_y: 9 m}, {type: matern32}]}"),

@@ -40,8 +40,8 @@ void mark_complete(Tree& config);
 /// its file is a config like any other, in strategy/ or in the folder itself, so that a whole config is a strategy as
 /// well. Named by the config it is laid below the groups that the config names; as an override it takes the place of
 /// each top-level key that it has. What it says of keys that are the run's own (Field::of_run()) is left out, but for
-/// a motion that it writes out (`motion: {...}`; a name is left out): that counts, as a whole, where neither a group nor
-/// the config says any of it. So no strategy makes an arm faster than its own config has it.
+/// a motion that it writes out (`motion: {...}`; a name is left out): that counts, as a whole, where neither a group
+/// nor the config says any of it. So no strategy makes an arm faster than its own config has it.
 class Composer {
  public:
   /// `shipped` is the program's own folder of configs; it need not exist. `keys` must outlive it.

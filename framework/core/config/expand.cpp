@@ -143,7 +143,7 @@ Tree number(double value, const std::string& unit, const Tree& like) {
 void ValueCount::add(std::size_t values, const Place& place, const std::string& key) {
   all_ += values;
   if (all_ <= kMostValues) return;
-  throw Error(place.text(), fmt::format("{}: the sweep names more than two million values", key), "take fewer values");
+  throw Error(place.text(), fmt::format("{}: the sweep names more than two million values", key), "use fewer values");
 }
 
 std::vector<Tree> expand_values(const Tree& value, const std::string& key, ValueCount& count) {

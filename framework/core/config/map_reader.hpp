@@ -92,12 +92,12 @@ class MapReader : public Fields {
 
   const Tree& input_;
   std::string path_;
-  std::string plugin_;   ///< whose options these are; "" for none
-  std::string beside_;   ///< the option of the plugin that stands beside it: Field::with_beside(); "" for none
-  std::string above_;    ///< the path of what is around such a plugin
+  std::string plugin_;    ///< whose options these are; "" for none
+  std::string beside_;    ///< the option of the plugin that stands beside it: Field::with_beside(); "" for none
+  std::string above_;     ///< the path of what is around such a plugin
   std::string id_above_;  ///< the same for the id
-  bool silent_ = false;  ///< a plugin among these is: any key may be its
-  std::string adopted_;  ///< whose options stand among them; "" for none
+  bool silent_ = false;   ///< a plugin among these is: any key may be its
+  std::string adopted_;   ///< whose options stand among them; "" for none
   ResolveNotes& notes_;
   Tree output_;
   std::string id_path_;

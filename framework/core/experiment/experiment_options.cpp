@@ -75,7 +75,7 @@ void CandidateOptions::list(Fields& fields) {
   // The default belongs into the resolved config, unless spacing takes its place.
   if (!spacing && !count) count = kPaperCount;
   fields.integer(count, Field("count", "number of grid cells per side").at_least(1).at_most(kMaxCellsPerSide));
-  fields.require(!(count && spacing), "spacing", "is given together with count. Set count or spacing to none");
+  fields.require(!(count && spacing), "spacing", "is given together with count, set one of them to none");
 }
 
 void ProcessOptions::list_plugins(Fields& fields) {
@@ -137,12 +137,10 @@ void LabelOptions::list(Fields& fields) {
                   {}}});
   list_plugins(fields);
   const bool shared = hyperparameters == Hyperparameters::shared;
-  fields.require(
-      !shared || !kernel, "kernel",
-      "has no effect with label.hyperparameters: shared. Remove label.kernel, or set label.hyperparameters: own");
-  fields.require(
-      !shared || !fitting, "fitting",
-      "has no effect with label.hyperparameters: shared. Remove label.fitting, or set label.hyperparameters: own");
+  fields.require(!shared || !kernel, "kernel",
+                 "has no effect with label.hyperparameters: shared, remove it or set label.hyperparameters: own");
+  fields.require(!shared || !fitting, "fitting",
+                 "has no effect with label.hyperparameters: shared, remove it or set label.hyperparameters: own");
 }
 
 void EngineOptions::list(Fields& fields) {
@@ -223,12 +221,14 @@ void StopOptions::list(Fields& fields) {
                                             "candidate exceeds the bound. The bound adds the height GP to the models")
                                           .in(Unit::metre)
                                           .above(0));
-  fields.real(expected_rmse,
-              Field("expected_rmse",
-                    "bound on the expected RMSE of the scene, desk included. The run stops when the expected RMSE is "
-                    "safely below the bound, an object was touched, and no further object is likely")
-                  .in(Unit::metre)
-                  .above(0));
+  fields.real(
+      expected_rmse,
+      Field("expected_rmse",
+            "bound on the expected RMSE of the scene, desk included. The run stops when the expected RMSE is most "
+            "probably below the bound, an object was touched, and, if the footprint can tell, most probably no "
+            "object is left to find. The bound adds the models of the reconstruction")
+          .in(Unit::metre)
+          .above(0));
   fields.real(robot_time, Field("robot_time", "robot time after which the run stops").in(Unit::second).above(0));
   fields.integer(failed_in_a_row, Field("failed_in_a_row",
                                         "number of consecutive failed taps at which the run fails; not given: 3 if the "
@@ -358,7 +358,7 @@ void ExperimentOptions::list(Fields& fields) {
                  "initial.smallest", "is not smaller than the sides of the area, give the least width of the object");
   fields.require(any_side || initial.searches() || static_cast<double>(initial.count) <= columns * rows,
                  "initial.count",
-                 fmt::format("{} taps, but there are only {} candidates, take fewer first taps or more candidates",
+                 fmt::format("{} taps, but there are only {} candidates, use fewer initial taps or more candidates",
                              initial.count, columns * rows));
 }
 

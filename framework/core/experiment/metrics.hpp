@@ -31,9 +31,9 @@ struct Errors {
   std::optional<double> surface_distance =
       std::nullopt;  ///< metres, mean distance from the points of either surface to the other
   std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the same distances
-  std::optional<double> f_score = std::nullopt;     ///< at 5 mm
-  std::optional<double> coverage = std::nullopt;    ///< of the 95 % intervals of the surface from any side
-  std::optional<double> volume_iou = std::nullopt;  ///< of what is solid; none if nothing is
+  std::optional<double> f_score = std::nullopt;               ///< at 5 mm
+  std::optional<double> coverage = std::nullopt;              ///< of the 95 % intervals of the surface from any side
+  std::optional<double> volume_iou = std::nullopt;            ///< of what is solid; none if nothing is
 
   /// Returns the root mean square error of the whole reconstruction, metres, from above or from any side.
   std::optional<double> overall() const { return rmse ? rmse : rms_surface_distance; }

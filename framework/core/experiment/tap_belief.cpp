@@ -57,7 +57,7 @@ TapBelief::Model TapBelief::make_model(const char* name, const PluginChoice& ker
   const std::string why = objection(posterior_, *model.kernel, candidates_);
   if (!why.empty()) {
     const char* const engine = posterior_.engine == PosteriorSettings::Kind::grid ? "grid" : "lowrank";
-    throw Error("engine.type", fmt::format("{} cannot be used with the kernel {}, {}", engine, kernel.type, why),
+    throw Error("engine.type", fmt::format("{} cannot be used with the kernel {}: {}", engine, kernel.type, why),
                 "engine: {type: dense} serves every kernel");
   }
   return model;

@@ -47,8 +47,8 @@ Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, cons
 
 std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates) {
   if (settings.engine == Kind::automatic || settings.engine == Kind::dense) return {};
-  if (!kernel.separable()) return "which is not a product of a factor along x and a factor along y";
-  if (!candidates.is_grid()) return "because the candidates are not a product grid";
+  if (!kernel.separable()) return "the kernel is not a product of a factor along x and a factor along y";
+  if (!candidates.is_grid()) return "the candidates are not a product grid";
   return {};
 }
 

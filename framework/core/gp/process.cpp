@@ -28,7 +28,7 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
       posterior_(std::move(posterior)),
       factor_(*posterior_.machine.loops) {
   const std::string why = objection(posterior_, *kernel_, candidates_);
-  if (!why.empty()) throw Error("engine", "cannot be used with this kernel, " + why);
+  if (!why.empty()) throw Error("engine", "cannot be used here: " + why);
   take_prior();
   choose();
   reserve(1);

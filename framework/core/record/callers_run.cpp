@@ -90,7 +90,7 @@ class Held final : public CallersRun {
 
 /// What is said of a run that is there already.
 Error finished_error(const std::filesystem::path& directory) {
-  return Error(directory.string(), "this run is finished", "force=True moves it aside and runs again");
+  return Error(directory.string(), "this run is finished", "add force=True to move it aside and run again");
 }
 
 }  // namespace

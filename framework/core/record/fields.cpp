@@ -63,7 +63,8 @@ const std::vector<ErrorField>& error_list() {
            "from any side: mean distance from points of the reconstructed surface to the nearest true point and vice "
            "versa, each at most 10 cm. It is 10 cm before an object is known. Points of the true surface are those "
            "where lines from all sides first meet the scene. Reconstructed points are those where the lines meet the "
-           "most probable particle, then moved along its normal by the residual GP's mean. Each cloud has one point "
+           "most probable particle, each then moved along its normal by the residual GP's mean. Each cloud has one "
+           "point "
            "per cube of 1 mm; the points whose distance counts are one per cube of 3 mm")
            .in(Unit::metre)
            .less()
@@ -170,8 +171,7 @@ void list_models(FieldList<Record>& list, bool reasons) {
   process("label_gp", "state of the label GP, with the same fields as `height_gp`", &ModelState::label_gp);
   process("surface_gp",
           "state of the GP over the heights of taps on an object, with the fields of `height_gp`. Present only with "
-          "`surface: "
-          "two_part`, and only if the strategy, a stop rule or the backend reads the height",
+          "`surface: two_part`, and only if the strategy, a stop rule or the backend reads the height",
           &ModelState::surface_gp);
   list.add_family("footprint.*",
                   "numbers that the footprint reports about itself, and `remark` if their computation needs a comment; "
@@ -287,8 +287,8 @@ FieldList<TapRecord> make_tap_list() {
       .in(Unit::second);
   const auto is_predicted = [](const Tap& t) { return t.predicted.has_value(); };
   list.add_where(is_predicted, "predicted.height",
-                 "height that the models predicted at the target, in the frame of the scene; only if the backend "
-                 "requests it (`adaptive_hover`)",
+                 "height that the models predicted at the target, in the frame of the scene; only with "
+                 "`adaptive_hover` or `type: per_tap`",
                  [](const Tap& t) { return t.predicted->height; })
       .in(Unit::metre);
   list.add_where(is_predicted, "predicted.standard_deviation", "standard deviation of the predicted height",
@@ -296,7 +296,7 @@ FieldList<TapRecord> make_tap_list() {
       .in(Unit::metre);
   list.add_where(
       [](const Tap& t) { return t.predicted && t.predicted->probability; }, "predicted.probability",
-      "predicted probability of an object at the target; only if the backend requests it (`adaptive_hover.certainty`)",
+      "predicted probability of an object at the target; only with `adaptive_hover.certainty` or `type: per_tap`",
       [](const Tap& t) { return t.predicted->probability; });
   list_models(list, false);
   list.add_where([](const Tap& t) { return t.forecast.has_value(); }, kExpectedError,
@@ -440,11 +440,12 @@ FieldList<Summary> make_summary_list() {
                  "from any side: taps that touched nothing, so that their whole path is known to be free",
                  &Summary::no_contact_taps);
   list.add("failed_taps", "taps that failed; `no_contact_taps` are not included", &Summary::failed_taps).less();
-  list.add("first_hit_tap", "number of the first tap that touched an object", &Summary::first_hit_tap)
+  list.add("first_hit_tap", "number of the first contact classified as on an object", &Summary::first_hit_tap)
       .less()
       .absent("no object was found")
       .called("first tap on an object");
-  list.add("found", "whether any tap touched an object", [](const Summary& s) { return s.object_taps > 0; })
+  list.add("found", "whether any contact is classified as on an object at the end",
+           [](const Summary& s) { return s.object_taps > 0; })
       .more()
       .called("share of runs that found an object");
   list.add_where(is_read_again, "relabelled",

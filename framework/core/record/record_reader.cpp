@@ -187,7 +187,8 @@ void RecordReader::check_attempt(const Row& row) {
   if (number != attempts_ + 1)
     refuse(fmt::format("has attempt {} instead of attempt {}: a line is missing", row.cell("attempt"), attempts_ + 1));
   if (count_in(row, "after_tap") != taps_) {
-    refuse(fmt::format("starts after tap {}, but {} taps precede it: a line is missing", row.cell("after_tap"), taps_));
+    refuse(fmt::format("starts after tap {}, but the taps before it are {}: a line is missing", row.cell("after_tap"),
+                       taps_));
   }
   ++attempts_;
   set_up_ = false;
@@ -230,8 +231,8 @@ void RecordReader::check_end(const RecordLine& line) {
   if (!line.end) refuse(kNoEnding);
   end_ = line.end->how;
   if (end_ != Ending::How::done || line.row.number("summary.taps") == static_cast<double>(taps_)) return;
-  refuse(fmt::format("ends a run of {} taps, but {} taps precede it: a line is missing", line.row.cell("summary.taps"),
-                     taps_));
+  refuse(fmt::format("ends a run of {} taps, but the taps before it are {}: a line is missing",
+                     line.row.cell("summary.taps"), taps_));
 }
 
 std::string RunRecord::build() const {

@@ -66,7 +66,8 @@ std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std
 Skin::Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings, const simd::Table& loops)
     : kernel_(std::move(kernel)), settings_(settings), loops_(loops) {
   if (!knows_distances_alone(*kernel_)) {
-    throw Error("kernel", "does not depend on the distance alone, as surface: implicit requires",
+    throw Error("kernel",
+                "depends on more than the distance, but surface: implicit needs a kernel of the distance alone",
                 "choose one with a single length scale, such as matern32");
   }
   kernel_->variance(Points::Zero(1, 2), Eigen::Map<VectorXd>(&unit_, 1));

@@ -75,8 +75,7 @@ std::string curve_remarks(const GroupCurves& curves) {
     const std::string scene = curve.scene_name();
     const std::string name = (scene.empty() ? "" : scene + ", ") + curve.name();
     const std::string lost = curve.counts.words({Fate::left_out, Fate::failed, Fate::unfinished, Fate::without_value});
-    if (!lost.empty())
-      out += fmt::format("{}: of {} jobs, those in no point are: {}\n", name, curve.counts.all(), lost);
+    if (!lost.empty()) out += fmt::format("{}: jobs in no point, of {}: {}\n", name, curve.counts.all(), lost);
     if (curve.points.empty()) continue;
     if (curve.ended > 0) {
       out += fmt::format("{}: {} of {} jobs made fewer taps than others and count afterwards with their final values\n",

@@ -27,7 +27,7 @@ std::string few_words(std::size_t units, bool seeds, std::size_t least) {
     return fmt::format("only {}: too few for an interval; run {} or more\n", units_words(units, seeds), kEnoughUnits);
   }
   return fmt::format(
-      "only {}: an interval of this few (Student's t) can miss the true mean in more than 5 of 100 cases; run {} or "
+      "only {}: an interval over so few (Student's t) can miss the true mean in more than 5 of 100 cases; run {} or "
       "more\n",
       units_words(units, seeds), kEnoughUnits);
 }

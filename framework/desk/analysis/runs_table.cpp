@@ -106,9 +106,12 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   // Only the taps of what has not ended are counted: of the rest the summary tells their number.
   const RunStatus status = summary ? read_ending(directory) : read_status(directory);
   row.add("taps", summary ? summary->number("taps").value_or(0.0) : status.taps);
-  const std::string& error = main_error(summary ? std::vector<Row>{*summary} : std::vector<Row>());
-  for (const std::string& field : {error, std::string(kOutline)})
+  const auto add_error = [&](const std::string& field) {
     row.add(field, summary ? summary->number(field) : std::nullopt);
+  };
+  add_error(main_error({}));
+  if (summary && main_error({*summary}) != main_error({})) add_error(main_error({*summary}));
+  add_error(kOutline);
   row.add("state", state_name(status.state));
   if (summary) out.beside = *summary;
 }
@@ -217,8 +220,8 @@ std::string runs_table(const std::vector<Row>& rows) {
   }
   const std::string title = metrics.size() > 1 ? "RMS error" : main_error(rows);
   const Scale scale = readable_scale(unit_of_column(main_error(rows)), errors);
-  std::vector<std::vector<std::string>> lines{{"name", "begun", "strategy", "scene", "taps", scale.title(title),
-                                               "IoU", "state", "set apart by", "directory"}};
+  std::vector<std::vector<std::string>> lines{
+      {"name", "begun", "strategy", "scene", "taps", scale.title(title), "IoU", "state", "set apart by", "directory"}};
   for (const Row& row : rows) {
     const auto text = [&](const char* name) { return one_line(row.text(name)); };
     const std::optional<double> error = row.number(main_error({row}));

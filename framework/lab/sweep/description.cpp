@@ -214,7 +214,7 @@ void SweepDescription::combine() {
                       all > kMaxCombinations
                           ? fmt::format("{}: the sweep has more than a million jobs", axis.key)
                           : fmt::format("{}: the sweep has {} jobs of {} keys", axis.key, all, keys_.size()),
-                      "take fewer values");
+                      "use fewer values");
         }
         if (part.together) {
           rows.resize(size);

@@ -79,6 +79,7 @@ std::string sweep_id(const Tree& config, const Sweep& sweep) {
   for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
     if (!decides_jobs(entry.key)) continue;
     if (entry.key == first_key(kThreads)) entry.value.erase(last_key(kThreads));
+    if (entry.key == first_key(kThreads) && entry.value.is_map() && entry.value.entries.empty()) continue;
     identity.entries.push_back(std::move(entry));
   }
   return hash_of(identity.canonical() + manifest_text(sweep, "")).substr(0, kIdLength);

@@ -245,7 +245,7 @@ class Sweep:
 
     def experiments(self, retry_failed=False):
         """Of a sweep of begin_sweep(): the Experiment of each job that has not ended, one after the other. Close each, as
-        `with` does, before the next. `retry_failed` carries on failed jobs, too."""
+        `with` does, before the next. `retry_failed` resumes failed jobs, too."""
         if len(self._directories) > 1:
             raise _error("experiments", "this Sweep combines several sweeps", "call experiments() of each single sweep")
         try:
@@ -269,7 +269,8 @@ class Sweep:
 
         Its fields: the swept keys of scene and group; `at`, taps or (`against="robot_seconds"`) seconds; `mean` with
         `low_95` and `high_95`, its 95 % interval, NaN where there is none; `n`, jobs with a value; `units`, seeds; `jobs`,
-        `failed`, `unfinished` and `ended` of the group. SI units. `by`: one key or several; None: all that vary but the seed
+        `failed`, `unfinished` and `ended` of the group. SI units. `metric` None: `rmse_m`, or `rms_surface_distance_m` for runs
+        from any side. `by`: one key or several; None: all that vary but the seed
         and the scene. What the jobs had come to after each tap is computed from their records by the program, and kept;
         `progress(done, jobs)` is called as jobs are done.
         """
@@ -411,7 +412,7 @@ class Experiment:
     `backend.scene_is_truth=true` says that its objects are what is tapped: then errors are known. The record is that of
     `palpate run`, in `runs`: it can be replayed, reported, and carried on by Experiment.resume(). As a context manager it
     is closed at the end, and finished before, unless by an exception or while a tap is still to be told (after `break`):
-    then it can be carried on. Threads may share it: one call at a time is at work. The child of a fork may not use it.
+    then it can be resumed. Threads may share it: one call at a time is at work. The child of a fork may not use it.
     """
 
     def __init__(self, config, *overrides, runs="runs", force=False, **settings):

@@ -180,14 +180,15 @@ struct BaxterOptions : Options {
     require(motion.tare >= kShortestTare, "tare",
             "is too short to measure the zero of the force, choose at least 100 ms");
     require(motion.travel_speed >= kSlowest && motion.retreat_speed >= kSlowest, "travel_speed",
-            "and motion.retreat_speed must be at least 1 cm/s, so that the arm can get away");
+            "or motion.retreat_speed is too low for the arm to get away, choose at least 1 cm/s for both");
     require(!two_stage || motion.fine_threshold <= motion.threshold, "fine_threshold",
             "must not lie above motion.threshold");
     require(!two_stage || motion.fine_threshold >= kLeastThreshold, "fine_threshold", noise);
     require(motion.speed <= kFastest, "speed", too_fast);
     require(!two_stage || motion.fine_speed <= kFastest, "fine_speed", too_fast);
     require(!adaptive || motion.adaptive_hover->speed <= kFastest, "adaptive_hover.speed", too_fast);
-    require(motion.overrun <= kDeepest, "overrun", "lets the arm descend too far below the desk, choose at most 10 cm");
+    require(motion.overrun <= kDeepest, "overrun",
+            "lets the arm descend too far below the desk, choose an overrun of at most 10 cm");
   }
 };
 

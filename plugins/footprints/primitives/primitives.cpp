@@ -133,7 +133,7 @@ class Primitives final : public Footprint {
       const Particles::Pushed pushed = particles_.pushed();
       if (pushed.share <= 0.5) return {};
       return fmt::format(
-          "the object was pushed after touch {:.0f}, by {:.1f} cm (probability {:.2f}): earlier contacts are moved "
+          "the object was pushed after contact {:.0f}, by {:.1f} cm (probability {:.2f}): earlier contacts are moved "
           "along with it",
           pushed.before, 100.0 * pushed.shift, pushed.share);
     }

@@ -116,7 +116,7 @@ void check_ply(const std::string& bytes, const std::string& file) {
     if (word != "element") continue;
     // Nine digits: more rows than the longest file that is read has bytes need ten.
     if (count.empty() || count.size() > 9 || count.find_first_not_of("0123456789") != std::string::npos)
-      throw Error(file, "its header does not give the number of rows of '" + name + "' follow", kExportAgain);
+      throw Error(file, "its header does not give the number of rows of '" + name + "'", kExportAgain);
     rows += std::stoul(count);
   }
   const std::string_view body = std::string_view(bytes).substr(header + last.size());

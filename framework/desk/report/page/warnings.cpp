@@ -58,8 +58,8 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
   }
   tell(out, last.failed_taps, "tap", " made no contact and did not reach the models.");
   tell(out, diagnostics(last, "heights_rejected"), "tap",
-       any_side ? " returned a height that is not a number, or an end off its path, and was rejected."
-                : " returned a height that is not a number, and was rejected.");
+       any_side ? " rejected: the reported height is not a number, or the end is off the path."
+                : " rejected: the reported height is not a number.");
 }
 
 void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {

@@ -34,7 +34,6 @@ constexpr const char* kTopics[] = {kJointTopic,     kEndpointTopic,    kStateTop
                                    kCommandTopic,   kClockTopic};
 /// Of those, what one node alone must send. Joints come from two, of which one sends a gripper's.
 constexpr const char* kOfOneNode[] = {kStateTopic, kEndpointTopic, kCollisionTopic, kAvoidanceTopic, kClockTopic};
-constexpr const char* kOldState = "d7ff2b9fa7d5f688665ce44db4ee2af8";  ///< AssemblyState before 1.2
 
 /// One attempt to join the network.
 class Visit {
@@ -76,7 +75,7 @@ class Visit {
       return trouble(kVersionParameter, "is not set at the master", "check that it is the master of a Baxter");
     if (version->rfind("1.2.", 0) != 0) {
       throw trouble(kVersionParameter, "the robot's software is " + *version,
-                    "update the robot to 1.2, which this driver needs");
+                    "install software 1.2 on the robot, which this driver needs");
     }
     if (!missing.empty()) return nobody;
     if (wishes_.inverse_kinematics && Graph::of(graph.services, kSolverService).empty()) {
@@ -204,11 +203,10 @@ class Visit {
       try {
         const Offer offer = ask_publisher(*place, needed.name, within(kOnePublisher, until(kTold)));
         if (offer.md5 != needed.md5) {
-          return trouble(
-              needed.name,
-              fmt::format("{} sends {} with md5 sum {}, but this driver needs {} with {}", node, offer.type, offer.md5,
-                          needed.type, needed.md5),
-              offer.md5 == kOldState ? "update the robot to software 1.2" : "update the robot to software 1.2");
+          return trouble(needed.name,
+                         fmt::format("{} sends {} with md5 sum {}, but this driver needs {} with {}", node, offer.type,
+                                     offer.md5, needed.type, needed.md5),
+                         "install the robot's software 1.2");
         }
         mute.push_back(node);
       } catch (const Unreached& reason) {
