@@ -127,7 +127,7 @@ const Tree* MapReader::claim(const Field& field, Missing missing) {
   known_.emplace_back(field.name);
   claimed_ = find(field);
   if (claimed_ == nullptr && field.required) {
-    miss(field.name, {where(), fmt::format("'{}' is missing", name(field)), "set it: " + field.meaning});
+    miss(field.name, {where(), fmt::format("'{}' is missing", name(field)), std::string("set it: ") + field.meaning});
     return nullptr;
   }
   if (claimed_ == nullptr && complete_ && missing != Missing::of_its_parts)
