@@ -13,6 +13,7 @@ namespace palpate::test {
 namespace {
 
 using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -140,7 +141,8 @@ TEST_F(ProgramAcquisition, IsToldInOneLineWithPlaceReasonAndRemedyWhateverItDoes
                     HasSubstr("acquisition.deadline")));
   EXPECT_THAT(trouble("sys.stdout.buffer.write(npy([1.0] * 6)[:-1]); sys.stdout.buffer.flush(); time.sleep(600)",
                       ", deadline: 0.2 s, start: 0 s"),
-              HasSubstr("incomplete scores until the deadline"));
+              AnyOf(HasSubstr("incomplete scores until the deadline"), HasSubstr("sent no scores in time")))
+      << "the second on a machine so busy that the program had not begun";
   const auto chatty = open(command(
       "for ask in asks():\n    sys.stdout.buffer.write(npy([1.0] * 6) + b'more')\n    sys.stdout.buffer.flush()\n"));
   EXPECT_EQ(scores(*chatty), std::vector<double>(6, 1.0));
