@@ -369,8 +369,7 @@ void add_compare(CommandLine& line) {
 
 void add_curves(CommandLine& line) {
   CLI::App* sub = line.add(
-      "curves",
-      "Draw curves of a sweep's results against the number of taps, one per group, with bands, and write them as CSV",
+      "curves", "Draw curves of a sweep's results against taps, one per group with a band, and write them as CSV",
       &Needs::everything, curves, line.curves);
   line.add_records(sub, line.curves.records);
   sub->add_option("--by", line.curves.by,
