@@ -113,7 +113,7 @@ TEST(ARobot, ThatMayBeTooSlowIsRejectedBeforeItsFirstTapWithWhatIsAssumed) {
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason,
               HasSubstr("before the first measured contact it is assumed that a contact would be detected"));
-  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 1 mm/s are needed"));
+  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, but 1 mm/s are needed"));
   EXPECT_THAT(contact.reason, HasSubstr("choose a motion.threshold below 5.0 N"));
   EXPECT_GT(desk.lowest, 0.1) << "it did not come down";
 }
@@ -165,7 +165,7 @@ TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasure
   ASSERT_EQ(desk.tap().outcome, Outcome::contact) << "at 5 N, while nothing was measured";
   const Contact contact = desk.tap();
   EXPECT_THAT(contact.reason, ContainsRegex("^a contact would be detected after [45].. ms"));
-  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 2 mm/s are needed"));
+  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, but 2 mm/s are needed"));
   EXPECT_GT(desk.lowest, 0.1) << "it did not come down";
 }
 
@@ -180,7 +180,7 @@ TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigu
   }
   const Contact contact = desk.tap();
   EXPECT_EQ(contact.outcome, Outcome::aborted);
-  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, and 2 mm/s are needed"));
+  EXPECT_THAT(contact.reason, HasSubstr(" mm/s, but 2 mm/s are needed"));
   EXPECT_THAT(contact.reason, HasSubstr("the arm was raised to the height of travel"));
   EXPECT_TRUE(contact.ends_run);
   EXPECT_GT(desk.lowest, 0.03) << "it did not come down further";

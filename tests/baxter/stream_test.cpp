@@ -56,9 +56,9 @@ TEST(AStream, BelowFiftyHertzStopsTheArm) {
   for (const double rate : {100.0, 70.0, 50.0}) EXPECT_FALSE(looked(0.01, rate, rate)) << rate;
   for (const double rate : {45.0, 25.0, 20.0}) {
     const std::optional<Fault> force = looked(0.01, 100.0, rate);
-    EXPECT_THAT(force, IsFault("endpoint_state of the left arm came only ", Then::hold)) << rate;
+    EXPECT_THAT(force, IsFault("endpoint_state of the left arm arrived only ", Then::hold)) << rate;
     EXPECT_THAT(force, IsFault(" times in the last 0.5 s, 25 are needed", Then::hold)) << rate;
-    EXPECT_THAT(looked(0.01, rate, 100.0), IsFault("/robot/joint_states of the left arm came only ", Then::hold));
+    EXPECT_THAT(looked(0.01, rate, 100.0), IsFault("/robot/joint_states of the left arm arrived only ", Then::hold));
   }
 }
 

@@ -106,7 +106,7 @@ TEST(BeforeFlight, WhatTheRobotSaysIsRefusedWhereTheArmWouldNotDoWhatItIsTold) {
       {timeout(std::nan("")), other_timeout},
       {avoids(false, {}), ""},
       {avoids(true, {"torso"}), "pushes the arm away from the other arm and torso"},
-      {seldom, "endpoint_state of the left arm came only "}};
+      {seldom, "endpoint_state of the left arm arrived only "}};
   for (const auto& [spoil, reason] : cases) {
     Bench bench;
     bench.robot.spoil = spoil;

@@ -612,13 +612,14 @@ const std::vector<RecordField>& error_fields() {
   return fields;
 }
 
-const std::string& main_error(const std::vector<Row>& results) {
-  static const std::string kFromAbove = "rmse_m";
-  static const std::string kFromAnySide = "rms_surface_distance_m";
+std::string main_error(const std::vector<Row>& summaries) {
+  const std::string from_above = "rmse_m";
+  const std::string from_any_side = "rms_surface_distance_m";
   const auto some_have = [&](const std::string& name) {
-    return std::any_of(results.begin(), results.end(), [&](const Row& one) { return one.number(name).has_value(); });
+    return std::any_of(summaries.begin(), summaries.end(),
+                       [&](const Row& one) { return one.number(name).has_value(); });
   };
-  return !some_have(kFromAbove) && some_have(kFromAnySide) ? kFromAnySide : kFromAbove;
+  return !some_have(from_above) && some_have(from_any_side) ? from_any_side : from_above;
 }
 
 void add_errors(Row& row, const Errors& errors) {

@@ -77,7 +77,7 @@ std::vector<Relabelled> relabelled_in(const Row& summary);
 
 /// Returns the name of the root mean square error of whole reconstructions: `rmse_m`, or where summaries have only
 /// that, `rms_surface_distance_m`, the error from any side.
-const std::string& main_error(const std::vector<Row>& summaries);
+std::string main_error(const std::vector<Row>& summaries);
 
 /// Adds the errors to a row, null where no truth is known; and finds them in one.
 void add_errors(Row& row, const Errors& errors);

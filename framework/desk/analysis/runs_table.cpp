@@ -212,7 +212,7 @@ std::string runs_table(const std::vector<Row>& rows) {
   std::vector<double> errors;
   std::set<std::string> metrics;  // both where some runs are from above and some from any side
   for (const Row& row : rows) {
-    const std::string& metric = main_error({row});
+    const std::string metric = main_error({row});
     const std::optional<double> error = row.number(metric);
     if (!error) continue;
     errors.push_back(*error);

@@ -80,7 +80,7 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
   std::map<std::string, std::size_t> places;
   std::vector<SweepTableRow> rows;
   std::size_t longest = 0;
-  const std::string& metric = main_error(results);
+  const std::string metric = main_error(results);
   for (const JobGroup& group : group_jobs(sweep, results, keys)) {
     SweepTableRow row = row_of(group, metric, initial_taps);
     if (row.runs == 0) continue;

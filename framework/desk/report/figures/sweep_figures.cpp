@@ -179,7 +179,7 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   const bool left_out = x.cut || y.cut;
   std::vector<std::vector<double>> cells(y.values.size(), std::vector<double>(x.values.size(), std::nan("")));
   std::vector<double> means;
-  const std::string& error = main_error(results);
+  const std::string error = main_error(results);
   for (const JobGroup& group : group_jobs(sweep, results, {y.key, x.key})) {
     const std::size_t row = y.place(group.values[0]);
     const std::size_t column = x.place(group.values[1]);
@@ -249,7 +249,7 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
 std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row>& results) {
   if (!TapSummaries::any_kept(sweep)) return std::nullopt;
   std::vector<TapValues> values(sweep.jobs.size());
-  const std::string& metric = main_error(results);
+  const std::string metric = main_error(results);
   const TapSummaries summaries(sweep, keep_values(values, {metric, kAgainstTaps}));
   const auto has_error = [&](const TapValues& job) {
     const auto error = job.find(metric);
