@@ -317,12 +317,16 @@ TEST(CompareTables, SayBetterOnlyWhereItIsKnown) {
 TEST(CompareTables, AreTheseLetterByLetter) {
   const std::string tables = compare_tables(MadeSweep(two_by_two(6)).by({"acquisition"}));
   EXPECT_EQ(tables,
-            "rmse_m [mm] by acquisition; less is better\nacquisition  jobs   n  seeds  mean [95 % interval]  median  "
-            "10 % to 90 %\na              12  12      6        117 [100, 134]     115    100 to 139\nb              12 "
-            " 12      6        268 [251, 285]     271    206 to 329\n\ndifference  pairs  lost  seeds        mean [95 "
-            "% interval]  better/equal/worse      p  effect\nb - a          12     0      6  +151.25 [+150.27, "
-            "+152.23]               0/0/6  0.031   +1.00\n\nonly 6 seeds: an interval over so few (Student's t) can "
-            "miss the true mean in more than 5 of 100 cases; run 10 or more\n");
+            "rmse_m [mm] by acquisition; less is better\n"
+            "acquisition  jobs   n  seeds  mean [95 % interval]  median  10 % to 90 %\n"
+            "a              12  12      6        117 [100, 134]     115    100 to 139\n"
+            "b              12  12      6        268 [251, 285]     271    206 to 329\n"
+            "\n"
+            "difference  pairs  lost  seeds        mean [95 % interval]  better/equal/worse      p  effect\n"
+            "b - a          12     0      6  +151.25 [+150.27, +152.23]               0/0/6  0.031   +1.00\n"
+            "\n"
+            "only 6 seeds: an interval over so few (Student's t) can miss the true mean in more than 5 of 100 cases; "
+            "run 10 or more\n");
 }
 
 TEST(CompareTables, NoteWhereTheMeanAndMostPairsDisagree) {

@@ -31,9 +31,14 @@ TEST(MeansTable, HasARowAGroupAndNumberOfTapsAndAColumnAMetric) {
                          comparison("first_hit_tap", Unit::none, 17, {group("bold", 3, 4.5), group("shy", 0, 0.0)}),
                          comparison("rmse_m", Unit::metre, 30, {group("bold", 4, 0.00915), group("shy", 4, 0.034)}),
                          comparison("first_hit_tap", Unit::none, 30, {group("bold", 4, 6.25), group("shy", 4, 21)})}),
-            "| strategy | taps | rmse_m [mm] | first_hit_tap |\n|---|---:|---:|---:|\n| bold | 17 | 26.1 | 4.5 |\n| "
-            "shy | 17 | 41.2 | - |\n| bold | 30 | 9.2 | 6.2 |\n| shy | 30 | 34.0 | 21.0 |\n\nfirst_hit_tap: mean over "
-            "the runs that have a value (else no object was found).\n");
+            "| strategy | taps | rmse_m [mm] | first_hit_tap |\n"
+            "|---|---:|---:|---:|\n"
+            "| bold | 17 | 26.1 | 4.5 |\n"
+            "| shy | 17 | 41.2 | - |\n"
+            "| bold | 30 | 9.2 | 6.2 |\n"
+            "| shy | 30 | 34.0 | 21.0 |\n"
+            "\n"
+            "first_hit_tap: mean over the runs that have a value (else no object was found).\n");
 }
 
 TEST(MeansTable, OfJobsAsTheyEndedHasNoTaps) {
@@ -47,8 +52,11 @@ TEST(MeansTable, SaysWhatIsInNoMeanAndLeavesOutWhatIsLeftOut) {
   one.groups[1].counts = {};
   for (int job = 0; job < 4; ++job) one.groups[1].counts.add(Fate::left_out);
   EXPECT_EQ(means_table({one}),
-            "| strategy | rmse_m [mm] |\n|---|---:|\n| bold | 20 |\n\n2 jobs failed and 1 have not ended: the means "
-            "exclude them.\n");
+            "| strategy | rmse_m [mm] |\n"
+            "|---|---:|\n"
+            "| bold | 20 |\n"
+            "\n"
+            "2 jobs failed and 1 have not ended: the means exclude them.\n");
 }
 
 TEST(LatexTable, HasMeansWithTheirIntervalsAndNBetweenTheRulesOfBooktabs) {
@@ -57,12 +65,18 @@ TEST(LatexTable, HasMeansWithTheirIntervalsAndNBetweenTheRulesOfBooktabs) {
   one.groups[0].mean.clusters = 4;
   one.groups[1].mean.clusters = 3;
   one.groups[0].mean.interval = {0.0242, 0.0281};
-  EXPECT_EQ(
-      latex_table({one}),
-      "% \\usepackage{booktabs}\n% mean [95 % interval of the mean] and number of jobs; units of the intervals: 3 to 4 "
-      "seeds\n% rmse_m: mean over the runs that have a value (else no truth is "
-      "known).\n\\begin{tabular}{lrrr}\n\\toprule\nstrategy & taps & rmse\\_m [mm] & $n$ \\\\\n\\midrule\nout\\_line & "
-      "17 & $26.1\\ [24.2, 28.1]$ & 4 \\\\\n{[a, b]} & 17 & $41.2$ & 3 \\\\\n\\bottomrule\n\\end{tabular}\n");
+  EXPECT_EQ(latex_table({one}),
+            "% \\usepackage{booktabs}\n"
+            "% mean [95 % interval of the mean] and number of jobs; units of the intervals: 3 to 4 seeds\n"
+            "% rmse_m: mean over the runs that have a value (else no truth is known).\n"
+            "\\begin{tabular}{lrrr}\n"
+            "\\toprule\n"
+            "strategy & taps & rmse\\_m [mm] & $n$ \\\\\n"
+            "\\midrule\n"
+            "out\\_line & 17 & $26.1\\ [24.2, 28.1]$ & 4 \\\\\n"
+            "{[a, b]} & 17 & $41.2$ & 3 \\\\\n"
+            "\\bottomrule\n"
+            "\\end{tabular}\n");
 }
 
 TEST(LatexTable, HasTheDigitsOfEachIntervalTwoOfItsHalfWidthAndAsManyDecimalsOfMeanAndBounds) {

@@ -40,11 +40,11 @@ std::string table_of(const std::vector<std::string>& keys, const std::vector<std
 
 TEST(SweepTable, IsThisLetterByLetter) {
   EXPECT_EQ(table_of({"kernel", "seed"}, {{"rbf", "1"}, {"matern52", "1"}}, {0.021, 0.0152}),
-            "group     runs  no contact   found  object taps, rest  object taps, all  rmse_m [mm]     "
-            "footprint_iou\nmatern52     1        0.0%  100.0%            7 (7-7)           7 (7-7)   15 (15-15)  0.80 "
-            "(0.80-0.80)\nrbf          1        0.0%  100.0%            7 (7-7)           7 (7-7)   21 (21-21)  0.80 "
-            "(0.80-0.80)\nno contact: runs without an initial tap on the object; rest: the other runs. Median (10 %-90 "
-            "%).\nGroups with the least rmse_m come first.\n");
+            "group     runs  no contact   found  object taps, rest  object taps, all  rmse_m [mm]     footprint_iou\n"
+            "matern52     1        0.0%  100.0%            7 (7-7)           7 (7-7)   15 (15-15)  0.80 (0.80-0.80)\n"
+            "rbf          1        0.0%  100.0%            7 (7-7)           7 (7-7)   21 (21-21)  0.80 (0.80-0.80)\n"
+            "no contact: runs without an initial tap on the object; rest: the other runs. Median (10 %-90 %).\n"
+            "Groups with the least rmse_m come first.\n");
 }
 
 TEST(SweepTable, KeepsTheGroupsOfASceneTogetherEachWithTheLeastErrorFirst) {

@@ -30,8 +30,9 @@ TEST_F(Compare, PrintsGroupsAndPairsAndLeavesTheirNumbersAsCsv) {
   const Ended ended = compare(directory, "--by acquisition --metric object_taps");
   EXPECT_THAT(ended.out, StartsWith("object_taps by acquisition; more is better\nacquisition  jobs "));
   EXPECT_THAT(ended.out, HasSubstr("\nweighted - uncertainty     12 "));
-  EXPECT_THAT(ended.out, HasSubstr("\nThe unit is the seed: all jobs of a seed are resampled together and count as "
-                                   "one.\npair: two jobs with equal taps, seed.\n"));
+  EXPECT_THAT(ended.out, HasSubstr("\n"
+                                   "The unit is the seed: all jobs of a seed are resampled together and count as one.\n"
+                                   "pair: two jobs with equal taps, seed.\n"));
   EXPECT_THAT(ended.out, HasSubstr("\nonly 6 seeds: "));
   const fs::path file = directory / "compare_acquisition_object_taps.csv";
   EXPECT_EQ(ended.err, "table: " + file.string() + "\n");

@@ -101,8 +101,12 @@ TEST_F(Pareto, WhereNothingIsWithinNamesTheNearestAndEndsWith1) {
   const Ended ended = pareto(settings(), "--within 1um");
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.out, "");
-  EXPECT_THAT(ended.err, ContainsRegex("\nno setting keeps rmse_m within 0.001 mm, the nearest is acquisition=[a-z]+, "
-                                       "taps=[0-9]+: rmse_m [0-9.]+ .*\n$"));
+  EXPECT_THAT(
+      ended.err,
+      ContainsRegex(
+          "\n"
+          "no setting keeps rmse_m within 0.001 mm, the nearest is acquisition=[a-z]+, taps=[0-9]+: rmse_m [0-9.]+ .*\n"
+          "$"));
 }
 
 TEST_F(Pareto, AsksForTheLowerBoundOfWhatIsBetterWhenItIsMore) {

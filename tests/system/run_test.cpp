@@ -96,8 +96,9 @@ TEST_F(ARun, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
     return out.substr(std::min(out.find("# models"), out.size()));
   };
   EXPECT_EQ(models({}),
-            "# models for the choice of taps, and the parts that read them:\n#   height GP: acquisition weighted, "
-            "fallback uncertainty, from its first use on\n#   label GP: acquisition weighted\n");
+            "# models for the choice of taps, and the parts that read them:\n"
+            "#   height GP: acquisition weighted, fallback uncertainty, from its first use on\n"
+            "#   label GP: acquisition weighted\n");
   EXPECT_EQ(models("acquisition=random fallback=none"), "");
   EXPECT_EQ(models("acquisition=random fallback=none motion=adaptive"),
             "# models for the choice of taps, and the parts that read them:\n#   height GP: backend simulator\n");
