@@ -19,7 +19,7 @@ class Compare : public Shell {
     return swept("acquisition=uncertainty,weighted taps=8,12 candidates.count=16 seed=range(0,6)");
   }
   Ended compare(const fs::path& sweep, const Words& more) const {
-    const Ended ended = palpate(Words{"compare", sweep} + more);
+    Ended ended = palpate(Words{"compare", sweep} + more);
     EXPECT_EQ(ended.status, 0) << ended.err;
     return ended;
   }
