@@ -128,7 +128,8 @@ weight_process
 names
   awk -F : '++count[$1] <= 3 { name = $0; sub(/^[^:]*:[^:]*:/, "", name); print $1 ":" $2 ": has the retired name " name }' >"$found/names"
 
-# words MODE PAGE...: reads the prose of pages: without code, HTML and addresses, each cell of a table by itself. MODE
+# words MODE PAGE...: reads the prose of pages: without code, HTML and addresses, each cell of a table by itself. Outside
+# of tables a sentence begins with a capital: one that begins with code is hard to see and counts with the one before. MODE
 # `long` prints sentences of more than 35 words, `what` how often "what" and "who" occur in 1000 words of each page.
 words() {
   mode=$1
@@ -136,7 +137,7 @@ words() {
   awk -v mode="$mode" '
     function finish() {
       if (mode == "long" && count > 35) print page ":" start ": has a sentence of " count " words, 35 are the limit"
-      count = 0
+      count = ended = 0
     }
     function report() {
       if (mode == "what" && total) printf "%s%s %.1f", (reported++ ? ", " : ""), page, 1000 * asking / total
@@ -145,13 +146,15 @@ words() {
     function read(text,    parts, n, i, word) {
       n = split(text, parts, " ")
       for (i = 1; i <= n; ++i) {
+        if (ended && (in_cell || parts[i] ~ /^["*(\[]*[A-Z]/)) finish()
+        ended = 0
         word = tolower(parts[i])
         gsub(/^[^a-z0-9]+|[^a-z0-9]+$/, "", word)
         if (word == "") continue
         if (!count++) start = FNR
         ++total
         if (word ~ /^(what|who)(ever)?$/) ++asking
-        if (parts[i] ~ /[.?!][]"*)]*$/ && parts[i] !~ /^(e\.g|i\.e|cf|vs)\.$/) finish()
+        if (parts[i] ~ /[.?!][]"*)]*$/ && parts[i] !~ /^(e\.g|i\.e|cf|vs)\.$/) ended = 1
       }
     }
     FNR == 1 { finish(); report(); page = FILENAME; fenced = 0; indented = 0; blank = 1 }
@@ -164,7 +167,9 @@ words() {
       gsub(/`[^`]*`/, "code"); gsub(/<[^>]*>/, ""); gsub(/\]\([^)]*\)/, "]")
       if ($0 ~ /^ *\|/) {
         cells = split($0, cell, "|")
+        in_cell = 1
         for (c = 1; c <= cells; ++c) { read(cell[c]); finish() }
+        in_cell = 0
       } else read($0)
       if ($0 ~ /^ *#/) finish() }
     END { finish(); report(); if (mode == "what") print "" }' "$@"
