@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/commands.hpp"
 #include "cli/gate.hpp"
-#include "experiment/room.hpp"
 #include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
@@ -43,7 +42,6 @@ int resume(Program& program, const ResumeArguments& arguments) {
                 fmt::format("--launcher {}: {} is not a sweep", arguments.launch.launcher, arguments.directory),
                 "leave it out");
   }
-  make_room();
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
   if (arguments.launch.watch) output.watched = arguments.directory;

@@ -9,7 +9,6 @@
 #include "config/expand.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
-#include "experiment/room.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
 #include "scene/sizes.hpp"
@@ -96,7 +95,6 @@ void offer_the_rest(const Program& program) {
 }  // namespace
 
 int run(Program& program, const RunArguments& arguments) {
-  make_room();
   check_given_once(arguments.overrides);
   std::vector<Override> overrides;
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "config/yaml.hpp"
 
-#include "config/plain_yaml.hpp"
 #include "config/utf8.hpp"
 
 #include <palpate/error.hpp>
@@ -208,6 +207,19 @@ std::string odd_scalar(const Tree& scalar, bool in_brackets) {
   return text.substr(1, text.size() - 2);
 }
 
+bool is_alnum(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+bool is_one_of(char c, std::string_view these) { return these.find(c) != std::string_view::npos; }
+
+/// Whether a text is a word, a name or a number that needs no quotes anywhere in a config. Other texts may not need
+/// them either; yaml-cpp decides.
+bool is_plain_word(std::string_view text) {
+  if (text.empty() || text.back() == ' ' || text == "null" || text == "Null" || text == "NULL") return false;
+  const bool is_number = text.front() == '-' && text.size() > 1 && (is_alnum(text[1]) || text[1] == '.');
+  return (is_number || is_alnum(text.front()) || is_one_of(text.front(), "_./+")) &&
+         std::all_of(text.begin(), text.end(), [](char c) { return is_alnum(c) || is_one_of(c, " _./+-*()=<>%^"); });
+}
+
 void append_scalar(std::string& out, const Tree& scalar, bool in_brackets) {
   const auto stays = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
   if (!scalar.quoted && is_plain_word(scalar.text)) {
@@ -325,8 +337,6 @@ Tree parse_yaml(const std::string& text, const std::string& file) {
   if (const std::size_t valid = utf8_prefix(text); valid < text.size()) {
     throw Error(place_in(file, text, valid), "not UTF-8", "save the file as UTF-8");
   }
-  if (std::optional<Tree> plain = read_plain_yaml(text, std::make_shared<const std::string>(file)))
-    return std::move(*plain);
   try {
     Tree tree = Reader(file, true).read(text);
     if (tree.kind == Tree::Kind::null) tree.kind = Tree::Kind::map;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "launch/local_launcher.hpp"
 
-#include "experiment/room.hpp"
 #include "reading/reading.hpp"
 #include "record/files.hpp"
 
@@ -18,8 +17,6 @@
 #include <cstring>
 #include <functional>
 
-#include <malloc.h>
-#include <pthread.h>
 #include <sys/wait.h>
 
 namespace palpate {
@@ -33,49 +30,19 @@ bool is_crash(int signal) {
   return std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
 }
 
-/// Runs `work` in a thread, whose memory the C library takes from an arena of its own. The heap of a conductor has as
-/// many holes as it has composed jobs, and a child that filled them would copy a page for each: two thirds of all page
-/// faults of a job. Signals go to that thread, so that they interrupt what it waits for.
-void in_fresh_memory(const std::function<void()>& work) {
-  struct Start {
-    const std::function<void()>& work;
-    sigset_t before;
-  } start{work, {}};
-  sigset_t all;
-  ::sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &start.before);
-  pthread_t thread{};
-  const auto enter = [](void* given) -> void* {
-    const Start& it = *static_cast<Start*>(given);
-    ::pthread_sigmask(SIG_SETMASK, &it.before, nullptr);
-    make_room();
-    it.work();
-    return nullptr;
-  };
-  if (::pthread_create(&thread, nullptr, enter, &start) == 0) {
-    ::pthread_join(thread, nullptr);
-  } else {  // where no more threads are allowed it goes on in memory as it is
-    enter(&start);
-  }
-  ::pthread_sigmask(SIG_SETMASK, &start.before, nullptr);
-}
-
 }  // namespace
 
 std::unique_ptr<Launcher> local_launcher(const LaunchOrder& order) { return std::make_unique<LocalLauncher>(order); }
 
 void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());
-  // What planning them took and gave back would be copied with the process of every job.
-  ::malloc_trim(0);
 }
 
 bool LocalLauncher::start(std::size_t job) {
   std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say& say) -> int {
     // What it may open is for its own files.
     for (const Running& other : running_) other.process->forget();
-    JobEnd end = JobEnd::unrecorded;
-    in_fresh_memory([&] { end = run(job); });
+    const JobEnd end = run(job);
     if (end == JobEnd::blocked) say(kBlocked);
     // Not as children end otherwise: plugins have things to take down, such as a robot's node.
     std::exit(static_cast<int>(end));

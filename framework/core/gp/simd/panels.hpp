@@ -17,19 +17,15 @@ constexpr int round_up(int value, int unit) { return (value + unit - 1) / unit *
 class Lines {
  public:
   Lines() = default;
-  /// How they will be written. What is written from front to back and would fill half of a huge page (2 MB) begins with
-  /// one and is in such pages, where the system has any: they are found sooner. Of what is not, each would be whole.
-  enum class Written { in_order, here_and_there };
   /// Throws std::bad_alloc.
-  explicit Lines(std::size_t size, Written written = Written::in_order)
-      : numbers_(allocate(size, written)), size_(size) {}
+  explicit Lines(std::size_t size) : numbers_(allocate(size)), size_(size) {}
 
   std::size_t size() const { return size_; }
   double* data() { return numbers_.get(); }
   const double* data() const { return numbers_.get(); }
 
  private:
-  static double* allocate(std::size_t size, Written written);
+  static double* allocate(std::size_t size);
   struct Release {
     void operator()(double* numbers) const { std::free(numbers); }
   };
@@ -64,7 +60,7 @@ class Panels {
     const Lines old = std::move(numbers_);
     const std::size_t old_stride = stride();
     capacity_ = rows;
-    numbers_ = Lines(static_cast<std::size_t>(panels_) * stride(), Lines::Written::here_and_there);
+    numbers_ = Lines(static_cast<std::size_t>(panels_) * stride());
     for (int p = 0; p < panels_; ++p) {
       const auto count = static_cast<std::ptrdiff_t>(rows_) * width(p);
       std::copy_n(old.data() + static_cast<std::size_t>(p) * old_stride, count, panel(p));
