@@ -10,7 +10,7 @@
 #include "cli/usage.hpp"
 #include "config/tree.hpp"
 #include "config/trouble.hpp"
-#include "gp/instructions.hpp"
+#include "math/instructions.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/run_directory.hpp"
@@ -619,7 +619,7 @@ int run_main(int argc, char** argv) {
   } catch (const CLI::Error& trouble) {
     return usage_error(app, trouble, first);
   }
-  if (!asked) lanes_in_use();     // what is wrong with PALPATE_INSTRUCTIONS is said before anything begins
+  if (!asked) math::choose_instructions();  // what is wrong with PALPATE_INSTRUCTIONS is said before anything begins
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
   return perform(line, asked, argc, argv);
 }

@@ -8,97 +8,47 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <type_traits>
 #include <vector>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "acquisitions/variance_reduction.cpp"
+#include "math/highway.hpp"
+
+// Compiled for each set of instructions, since most of the work is the counting of bits, for which some have one.
+HWY_BEFORE_NAMESPACE();
+namespace palpate::acquisitions::HWY_NAMESPACE {
+namespace {
+
+/// How many bits of `here` are set as well in each of some others: `words` words each, one after the other.
+void count_common(const std::uint64_t* here, std::ptrdiff_t words, const std::uint64_t* others, std::ptrdiff_t count,
+                  int* out) {
+  for (std::ptrdiff_t i = 0; i < count; ++i, others += words) {
+    int sum = 0;
+    for (std::ptrdiff_t word = 0; word < words; ++word) sum += __builtin_popcountll(here[word] & others[word]);
+    out[i] = sum;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::acquisitions::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace palpate::acquisitions {
 
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)  // which has not begun when one is chosen
-// Bits are counted by as many at a time as the machine can: nothing else is as much of the work.
-#define PALPATE_COUNTS_BITS __attribute__((target_clones("avx2", "default")))
-#else
-#define PALPATE_COUNTS_BITS
-#endif
+HWY_EXPORT(count_common);
 
 namespace {
 
+/// A place a column, an outline a bit: whether the outline holds the place.
 using Words = Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic>;
+using Counts = Eigen::Array<int, Eigen::Dynamic, 1>;
 
-/// How many outlines hold each place.
-PALPATE_COUNTS_BITS std::vector<int> count(const Words& holds) {
-  std::vector<int> out(static_cast<std::size_t>(holds.cols()), 0);
-  for (Eigen::Index i = 0; i < holds.cols(); ++i) {
-    for (Eigen::Index word = 0; word < holds.rows(); ++word)
-      out[static_cast<std::size_t>(i)] += __builtin_popcountll(holds(word, i));
-  }
+/// How many outlines hold each of some places, and `here` as well.
+Counts common(const std::uint64_t* here, const Words& holds) {
+  Counts out(holds.cols());
+  HWY_DYNAMIC_DISPATCH(count_common)(here, holds.rows(), holds.data(), holds.cols(), out.data());
   return out;
-}
-
-/// Some places, of which the same word of many lies side by side: covariances with several are computed at once.
-struct Others {
-  static constexpr int kAtOnce = 4;
-
-  Others(const Words& holds, const std::vector<int>& held, const std::vector<int>& places)
-      : words(static_cast<int>(holds.rows())),
-        length((static_cast<int>(places.size()) + kAtOnce - 1) / kAtOnce * kAtOnce),
-        bits(static_cast<std::size_t>(words * length), 0),
-        held_by(static_cast<std::size_t>(length), 0.0) {
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      held_by[i] = held[static_cast<std::size_t>(places[i])];
-      for (int word = 0; word < words; ++word)
-        bits[static_cast<std::size_t>(word * length) + i] = holds(word, places[i]);
-    }
-  }
-
-  int words;
-  int length;                       ///< whole multiples of kAtOnce; places that no outline holds fill it up
-  std::vector<std::uint64_t> bits;  ///< words x length
-  std::vector<double> held_by;      ///< outlines
-};
-
-/// See squares(). Of so many words: a number that the compiler knows is a loop less.
-template <class Count>
-__attribute__((always_inline)) inline double squares_of(const std::uint64_t* here, double share, const Others& others,
-                                                        Count words) {
-  using Bits = std::uint64_t __attribute__((vector_size(8 * Others::kAtOnce)));
-  using Reals = double __attribute__((vector_size(8 * Others::kAtOnce)));
-  constexpr int kWords = 16;  // of so many the bits of a byte are counted within a byte
-  Reals sum{};
-  for (int from = 0; from < others.length; from += Others::kAtOnce) {
-    Bits both{};
-    for (int first = 0; first < words; first += kWords) {
-      Bits bytes{};
-      for (int word = first; word < std::min<int>(first + kWords, words); ++word) {
-        Bits bits;
-        std::memcpy(&bits, others.bits.data() + static_cast<std::ptrdiff_t>(word) * others.length + from, sizeof(bits));
-        bits &= here[word];
-        bits -= (bits >> 1) & 0x5555555555555555U;
-        bits = (bits & 0x3333333333333333U) + ((bits >> 2) & 0x3333333333333333U);
-        bytes += (bits + (bits >> 4)) & 0x0F0F0F0F0F0F0F0FU;
-      }
-      bytes = (bytes & 0x00FF00FF00FF00FFU) + ((bytes >> 8) & 0x00FF00FF00FF00FFU);
-      bytes += bytes >> 16;
-      both += (bytes + (bytes >> 32)) & 0xFFFFU;
-    }
-    // As fractions of 2^52, of which whole numbers are the last bits.
-    both |= 0x4330000000000000U;
-    Reals covariance;
-    Reals of_others;
-    std::memcpy(&covariance, &both, sizeof(covariance));
-    std::memcpy(&of_others, &others.held_by[static_cast<std::size_t>(from)], sizeof(of_others));
-    covariance = covariance - 0x1.0p52 - share * of_others;
-    sum += covariance * covariance;
-  }
-  return sum[0] + sum[1] + (sum[2] + sum[3]);
-}
-
-/// The sum of the squares of the covariances of one place with others, times the number of outlines.
-PALPATE_COUNTS_BITS double squares(const std::uint64_t* here, int held, int outlines, const Others& others) {
-  const double share = static_cast<double>(held) / outlines;
-  constexpr int kUsual = 4;  // words
-  if (others.words == kUsual) return squares_of(here, share, others, std::integral_constant<int, kUsual>());
-  return squares_of(here, share, others, others.words);
 }
 
 /// At most so many, evenly among all.
@@ -165,10 +115,11 @@ class VarianceReduction final : public Acquisition {
 
   /// Adds what is settled of what is known, and returns the most of it.
   static double look_ahead(const OutlineSample& sample, double extent_of_place, VectorOut out) {
-    const std::vector<int> held = count(sample.holds);
+    const std::vector<std::uint64_t> all(static_cast<std::size_t>(sample.holds.rows()), ~std::uint64_t{0});
+    const Counts held = common(all.data(), sample.holds);
     std::vector<int> open;  // places that are not settled
-    for (std::size_t i = 0; i < held.size(); ++i) {
-      if (held[i] > 0 && held[i] < sample.count) open.push_back(static_cast<int>(i));
+    for (int i = 0; i < held.size(); ++i) {
+      if (held(i) > 0 && held(i) < sample.count) open.push_back(i);
     }
     // On a fine grid a part of the places tells as well as all, and one in some is tapped as well as all.
     constexpr std::size_t kPlaces = 128;
@@ -176,12 +127,14 @@ class VarianceReduction final : public Acquisition {
     const std::vector<int> places = some_of(open, kPlaces);
     if (places.empty()) return 0.0;
     const double each = extent_of_place * static_cast<double>(open.size()) / static_cast<double>(places.size());
-    const Others others(sample.holds, held, places);
+    const Words others = sample.holds(Eigen::all, places);
+    const Eigen::ArrayXd held_by = held(places).cast<double>();
     double most = 0.0;
     for (const int x : some_of(open, kTaps)) {
-      const int of_x = held[static_cast<std::size_t>(x)];
-      const double settled = each * squares(sample.holds.col(x).data(), of_x, sample.count, others) /
-                             (static_cast<double>(of_x) * (sample.count - of_x));
+      const double of_x = held(x);
+      const Eigen::ArrayXd covariances =
+          common(sample.holds.col(x).data(), others).cast<double>() - of_x / sample.count * held_by;
+      const double settled = each * covariances.square().sum() / (of_x * (sample.count - of_x));
       most = std::max(most, settled);
       out(x) += settled;
     }
@@ -195,3 +148,4 @@ PALPATE_PLUGIN(Acquisition, VarianceReduction, "variance_reduction",
                "expected reduction of the footprint's variance by one tap, plus discovery of new objects")
 
 }  // namespace palpate::acquisitions
+#endif

@@ -3,27 +3,20 @@
 // label GP. Its prior mean and its clipping are options of that process: `label: {prior_mean, clip}`.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
-#include <palpate/simd.hpp>
 
 namespace palpate::acquisitions {
 
 class Weighted final : public Acquisition {
  public:
   using Options = NoOptions;
-  Weighted(const Options&, const Context& context) : lanes_(context.lanes) {}
+  Weighted(const Options&, const Context&) {}
 
   Quantities reads() const override { return Quantity::uncertainty | Quantity::weight; }
   void score(const Belief& belief, VectorOut out) const override {
-    simd::for_each(lanes_, out.size(),
-                   [to = out.data(), u = belief.uncertainty().data(), w = belief.weight().data()](std::ptrdiff_t i) {
-                     to[i] = u[i] * w[i];
-                   });
+    out = belief.uncertainty().cwiseProduct(belief.weight());
   }
   /// u is 1 before any tap and w is a probability in the model's mind.
   double prior_scale() const override { return 1.0; }
-
- private:
-  simd::Lanes lanes_;
 };
 
 PALPATE_PLUGIN(Acquisition, Weighted, "weighted",

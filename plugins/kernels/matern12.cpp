@@ -7,11 +7,16 @@ namespace palpate::kernels {
 struct Matern12Shape : PlainShape {
   using PlainShape::PlainShape;
 
-  PALPATE_INLINE double value(double r2) const { return simd::decay(std::sqrt(r2)); }
-  PALPATE_INLINE double slope(double r2, double& k) const {
-    k = value(r2);
+  static constexpr double kScale = 1.0;
+  void values(Numbers z) const {
+    z = -z.sqrt();
+    take_exponentials(z);
+  }
+  void slopes(Numbers z, Numbers slope) const {
     // At r = 0 the slope by the length scale, g r^2, is 0; the bound keeps g finite there.
-    return k / simd::max(std::sqrt(r2), 1e-150);
+    slope = 1.0 / z.sqrt().max(1e-150);
+    values(z);
+    slope *= z;
   }
 };
 

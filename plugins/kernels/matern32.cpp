@@ -8,19 +8,25 @@ struct Matern32Shape : PlainShape {
   using PlainShape::PlainShape;
   static constexpr bool kSlopes = true;
 
-  PALPATE_INLINE double value(double r2) const {
-    const double s = std::sqrt(3.0 * r2);
-    return (1.0 + s) * simd::decay(s);
+  static constexpr double kScale = 3.0;
+  void values(Numbers z) const {
+    const Block s = z.sqrt();
+    z = -s;
+    take_exponentials(z);
+    z *= 1.0 + s;
   }
-  PALPATE_INLINE double slope(double r2, double& k) const {
-    const double s = std::sqrt(3.0 * r2);
-    const double falling = simd::decay(s);
-    k = (1.0 + s) * falling;
-    return 3.0 * falling;
+  void slopes(Numbers z, Numbers slope) const {
+    const Block s = z.sqrt();
+    slope = -s;
+    take_exponentials(slope);
+    z = (1.0 + s) * slope;
+    slope *= 3.0;
   }
-  double bend(double r2) const {
-    const double s = std::sqrt(3.0 * r2);
-    return 3.0 * (1.0 - s) * simd::decay(s);
+  void bends(Numbers z) const {
+    const Block s = z.sqrt();
+    z = -s;
+    take_exponentials(z);
+    z *= 3.0 * (1.0 - s);
   }
 };
 

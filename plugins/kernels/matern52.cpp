@@ -8,19 +8,25 @@ struct Matern52Shape : PlainShape {
   using PlainShape::PlainShape;
   static constexpr bool kSlopes = true;
 
-  PALPATE_INLINE double value(double r2) const {
-    const double s = std::sqrt(5.0 * r2);
-    return (1.0 + s + s * s / 3.0) * simd::decay(s);
+  static constexpr double kScale = 5.0;
+  void values(Numbers z) const {
+    const Block s = z.sqrt();
+    z = -s;
+    take_exponentials(z);
+    z *= 1.0 + s + s.square() / 3.0;
   }
-  PALPATE_INLINE double slope(double r2, double& k) const {
-    const double s = std::sqrt(5.0 * r2);
-    const double falling = simd::decay(s);
-    k = (1.0 + s + s * s / 3.0) * falling;
-    return (5.0 / 3.0) * (1.0 + s) * falling;
+  void slopes(Numbers z, Numbers slope) const {
+    const Block s = z.sqrt();
+    slope = -s;
+    take_exponentials(slope);
+    z = (1.0 + s + s.square() / 3.0) * slope;
+    slope *= (5.0 / 3.0) * (1.0 + s);
   }
-  double bend(double r2) const {
-    const double s = std::sqrt(5.0 * r2);
-    return (5.0 / 3.0) * (1.0 + s - s * s) * simd::decay(s);
+  void bends(Numbers z) const {
+    const Block s = z.sqrt();
+    z = -s;
+    take_exponentials(z);
+    z *= (5.0 / 3.0) * (1.0 + s - s.square());
   }
 };
 

@@ -3,8 +3,6 @@
 // length scales (Rasmussen and Williams 2006, equation 4.19).
 #include "stationary.hpp"
 
-#include <cmath>
-
 namespace palpate::kernels {
 
 struct RationalQuadraticOptions : StationaryOptions {
@@ -19,36 +17,39 @@ struct RationalQuadraticOptions : StationaryOptions {
   }
 };
 
-/// Its powers are taken one by one: with an exponent of up to 1e4, vectors would have to find a logarithm to twice as
-/// many digits as a number has.
 class RationalQuadraticShape {
  public:
   using Options = RationalQuadraticOptions;
+  static constexpr double kScale = 1.0;
   static constexpr double kFarthest = 1e300;
   static constexpr bool kSeparable = false;
   static constexpr bool kOwn = true;
   static constexpr bool kSlopes = false;
   explicit RationalQuadraticShape(const Options& options) : alpha_(options.alpha) {}
 
-  double value(double r2) const { return std::pow(1.0 + bounded_t(r2), -alpha_); }
-  double slope(double r2, double& k) const {
-    const double base = 1.0 + bounded_t(r2);
-    k = std::pow(base, -alpha_);
-    return k / base;
+  void values(Numbers z) const {
+    for (double& one : z) one = math::pow(1.0 + bounded_t(one), -alpha_);
+  }
+  void slopes(Numbers z, Numbers slope) const {
+    for (Eigen::Index i = 0; i < z.size(); ++i) slope(i) = 1.0 / (1.0 + bounded_t(z(i)));
+    values(z);
+    slope *= z;
   }
 
   std::vector<KernelParameter> parameters() const { return {{"alpha", alpha_}}; }
   void set_parameters(const VectorView& values) { alpha_ = values(0); }
 
   /// d log k / d log alpha = alpha (t / (1 + t) - log(1 + t)).
-  double own_slope(double r2, double k) const {
-    const double t = bounded_t(r2);
-    return alpha_ * k * (t / (1.0 + t) - std::log1p(t));
+  void own_slopes(const Block& z, Numbers k, Numbers slope) const {
+    for (Eigen::Index i = 0; i < z.size(); ++i) {
+      const double t = bounded_t(z(i));
+      slope(i) = alpha_ * k(i) * (t / (1.0 + t) - math::log1p(t));
+    }
   }
 
  private:
   /// t, finite also where the quotient is not: with a small alpha the kernel is not yet 0 there.
-  double bounded_t(double r2) const { return simd::min(r2 / (2.0 * alpha_), 1e300); }
+  double bounded_t(double r2) const { return std::min(r2 / (2.0 * alpha_), 1e300); }
 
   double alpha_;
 };

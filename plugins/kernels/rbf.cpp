@@ -9,9 +9,17 @@ struct RbfShape : PlainShape {
   static constexpr bool kSeparable = true;
   static constexpr bool kSlopes = true;
 
-  PALPATE_INLINE double value(double r2) const { return simd::decay(0.5 * r2); }
-  PALPATE_INLINE double slope(double r2, double& k) const { return k = value(r2); }
-  double bend(double r2) const { return (1.0 - r2) * value(r2); }
+  static constexpr double kScale = -0.5;
+  void values(Numbers z) const { take_exponentials(z); }
+  void slopes(Numbers z, Numbers slope) const {
+    take_exponentials(z);
+    slope = z;
+  }
+  void bends(Numbers z) const {
+    const Block r2 = -2.0 * z;
+    take_exponentials(z);
+    z *= 1.0 - r2;
+  }
 };
 
 using Rbf = Stationary<RbfShape>;

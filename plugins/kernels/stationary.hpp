@@ -2,12 +2,15 @@
 // What the stationary kernels share: length scales, and a covariance that is a function of the scaled distance.
 #pragma once
 
+#include "kernels/pairs.hpp"
+
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
-#include <palpate/simd.hpp>
+#include <palpate/math.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 
@@ -31,43 +34,46 @@ struct StationaryOptions : Options {
   }
 };
 
-/// A kernel of unit variance, k(a, b) = f(r^2) with r^2 = ((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2.
+/// Some numbers of a matrix that follow each other, at most kBlock.
+using Numbers = Eigen::Map<Eigen::ArrayXd>;
+constexpr Eigen::Index kBlock = 256;
+/// As many numbers aside, on the stack.
+using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
+
+/// e^x of each, in place.
+inline void take_exponentials(Numbers numbers) { math::exp(numbers.data(), numbers.size(), numbers.data()); }
+
+/// A kernel of unit variance, k(a, b) = f(z) with z = kScale (((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2).
 ///
-/// `Shape` is f and its parameters beyond the length scales, of which there may be none; for the loops
-/// of simd.hpp:
+/// `Shape` is f and its parameters beyond the length scales, of which there may be none. Below, r^2 is z / kScale:
 ///     using Options;                             derived from StationaryOptions
+///     static constexpr double kScale;
 ///     static constexpr double kFarthest;         squares of scaled distances end here, so that none is infinite and no
 ///                                                product with a covariance near 0 is no number
 ///     explicit Shape(const Options&);
-///     double value(r2) const;                    f; r2 up to 2 kFarthest
-///     double slope(r2, k) const;                 k = f and -2 df/dr^2, which is returned
+///     void values(Numbers z) const;              z -> f, in place; r^2 up to 2 kFarthest
+///     void slopes(Numbers z, Numbers slope) const;            z -> f, in place; slope = -2 df / d(r^2)
 ///     std::vector<KernelParameter> parameters() const;
 ///     void set_parameters(values);
 ///     static constexpr bool kOwn;                one parameter beyond the length scales, or none, and of that
-///     double own_slope(r2, k) const;              dk/d log parameter
+///     void own_slopes(z, k, Numbers slope) const;             dk / d log parameter
 ///     static constexpr bool kSeparable;          f(a + b) = f(a) f(b)
 ///     static constexpr bool kSlopes;             f has two derivatives by r everywhere, and of these
-///     double bend(r2) const;                     -d^2 f / dr^2, its limit at r = 0; slope(0) is finite, too
+///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; its limit at r = 0, where the slope is
+///                                                finite, too
 template <class Shape>
 class Stationary final : public Kernel {
  public:
   using Options = typename Shape::Options;
 
-  Stationary(const Options& options, const Context& context)
+  Stationary(const Options& options, const Context&)
       : shape_(options),
-        lanes_(context.lanes),
         along_x_(options.length_scale),
         along_y_(options.length_scale_y.value_or(options.length_scale)),
         per_axis_(options.length_scale_y.has_value()) {}
 
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
-    // Two loops: one would be a chain of instructions too long for a processor to work on many of them at once.
-    const Columns to(out);
-    simd::for_each(lanes_, a.rows(), b.rows(),
-                   [to, x = Scaled(a.col(0), b.col(0), along_x_), y = Scaled(a.col(1), b.col(1), along_y_)](
-                       Eigen::Index i, Eigen::Index j) { to(i, j) = x(i, j) + y(i, j); });
-    simd::for_each(lanes_, a.rows(), b.rows(),
-                   [to, shape = shape_](Eigen::Index i, Eigen::Index j) { to(i, j) = shape.value(to(i, j)); });
+    take_values(of_both_axes(a, b), b.rows(), out);
   }
 
   void variance(const PointsView& a, VectorOut out) const override { out.head(a.rows()).setOnes(); }
@@ -75,9 +81,7 @@ class Stationary final : public Kernel {
   bool separable() const override { return Shape::kSeparable; }
 
   void axis_covariance(int axis, const VectorView& a, const VectorView& b, MatrixOut out) const override {
-    simd::for_each(lanes_, a.size(), b.size(),
-                   [x = Scaled(a, b, axis == 0 ? along_x_ : along_y_), shape = shape_, to = Columns(out)](
-                       Eigen::Index i, Eigen::Index j) { to(i, j) = shape.value(x(i, j)); });
+    take_values({a.size(), 1, {a.data()}, {b.data()}, {per_length(axis == 0 ? along_x_ : along_y_)}}, b.size(), out);
   }
 
   std::vector<KernelParameter> parameters() const override {
@@ -100,70 +104,85 @@ class Stationary final : public Kernel {
 
   void gradient_covariance(const VectorView& distances, VectorOut across, VectorOut along) const override {
     if constexpr (Shape::kSlopes) {
-      const double per_length = std::min(1.0 / along_x_, kLargestWithSquare);
-      for (Eigen::Index i = 0; i < distances.size(); ++i) {
-        const double scaled = std::min(distances(i) * per_length, kLargestWithSquare);
-        const double r2 = std::min(scaled * scaled, Shape::kFarthest);
-        double value = 0.0;
-        across(i) = shape_.slope(r2, value) * per_length * per_length;
-        along(i) = shape_.bend(r2) * per_length * per_length;
+      constexpr double kLargestWithSquare = 1e150;
+      const double scale = std::min(1.0 / along_x_, kLargestWithSquare);
+      for (Eigen::Index first = 0; first < distances.size(); first += kBlock) {
+        const Eigen::Index count = std::min(kBlock, distances.size() - first);
+        const Block r2 = (distances.segment(first, count).array() * scale)
+                             .min(kLargestWithSquare)
+                             .square()
+                             .min(Shape::kFarthest);
+        Block z = Shape::kScale * r2;
+        Numbers bend(along.data() + first, count);
+        bend = z;
+        shape_.bends(bend);
+        shape_.slopes(Numbers(z.data(), count), Numbers(across.data() + first, count));
       }
+      across *= scale * scale;
+      along *= scale * scale;
     }
   }
 
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
-    const Eigen::Index m = b.rows();
-    const Columns along(slopes);
-    const Columns along_y(slopes.rightCols(slopes.cols() - (axes() - 1) * m));
-    const Columns own(slopes.rightCols(slopes.cols() - axes() * m));
-    const auto pair = [=, x = Scaled(a.col(0), b.col(0), along_x_), y = Scaled(a.col(1), b.col(1), along_y_),
-                       shape = shape_, to = Columns(value)](Eigen::Index i, Eigen::Index j, bool per_axis) {
-      const double x2 = x(i, j);
-      const double y2 = y(i, j);
-      const double g = shape.slope(x2 + y2, to(i, j));
-      along(i, j) = per_axis ? g * x2 : g * (x2 + y2);
-      if (per_axis) along_y(i, j) = g * y2;
-      if constexpr (Shape::kOwn) own(i, j) = shape.own_slope(x2 + y2, to(i, j));
-    };
-    if (per_axis_) {
-      simd::for_each(lanes_, a.rows(), m, [pair](Eigen::Index i, Eigen::Index j) { pair(i, j, true); });
-    } else {
-      simd::for_each(lanes_, a.rows(), m, [pair](Eigen::Index i, Eigen::Index j) { pair(i, j, false); });
-    }
+    const Eigen::Index next = b.rows() * slopes.outerStride();  // from the slopes by a parameter to those by the next
+    const Pairs both = of_both_axes(a, b);
+    for_blocks(a.rows(), b.rows(), {&value, &slopes}, [&](Eigen::Index first, Eigen::Index count) {
+      Numbers k(place(value, first), count);
+      squared_distances(both, first, count, Shape::kFarthest, Shape::kScale, k.data());
+      const Block z = k;
+      Block slope(count);
+      shape_.slopes(k, Numbers(slope.data(), count));
+      double* const by = place(slopes, first);
+      if (per_axis_) {
+        for (int axis = 0; axis < 2; ++axis) {
+          const Pairs one{both.n, 1, {both.places[axis]}, {both.others[axis]}, {both.per_length[axis]}};
+          squared_distances(one, first, count, Shape::kFarthest, 1.0, by + axis * next);
+          Numbers(by + axis * next, count) *= slope;
+        }
+      } else {
+        Numbers(by, count) = slope * z * (1.0 / Shape::kScale);
+      }
+      if constexpr (Shape::kOwn) shape_.own_slopes(z, k, Numbers(by + axes() * next, count));
+    });
   }
 
  private:
   Eigen::Index axes() const { return per_axis_ ? 2 : 1; }
 
-  /// Squares of the distances along an axis, in length scales. A multiplication is a quarter of a division's work.
-  struct Scaled {
-    template <class Column, class Other>
-    Scaled(const Column& a, const Other& b, double scale)
-        : places(a.data()), others(b.data()), per_length(std::min(1.0 / scale, kLargest)) {}
-
-    PALPATE_INLINE double operator()(Eigen::Index i, Eigen::Index j) const {
-      const double scaled = (places[i] - others[j]) * per_length;
-      return simd::min(scaled * scaled, Shape::kFarthest);
+  /// Calls use(first, count) for all pairs of n places with m others, some at a time. Pairs are counted column by column,
+  /// and those of a call follow each other in all of `outs`, from place(out, first) on.
+  template <class Use>
+  static void for_blocks(Eigen::Index n, Eigen::Index m, std::initializer_list<const MatrixOut*> outs, const Use& use) {
+    const bool gapless = std::all_of(outs.begin(), outs.end(), [n](const MatrixOut* out) { return out->outerStride() == n; });
+    const Eigen::Index length = gapless ? n * m : n;
+    for (Eigen::Index run = 0; run < n * m; run += length) {
+      for (Eigen::Index from = 0; from < length; from += kBlock) use(run + from, std::min(kBlock, length - from));
     }
-    const double* places;
-    const double* others;
-    double per_length;
-  };
-  /// Of a length scale so small that it has no reciprocal.
-  static constexpr double kLargest = std::numeric_limits<double>::max();
-  static constexpr double kLargestWithSquare = 1e150;
+  }
+  static double* place(MatrixOut& out, Eigen::Index pair) {
+    return out.data() + pair / out.rows() * out.outerStride() + pair % out.rows();
+  }
 
-  /// What is written to.
-  struct Columns {
-    explicit Columns(MatrixOut matrix) : numbers(matrix.data()), stride(matrix.outerStride()) {}
-    PALPATE_INLINE double& operator()(Eigen::Index i, Eigen::Index j) const { return numbers[i + j * stride]; }
+  /// Of a length scale so small that it has no reciprocal, the largest number.
+  static double per_length(double scale) { return std::min(1.0 / scale, std::numeric_limits<double>::max()); }
 
-    double* numbers;
-    Eigen::Index stride;
-  };
+  Pairs of_both_axes(const PointsView& a, const PointsView& b) const {
+    return {a.rows(),
+            2,
+            {a.col(0).data(), a.col(1).data()},
+            {b.col(0).data(), b.col(1).data()},
+            {per_length(along_x_), per_length(along_y_)}};
+  }
+
+  void take_values(const Pairs& pairs, Eigen::Index others, MatrixOut out) const {
+    for_blocks(pairs.n, others, {&out}, [&](Eigen::Index first, Eigen::Index count) {
+      double* const to = place(out, first);
+      squared_distances(pairs, first, count, Shape::kFarthest, Shape::kScale, to);
+      shape_.values(Numbers(to, count));
+    });
+  }
 
   Shape shape_;
-  simd::Lanes lanes_;
   double along_x_;
   double along_y_;
   bool per_axis_;

@@ -2,6 +2,7 @@
 // Replays a file of taps on one posterior engine and prints, as JSON, what it chose and how long that took.
 //   palpate_bench --taps tests/data/taps_w2.csv --grid 231 --engine lowrank --repeat 5
 #include "benchmark/workload.hpp"
+#include "math/instructions.hpp"
 
 #include <palpate/error.hpp>
 
@@ -26,7 +27,6 @@ struct Arguments {
   PosteriorSettings::Kind engine = PosteriorSettings::Kind::automatic;
   int repeat = 1;
   int threads = 1;
-  bool baseline = false;
   double tolerance = PosteriorSettings{}.tolerance;
   std::string maps;
 };
@@ -58,8 +58,7 @@ void run(const Arguments& arguments) {
   settings.engine = arguments.engine;
   settings.tolerance = arguments.tolerance;
   settings.taps = static_cast<int>(taps.places.rows());
-  if (arguments.baseline) settings.machine.loops = &simd::baseline();
-  settings.machine.workers = std::make_shared<Workers>(arguments.threads);
+  settings.workers = std::make_shared<Workers>(arguments.threads);
 
   const std::shared_ptr<Kernel> kernel = palpate::benchmark::make_kernel();
   std::vector<double> totals;
@@ -81,7 +80,7 @@ void run(const Arguments& arguments) {
     agree += apart < 1e-9 ? 1 : 0;
   }
   fmt::print("{{\n  \"engine\": \"{}\",\n  \"reason\": \"{}\",\n  \"instruction_path\": \"{}\",\n", process->engine(),
-             process->engine_reason(), settings.machine.loops->name);
+             process->engine_reason(), math::instructions_in_use());
   fmt::print("  \"candidates\": {},\n  \"taps\": {},\n  \"error_bound\": {:.3g},\n", candidates.size(), process->size(),
              process->error_bound());
   fmt::print("  \"total_seconds\": {{\"least\": {:.6g}, \"median\": {:.6g}}},\n  \"peak_rss_bytes\": {},\n",
@@ -108,10 +107,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000));
   app.add_option("--threads", arguments.threads, "")->check(CLI::Range(1, 64));
   app.add_option("--tolerance", arguments.tolerance, "of lowrank");
-  app.add_flag("--baseline", arguments.baseline, "loops that every x86-64 can run");
   app.add_option("--maps", arguments.maps, "writes the final maps there, as CSV");
   CLI11_PARSE(app, argc, argv);
   try {
+    math::choose_instructions();
     run(arguments);
   } catch (const std::exception& trouble) {
     fmt::print(stderr, "palpate_bench: {}\n", trouble.what());

@@ -6,7 +6,6 @@
 #include "support/support.hpp"
 
 #include <palpate/error.hpp>
-#include <palpate/simd.hpp>
 
 #include <chrono>
 #include <fstream>
@@ -65,16 +64,14 @@ Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_
   Eigen::VectorXd uncertainty(candidates.size());
   Eigen::VectorXd weight(candidates.size());
   const Allowed allowed = Allowed::Constant(candidates.size(), true);
-  const simd::Lanes lanes = settings.machine.loops == &simd::baseline() ? simd::Lanes::sse2 : simd::widest();
   auto before = Clock::now();
   for (Eigen::Index i = 0; i < taps.places.rows(); ++i) {
     process->add({taps.places(i, 0), taps.places(i, 1)}, taps.answers.row(i).transpose());
     if (i + 1 < kInitialTaps) continue;
     process->read_relative_variance(uncertainty);
     process->read_mean(1, weight);
-    simd::for_each(lanes, weight.size(),
-                   [w = weight.data(), u = uncertainty.data()](std::ptrdiff_t k) { w[k] *= u[k]; });
-    out.choices.push_back(pick_best(weight, allowed, 1.0, 0.0, *settings.machine.loops).candidate);
+    weight.array() *= uncertainty.array();
+    out.choices.push_back(pick_best(weight, allowed, 1.0, 0.0).candidate);
     const auto now = Clock::now();
     out.seconds.push_back(std::chrono::duration<double>(now - std::exchange(before, now)).count());
   }

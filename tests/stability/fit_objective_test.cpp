@@ -2,6 +2,7 @@
 // The objective of fits, values and gradients, against the definitions: whole matrices in extended precision, points
 // really left out, and differences of values.
 #include "objective.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/testing.hpp"
 #include "symmetric.hpp"
 
@@ -51,14 +52,6 @@ std::vector<Setting> settings() {
           {"left_out_all_large", "rbf", "{length_scale: 4 cm}", 1, 0.0, false, loo, 6.0}};
 }
 
-std::vector<simd::Lanes> sets() {
-  std::vector<simd::Lanes> out;
-  for (const simd::Lanes one : {simd::Lanes::sse2, simd::Lanes::avx2, simd::Lanes::avx512}) {
-    if (one <= simd::widest()) out.push_back(one);
-  }
-  return out;
-}
-
 class FitObjective : public testing::TestWithParam<Setting> {
  protected:
   static constexpr int kPoints = 14;
@@ -85,8 +78,8 @@ class FitObjective : public testing::TestWithParam<Setting> {
     expectations_.push_back({value + 0.2, 0.7, value - 50.0, value + 50.0});
   }
 
-  double value(const std::vector<double>& x, bool priors, simd::Lanes lanes = simd::widest()) {
-    Objective objective(model_, GetParam().measure, expectations_, priors, lanes);
+  double value(const std::vector<double>& x, bool priors) {
+    Objective objective(model_, GetParam().measure, expectations_, priors);
     double out = 0.0;
     EXPECT_TRUE(objective.evaluate(x.data(), &out, nullptr));
     return out;
@@ -155,16 +148,18 @@ TEST_P(FitObjective, IsTheDensityByDefinition) {
     }
   }
   const auto truth = static_cast<double>(sum / (kPoints * GetParam().outputs));
-  for (const simd::Lanes lanes : sets()) {
-    EXPECT_NEAR(value(x_, false, lanes), truth, 1e-9 * std::max(1.0, std::abs(truth))) << static_cast<int>(lanes);
+  for (const std::string& set : math::instruction_sets()) {
+    const test::OnInstructions on(set);
+    EXPECT_NEAR(value(x_, false), truth, 1e-9 * std::max(1.0, std::abs(truth))) << set;
   }
 }
 
 TEST_P(FitObjective, HasTheGradientThatDifferencesHave) {
   double here = 0.0;
   std::vector<std::vector<double>> gradients;
-  for (const simd::Lanes lanes : sets()) {
-    Objective objective(model_, GetParam().measure, expectations_, true, lanes);
+  for (const std::string& set : math::instruction_sets()) {
+    const test::OnInstructions on(set);
+    Objective objective(model_, GetParam().measure, expectations_, true);
     gradients.emplace_back(x_.size());
     ASSERT_TRUE(objective.evaluate(x_.data(), &here, gradients.back().data()));
   }
@@ -193,7 +188,9 @@ Strips strips_of(const Eigen::MatrixXd& matrix) {
   return out;
 }
 
-class FitMatrices : public testing::TestWithParam<simd::Lanes> {};
+class FitMatrices : public testing::TestWithParam<std::string> {
+  test::OnInstructions on_{GetParam()};
+};
 
 TEST_P(FitMatrices, InvertWhatTheyFactorised) {
   Random random(4, "fit matrices");
@@ -203,19 +200,19 @@ TEST_P(FitMatrices, InvertWhatTheyFactorised) {
     const Eigen::MatrixXd k = a * a.transpose() + Eigen::MatrixXd::Identity(n, n);
     Strips matrix = strips_of(k);
     std::vector<double> reciprocals;
-    ASSERT_TRUE(factorise(GetParam(), matrix, reciprocals)) << n;
+    ASSERT_TRUE(factorise(matrix, reciprocals)) << n;
     const Eigen::MatrixXd factor = matrix.mirrored().triangularView<Eigen::Lower>();
     EXPECT_LT((factor * factor.transpose() - k).cwiseAbs().maxCoeff(), 1e-12 * static_cast<double>(n)) << n;
 
     const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0);
     Eigen::VectorXd x = b;
-    solve_lower(GetParam(), matrix, x);
+    solve_lower(matrix, x);
     EXPECT_LT((factor * x - b).cwiseAbs().maxCoeff(), 1e-12) << n;
     Strips upper(n);
-    invert_transposed(GetParam(), matrix, reciprocals, upper);
-    multiply_upper(GetParam(), upper, x);
+    invert_transposed(matrix, reciprocals, upper);
+    multiply_upper(upper, x);
     EXPECT_LT((k * x - b).cwiseAbs().maxCoeff(), 1e-11) << n;
-    square_upper(GetParam(), upper, matrix);
+    square_upper(upper, matrix);
     EXPECT_LT((matrix.mirrored() * k - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(), 1e-11) << n;
   }
 }
@@ -226,17 +223,16 @@ TEST_P(FitMatrices, RefuseWhatIsNotPositiveDefinite) {
     Eigen::MatrixXd indefinite = Eigen::MatrixXd::Identity(n, n);
     indefinite(n - 1, 0) = indefinite(0, n - 1) = 2.0;
     Strips matrix = strips_of(indefinite);
-    EXPECT_FALSE(factorise(GetParam(), matrix, reciprocals)) << n;
+    EXPECT_FALSE(factorise(matrix, reciprocals)) << n;
     for (const double nothing : {std::nan(""), HUGE_VAL}) {
       Strips wrong = strips_of(Eigen::MatrixXd::Constant(n, n, nothing));
-      EXPECT_FALSE(factorise(GetParam(), wrong, reciprocals)) << n;
+      EXPECT_FALSE(factorise(wrong, reciprocals)) << n;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, FitMatrices, testing::ValuesIn(sets()), [](const auto& one) {
-  return one.param == simd::Lanes::sse2 ? "Sse2" : one.param == simd::Lanes::avx2 ? "Avx2" : "Avx512";
-});
+INSTANTIATE_TEST_SUITE_P(Every, FitMatrices, testing::ValuesIn(math::instruction_sets()),
+                         [](const auto& one) { return test::test_name(one.param); });
 
 }  // namespace
 }  // namespace palpate::fitting

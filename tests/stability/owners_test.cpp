@@ -155,7 +155,7 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
     const std::vector<double> x{std::log(GetParam().length_scale), 2.0 * std::log(ratio), 0.0};
     std::vector<fitting::Expectation> expectations;
     for (const double one : x) expectations.push_back({one, 0.7, one - 50.0, one + 50.0});
-    Objective objective(model, Measure::log_marginal_likelihood, expectations, false, simd::widest());
+    Objective objective(model, Measure::log_marginal_likelihood, expectations, false);
     double value = 0.0;
     std::vector<double> gradient(x.size());
     ASSERT_TRUE(objective.evaluate(x.data(), &value, gradient.data())) << noise;

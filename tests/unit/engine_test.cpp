@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The posterior engines: the same answers as the formulas with the whole matrix, for any grid, on any number of threads
 // and on any instruction set.
+#include "support/instruction_sets.hpp"
 #include "support/mocks.hpp"
 #include "unit/engine_data.hpp"
 
@@ -110,7 +111,7 @@ TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {
   const Process alone = processed(data, candidates, settings_of(GetParam()));
   for (const int threads : {2, 3}) {
     PosteriorSettings settings = settings_of(GetParam());
-    settings.machine.workers = std::make_shared<Workers>(threads);
+    settings.workers = std::make_shared<Workers>(threads);
     const Process together = processed(data, candidates, settings);
     expect_same_maps(alone, together);
   }
@@ -119,16 +120,12 @@ TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {
 TEST_P(EveryEngine, IsTheSameWithinRoundingOnEveryInstructionSet) {
   const Data data = draw(30);
   const Candidates candidates = regular(91, 70);
-  PosteriorSettings baseline = settings_of(GetParam());
-  baseline.machine.loops = &simd::kSse2;
-  const Process slow = processed(data, candidates, baseline);
-  for (const simd::Table* table : {&simd::kAvx2, &simd::kAvx512}) {
-    if (!simd::runs(*table)) continue;
-    PosteriorSettings settings = settings_of(GetParam());
-    settings.machine.loops = table;
-    const Process fast = processed(data, candidates, settings);
-    EXPECT_LT(apart(slow.mean(0), fast.mean(0)), 1e-11) << table->name;
-    EXPECT_LT(apart(slow.relative_variance(), fast.relative_variance()), 1e-12) << table->name;
+  const Process widest = processed(data, candidates, settings_of(GetParam()));
+  for (const std::string& set : math::instruction_sets()) {
+    const OnInstructions on(set);
+    const Process other = processed(data, candidates, settings_of(GetParam()));
+    EXPECT_LT(apart(widest.mean(0), other.mean(0)), 1e-11) << set;
+    EXPECT_LT(apart(widest.relative_variance(), other.relative_variance()), 1e-12) << set;
   }
 }
 

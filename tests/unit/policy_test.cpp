@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/policy.hpp"
 
+#include "support/instruction_sets.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/random.hpp>
@@ -74,8 +75,9 @@ TEST(Pick, IsTheFirstOfTheHighestAmongManyWhicheverLoopsLook) {
         if (all(i)) order.push_back(i);
       }
       std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scores(a) > scores(b); });
-      for (const simd::Table* loops : {&simd::baseline(), &simd::fastest()}) {
-        const Pick picked = pick_best(scores, all, 1.0, 1e-12, *loops);
+      for (const std::string& set : math::instruction_sets()) {
+        const OnInstructions on(set);
+        const Pick picked = pick_best(scores, all, 1.0, 1e-12);
         ASSERT_EQ(picked.candidate, order.empty() ? -1 : order[0]);
         ASSERT_EQ(picked.runner_up, order.size() < 2 ? -1 : order[1]);
         ASSERT_EQ(picked.ties,

@@ -10,7 +10,6 @@ namespace palpate {
 Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates, const Context& context)
     : options_(options),
       candidates_(candidates),
-      loops_(&simd::table_of(context.lanes)),
       acquisition_(context.create<Acquisition>(options.acquisition)),
       initial_(initial_design(options.initial, candidates, context.scene.area(), context.seed)),
       allowed_(Allowed::Constant(candidates.size(), true)) {
@@ -78,7 +77,7 @@ bool Chooser::choose_place(TapBelief& belief, TapRecord& tap, const Wish* wish) 
   }
   tap.source = wish != nullptr ? Source::caller : Source::acquisition;
   const auto pick = [&](const Eigen::VectorXd& of, double scale) {
-    return pick_best(of, allowed_, scale, options_.tie_tolerance, *loops_);
+    return pick_best(of, allowed_, scale, options_.tie_tolerance);
   };
   // Of scores from outside nobody says how large they are before the first tap.
   Pick picked = wish != nullptr ? pick(wish->scores, 0.0) : pick(scores(belief), acquisition_->prior_scale());

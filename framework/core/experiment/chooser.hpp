@@ -8,7 +8,7 @@
 #include "experiment/search.hpp"
 #include "experiment/tap_belief.hpp"
 #include "experiment/tap_record.hpp"
-#include "gp/simd/table.hpp"
+#include "gp/loops.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
@@ -67,7 +67,6 @@ class Chooser {
 
   const ExperimentOptions& options_;
   const Candidates& candidates_;
-  const simd::Table* loops_;
   std::shared_ptr<Acquisition> acquisition_;
   std::vector<int> initial_;      ///< of a design that counts its taps
   std::optional<Search> search_;  ///< the other one

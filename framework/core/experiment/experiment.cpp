@@ -5,7 +5,7 @@
 
 #include "config/relation.hpp"
 #include "experiment/tap_belief.hpp"
-#include "gp/instructions.hpp"
+#include "math/instructions.hpp"
 
 #include <palpate/error.hpp>
 
@@ -122,7 +122,9 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
                        const std::string& directory)
     : options_(options),
       scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
-      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory, lanes_in_use()},
-      backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)) {}
+      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory},
+      backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)) {
+  math::choose_instructions();
+}
 
 }  // namespace palpate

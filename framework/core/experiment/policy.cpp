@@ -68,9 +68,8 @@ std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, c
 /// of which one is left out where its highest score at its first place would not be worth it. Of each four thousand
 /// candidates the highest block comes first, as what is visited there may leave no other worth a look.
 template <class Worth, class Visit>
-void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const simd::Table& loops, const Worth& worth,
-                 const Visit& visit) {
-  constexpr Eigen::Index kBlock = simd::kScores;
+void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Worth& worth, const Visit& visit) {
+  constexpr Eigen::Index kBlock = loops::kScores;
   const auto look = [&](Eigen::Index begin, Eigen::Index end) {
     for (Eigen::Index i = begin; i < end; ++i) {
       if (worth(scores(i), static_cast<int>(i)) && allowed(i)) visit(static_cast<int>(i));
@@ -81,13 +80,13 @@ void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const si
   for (Eigen::Index first = 0; first < blocks; first += kBlock) {
     const Eigen::Index count = std::min(kBlock, blocks - first);
     highest.fill(-std::numeric_limits<double>::infinity());
-    loops.highest(scores.data() + first * kBlock, static_cast<int>(count), highest.data());
+    loops::highest(scores.data() + first * kBlock, static_cast<int>(count), highest.data());
     const auto look_at = [&](Eigen::Index block) {
       const Eigen::Index begin = (first + block) * kBlock;
       if (worth(highest[static_cast<std::size_t>(block)], static_cast<int>(begin))) look(begin, begin + kBlock);
     };
     double most = 0.0;
-    loops.highest(highest.data(), 1, &most);
+    loops::highest(highest.data(), 1, &most);
     const Eigen::Index top = std::find(highest.begin(), highest.begin() + count - 1, most) - highest.begin();
     look_at(top);
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -124,8 +123,7 @@ std::vector<int> initial_design(const InitialOptions& options, const Candidates&
   return design;
 }
 
-Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance,
-               const simd::Table& loops) {
+Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance) {
   struct One {
     int candidate = -1;
     double score = -std::numeric_limits<double>::infinity();
@@ -136,7 +134,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
   One best;  // of equals the first
   One second;
   for_allowed(
-      scores, allowed, loops,
+      scores, allowed,
       [&](double score, int i) {
         return One{i, score}.before(second);
       },
@@ -153,7 +151,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
   if (tied) {
     out.ties = 0;
     for_allowed(
-        scores, allowed, loops, [&](double score, int) { return score >= threshold; },
+        scores, allowed, [&](double score, int) { return score >= threshold; },
         [&](int i) {
           ++out.ties;
           out.candidate = std::min(out.candidate, i);

@@ -5,7 +5,7 @@
 
 #include "experiment/experiment_options.hpp"
 #include "gp/candidates.hpp"
-#include "gp/simd/table.hpp"
+#include "gp/loops.hpp"
 
 #include <palpate/random.hpp>
 #include <palpate/types.hpp>
@@ -38,9 +38,8 @@ using Allowed = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
 /// Takes the highest score among the candidates that are `allowed`. Scores within
 /// tolerance x (|best| + scale) of the best are tied; the lowest index wins. So rounding decides nothing, as long as
-/// it stays below that bound. All scores are finite. What is picked does not hang on the `loops` that look for it.
-Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance,
-               const simd::Table& loops = simd::baseline());
+/// it stays below that bound. All scores are finite.
+Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance);
 
 /// As Eigen's allFinite(), in a fraction of the time.
 bool all_finite(const Eigen::VectorXd& values);

@@ -3,7 +3,7 @@
 
 #include "config/tree.hpp"
 #include "experiment/policy.hpp"
-#include "gp/simd/table.hpp"
+#include "gp/loops.hpp"
 
 #include <palpate/error.hpp>
 
@@ -25,14 +25,13 @@ constexpr double kLevelAmongLies = 1.0;
 
 namespace {
 
-PosteriorSettings posterior_settings(const ExperimentOptions& options, simd::Lanes lanes) {
+PosteriorSettings posterior_settings(const ExperimentOptions& options) {
   PosteriorSettings out;
   out.engine = static_cast<PosteriorSettings::Kind>(options.engine.type);
   out.accuracy = std::min(options.engine.accuracy, 0.1 * options.tie_tolerance);
   out.tolerance = options.engine.tolerance;
   out.taps = static_cast<int>(options.taps);
-  out.machine.loops = &simd::table_of(lanes);
-  out.machine.workers = std::make_shared<Workers>(static_cast<int>(options.engine.threads));
+  out.workers = std::make_shared<Workers>(static_cast<int>(options.engine.threads));
   return out;
 }
 
@@ -68,7 +67,7 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     : candidates_(candidates),
       context_(context),
       clock_(clock),
-      posterior_(posterior_settings(options, context.lanes)),
+      posterior_(posterior_settings(options)),
       desk_(context.scene.desk()),
       clip_(options.label.clip),
       two_part_(options.surface == ExperimentOptions::Surface::two_part),

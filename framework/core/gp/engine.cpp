@@ -55,10 +55,10 @@ std::string objection(const PosteriorSettings& settings, const Kernel& kernel, c
 EngineChoice choose_engine(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
                            double error) {
   Choice choice = choose_kind(settings, kernel, candidates, error);
-  const Machine& machine = settings.machine;
-  return {choice.engine == Kind::dense  ? make_dense(machine, kernel, candidates)
-          : choice.engine == Kind::grid ? make_grid(machine, kernel, candidates)
-                                        : make_lowrank(machine, kernel, candidates, settings.tolerance),
+  const std::shared_ptr<Workers>& workers = settings.workers;
+  return {choice.engine == Kind::dense  ? make_dense(workers, kernel, candidates)
+          : choice.engine == Kind::grid ? make_grid(workers, kernel, candidates)
+                                        : make_lowrank(workers, kernel, candidates, settings.tolerance),
           std::move(choice.reason)};
 }
 

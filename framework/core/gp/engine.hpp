@@ -60,15 +60,15 @@ class Engine {
   const Maps& maps() const { return maps_; }
 
  protected:
-  Engine(const char* name, const Machine& machine, const Kernel& kernel, const Candidates& candidates,
+  Engine(const char* name, const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates,
          const Tiling& tiling)
-      : name_(name), machine_(machine), kernel_(kernel), candidates_(candidates), maps_(tiling, machine) {}
+      : name_(name), workers_(workers), kernel_(kernel), candidates_(candidates), maps_(tiling, workers) {}
 
   /// Forgets all rows.
   virtual void clear() = 0;
 
   const char* name_;
-  Machine machine_;
+  std::shared_ptr<Workers> workers_;
   const Kernel& kernel_;
   const Candidates& candidates_;
   Maps maps_;
@@ -76,10 +76,10 @@ class Engine {
 
 /// `kernel` and `candidates` must outlive the engines, and the hyperparameters of the kernel stay as they are. The
 /// latter two need a separable kernel and a product grid.
-std::unique_ptr<Engine> make_dense(const Machine&, const Kernel& kernel, const Candidates& candidates);
-std::unique_ptr<Engine> make_grid(const Machine&, const Kernel& kernel, const Candidates& candidates);
+std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates);
+std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates);
 /// Directions whose share of a covariance is below `tolerance` are left out.
-std::unique_ptr<Engine> make_lowrank(const Machine&, const Kernel& kernel, const Candidates& candidates,
+std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates,
                                      double tolerance);
 
 struct PosteriorSettings {
@@ -91,7 +91,7 @@ struct PosteriorSettings {
   double accuracy = 1e-9;
   double tolerance = 1e-15;  ///< of `lowrank`: see make_lowrank()
   int taps = 64;             ///< that are expected: room is made for them, and `automatic` weighs engines by them
-  Machine machine;
+  std::shared_ptr<Workers> workers = std::make_shared<Workers>(1);
 };
 
 struct EngineChoice {

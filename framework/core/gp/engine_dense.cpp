@@ -9,14 +9,14 @@ constexpr double kMostReserved = 1.0 * (1 << 27);
 
 /// Pieces for which the kernel is asked at once: a call costs what ten candidates do.
 constexpr int kTogether = 4;
-constexpr Eigen::Index kCandidates = Eigen::Index{kTogether} * simd::kPiece;
+constexpr Eigen::Index kCandidates = Eigen::Index{kTogether} * loops::kPiece;
 
 class Dense final : public Engine {
  public:
-  Dense(const Machine& machine, const Kernel& kernel, const Candidates& candidates)
-      : Engine("dense", machine, kernel, candidates, Tiling::pieces(candidates.size())),
-        rows_(maps_.tiling().strips() * simd::kPiece, simd::kPiece, simd::kPiece) {
-    for (int i = 0; i < machine.workers->threads(); ++i) covariances_.emplace_back(kCandidates);
+  Dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates)
+      : Engine("dense", workers, kernel, candidates, Tiling::pieces(candidates.size())),
+        rows_(maps_.tiling().strips() * loops::kPiece, loops::kPiece, loops::kPiece) {
+    for (int i = 0; i < workers->threads(); ++i) covariances_.emplace_back(kCandidates);
   }
 
   void reserve(int rows) override {
@@ -28,17 +28,17 @@ class Dense final : public Engine {
     const int depth = rows_.rows();
     rows_.extend();
     const int pieces = maps_.tiling().strips();
-    machine_.workers->for_each((pieces + kTogether - 1) / kTogether, [&](int group, int worker) {
+    workers_->for_each((pieces + kTogether - 1) / kTogether, [&](int group, int worker) {
       double* covariance = covariances_[static_cast<std::size_t>(worker)].data();
       const int piece = group * kTogether;
       const Eigen::Index first = group * kCandidates;
       const Eigen::Index count = std::min<Eigen::Index>(kCandidates, candidates_.size() - first);
       kernel_.covariance(candidates_.points.middleRows(first, count), row.places.bottomRows(1),
                          Eigen::Map<Eigen::VectorXd>(covariance, count));
-      const Eigen::Index padded = (count + simd::kPiece - 1) / simd::kPiece * simd::kPiece;
+      const Eigen::Index padded = (count + loops::kPiece - 1) / loops::kPiece * loops::kPiece;
       std::fill(covariance + count, covariance + padded, 0.0);
-      for (int i = 0; i < padded / simd::kPiece; ++i, covariance += simd::kPiece) {
-        machine_.loops->absorb_dense({rows_.panel(piece + i), covariance, row.factor.data(), depth, row.pivot},
+      for (int i = 0; i < padded / loops::kPiece; ++i, covariance += loops::kPiece) {
+        loops::absorb_dense({rows_.panel(piece + i), covariance, row.factor.data(), depth, row.pivot},
                                      maps_.update(piece + i, row.coefficients));
       }
     });
@@ -47,14 +47,14 @@ class Dense final : public Engine {
  private:
   void clear() override { rows_.clear(); }
 
-  simd::Panels rows_;                     ///< V, a piece of the candidates a panel
-  std::vector<simd::Lines> covariances_;  ///< of a group of pieces with the last tap, one a worker
+  loops::Panels rows_;                     ///< V, a piece of the candidates a panel
+  std::vector<loops::Lines> covariances_;  ///< of a group of pieces with the last tap, one a worker
 };
 
 }  // namespace
 
-std::unique_ptr<Engine> make_dense(const Machine& machine, const Kernel& kernel, const Candidates& candidates) {
-  return std::make_unique<Dense>(machine, kernel, candidates);
+std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates) {
+  return std::make_unique<Dense>(workers, kernel, candidates);
 }
 
 }  // namespace palpate

@@ -4,24 +4,24 @@
 namespace palpate {
 namespace {
 
-using simd::kLine;
+using loops::kLine;
 
 /// Strips that share what they read of the columns' covariances, and the work of one piece for the workers.
 constexpr int kGroup = 4;
 
 class Grid final : public Engine {
  public:
-  Grid(const Machine& machine, const Kernel& kernel, const Candidates& candidates)
-      : Engine("grid", machine, kernel, candidates, Tiling::grid(candidates)),
-        along_x_(candidates.columns, simd::kPanelLines * kLine, kLine),
-        along_y_(candidates.rows, simd::kStripRows, simd::kStripRows),
+  Grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates)
+      : Engine("grid", workers, kernel, candidates, Tiling::grid(candidates)),
+        along_x_(candidates.columns, loops::kPanelLines * kLine, kLine),
+        along_y_(candidates.rows, loops::kStripRows, loops::kStripRows),
         column_(std::max(candidates.columns, candidates.rows)),
-        scaled_(static_cast<std::size_t>(machine.workers->threads())) {}
+        scaled_(static_cast<std::size_t>(workers->threads())) {}
 
   void reserve(int rows) override {
     along_x_.reserve(rows);
     along_y_.reserve(rows);
-    for (simd::Lines& one : scaled_) one = simd::Lines(scaled_size(rows));
+    for (loops::Lines& one : scaled_) one = loops::Lines(scaled_size(rows));
   }
   bool needs_inverse() const override { return true; }
 
@@ -30,18 +30,18 @@ class Grid final : public Engine {
     append(1, candidates_.ys, row, along_y_);
     const int depth = along_x_.rows();
     if (scaled_.front().size() < scaled_size(depth)) {
-      for (simd::Lines& one : scaled_) one = simd::Lines(scaled_size(2 * depth));
+      for (loops::Lines& one : scaled_) one = loops::Lines(scaled_size(2 * depth));
     }
     const int strips = maps_.tiling().strips();
-    machine_.workers->for_each((strips + kGroup - 1) / kGroup, [&](int group, int worker) {
+    workers_->for_each((strips + kGroup - 1) / kGroup, [&](int group, int worker) {
       const int first = group * kGroup;
       const int count = std::min(kGroup, strips - first);
       double* const a = scaled_[static_cast<std::size_t>(worker)].data();
-      const std::size_t a_stride = static_cast<std::size_t>(depth) * simd::kStripRows;
+      const std::size_t a_stride = static_cast<std::size_t>(depth) * loops::kStripRows;
       for (int i = 0; i < count; ++i) {
         scale(along_y_.panel(first + i), row.inverse, a + static_cast<std::size_t>(i) * a_stride);
       }
-      machine_.loops->absorb_product(
+      loops::absorb_product(
           {a, a_stride, count, along_x_.panel(0), along_x_.stride(), depth, along_x_.padded() / kLine},
           maps_.update(first, row.coefficients));
     });
@@ -53,9 +53,9 @@ class Grid final : public Engine {
     along_y_.clear();
   }
 
-  static std::size_t scaled_size(int rows) { return static_cast<std::size_t>(rows) * simd::kStripRows * kGroup; }
+  static std::size_t scaled_size(int rows) { return static_cast<std::size_t>(rows) * loops::kStripRows * kGroup; }
 
-  void append(int axis, const Eigen::VectorXd& places, const FactorRow& row, simd::Panels& to) {
+  void append(int axis, const Eigen::VectorXd& places, const FactorRow& row, loops::Panels& to) {
     auto column = column_.head(places.size());
     kernel_.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), column);
     to.append(column.data());
@@ -63,21 +63,21 @@ class Grid final : public Engine {
 
   /// diag(c) times the covariances of a strip's rows.
   static void scale(const double* rows, const VectorView& by, double* out) {
-    using Rows = Eigen::Array<double, simd::kStripRows, Eigen::Dynamic>;
-    const Eigen::Map<const Rows> from(rows, simd::kStripRows, by.size());
-    Eigen::Map<Rows>(out, simd::kStripRows, by.size()) = from.rowwise() * by.transpose().array();
+    using Rows = Eigen::Array<double, loops::kStripRows, Eigen::Dynamic>;
+    const Eigen::Map<const Rows> from(rows, loops::kStripRows, by.size());
+    Eigen::Map<Rows>(out, loops::kStripRows, by.size()) = from.rowwise() * by.transpose().array();
   }
 
-  simd::Panels along_x_;  ///< f_x(x_i, X), a tap a row
-  simd::Panels along_y_;  ///< f_y(y_i, Y), a strip a panel
+  loops::Panels along_x_;  ///< f_x(x_i, X), a tap a row
+  loops::Panels along_y_;  ///< f_y(y_i, Y), a strip a panel
   Eigen::VectorXd column_;
-  std::vector<simd::Lines> scaled_;  ///< one a worker
+  std::vector<loops::Lines> scaled_;  ///< one a worker
 };
 
 }  // namespace
 
-std::unique_ptr<Engine> make_grid(const Machine& machine, const Kernel& kernel, const Candidates& candidates) {
-  return std::make_unique<Grid>(machine, kernel, candidates);
+std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates) {
+  return std::make_unique<Grid>(workers, kernel, candidates);
 }
 
 }  // namespace palpate

@@ -8,9 +8,9 @@
 namespace palpate {
 namespace {
 
-using simd::kLine;
-constexpr int kRows = simd::kStripRows;
-constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * simd::kPanelLines * kLine;  ///< numbers in a whole tile
+using loops::kLine;
+constexpr int kRows = loops::kStripRows;
+constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * loops::kPanelLines * kLine;  ///< numbers in a whole tile
 
 /// One axis of the grid: the basis of its covariances, and the taps in it.
 struct Axis {
@@ -39,17 +39,17 @@ struct Axis {
 /// v = U_y S U_x^T with S = P_y^T diag(c) P_x. The product with U_x^T is most of the work.
 class Lowrank final : public Engine {
  public:
-  Lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates, Axis x, Axis y)
-      : Engine("lowrank", machine, kernel, candidates,
+  Lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates, Axis x, Axis y)
+      : Engine("lowrank", workers, kernel, candidates,
                x.basis.mirrored ? Tiling::mirrored_grid(candidates) : Tiling::grid(candidates)),
         x_(std::move(x)),
         y_(std::move(y)),
-        in_x_(x_.basis.rank(), simd::kPanelLines * kLine, kLine),
+        in_x_(x_.basis.rank(), loops::kPanelLines * kLine, kLine),
         in_y_(y_.basis.rank(), kRows, kRows),
         // Of a mirrored basis, the left half.
-        basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns, simd::kPanelLines * kLine,
+        basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns, loops::kPanelLines * kLine,
                  kLine),
-        basis_y_(candidates.rows, simd::kPanelLines * kLine, kLine),
+        basis_y_(candidates.rows, loops::kPanelLines * kLine, kLine),
         shares_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(in_y_.padded())),
         shares_by_x_(shares_.size()),
         rows_(static_cast<std::size_t>(in_x_.padded()) * static_cast<std::size_t>(basis_y_.padded())) {
@@ -57,7 +57,7 @@ class Lowrank final : public Engine {
     basis_y_.reserve(y_.basis.rank());
     for (int i = 0; i < x_.basis.rank(); ++i) basis_x_.append(x_.basis.directions.col(i).data());
     for (int i = 0; i < y_.basis.rank(); ++i) basis_y_.append(y_.basis.directions.col(i).data());
-    for (int i = 0; i < machine.workers->threads(); ++i) {
+    for (int i = 0; i < workers->threads(); ++i) {
       a_.emplace_back(static_cast<std::size_t>(x_.basis.rank()) * kRows);
     }
   }
@@ -80,15 +80,15 @@ class Lowrank final : public Engine {
     form_rows();
     const int lines = basis_x_.padded() / kLine;
     const std::ptrdiff_t mirror = maps_.tiling().mirror();
-    machine_.workers->for_each(maps_.tiling().strips(), [&](int strip, int worker) {
+    workers_->for_each(maps_.tiling().strips(), [&](int strip, int worker) {
       double* const a = a_[static_cast<std::size_t>(worker)].data();
       gather(strip, a);
-      const simd::Product product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
-      const simd::Update update = maps_.update(strip, row.coefficients);
+      const loops::Product product{a, 0, 1, basis_x_.panel(0), basis_x_.stride(), basis_x_.rows(), lines};
+      const loops::Update update = maps_.update(strip, row.coefficients);
       if (mirror > 0) {
-        machine_.loops->absorb_mirrored({product, x_.basis.even, mirror}, update);
+        loops::absorb_mirrored({product, x_.basis.even, mirror}, update);
       } else {
-        machine_.loops->absorb_product(product, update);
+        loops::absorb_product(product, update);
       }
     });
   }
@@ -116,7 +116,7 @@ class Lowrank final : public Engine {
     const int depth = in_x_.rows();
     const auto needed = static_cast<std::size_t>(depth) * kRows;
     if (scaled_.size() < needed)
-      scaled_ = simd::Lines(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
+      scaled_ = loops::Lines(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
     const int lines = in_x_.padded() / kLine;
     double* c = shares_.data();
     for (int strip = 0; strip < in_y_.panels(); ++strip) {
@@ -125,12 +125,12 @@ class Lowrank final : public Engine {
       for (std::ptrdiff_t i = 0; i < depth; ++i) {
         for (std::ptrdiff_t m = 0; m < kRows; ++m) scaled[i * kRows + m] = from[i * kRows + m] * inverse(i);
       }
-      machine_.loops->multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
+      loops::multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
       // Turn the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
       for (int line = 0; line < lines; ++line) {
-        const int panel = line / simd::kPanelLines;
+        const int panel = line / loops::kPanelLines;
         const std::ptrdiff_t width = in_x_.width(panel);
-        const double* tile = c + panel * kTile + static_cast<std::ptrdiff_t>(line % simd::kPanelLines) * kLine;
+        const double* tile = c + panel * kTile + static_cast<std::ptrdiff_t>(line % loops::kPanelLines) * kLine;
         const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(line) * in_y_.padded();
         double* out = shares_by_x_.data() + (column + static_cast<std::ptrdiff_t>(strip) * kRows) * kLine;
         for (std::ptrdiff_t m = 0; m < kRows; ++m) std::copy_n(tile + m * width, kLine, out + m * kLine);
@@ -140,7 +140,7 @@ class Lowrank final : public Engine {
 
   /// S^T U_y^T: what every row of the grid has of every direction along x.
   void form_rows() {
-    machine_.loops->multiply(
+    loops::multiply(
         {shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows, in_x_.padded() / kRows,
          basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(), basis_y_.padded() / kLine},
         rows_.data());
@@ -149,9 +149,9 @@ class Lowrank final : public Engine {
   /// The shares of a strip's rows, direction by direction.
   void gather(int strip, double* out) const {
     const int row = strip * kRows;
-    const int panel = row / (simd::kPanelLines * kLine);
+    const int panel = row / (loops::kPanelLines * kLine);
     const std::ptrdiff_t width = basis_y_.width(panel);
-    const std::ptrdiff_t within = row % (simd::kPanelLines * kLine);
+    const std::ptrdiff_t within = row % (loops::kPanelLines * kLine);
     const double* tile = rows_.data() + panel * kTile + within;
     const std::ptrdiff_t strip_size = static_cast<std::ptrdiff_t>(basis_y_.padded()) * kRows;
     for (std::ptrdiff_t first = 0; first < basis_x_.rows(); first += kRows, tile += strip_size) {
@@ -164,22 +164,22 @@ class Lowrank final : public Engine {
   Axis y_;
   Eigen::VectorXd errors_;  ///< of covariances, a tap a number; with room for more
   int reserved_ = 0;
-  simd::Panels in_x_;           ///< P_x, a tap a row
-  simd::Panels in_y_;           ///< P_y
-  simd::Panels basis_x_;        ///< U_x^T
-  simd::Panels basis_y_;        ///< U_y^T
-  simd::Lines scaled_;          ///< scratch: eight columns of P_y times c
-  simd::Lines shares_;          ///< S
-  simd::Lines shares_by_x_;     ///< S^T
-  simd::Lines rows_;            ///< S^T U_y^T
-  std::vector<simd::Lines> a_;  ///< scratch of a worker
+  loops::Panels in_x_;           ///< P_x, a tap a row
+  loops::Panels in_y_;           ///< P_y
+  loops::Panels basis_x_;        ///< U_x^T
+  loops::Panels basis_y_;        ///< U_y^T
+  loops::Lines scaled_;          ///< scratch: eight columns of P_y times c
+  loops::Lines shares_;          ///< S
+  loops::Lines shares_by_x_;     ///< S^T
+  loops::Lines rows_;            ///< S^T U_y^T
+  std::vector<loops::Lines> a_;  ///< scratch of a worker
 };
 
 }  // namespace
 
-std::unique_ptr<Engine> make_lowrank(const Machine& machine, const Kernel& kernel, const Candidates& candidates,
+std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates,
                                      double tolerance) {
-  return std::make_unique<Lowrank>(machine, kernel, candidates, Axis(kernel, 0, candidates.xs, tolerance),
+  return std::make_unique<Lowrank>(workers, kernel, candidates, Axis(kernel, 0, candidates.xs, tolerance),
                                    Axis(kernel, 1, candidates.ys, tolerance));
 }
 

@@ -11,11 +11,11 @@ namespace palpate {
 
 void Factor::reserve(int rows) {
   if (rows <= capacity_) return;
-  const int padded = simd::round_up(rows, simd::kLine);
-  const simd::Lines old = std::move(rows_);
-  rows_ = simd::Lines(simd::packed_row(padded));
-  std::copy_n(old.data(), simd::packed_row(size_), rows_.data());
-  scratch_ = simd::Lines(static_cast<std::size_t>(padded));
+  const int padded = loops::round_up(rows, loops::kLine);
+  const loops::Lines old = std::move(rows_);
+  rows_ = loops::Lines(loops::packed_row(padded));
+  std::copy_n(old.data(), loops::packed_row(size_), rows_.data());
+  scratch_ = loops::Lines(static_cast<std::size_t>(padded));
   largest_.vector.conservativeResize(rows);
   smallest_.vector.conservativeResize(rows);
   capacity_ = rows;
@@ -24,11 +24,11 @@ void Factor::reserve(int rows) {
 bool Factor::append(const VectorView& covariance, double diagonal) {
   const int n = size_;
   if (n == capacity_) reserve(std::max(16, 2 * n));
-  double* const row = rows_.data() + simd::packed_row(n);
+  double* const row = rows_.data() + loops::packed_row(n);
   Eigen::Map<Eigen::VectorXd> l(row, n);
   l = covariance;
-  std::fill(row + n, rows_.data() + simd::packed_row(n + 1), 0.0);
-  loops_->solve_lower(rows_.data(), n, row);
+  std::fill(row + n, rows_.data() + loops::packed_row(n + 1), 0.0);
+  loops::solve_lower(rows_.data(), n, row);
   const double square = diagonal - l.squaredNorm();
   if (!is_regular(square, n, diagonal)) return false;
   row[n] = std::sqrt(square);
@@ -44,8 +44,8 @@ void Factor::inverse_row(int i, VectorOut out) {
   const double last = 1.0 / pivot(i);
   double* const c = scratch_.data();
   Eigen::Map<Eigen::VectorXd>(c, i) = -last * row(i);
-  std::fill(c + i, c + simd::round_up(i, simd::kLine), 0.0);
-  loops_->solve_lower_transposed(rows_.data(), i, c);
+  std::fill(c + i, c + loops::round_up(i, loops::kLine), 0.0);
+  loops::solve_lower_transposed(rows_.data(), i, c);
   out.head(i) = Eigen::Map<const Eigen::VectorXd>(c, i);
   out(i) = last;
 }

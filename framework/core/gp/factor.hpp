@@ -2,7 +2,7 @@
 // The Cholesky factor of a covariance matrix that grows by one row a tap.
 #pragma once
 
-#include "gp/simd/panels.hpp"
+#include "gp/panels.hpp"
 
 #include <palpate/types.hpp>
 
@@ -13,8 +13,6 @@ namespace palpate {
 /// L with L L^T = K, rows appended at O(n^2) each; earlier rows never change. n (n + 9) / 2 numbers of memory.
 class Factor {
  public:
-  explicit Factor(const simd::Table& loops = simd::fastest()) : loops_(&loops) {}
-
   /// Room for so many rows.
   void reserve(int rows);
 
@@ -49,13 +47,12 @@ class Factor {
     double value = 0.0;
   };
   void follow(Extreme& extreme, bool largest) const;
-  const double* packed(int i) const { return rows_.data() + simd::packed_row(i); }
+  const double* packed(int i) const { return rows_.data() + loops::packed_row(i); }
 
-  const simd::Table* loops_;
   int size_ = 0;
   int capacity_ = 0;
-  simd::Lines rows_;     ///< packed: see table.hpp
-  simd::Lines scratch_;  ///< a vector, aligned
+  loops::Lines rows_;     ///< packed: see loops.hpp
+  loops::Lines scratch_;  ///< a vector, aligned
   double log_determinant_ = 0.0;
   Extreme largest_;
   Extreme smallest_;

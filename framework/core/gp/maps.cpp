@@ -6,9 +6,9 @@ namespace palpate {
 Tiling Tiling::pieces(int candidates) {
   Tiling out;
   out.candidates_ = candidates;
-  out.columns_ = out.tiled_columns_ = out.padded_ = out.width_ = simd::kPiece;
-  out.rows_ = out.strips_ = (candidates + simd::kPiece - 1) / simd::kPiece;
-  out.strip_size_ = simd::kPiece;
+  out.columns_ = out.tiled_columns_ = out.padded_ = out.width_ = loops::kPiece;
+  out.rows_ = out.strips_ = (candidates + loops::kPiece - 1) / loops::kPiece;
+  out.strip_size_ = loops::kPiece;
   return out;
 }
 
@@ -17,8 +17,8 @@ Tiling Tiling::grid(const Candidates& candidates) {
   out.candidates_ = candidates.size();
   out.columns_ = candidates.columns;
   out.rows_ = candidates.rows;
-  out.rows_per_strip_ = simd::kStripRows;
-  out.strips_ = (out.rows_ + simd::kStripRows - 1) / simd::kStripRows;
+  out.rows_per_strip_ = loops::kStripRows;
+  out.strips_ = (out.rows_ + loops::kStripRows - 1) / loops::kStripRows;
   out.tile(out.columns_);
   return out;
 }
@@ -33,19 +33,19 @@ Tiling Tiling::mirrored_grid(const Candidates& candidates) {
 
 void Tiling::tile(int columns) {
   tiled_columns_ = columns;
-  padded_ = simd::round_up(columns, simd::kLine);
-  width_ = simd::kPanelLines * simd::kLine;
-  strip_size_ = static_cast<std::size_t>(padded_) * simd::kStripRows;
+  padded_ = loops::round_up(columns, loops::kLine);
+  width_ = loops::kPanelLines * loops::kLine;
+  strip_size_ = static_cast<std::size_t>(padded_) * loops::kStripRows;
 }
 
-Maps::Maps(const Tiling& tiling, const Machine& machine)
-    : tiling_(tiling), machine_(machine), variance_(tiling.size()) {}
+Maps::Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers)
+    : tiling_(tiling), workers_(workers), variance_(tiling.size()) {}
 
 void Maps::restart(int means, const VectorView& prior) {
   means_ = means;
   for (int k = 0; k < means; ++k) {
-    simd::Lines& map = mean_[static_cast<std::size_t>(k)];
-    if (map.size() == 0) map = simd::Lines(tiling_.size());
+    loops::Lines& map = mean_[static_cast<std::size_t>(k)];
+    if (map.size() == 0) map = loops::Lines(tiling_.size());
     std::fill_n(map.data(), map.size(), 0.0);
   }
   std::fill_n(variance_.data(), variance_.size(), 0.0);
@@ -64,9 +64,9 @@ void Maps::restart(int means, const VectorView& prior) {
   }
 }
 
-simd::Update Maps::update(int strip, const double* coefficients) {
+loops::Update Maps::update(int strip, const double* coefficients) {
   const std::size_t first = static_cast<std::size_t>(strip) * tiling_.strip_size();
-  simd::Update out{};
+  loops::Update out{};
   out.means = means_;
   for (int k = 0; k < means_; ++k) {
     out.coefficient[k] = coefficients[k];
@@ -76,10 +76,10 @@ simd::Update Maps::update(int strip, const double* coefficients) {
   return out;
 }
 
-void Maps::read(const simd::Lines& map, const simd::Reading& reading, double* out) const {
-  machine_.workers->for_each(tiling_.strips(), [&](int strip, int) {
+void Maps::read(const loops::Lines& map, const loops::Reading& reading, double* out) const {
+  workers_->for_each(tiling_.strips(), [&](int strip, int) {
     tiling_.for_blocks(strip, [&](const Tiling::Block& block) {
-      machine_.loops->read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows,
+      loops::read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows,
                             block.count, block.mirrored},
                            reading);
     });
@@ -87,11 +87,11 @@ void Maps::read(const simd::Lines& map, const simd::Reading& reading, double* ou
 }
 
 // A view goes by value although it is written through. NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_mean(int k, const simd::Reading& reading, VectorOut out) const {
+void Maps::read_mean(int k, const loops::Reading& reading, VectorOut out) const {
   read(mean_[static_cast<std::size_t>(k)], reading, out.data());
 }
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-void Maps::read_variance(const simd::Reading& reading, VectorOut out) const { read(variance_, reading, out.data()); }
+void Maps::read_variance(const loops::Reading& reading, VectorOut out) const { read(variance_, reading, out.data()); }
 
 }  // namespace palpate

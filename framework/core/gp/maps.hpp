@@ -4,7 +4,7 @@
 #pragma once
 
 #include "gp/candidates.hpp"
-#include "gp/simd/panels.hpp"
+#include "gp/panels.hpp"
 #include "gp/workers.hpp"
 
 #include <palpate/types.hpp>
@@ -16,21 +16,15 @@
 
 namespace palpate {
 
-/// What the loops run on.
-struct Machine {
-  const simd::Table* loops = &simd::fastest();
-  std::shared_ptr<Workers> workers = std::make_shared<Workers>(1);
-};
-
 /// Where the candidates lie in a map. A map is a sequence of strips, which are what one call updates; a strip is
 /// a sequence of tiles, one a panel of the columns.
 class Tiling {
  public:
-  /// Any places: strips of one tile of simd::kPiece candidates one after the other.
+  /// Any places: strips of one tile of loops::kPiece candidates one after the other.
   static Tiling pieces(int candidates);
-  /// A product grid: strips of simd::kStripRows rows, cut into tiles as simd::Product has them.
+  /// A product grid: strips of loops::kStripRows rows, cut into tiles as loops::Product has them.
   static Tiling grid(const Candidates& candidates);
-  /// The same as simd::MirroredProduct has them: a tile holds some columns of the left half of the grid and their
+  /// The same as loops::MirroredProduct has them: a tile holds some columns of the left half of the grid and their
   /// mirror images in the right half.
   static Tiling mirrored_grid(const Candidates& candidates);
 
@@ -93,28 +87,28 @@ class Tiling {
 /// Maps of means and of the variance as they stand, all in units of the prior.
 class Maps {
  public:
-  Maps(const Tiling& tiling, const Machine& machine);
+  Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers);
 
   /// Back to the prior: `means` maps of 0, and the variance, one number if it is the same at all candidates.
   void restart(int means, const VectorView& prior);
 
   /// What the loops need to take a row with such coefficients into the cells of a strip.
-  simd::Update update(int strip, const double* coefficients);
+  loops::Update update(int strip, const double* coefficients);
 
   /// The mean number k, and the variance, at all candidates, each number as `reading` has it.
-  void read_mean(int k, const simd::Reading& reading, VectorOut out) const;
-  void read_variance(const simd::Reading& reading, VectorOut out) const;
+  void read_mean(int k, const loops::Reading& reading, VectorOut out) const;
+  void read_variance(const loops::Reading& reading, VectorOut out) const;
 
   const Tiling& tiling() const { return tiling_; }
 
  private:
-  void read(const simd::Lines& map, const simd::Reading& reading, double* out) const;
+  void read(const loops::Lines& map, const loops::Reading& reading, double* out) const;
 
   Tiling tiling_;
-  Machine machine_;
+  std::shared_ptr<Workers> workers_;
   int means_ = 0;
-  std::array<simd::Lines, simd::kMeans> mean_;
-  simd::Lines variance_;
+  std::array<loops::Lines, loops::kMeans> mean_;
+  loops::Lines variance_;
 };
 
 }  // namespace palpate

@@ -16,7 +16,7 @@ namespace {
 constexpr double kLogTwoPi = 1.83787706640934548356;
 
 constexpr double kUnbound = std::numeric_limits<double>::infinity();
-constexpr simd::Reading kAsItIs{-kUnbound, kUnbound, 1.0, 0.0};
+constexpr loops::Reading kAsItIs{-kUnbound, kUnbound, 1.0, 0.0};
 
 }  // namespace
 
@@ -25,8 +25,7 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
     : kernel_(std::move(kernel)),
       outputs_(std::move(outputs)),
       candidates_(candidates),
-      posterior_(std::move(posterior)),
-      factor_(*posterior_.machine.loops) {
+      posterior_(std::move(posterior)) {
   const std::string why = objection(posterior_, *kernel_, candidates_);
   if (!why.empty()) throw Error("engine", "cannot be used here: " + why);
   take_prior();
@@ -129,7 +128,7 @@ void Process::absorb(int row) {
     weights_.row(row).setZero();
     for (Eigen::Index k = 0; k < reduced_.cols(); ++k) weights_.col(k).head(row + 1) += reduced_(row, k) * inverse;
   }
-  std::array<double, simd::kMeans> coefficients{};
+  std::array<double, loops::kMeans> coefficients{};
   for (int k = 0; k < shown_; ++k) coefficients[static_cast<std::size_t>(k)] = reduced_(row, k);
   if (with_constant()) coefficients[static_cast<std::size_t>(shown_)] = reduced_(row, targets_.cols());
   engine.absorb({factored_.topRows(row + 1), factor_.row(row), factor_.pivot(row), inverse, coefficients.data()});

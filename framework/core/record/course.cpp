@@ -3,7 +3,7 @@
 
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
-#include "gp/instructions.hpp"
+#include "math/instructions.hpp"
 #include "record/callers_run.hpp"
 #include "record/fields.hpp"
 #include "record/recording.hpp"
@@ -22,7 +22,7 @@ namespace {
 Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config) {
   Tree out = Tree::map(
       {{"name", Tree::quote(config.options.name)}, {"id", Tree::quote(config.id)}, {"at", Tree::quote(now_text())}});
-  const Tree build = describe_build(workshop.installation, workshop.host, config.notes.plugins, loops_in_use().name);
+  const Tree build = describe_build(workshop.installation, workshop.host, config.notes.plugins, math::choose_instructions());
   out.entries.insert(out.entries.end(), build.entries.begin(), build.entries.end());
   const auto places = [](const std::vector<ResolveNotes::Origin>& of) {
     Tree all = Tree::map();

@@ -18,8 +18,6 @@ namespace palpate {
 
 class Nonnegative {
  public:
-  explicit Nonnegative(const simd::Table& loops = simd::fastest()) : factor_(loops) {}
-
   /// More unknowns, m to the n before: `s` are the last m columns of S, n + m rows, `d` has m values.
   void append(const Eigen::MatrixXd& s, const Eigen::VectorXd& d);
   void solve();

@@ -63,8 +63,8 @@ std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std
 
 }  // namespace
 
-Skin::Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings, const simd::Table& loops)
-    : kernel_(std::move(kernel)), settings_(settings), loops_(loops) {
+Skin::Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings)
+    : kernel_(std::move(kernel)), settings_(settings) {
   if (!knows_distances_alone(*kernel_)) {
     throw Error("kernel",
                 "depends on more than the distance, but surface: implicit needs a kernel of the distance alone",
@@ -188,7 +188,7 @@ void Skin::take_in(std::vector<Row> rows) {
   }
   std::vector<int> all(rows.size());
   std::iota(all.begin(), all.end(), 0);
-  Factor factor(loops_);
+  Factor factor;
   factor.reserve(static_cast<int>(n));
   const auto with_jitter = [&] {
     factorise(factor, covariance, all, noise, report_.jitter);
@@ -278,7 +278,7 @@ void Skin::keep_free(std::vector<Passage> passages) {
   const auto lower = contacts.lower.triangularView<Eigen::Lower>();
   const Eigen::Index n = contacts.weights.size();
   MatrixXd known(n, 0);  // V
-  Nonnegative pull(loops_);
+  Nonnegative pull;
   const int aside = report_.redundant_taps;
   std::vector<Passage*> all, close;
   for (Passage& one : passages) all.push_back(&one);
@@ -381,15 +381,15 @@ void Skin::fit(const Composition& solids, const std::vector<SurfaceTouch>& touch
 template <class Use>
 void Skin::for_pieces(const Places& places, const Use& use) const {
   const Eigen::Index n = known_.table.at.rows();
-  simd::Lines numbers(static_cast<std::size_t>(n * simd::kPiece));
-  const Eigen::Map<MatrixXd> rows(numbers.data(), simd::kPiece, n);
-  Points apart = Points::Zero(n * simd::kPiece, 2);
-  for (std::size_t first = 0; first < places.size(); first += simd::kPiece) {
+  loops::Lines numbers(static_cast<std::size_t>(n * loops::kPiece));
+  const Eigen::Map<MatrixXd> rows(numbers.data(), loops::kPiece, n);
+  Points apart = Points::Zero(n * loops::kPiece, 2);
+  for (std::size_t first = 0; first < places.size(); first += loops::kPiece) {
     std::vector<Row> some;
-    for (std::size_t i = first; i < first + simd::kPiece; ++i)  // the last ones again, where there are no more
+    for (std::size_t i = first; i < first + loops::kPiece; ++i)  // the last ones again, where there are no more
       some.push_back({places[std::min(i, places.size() - 1)], Vector3d::Zero(), 0.0, 0.0, false});
     covariances(table_of(some), known_.table, apart, rows);
-    const std::size_t count = std::min<std::size_t>(simd::kPiece, places.size() - first);
+    const std::size_t count = std::min<std::size_t>(loops::kPiece, places.size() - first);
     use(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count), rows);
   }
 }
@@ -405,14 +405,14 @@ VectorXd Skin::means(const Places& places) const {
 Skin::Posterior Skin::posterior(const Places& places) const {
   const auto all = static_cast<Eigen::Index>(places.size());
   Posterior out{VectorXd(all), VectorXd(all)};
-  simd::Lines left(simd::kPiece);
+  loops::Lines left(loops::kPiece);
   for_pieces(places, [&](Eigen::Index first, Eigen::Index count, Eigen::Map<MatrixXd> k) {
     out.mean.segment(first, count).noalias() = k.topRows(count) * known_.weights;
-    std::fill_n(left.data(), simd::kPiece, deviation() * deviation());
-    simd::Update variance{};
+    std::fill_n(left.data(), loops::kPiece, deviation() * deviation());
+    loops::Update variance{};
     variance.variance = left.data();
     for (Eigen::Index i = 0; i < known_.lower.rows(); ++i)
-      loops_.absorb_dense({k.data(), k.col(i).data(), &known_.lower(i, 0), static_cast<int>(i), known_.lower(i, i)},
+      loops::absorb_dense({k.data(), k.col(i).data(), &known_.lower(i, 0), static_cast<int>(i), known_.lower(i, i)},
                           variance);
     out.variance.segment(first, count) = Eigen::Map<const VectorXd>(left.data(), count);
   });

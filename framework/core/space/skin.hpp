@@ -22,7 +22,7 @@
 // it is less than a contact in its place would, and where it is none, nothing.
 #pragma once
 
-#include "gp/simd/table.hpp"
+#include "gp/loops.hpp"
 #include "regular/regular_factor.hpp"
 #include "space/solids.hpp"
 
@@ -47,7 +47,7 @@ class Skin {
  public:
   /// The kernel is asked for places on the desk, as far apart as those in space. Throws Error where it is not one of
   /// the distance alone.
-  Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings, const simd::Table& loops = simd::fastest());
+  Skin(std::shared_ptr<const Kernel> kernel, const SkinSettings& settings);
 
   /// Of contacts from the next fit on, metres.
   void set_noise(double noise) { settings_.noise = noise; }
@@ -149,7 +149,6 @@ class Skin {
 
   std::shared_ptr<const Kernel> kernel_;
   SkinSettings settings_;
-  const simd::Table& loops_;
   double unit_ = 1.0;  ///< variance of the kernel
   double signal_ = 0.0;
   Known known_;

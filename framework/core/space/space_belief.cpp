@@ -72,8 +72,7 @@ SpaceBelief::SpaceBelief(const ExperimentOptions& options, const Context& contex
       desk_(context.scene.desk()),
       count_(static_cast<std::size_t>(options.space->approaches)),
       solids_(context.scene.area(), settings_of(*options.space), context.random("space/solids")),
-      skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise},
-            simd::table_of(context.lanes)),
+      skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise}),
       misfit_(options.space->model_discrepancy),
       noise_(options.height.noise),
       overtravel_(tip_of(context.scene), options.scene.min_object_height) {

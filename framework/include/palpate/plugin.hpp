@@ -13,7 +13,6 @@
 #include <palpate/options.hpp>
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
-#include <palpate/simd.hpp>
 #include <palpate/types.hpp>
 
 #include <atomic>
@@ -26,7 +25,7 @@
 namespace palpate {
 
 /// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
-constexpr std::uint32_t kPluginAbi = 21;
+constexpr std::uint32_t kPluginAbi = 22;
 
 struct Context;
 
@@ -51,7 +50,6 @@ struct Context {
   /// The folder of the run's record, for files that a plugin leaves beside it; empty where none is kept. It exists from
   /// the first tap on, not before.
   std::string directory = {};
-  simd::Lanes lanes = simd::widest();  ///< what loops of simd.hpp may use; fewer with PALPATE_INSTRUCTIONS=baseline
 
   /// The stream of this run for one purpose, for example "acquisition/random" at tap `number`.
   Random random(const std::string& purpose, std::uint64_t number = 0) const { return {seed, purpose, number}; }

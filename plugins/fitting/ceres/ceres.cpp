@@ -203,7 +203,6 @@ class Ceres final : public Fitting {
 
   Ceres(const Options& options, const Context& context)
       : options_(options),
-        lanes_(context.lanes),
         side_(std::max(context.scene.area().width, context.scene.area().depth)) {}
 
   bool due(int taps) const override { return taps > 0 && taps % options_.every == 0; }
@@ -287,7 +286,7 @@ class Ceres final : public Fitting {
   }
 
   Objective objective_of(const Model& model, const std::vector<Expectation>& expected) const {
-    return {model, options_.objective, expected, options_.priors == Options::Priors::touch, lanes_};
+    return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
   }
 
   /// The optima that the ascents found, the best first. `objective` is that of `model`; `evaluations` counts those of
@@ -316,7 +315,6 @@ class Ceres final : public Fitting {
   }
 
   Options options_;
-  simd::Lanes lanes_;
   double side_;  ///< of the area, the longer one, metres
 };
 

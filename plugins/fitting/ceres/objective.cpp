@@ -88,13 +88,11 @@ void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
   }
 }
 
-Objective::Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors,
-                     simd::Lanes lanes)
+Objective::Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors)
     : model_(model),
       measure_(measure),
       expectations_(expectations),
       priors_(priors),
-      lanes_(lanes),
       parameters_(static_cast<Eigen::Index>(model.kernel.parameters().size())),
       matrix_(model.size()),
       upper_(model.size()),
@@ -182,7 +180,7 @@ bool Objective::decompose(double noise) {
   // Too small to enter the gradient. What is not regular with it is rejected, and the search turns back.
   const double floor = kFirstJitter * static_cast<double>(n) * kEpsilon * matrix_(0, 0);
   for (Eigen::Index i = 0; i < n; ++i) own_(i) = matrix_(i, i) += noise + floor;
-  if (!factorise(lanes_, matrix_, reciprocals_)) return false;
+  if (!factorise(matrix_, reciprocals_)) return false;
   log_determinant_ = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double pivot = matrix_(i, i);
@@ -196,13 +194,13 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
   const Eigen::Index n = model_.size();
   solved_.topRows(n) = targets;
   solved_.bottomRows(solved_.rows() - n).setZero();
-  for (Eigen::Index i = 0; i < targets.cols(); ++i) solve_lower(lanes_, matrix_, solved_.col(i));
+  for (Eigen::Index i = 0; i < targets.cols(); ++i) solve_lower(matrix_, solved_.col(i));
   squares_ = solved_.colwise().squaredNorm();
   if (!(model_.mean_ratio > 0.0)) return;
   // K + r^2 1 1^T by the formulas of Sherman, Morrison and Woodbury.
   ones_ = Eigen::VectorXd::Zero(solved_.rows());
   ones_.head(n).setOnes();
-  solve_lower(lanes_, matrix_, ones_);
+  solve_lower(matrix_, ones_);
   const double prior = model_.mean_ratio * model_.mean_ratio;
   const double precision = 1.0 / prior + ones_.squaredNorm();
   ones_ /= std::sqrt(precision);
@@ -216,10 +214,10 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
 
 /// L -> K^-1, and what L^-1 was applied to gets the other half.
 void Objective::invert() {
-  invert_transposed(lanes_, matrix_, reciprocals_, upper_);
-  for (Eigen::Index i = 0; i < solved_.cols(); ++i) multiply_upper(lanes_, upper_, solved_.col(i));
-  if (model_.mean_ratio > 0.0) multiply_upper(lanes_, upper_, ones_);
-  square_upper(lanes_, upper_, matrix_);
+  invert_transposed(matrix_, reciprocals_, upper_);
+  for (Eigen::Index i = 0; i < solved_.cols(); ++i) multiply_upper(upper_, solved_.col(i));
+  if (model_.mean_ratio > 0.0) multiply_upper(upper_, ones_);
+  square_upper(upper_, matrix_);
 }
 
 double Objective::likelihood(const double* log_signals) const {
@@ -244,9 +242,7 @@ void Objective::likelihood_gradient(double* gradient) {
     Eigen::Map<Eigen::MatrixXd, Eigen::AlignedMax> adjoint(matrix_.at(s, 0)->numbers, 8, columns(s));
     adjoint *= -0.5 * outputs;
     const auto add = [&](double weight, const auto& numbers) {
-      simd::for_each(lanes_, 8, columns(s),
-                     [weight, out = adjoint.data(), own = numbers.data() + 8 * s, others = numbers.data()](
-                         Eigen::Index i, Eigen::Index j) { out[8 * j + i] += own[i] * (weight * others[j]); });
+      adjoint.noalias() += numbers.segment(8 * s, 8) * (weight * numbers.head(columns(s))).transpose();
     };
     for (Eigen::Index i = 0; i < m; ++i) add(0.5, solved_.col(i));
     if (model_.mean_ratio > 0.0) add(0.5 * outputs, ones_);

@@ -67,8 +67,7 @@ struct Expectation {
 class Objective {
  public:
   /// `expectations`: one for each hyperparameter, or none: then walls are all there is. All three must outlive it.
-  Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors,
-            simd::Lanes lanes);
+  Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors);
 
   int size() const { return static_cast<int>(expectations_.size()); }
   int evaluations() const { return evaluations_; }
@@ -99,7 +98,6 @@ class Objective {
   Measure measure_;
   const std::vector<Expectation>& expectations_;
   bool priors_;
-  simd::Lanes lanes_;
   int evaluations_ = 0;
 
   Eigen::Index parameters_;          ///< of the kernel

@@ -4,51 +4,211 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate::fitting {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "symmetric.cpp"
+#include "math/highway.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace palpate::fitting::HWY_NAMESPACE {
 namespace {
 
 using Eigen::Index;
+namespace hn = hwy::HWY_NAMESPACE;
+constexpr hn::ScalableTag<double> kReals;
+using Vector = hn::Vec<hn::ScalableTag<double>>;
+constexpr Index kLanes = hn::MaxLanes(kReals);
+
+HWY_INLINE Vector at(const double* from) { return hn::Load(kReals, from); }
+HWY_INLINE void put(const Vector& values, double* to) { hn::Store(values, kReals, to); }
+HWY_INLINE Vector all(double value) { return hn::Set(kReals, value); }
 
 /// Columns that are taken into the rest of a matrix together, in strips: so much of a few strips stays in the first
 /// cache.
 constexpr Index kPanel = 8;
 
-PALPATE_INLINE Index least(Index a, Index b) { return a < b ? a : b; }
+// Registers of rows, and columns, whose products are summed together: packs x columns sums fill the register file.
+#if HWY_TARGET == HWY_AVX3
+constexpr Index kPacks = 3;
+constexpr Index kColumns = 8;
+#elif HWY_TARGET == HWY_NEON
+constexpr Index kPacks = 4;
+constexpr Index kColumns = 4;
+#else
+constexpr Index kPacks = 2;
+constexpr Index kColumns = 4;
+#endif
 
-struct Loops {
-  bool (*factorise)(Strips& matrix, double* reciprocals);
-  void (*invert_transposed)(const Strips& factor, const double* reciprocals, Strips& out);
-  void (*square_upper)(const Strips& upper, Strips& out);
-  void (*times)(const Strips& matrix, Index s, Index from, Index to, const double* b, double* out);
-};
+/// Registers in a line, and strips whose tiles are multiplied together.
+constexpr Index kPacksOfLine = 8 / kLanes;
+constexpr Index kTogether = kPacks > kPacksOfLine ? kPacks / kPacksOfLine : 1;
 
-#define PALPATE_SET sse2
-#define PALPATE_TARGET
-#define PALPATE_LANES 2
-#define PALPATE_PACKS 2
-#define PALPATE_COLUMNS 4
-#include "loops.inc"
+/// out_p += or -= a_p b^T for some registers of rows: `a` and `b` have `depth` columns, `out` eight.
+template <Index kCount, bool kPlus>
+HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, double* const* out) {
+  for (Index first = 0; first < 8; first += kColumns) {
+    Vector sum[kCount][kColumns];
+    for (auto& row : sum) std::fill_n(row, kColumns, hn::Zero(kReals));
+    for (Index k = 0; k < depth; ++k) {
+      Vector column[kCount];
+#pragma GCC unroll 8
+      for (Index p = 0; p < kCount; ++p) column[p] = at(a[p] + 8 * k);
+#pragma GCC unroll 8
+      for (Index j = 0; j < kColumns; ++j) {
+        const Vector factor = all(b[8 * k + first + j]);
+#pragma GCC unroll 8
+        for (Index p = 0; p < kCount; ++p) sum[p][j] = hn::MulAdd(column[p], factor, sum[p][j]);
+      }
+    }
+#pragma GCC unroll 8
+    for (Index p = 0; p < kCount; ++p) {
+#pragma GCC unroll 8
+      for (Index j = 0; j < kColumns; ++j) {
+        double* const place = out[p] + 8 * (first + j);
+        put(kPlus ? hn::Add(at(place), sum[p][j]) : hn::Sub(at(place), sum[p][j]), place);
+      }
+    }
+  }
+}
 
-#define PALPATE_SET avx2
-#define PALPATE_TARGET PALPATE_AVX2
-#define PALPATE_LANES 4
-#define PALPATE_PACKS 2
-#define PALPATE_COLUMNS 4
-#include "loops.inc"
+/// Columns [from, to) of A and B: the tiles (s, j) of C, for strips s in [first, last), += or -= A_s B_j^T.
+template <bool kPlus>
+HWY_INLINE void update(Strips& c, const Strips& a, const Strips& b, Index first, Index last, Index j, Index from,
+                           Index to) {
+  const double* in[kPacks];
+  double* out[kPacks];
+  Index packs = 0;
+  for (Index s = first; s < last; ++s) {
+    for (Index row = 0; row < 8; row += kLanes) {
+      in[packs] = a.at(s, from)->numbers + row;
+      out[packs] = c.at(s, 8 * j)->numbers + row;
+      if (++packs < kPacks) continue;
+      multiply<kPacks, kPlus>(in, b.at(j, from)->numbers, to - from, out);
+      packs = 0;
+    }
+  }
+  for (Index p = 0; p < packs; ++p) multiply<1, kPlus>(in + p, b.at(j, from)->numbers, to - from, out + p);
+}
 
-#define PALPATE_SET avx512
-#define PALPATE_TARGET PALPATE_AVX512
-#define PALPATE_LANES 8
-#define PALPATE_PACKS 3
-#define PALPATE_COLUMNS 8
-#include "loops.inc"
+/// The triangle L of a tile from its square, and the reciprocals of its diagonal. False where it has none.
+HWY_INLINE bool factorise_tile(double* tile, double* reciprocals) {
+  for (Index c = 0; c < 8; ++c) {
+    double* const own = tile + 8 * c;
+    // What is above the diagonal goes along, for nothing.
+    for (Index d = 0; d < c; ++d) {
+      const Vector share = all(tile[8 * d + c]);
+#pragma GCC unroll 8
+      for (Index row = 0; row < 8; row += kLanes)
+        put(hn::NegMulAdd(share, at(tile + 8 * d + row), at(own + row)), own + row);
+    }
+    if (!(own[c] > 0.0)) return false;
+    const double root = std::sqrt(own[c]);
+    reciprocals[c] = 1.0 / root;
+#pragma GCC unroll 8
+    for (Index row = 0; row < 8; row += kLanes) put(hn::Mul(at(own + row), all(reciprocals[c])), own + row);
+    own[c] = root;
+  }
+  return true;
+}
 
-const Loops& loops_of(simd::Lanes lanes) {
-  if (lanes == simd::Lanes::avx512) return avx512::kLoops;
-  return lanes == simd::Lanes::avx2 ? avx2::kLoops : sse2::kLoops;
+/// X -> X L^-T for the tile X of strip `s` and the triangle L of a tile.
+HWY_INLINE void solve_tile(double* x, const double* lower, const double* reciprocals) {
+#pragma GCC unroll 8
+  for (Index row = 0; row < 8; row += kLanes) {
+    Vector columns[8];
+#pragma GCC unroll 8
+    for (Index c = 0; c < 8; ++c) {
+      Vector value = at(x + 8 * c + row);
+#pragma GCC unroll 8
+      for (Index d = 0; d < 8; ++d) {
+        if (d < c) value = hn::NegMulAdd(columns[d], all(lower[8 * d + c]), value);
+      }
+      columns[c] = hn::Mul(value, all(reciprocals[c]));
+      put(columns[c], x + 8 * c + row);
+    }
+  }
+}
+
+// Panel by panel: what earlier panels have taken from a column is done when its panel comes, so that within a panel
+// each column of tiles waits only for those before it in the panel.
+bool factorise(Strips& matrix, double* reciprocals) {
+  const Index strips = matrix.strips();
+  for (Index panel = 0; panel < strips; panel += kPanel) {
+    const Index end = std::min(panel + kPanel, strips);
+    for (Index j = panel; j < end; ++j) {
+      if (j > panel) update<false>(matrix, matrix, matrix, j, strips, j, 8 * panel, 8 * j);
+      const double* const own = matrix.at(j, 8 * j)->numbers;
+      if (!factorise_tile(matrix.at(j, 8 * j)->numbers, reciprocals + 8 * j)) return false;
+      for (Index s = j + 1; s < strips; ++s) solve_tile(matrix.at(s, 8 * j)->numbers, own, reciprocals + 8 * j);
+    }
+    for (Index s = end; s < strips; s += kTogether) {
+      const Index last = std::min(s + kTogether, strips);
+      for (Index j = end; j < last; ++j) {
+        update<false>(matrix, matrix, matrix, j > s ? j : s, last, j, 8 * panel, 8 * end);
+      }
+    }
+  }
+  return true;
+}
+
+// L^-T is what becomes of the identity where rows below K go through its factorisation.
+void invert_transposed(const Strips& factor, const double* reciprocals, Strips& out) {
+  const Index strips = factor.strips();
+  for (Index panel = 0; panel < strips; panel += kPanel) {
+    const Index end = std::min(panel + kPanel, strips);
+    for (Index j = panel; j < end; ++j) {
+      if (j > panel) update<false>(out, out, factor, 0, j, j, 8 * panel, 8 * j);
+      const double* const own = factor.at(j, 8 * j)->numbers;
+      for (Index s = 0; s <= j; ++s) solve_tile(out.at(s, 8 * j)->numbers, own, reciprocals + 8 * j);
+    }
+    for (Index s = 0; s < end; s += kTogether) {
+      for (Index j = end; j < strips; ++j) {
+        update<false>(out, out, factor, s, std::min(s + kTogether, end), j, 8 * panel, 8 * end);
+      }
+    }
+  }
+}
+
+void square_upper(const Strips& upper, Strips& out) {
+  const Index strips = upper.strips();
+  for (Index panel = 0; panel < strips; panel += kPanel) {
+    const Index end = std::min(panel + kPanel, strips);
+    for (Index s = 0; s < end; s += kTogether) {
+      const Index last = std::min(s + kTogether, end);
+      const Index from = panel > s ? panel : s;  // what is left of it is 0
+      for (Index j = 0; j < last; ++j) update<true>(out, upper, upper, j > s ? j : s, last, j, 8 * from, 8 * end);
+    }
+  }
+}
+
+/// `out`, a line, += columns [from, to) of strip `s` times b[from], ...
+void times(const Strips& matrix, Index s, Index from, Index to, const double* b, double* out) {
+  for (Index p = 0; p < kPacksOfLine; ++p) {
+    const auto column = [&](Index k) { return at(matrix.at(s, k)->numbers + p * kLanes); };
+    Vector sum = at(out + p * kLanes);
+    Vector odd = hn::Zero(kReals);  // two sums, as each waits for the number before
+    Index k = from;
+    for (; k + 1 < to; k += 2) {
+      sum = hn::MulAdd(all(b[k]), column(k), sum);
+      odd = hn::MulAdd(all(b[k + 1]), column(k + 1), odd);
+    }
+    if (k < to) sum = hn::MulAdd(all(b[k]), column(k), sum);
+    put(hn::Add(sum, odd), out + p * kLanes);
+  }
 }
 
 }  // namespace
+}  // namespace palpate::fitting::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate::fitting {
+
+using Eigen::Index;
+
+HWY_EXPORT(factorise);
+HWY_EXPORT(invert_transposed);
+HWY_EXPORT(square_upper);
+HWY_EXPORT(times);
 
 void Strips::put(Index j, const Eigen::VectorXd& values) {
   const double* from = values.data();
@@ -69,9 +229,7 @@ Eigen::MatrixXd Strips::mirrored() const {
   return out;
 }
 
-// Panel by panel: what earlier panels have taken from a column is done when its panel comes, so that within a panel
-// each column of tiles waits only for those before it in the panel.
-bool factorise(simd::Lanes lanes, Strips& matrix, std::vector<double>& reciprocals) {
+bool factorise(Strips& matrix, std::vector<double>& reciprocals) {
   const Index strips = matrix.strips();
   const Index n = matrix.size();
   for (Index j = 0; j < 8 * strips && n % 8 > 0; ++j) {
@@ -80,15 +238,14 @@ bool factorise(simd::Lanes lanes, Strips& matrix, std::vector<double>& reciproca
     if (j >= n) line[j % 8] = 1.0;
   }
   reciprocals.resize(static_cast<std::size_t>(8 * strips));
-  return loops_of(lanes).factorise(matrix, reciprocals.data()) &&
+  return HWY_DYNAMIC_DISPATCH(factorise)(matrix, reciprocals.data()) &&
          std::all_of(reciprocals.begin(), reciprocals.end(), [](double one) { return one > 0.0; });
 }
 
-void solve_lower(simd::Lanes lanes, const Strips& factor, VectorOut b) {
-  const Loops& loops = loops_of(lanes);
+void solve_lower(const Strips& factor, VectorOut b) {
   for (Index s = 0; s < factor.strips(); ++s) {
     Line sum{};
-    loops.times(factor, s, 0, 8 * s, b.data(), sum.numbers);
+    HWY_DYNAMIC_DISPATCH(times)(factor, s, 0, 8 * s, b.data(), sum.numbers);
     for (Index r = 0; r < std::min<Index>(8, factor.size() - 8 * s); ++r) {
       double& own = b(8 * s + r);
       own -= sum.numbers[r];
@@ -98,27 +255,27 @@ void solve_lower(simd::Lanes lanes, const Strips& factor, VectorOut b) {
   }
 }
 
-void invert_transposed(simd::Lanes lanes, const Strips& factor, const std::vector<double>& reciprocals, Strips& out) {
+void invert_transposed(const Strips& factor, const std::vector<double>& reciprocals, Strips& out) {
   const Index strips = factor.strips();
   for (Index s = 0; s < strips; ++s) {
     std::fill(out.at(s, 0), out.at(s, 0) + 8 * strips, Line{});
     for (Index r = 0; r < 8; ++r) out.at(s, 8 * s + r)->numbers[r] = 1.0;
   }
-  loops_of(lanes).invert_transposed(factor, reciprocals.data(), out);
+  HWY_DYNAMIC_DISPATCH(invert_transposed)(factor, reciprocals.data(), out);
 }
 
-void multiply_upper(simd::Lanes lanes, const Strips& upper, VectorOut b) {
-  const Loops& loops = loops_of(lanes);
+void multiply_upper(const Strips& upper, VectorOut b) {
   for (Index s = 0; s < upper.strips(); ++s) {
     Line sum{};
-    loops.times(upper, s, 8 * s, upper.size(), b.data(), sum.numbers);
+    HWY_DYNAMIC_DISPATCH(times)(upper, s, 8 * s, upper.size(), b.data(), sum.numbers);
     std::copy_n(sum.numbers, std::min<Index>(8, upper.size() - 8 * s), b.data() + 8 * s);
   }
 }
 
-void square_upper(simd::Lanes lanes, const Strips& upper, Strips& out) {
+void square_upper(const Strips& upper, Strips& out) {
   for (Index s = 0; s < upper.strips(); ++s) std::fill(out.at(s, 0), out.at(s, 0) + 8 * (s + 1), Line{});
-  loops_of(lanes).square_upper(upper, out);
+  HWY_DYNAMIC_DISPATCH(square_upper)(upper, out);
 }
 
 }  // namespace palpate::fitting
+#endif

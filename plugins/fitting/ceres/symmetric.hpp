@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Dense symmetric positive definite matrices: a fit spends its time here. All three algorithms are made of the same two
-// steps, the product of tiles and the solution by a tile's triangle, in the widest registers that the run may use.
+// steps, the product of tiles and the solution by a tile's triangle, in the widest vectors that the processor has (math/highway.hpp).
 #pragma once
 
-#include <palpate/simd.hpp>
 #include <palpate/types.hpp>
 
 #include <cstddef>
@@ -48,18 +47,18 @@ class Strips {
 /// K -> L with L L^T = K, on and below the diagonal; what is above it in tiles of the diagonal is lost. Rows beyond n
 /// become those of the identity. `reciprocals` become those of the diagonal. False when K is not positive definite or
 /// not finite; then its content is lost.
-bool factorise(simd::Lanes lanes, Strips& matrix, std::vector<double>& reciprocals);
+bool factorise(Strips& matrix, std::vector<double>& reciprocals);
 
 /// L^-1 b, in place; n numbers.
-void solve_lower(simd::Lanes lanes, const Strips& factor, VectorOut b);
+void solve_lower(const Strips& factor, VectorOut b);
 
 /// L -> L^-T, on and above the diagonal, by its factorise(); `out` is of the same size.
-void invert_transposed(simd::Lanes lanes, const Strips& factor, const std::vector<double>& reciprocals, Strips& out);
+void invert_transposed(const Strips& factor, const std::vector<double>& reciprocals, Strips& out);
 
 /// U b in place, of an upper triangle.
-void multiply_upper(simd::Lanes lanes, const Strips& upper, VectorOut b);
+void multiply_upper(const Strips& upper, VectorOut b);
 
 /// U -> U U^T, on and below the diagonal and in all of its tiles; of U = L^-T it is K^-1.
-void square_upper(simd::Lanes lanes, const Strips& upper, Strips& out);
+void square_upper(const Strips& upper, Strips& out);
 
 }  // namespace palpate::fitting

@@ -1,32 +1,36 @@
 // SPDX-License-Identifier: MIT
 #include "depths.hpp"
 
-#include "clones.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-namespace palpate::footprints {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "primitives/depths.cpp"
+#include "math/highway.hpp"
+
+// Compiled for each set of instructions, as a compiler makes vectors of it. Products are not fused with sums: what is
+// computed is the same to the last bit.
+HWY_BEFORE_NAMESPACE();
+namespace palpate::footprints::HWY_NAMESPACE {
 namespace {
 
-constexpr float kFar = 1e3F;  // metres
 constexpr int kRound = Places::kRound;
 constexpr int kWord = Places::kWord;
 
 using Bytes = LabelModel::Step __attribute__((vector_size(kRound)));
 using Word = LabelModel::Step __attribute__((vector_size(kWord)));
 
-PALPATE_INLINE void load(const LabelModel::Step* from, Bytes& out) { std::memcpy(&out, from, sizeof(out)); }
+HWY_INLINE void load(const LabelModel::Step* from, Bytes& out) { std::memcpy(&out, from, sizeof(out)); }
 
 /// Of each byte the highest bit: whether it is that of a depth that is not negative.
-PALPATE_INLINE void load_held(const LabelModel::Step* from, Bytes& out) {
+HWY_INLINE void load_held(const LabelModel::Step* from, Bytes& out) {
   static_assert(LabelModel::kSteps == 128);
   load(from, out);
   out = (out + 63) & 128;
 }
 
-PALPATE_INLINE bool any(const Bytes& bytes) {
+HWY_INLINE bool any(const Bytes& bytes) {
   std::uint64_t parts[kRound / 8];
   std::memcpy(parts, &bytes, sizeof(parts));
   return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
@@ -37,14 +41,14 @@ PALPATE_INLINE bool any(const Bytes& bytes) {
 using Places8 = float __attribute__((vector_size(4 * kWord)));
 using Bits8 = std::int32_t __attribute__((vector_size(4 * kWord)));
 
-PALPATE_INLINE void root(Places8& x) {
+HWY_INLINE void root(Places8& x) {
   float parts[kWord];
   std::memcpy(parts, &x, sizeof(x));
   for (float& part : parts) part = std::sqrt(part);
   std::memcpy(&x, parts, sizeof(x));
 }
 
-PALPATE_INLINE void magnitude(Places8& x) {
+HWY_INLINE void magnitude(Places8& x) {
   Bits8 bits;
   std::memcpy(&bits, &x, sizeof(x));
   bits &= 0x7fffffff;
@@ -52,7 +56,7 @@ PALPATE_INLINE void magnitude(Places8& x) {
 }
 
 /// The last byte of each; as one word, where a conversion of vectors would take three times as long.
-PALPATE_INLINE void to_bytes(const Bits8& numbers, LabelModel::Step* out) {
+HWY_INLINE void to_bytes(const Bits8& numbers, LabelModel::Step* out) {
   using Pairs = std::uint64_t __attribute__((vector_size(32)));
   using Half = std::uint64_t __attribute__((vector_size(16)));
   Pairs pairs;
@@ -67,7 +71,7 @@ PALPATE_INLINE void to_bytes(const Bits8& numbers, LabelModel::Step* out) {
 }
 
 /// From the centre, along the axes.
-PALPATE_INLINE void in_axes(const SingleForm& form, const Places8& x, const Places8& y, Places8& u, Places8& v) {
+HWY_INLINE void in_axes(const SingleForm& form, const Places8& x, const Places8& y, Places8& u, Places8& v) {
   const Places8 dx = x - form.x;
   const Places8 dy = y - form.y;
   u = form.cosine * dx + form.sine * dy;
@@ -75,7 +79,7 @@ PALPATE_INLINE void in_axes(const SingleForm& form, const Places8& x, const Plac
 }
 
 /// As Form::contains, all bits of those within.
-PALPATE_INLINE void contained_in(const SingleForm& form, const Places8& x, const Places8& y, Bits8& out) {
+HWY_INLINE void contained_in(const SingleForm& form, const Places8& x, const Places8& y, Bits8& out) {
   Places8 u, v;
   in_axes(form, x, y, u, v);
   if (form.box) {
@@ -88,7 +92,7 @@ PALPATE_INLINE void contained_in(const SingleForm& form, const Places8& x, const
 }
 
 /// As Form::depth.
-PALPATE_INLINE void depths_in(const SingleForm& form, const Places8& x, const Places8& y, Places8& out) {
+HWY_INLINE void depths_in(const SingleForm& form, const Places8& x, const Places8& y, Places8& out) {
   const float a = form.a;
   const float b = form.b;
   Places8 u, v;
@@ -127,14 +131,14 @@ struct SinglePiece {
   SingleForm form, hole;
   bool hollow;
 };
-PALPATE_INLINE void take(const Piece& piece, SinglePiece& out) {
+HWY_INLINE void take(const Piece& piece, SinglePiece& out) {
   out.form = single(piece.form);
   if (piece.hollow) out.hole = single(piece.hole);
   out.hollow = piece.hollow;
 }
 
 /// As Steps::of how deep a word of places lies in a piece.
-PALPATE_INLINE void steps_in(const SinglePiece& piece, bool exact, float per_metre, const float* xs, const float* ys,
+HWY_INLINE void steps_in(const SinglePiece& piece, bool exact, float per_metre, const float* xs, const float* ys,
                              LabelModel::Step* out) {
   Places8 x, y;
   std::memcpy(&x, xs, sizeof(x));
@@ -169,7 +173,7 @@ PALPATE_INLINE void steps_in(const SinglePiece& piece, bool exact, float per_met
 }
 
 /// The deepest steps of some rows, of a word of them.
-PALPATE_INLINE void deepest_in(const LabelModel::Step* const* rows, int count, int from, Word& out) {
+HWY_INLINE void deepest_in(const LabelModel::Step* const* rows, int count, int from, Word& out) {
   out = Word{};
   for (int row = 0; row < count; ++row) {
     Word steps;
@@ -178,14 +182,14 @@ PALPATE_INLINE void deepest_in(const LabelModel::Step* const* rows, int count, i
   }
 }
 
-PALPATE_CLONES void all_steps(const Piece& piece, bool exact, float per_metre, const float* xs, const float* ys,
+void all_steps(const Piece& piece, bool exact, float per_metre, const float* xs, const float* ys,
                               int count, LabelModel::Step* out) {
   SinglePiece one;
   take(piece, one);
   for (int from = 0; from < count; from += kWord) steps_in(one, exact, per_metre, xs + from, ys + from, out + from);
 }
 
-PALPATE_CLONES void all_contained(const Form& form, const float* xs, const float* ys, int count,
+void all_contained(const Form& form, const float* xs, const float* ys, int count,
                                   LabelModel::Step* out) {
   const SingleForm one = single(form);
   for (int from = 0; from < count; from += kWord) {
@@ -198,7 +202,7 @@ PALPATE_CLONES void all_contained(const Form& form, const float* xs, const float
   }
 }
 
-PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const float* xs, const float* ys) {
+bool weigh_change(Places::Change& change, double most, const float* xs, const float* ys) {
   using Step = LabelModel::Step;
   const LabelModel& labels = *change.labels;
   const LabelModel& labels_before = *change.labels_before;
@@ -245,7 +249,7 @@ PALPATE_CLONES bool weigh_change(Places::Change& change, double most, const floa
   return true;
 }
 
-PALPATE_CLONES void carry(const Push& push, int count, const float* __restrict xs, const float* __restrict ys,
+void carry(const Push& push, int count, const float* __restrict xs, const float* __restrict ys,
                           float* __restrict to_x, float* __restrict to_y) {
   const Push by = push;
   for (int i = 0; i < count; ++i) {
@@ -256,7 +260,7 @@ PALPATE_CLONES void carry(const Push& push, int count, const float* __restrict x
 }
 
 /// Whether both rows hold any of those that are marked, or one of them does and not the other.
-PALPATE_INLINE bool any_held_by(bool both, const LabelModel::Step* one, const LabelModel::Step* other,
+HWY_INLINE bool any_held_by(bool both, const LabelModel::Step* one, const LabelModel::Step* other,
                                 const LabelModel::Step* marked, int length) {
   Bytes of_one, of_other, which;
   Bytes out{};
@@ -269,10 +273,62 @@ PALPATE_INLINE bool any_held_by(bool both, const LabelModel::Step* one, const La
   return any(out);
 }
 
-PALPATE_CLONES void add_holder(const LabelModel::Step* __restrict row, std::uint16_t bit, int length,
+void add_holder(const LabelModel::Step* __restrict row, std::uint16_t bit, int length,
                                std::uint16_t* __restrict out) {
   for (int i = 0; i < length; ++i) out[i] = static_cast<std::uint16_t>(out[i] | (LabelModel::holds(row[i]) ? bit : 0));
 }
+
+void deepest_of(const LabelModel::Step* const* rows, int count, int length, LabelModel::Step* out) {
+  for (int from = 0; from < length; from += kWord) {
+    Word deepest;
+    deepest_in(rows, count, from, deepest);
+    std::memcpy(out + from, &deepest, sizeof(deepest));
+  }
+}
+
+bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other,
+                                      const LabelModel::Step* marked, int length) {
+  return any_held_by(false, one, other, marked, length);
+}
+
+bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other,
+                                  const LabelModel::Step* marked, int length) {
+  return any_held_by(true, one, other, marked, length);
+}
+
+bool holds_any(const LabelModel::Step* row, const LabelModel::Step* marked, int length) {
+  Bytes of_row, which;
+  Bytes out{};
+  for (int from = 0; from < length; from += kRound) {
+    load_held(row + from, of_row);
+    load(marked + from, which);
+    out |= of_row & which;
+  }
+  return any(out);
+}
+
+}  // namespace
+}  // namespace palpate::footprints::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate::footprints {
+
+HWY_EXPORT(all_steps);
+HWY_EXPORT(all_contained);
+HWY_EXPORT(weigh_change);
+HWY_EXPORT(carry);
+HWY_EXPORT(add_holder);
+HWY_EXPORT(deepest_of);
+HWY_EXPORT(differ_in_holding);
+HWY_EXPORT(hold_the_same);
+HWY_EXPORT(holds_any);
+
+namespace {
+
+constexpr float kFar = 1e3F;  // metres
+constexpr int kRound = Places::kRound;
+constexpr int kWord = Places::kWord;
 
 }  // namespace
 
@@ -289,19 +345,19 @@ void Places::seen_after(const Push& push, Places& out) const {
   out.size_ = size_;
   out.xs_ = xs_;
   out.ys_ = ys_;
-  carry(push, push.before, xs_.data(), ys_.data(), out.xs_.data(), out.ys_.data());
+  HWY_DYNAMIC_DISPATCH(carry)(push, push.before, xs_.data(), ys_.data(), out.xs_.data(), out.ys_.data());
 }
 
 void Places::steps(const Piece& piece, const LabelModel& labels, LabelModel::Step* row) const {
-  all_steps(piece, !labels.blurs(), static_cast<float>(labels.steps().per_metre), xs_.data(), ys_.data(), length(),
+  HWY_DYNAMIC_DISPATCH(all_steps)(piece, !labels.blurs(), static_cast<float>(labels.steps().per_metre), xs_.data(), ys_.data(), length(),
             row);
 }
 
 void Places::contained(const Form& form, LabelModel::Step* row) const {
-  all_contained(form, xs_.data(), ys_.data(), (size_ + kWord - 1) / kWord * kWord, row);
+  HWY_DYNAMIC_DISPATCH(all_contained)(form, xs_.data(), ys_.data(), (size_ + kWord - 1) / kWord * kWord, row);
 }
 
-bool Places::weigh(Change& change, double most) const { return weigh_change(change, most, xs_.data(), ys_.data()); }
+bool Places::weigh(Change& change, double most) const { return HWY_DYNAMIC_DISPATCH(weigh_change)(change, most, xs_.data(), ys_.data()); }
 
 void Depths::grow_to(int length) {
   if (length <= length_) return;
@@ -318,38 +374,28 @@ std::uint16_t Depths::holders(std::size_t touch, int pieces) const {
   return static_cast<std::uint16_t>(out);
 }
 
-void deepest_of(const LabelModel::Step* const* rows, int count, int length, LabelModel::Step* out) {
-  for (int from = 0; from < length; from += kWord) {
-    Word deepest;
-    deepest_in(rows, count, from, deepest);
-    std::memcpy(out + from, &deepest, sizeof(deepest));
-  }
-}
-
-PALPATE_CLONES bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other,
-                                      const LabelModel::Step* marked, int length) {
-  return any_held_by(false, one, other, marked, length);
-}
-
-PALPATE_CLONES bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other,
-                                  const LabelModel::Step* marked, int length) {
-  return any_held_by(true, one, other, marked, length);
-}
-
-PALPATE_CLONES bool holds_any(const LabelModel::Step* row, const LabelModel::Step* marked, int length) {
-  Bytes of_row, which;
-  Bytes out{};
-  for (int from = 0; from < length; from += kRound) {
-    load_held(row + from, of_row);
-    load(marked + from, which);
-    out |= of_row & which;
-  }
-  return any(out);
-}
-
 void holders_of(const LabelModel::Step* const* rows, int count, int length, std::uint16_t* out) {
   std::fill_n(out, length, std::uint16_t{0});
-  for (int i = 0; i < count; ++i) add_holder(rows[i], static_cast<std::uint16_t>(1U << i), length, out);
+  for (int i = 0; i < count; ++i) HWY_DYNAMIC_DISPATCH(add_holder)(rows[i], static_cast<std::uint16_t>(1U << i), length, out);
+}
+
+void deepest_of(const LabelModel::Step* const* rows, int count, int length, LabelModel::Step* out) {
+  HWY_DYNAMIC_DISPATCH(deepest_of)(rows, count, length, out);
+}
+
+bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
+                       int length) {
+  return HWY_DYNAMIC_DISPATCH(differ_in_holding)(one, other, marked, length);
+}
+
+bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
+                   int length) {
+  return HWY_DYNAMIC_DISPATCH(hold_the_same)(one, other, marked, length);
+}
+
+bool holds_any(const LabelModel::Step* row, const LabelModel::Step* marked, int length) {
+  return HWY_DYNAMIC_DISPATCH(holds_any)(row, marked, length);
 }
 
 }  // namespace palpate::footprints
+#endif

@@ -7,18 +7,18 @@ namespace palpate::footprints {
 
 double Form::extent() const { return (family == Family::box ? 4.0 : kPi) * a * b; }
 
-Cuts::Cuts(const Form& piece) : family_(piece.family), x_(piece.x), y_(piece.y), reach_(piece.reach_y()) {
-  if (family_ == Form::Family::ellipse) {
+Cuts::Cuts(const Form& piece) : family(piece.family), x(piece.x), y(piece.y), reach(piece.reach_y()) {
+  if (family == Form::Family::ellipse) {
     // (u, v) along the cut is linear in x: a quadratic whose middle and half width follow from the reach.
-    slope_[0] = piece.cosine * piece.sine * (piece.a * piece.a - piece.b * piece.b) / (reach_ * reach_);
-    half_[0] = piece.a * piece.b / reach_;
+    slope[0] = piece.cosine * piece.sine * (piece.a * piece.a - piece.b * piece.b) / (reach * reach);
+    half[0] = piece.a * piece.b / reach;
     return;
   }
   // |along * dx + across * dy| <= side; sides that run along x are left to the reach.
   const auto sides = [this](int pair, double along, double across, double side) {
     const bool runs_along = std::abs(along) < 1e-12;
-    slope_[pair] = runs_along ? 0.0 : -across / along;
-    half_[pair] = runs_along ? std::numeric_limits<double>::infinity() : side / std::abs(along);
+    slope[pair] = runs_along ? 0.0 : -across / along;
+    half[pair] = runs_along ? std::numeric_limits<double>::infinity() : side / std::abs(along);
   };
   sides(0, piece.cosine, piece.sine, piece.a);
   sides(1, -piece.sine, piece.cosine, piece.b);

@@ -95,37 +95,31 @@ inline bool meet(const Form& one, const Form& other) {
 }
 
 /// The cuts of a form along x: what they have in common is computed once.
-class Cuts {
- public:
+struct Cuts {
   explicit Cuts(const Form& piece);
 
   /// Of cuts at whole numbers from `begin` on, before `end`: the whole numbers within, at least 0 and below `columns`,
   /// from one on and before another; none where that is not above it.
   void rows(int begin, int end, int columns, int* begins, int* ends) const;
 
-  /// No cut lies farther from the centre along y.
-  double y() const { return y_; }
-  double reach() const { return reach_; }
-
   /// The same in other units: from these places on, in these steps.
   Cuts scaled(double from_x, double step_x, double from_y, double step_y) const {
     Cuts out = *this;
-    out.x_ = (x_ - from_x) / step_x;
-    out.y_ = (y_ - from_y) / step_y;
-    out.reach_ /= step_y;
+    out.x = (x - from_x) / step_x;
+    out.y = (y - from_y) / step_y;
+    out.reach /= step_y;
     for (int i = 0; i < 2; ++i) {
-      out.slope_[i] *= step_y / step_x;
-      out.half_[i] /= step_x;
+      out.slope[i] *= step_y / step_x;
+      out.half[i] /= step_x;
     }
     return out;
   }
 
- private:
-  Form::Family family_;
-  double x_, y_;
-  double reach_;
-  double slope_[2] = {0.0, 0.0},
-         half_[2] = {0.0, 0.0};  ///< of the middle, and half widths: of a box for each pair of sides
+  Form::Family family;
+  double x, y;
+  double reach;  ///< no cut lies farther from the centre along y
+  double slope[2] = {0.0, 0.0},
+         half[2] = {0.0, 0.0};  ///< of the middle, and half widths: of a box for each pair of sides
 };
 
 }  // namespace palpate::footprints

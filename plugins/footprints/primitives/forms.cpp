@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "forms.hpp"
 
-#include "clones.hpp"
 
-namespace palpate::footprints {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "primitives/forms.cpp"
+#include "math/highway.hpp"
+
+// Compiled for each set of instructions, as a compiler makes vectors of it. Products are not fused with sums: what is
+// computed is the same to the last bit.
+HWY_BEFORE_NAMESPACE();
+namespace palpate::footprints::HWY_NAMESPACE {
 namespace {
 
 /// How far a form reaches, as Form::reach.
-PALPATE_INLINE float reach_of(float along, float across, float ellipse) {
+HWY_INLINE float reach_of(float along, float across, float ellipse) {
   const float box = std::abs(along) + std::abs(across);
   const float round = std::sqrt(along * along + across * across);
   return ellipse > 0.0F ? round : box;
 }
 
-PALPATE_CLONES void mark(const Form& other, const float* __restrict xs, const float* __restrict ys,
+void mark(const Form& other, const float* __restrict xs, const float* __restrict ys,
                          const float* __restrict as, const float* __restrict bs, const float* __restrict cosines,
                          const float* __restrict sines, const float* __restrict ellipses, std::size_t count,
                          std::uint8_t keeps, std::uint8_t* __restrict met) {
@@ -48,7 +54,7 @@ PALPATE_CLONES void mark(const Form& other, const float* __restrict xs, const fl
   }
 }
 
-PALPATE_CLONES void add_up(const std::uint8_t* __restrict more, std::size_t count, std::uint8_t* __restrict sums) {
+void add_up(const std::uint8_t* __restrict more, std::size_t count, std::uint8_t* __restrict sums) {
   for (std::size_t from = 0; from < count; from += Forms::kRound) {
     for (std::size_t k = 0; k < Forms::kRound; ++k)
       sums[from + k] = static_cast<std::uint8_t>(sums[from + k] + more[from + k]);
@@ -56,6 +62,14 @@ PALPATE_CLONES void add_up(const std::uint8_t* __restrict more, std::size_t coun
 }
 
 }  // namespace
+}  // namespace palpate::footprints::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate::footprints {
+
+HWY_EXPORT(mark);
+HWY_EXPORT(add_up);
 
 void Forms::clear() {
   count_ = 0;
@@ -78,13 +92,15 @@ void Forms::add(const Form& form) {
 
 void Forms::mark_met(const Form& other, bool too, std::vector<std::uint8_t>& met) const {
   met.resize(x_.size(), 0);
-  mark(other, x_.data(), y_.data(), a_.data(), b_.data(), cosine_.data(), sine_.data(), ellipse_.data(), x_.size(),
+  HWY_DYNAMIC_DISPATCH(mark)
+  (other, x_.data(), y_.data(), a_.data(), b_.data(), cosine_.data(), sine_.data(), ellipse_.data(), x_.size(),
        too ? 1 : 0, met.data());
 }
 
 void Forms::count_met(const std::vector<std::uint8_t>& met, std::vector<std::uint8_t>& times) {
   times.resize(met.size(), 0);
-  add_up(met.data(), met.size(), times.data());
+  HWY_DYNAMIC_DISPATCH(add_up)(met.data(), met.size(), times.data());
 }
 
 }  // namespace palpate::footprints
+#endif

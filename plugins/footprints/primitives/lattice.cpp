@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "lattice.hpp"
 
-#include "clones.hpp"
 
-namespace palpate::footprints {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "primitives/lattice.cpp"
+#include "math/highway.hpp"
+
+// Compiled for each set of instructions, as a compiler makes vectors of it. Products are not fused with sums: what is
+// computed is the same to the last bit.
+HWY_BEFORE_NAMESPACE();
+namespace palpate::footprints::HWY_NAMESPACE {
 namespace {
 
 /// All bits from a column on, of a word that begins at column `first`. (Two shifts, as one by 64 is none.)
-PALPATE_INLINE std::uint64_t from(int column, int first, std::uint64_t all) {
+HWY_INLINE std::uint64_t from(int column, int first, std::uint64_t all) {
   const auto before = static_cast<std::uint64_t>(std::min(std::max(column - first, 0), 64));
   return all << (before >> 1U) << (before - (before >> 1U));
 }
 
 // Shifts of what is known beforehand would not become vectors: all bits are handed over.
-PALPATE_CLONES void set_bits(const Cells& rows, const Ends& ends, int first, std::uint64_t all,
-                             std::uint64_t* __restrict bits) {
+void set_word(const Cells& rows, const Ends& ends, int first, std::uint64_t all, std::uint64_t* __restrict bits) {
   const int* const begins = ends.begins;
   const int* const behind = ends.ends;
   const int end = rows.end;
@@ -22,13 +27,13 @@ PALPATE_CLONES void set_bits(const Cells& rows, const Ends& ends, int first, std
     bits[row] |= from(begins[row], first, all) & ~from(behind[row], first, all);
 }
 
-PALPATE_CLONES void fill_rows(int rows, std::size_t columns, std::size_t words, std::uint64_t* bits) {
+void fill_rows(int rows, std::size_t columns, std::size_t words, std::uint64_t* bits) {
   for (int row = 0; row < rows; ++row, bits += words * (columns + 1)) {
     for (std::size_t i = words; i < words * columns; ++i) bits[i] ^= bits[i - words];
   }
 }
 
-PALPATE_CLONES void count_bits(std::size_t places, std::size_t words, const std::uint64_t* bits,
+void count_bits(std::size_t places, std::size_t words, const std::uint64_t* bits,
                                double* __restrict out) {
   for (std::size_t place = 0; place < places; ++place) {
     int count = 0;
@@ -37,48 +42,29 @@ PALPATE_CLONES void count_bits(std::size_t places, std::size_t words, const std:
   }
 }
 
-}  // namespace
-
-void LatticeBits::fill() {
-  fill_rows(lattice_.rows(), static_cast<std::size_t>(lattice_.columns()), words_, bits_.data());
-}
-
-void LatticeBits::count(VectorOut out) const {
-  const auto columns = static_cast<std::size_t>(lattice_.columns());
-  for (int row = 0; row < lattice_.rows(); ++row) {
-    const std::size_t first = static_cast<std::size_t>(row) * (columns + 1) * words_;
-    count_bits(columns, words_, bits_.data() + first,
-               out.data() + static_cast<std::ptrdiff_t>(row) * lattice_.columns());
-  }
-}
-
-void set_bits(const Cells& rows, const Ends& ends, int word, std::uint64_t* bits) {
-  set_bits(rows, ends, word * 64, ~std::uint64_t{0}, bits);
-}
-
 // Written out for each family, so that the loops are without branches.
-PALPATE_CLONES void Cuts::rows(int begin, int end, int columns, int* __restrict begins, int* __restrict ends) const {
-  const Cuts by = *this;
-  const double squared = by.reach_ * by.reach_;
+void cut_rows(const Cuts& cuts, int begin, int end, int columns, int* __restrict begins, int* __restrict ends) {
+  const Cuts by = cuts;
+  const double squared = by.reach * by.reach;
   constexpr int kAtOnce = 64;
   double low[kAtOnce];
   double high[kAtOnce];
   for (int from = begin; from < end; from += kAtOnce) {
     const int count = std::min(kAtOnce, end - from);
-    if (by.family_ == Form::Family::box) {
+    if (by.family == Form::Family::box) {
       for (int i = 0; i < count; ++i) {
-        const double dy = from + i - by.y_;
-        const double first = by.slope_[0] * dy;
-        const double second = by.slope_[1] * dy;
-        low[i] = by.x_ + std::max(first - by.half_[0], second - by.half_[1]);
-        high[i] = std::abs(dy) > by.reach_ ? -1.0 : by.x_ + std::min(first + by.half_[0], second + by.half_[1]);
+        const double dy = from + i - by.y;
+        const double first = by.slope[0] * dy;
+        const double second = by.slope[1] * dy;
+        low[i] = by.x + std::max(first - by.half[0], second - by.half[1]);
+        high[i] = std::abs(dy) > by.reach ? -1.0 : by.x + std::min(first + by.half[0], second + by.half[1]);
       }
     } else {
       for (int i = 0; i < count; ++i) {
-        const double dy = from + i - by.y_;
+        const double dy = from + i - by.y;
         const double rest = 1.0 - dy * dy / squared;
-        const double middle = by.x_ + by.slope_[0] * dy;
-        const double half = by.half_[0] * std::sqrt(std::max(rest, 0.0));
+        const double middle = by.x + by.slope[0] * dy;
+        const double half = by.half[0] * std::sqrt(std::max(rest, 0.0));
         low[i] = middle - half;
         high[i] = rest < 0.0 ? -1.0 : middle + half;
       }
@@ -95,4 +81,40 @@ PALPATE_CLONES void Cuts::rows(int begin, int end, int columns, int* __restrict 
   }
 }
 
+}  // namespace
+}  // namespace palpate::footprints::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate::footprints {
+
+HWY_EXPORT(set_word);
+HWY_EXPORT(fill_rows);
+HWY_EXPORT(count_bits);
+HWY_EXPORT(cut_rows);
+
+void LatticeBits::fill() {
+  HWY_DYNAMIC_DISPATCH(fill_rows)
+  (lattice_.rows(), static_cast<std::size_t>(lattice_.columns()), words_, bits_.data());
+}
+
+void LatticeBits::count(VectorOut out) const {
+  const auto columns = static_cast<std::size_t>(lattice_.columns());
+  for (int row = 0; row < lattice_.rows(); ++row) {
+    const std::size_t first = static_cast<std::size_t>(row) * (columns + 1) * words_;
+    HWY_DYNAMIC_DISPATCH(count_bits)
+    (columns, words_, bits_.data() + first,
+               out.data() + static_cast<std::ptrdiff_t>(row) * lattice_.columns());
+  }
+}
+
+void set_bits(const Cells& rows, const Ends& ends, int word, std::uint64_t* bits) {
+  HWY_DYNAMIC_DISPATCH(set_word)(rows, ends, word * 64, ~std::uint64_t{0}, bits);
+}
+
+void Cuts::rows(int begin, int end, int columns, int* begins, int* ends) const {
+  HWY_DYNAMIC_DISPATCH(cut_rows)(*this, begin, end, columns, begins, ends);
+}
+
 }  // namespace palpate::footprints
+#endif

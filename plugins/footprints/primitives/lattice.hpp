@@ -174,7 +174,7 @@ class Lattice {
   /// The rows that a form may reach into, and, in the place for it, what it holds of them.
   Cells cut(const Form& form, std::size_t at) {
     const Cuts cuts = Cuts(form).scaled(x_.first, x_.step, y_.first, y_.step);
-    const Cells rows = y_.within(cuts.y() - cuts.reach(), cuts.y() + cuts.reach());
+    const Cells rows = y_.within(cuts.y - cuts.reach, cuts.y + cuts.reach);
     const Ends ends = ends_of(at);
     cuts.rows(rows.begin, rows.end, x_.count, ends.begins, ends.ends);
     return rows;

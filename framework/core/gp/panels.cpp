@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "gp/simd/panels.hpp"
+#include "gp/panels.hpp"
 
 #include <new>
 
-namespace palpate::simd {
+namespace palpate::loops {
 
 double* Lines::allocate(std::size_t size) {
   const std::size_t bytes = size * sizeof(double);
@@ -14,4 +14,4 @@ double* Lines::allocate(std::size_t size) {
   return static_cast<double*>(out);
 }
 
-}  // namespace palpate::simd
+}  // namespace palpate::loops

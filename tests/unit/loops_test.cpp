@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The hot loops, on every instruction set that this processor has, against the same sums written down plainly.
-#include "gp/simd/panels.hpp"
+#include "gp/panels.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 
@@ -13,23 +14,11 @@
 
 #include <sys/resource.h>
 
-namespace palpate::simd {
-
-void PrintTo(const Table* table, std::ostream* out) { *out << table->name; }
-
+namespace palpate::loops {
 namespace {
 
-std::vector<const Table*> tables() {
-  std::vector<const Table*> out;
-  for (const Table* one : {&kSse2, &kAvx2, &kAvx512}) {
-    if (runs(*one)) out.push_back(one);
-  }
-  return out;
-}
-
-class Loops : public testing::TestWithParam<const Table*> {
+class Loops : public testing::TestWithParam<std::string> {
  protected:
-  const Table& table() const { return *GetParam(); }
   double draw() { return random_.uniform() - 0.5; }
   Lines drawn(std::size_t size) {
     Lines out(size);
@@ -37,10 +26,11 @@ class Loops : public testing::TestWithParam<const Table*> {
     return out;
   }
 
-  Random random_{3, "simd_test"};
+  test::OnInstructions on_{GetParam()};
+  Random random_{3, "loops_test"};
 };
 
-/// A product of a shape, and what it is, cell by cell in the order of table.hpp.
+/// A product of a shape, and what it is, cell by cell in the order of loops.hpp.
 struct Trial {
   Trial(int rows, int columns, int depth, Random& random)
       : a(static_cast<std::size_t>(rows * depth * kStripRows)), b(columns, kPanelLines * kLine, kLine) {
@@ -78,13 +68,13 @@ struct Trial {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
-void expect_product(const Table& table, Random& random) {
+void expect_product(Random& random) {
   for (const int columns : {1, 8, 17, 47, 64, 100}) {
     for (const int depth : {0, 1, 5, 40}) {
       for (const int strips : {1, 3}) {
         const Trial trial(strips, columns, depth, random);
         Lines c(trial.expected.size());
-        table.multiply(trial.product, c.data());
+        multiply(trial.product, c.data());
         for (std::size_t i = 0; i < trial.expected.size(); ++i) {
           ASSERT_NEAR(c.data()[i], trial.expected[i], (depth + 1) * 0.25 * depth * kUlp)
               << columns << " columns, depth " << depth << ", cell " << i;
@@ -94,7 +84,7 @@ void expect_product(const Table& table, Random& random) {
   }
 }
 
-TEST_P(Loops, MultiplyAsWrittenDown) { expect_product(table(), random_); }
+TEST_P(Loops, MultiplyAsWrittenDown) { expect_product(random_); }
 
 TEST_P(Loops, UpdateTheMapsByEveryCellOfAProduct) {
   const Trial trial(2, 77, 9, random_);
@@ -116,7 +106,7 @@ TEST_P(Loops, UpdateTheMapsByEveryCellOfAProduct) {
   update.mean[0] = means[0].data();
   update.mean[1] = means[1].data();
   update.variance = variance.data();
-  table().absorb_product(trial.product, update);
+  absorb_product(trial.product, update);
 
   const double bound = 40 * kUlp;
   for (std::size_t i = 0; i < cells; ++i) {
@@ -146,7 +136,7 @@ TEST_P(Loops, UpdateADensePieceByAllItsRows) {
     update.coefficient[0] = 0.5;
     update.mean[0] = mean.data();
     update.variance = variance.data();
-    table().absorb_dense({rows.data(), covariance.data(), factor.data(), depth, 1.75}, update);
+    absorb_dense({rows.data(), covariance.data(), factor.data(), depth, 1.75}, update);
     const auto near = [&](const double* values, const Eigen::VectorXd& expected) {
       return (Eigen::Map<const Eigen::VectorXd>(values, kPiece) - expected).cwiseAbs().maxCoeff() < 1e-14;
     };
@@ -177,7 +167,7 @@ TEST_P(Loops, ReadCellsToTheSameBytesAsWrittenDown) {
           expected[static_cast<std::size_t>(place)] = product + reading.offset;
         }
       }
-      table().read({cells.data(), kWidth, to.data() + first, kColumns, kRows, count, mirrored}, reading);
+      read({cells.data(), kWidth, to.data() + first, kColumns, kRows, count, mirrored}, reading);
       ASSERT_EQ(to, expected) << count << (mirrored ? " mirrored" : "");
     }
   }
@@ -201,11 +191,11 @@ TEST_P(Loops, SolveATriangleOfAnySize) {
     };
     std::fill_n(x.data(), x.size(), 0.0);
     std::copy_n(right.data(), n, x.data());
-    table().solve_lower(packed.data(), n, x.data());
+    solve_lower(packed.data(), n, x.data());
     EXPECT_LT(residual(lower), 1e-12) << n;
     std::fill_n(x.data(), x.size(), 0.0);
     std::copy_n(right.data(), n, x.data());
-    table().solve_lower_transposed(packed.data(), n, x.data());
+    solve_lower_transposed(packed.data(), n, x.data());
     EXPECT_LT(residual(lower.transpose()), 1e-12) << n;
   }
 }
@@ -214,29 +204,62 @@ TEST_P(Loops, FindTheHighestOfEachBlockWhereverItStands) {
   constexpr int kBlocks = 2 * kScores;
   Lines numbers = drawn(static_cast<std::size_t>(kBlocks) * kScores + 1);
   double* const from = numbers.data() + 1;  // not aligned
-  std::array<double, kBlocks + 1> highest;
-  highest.fill(7.0);
+  std::array<double, kBlocks + 1> found;
+  found.fill(7.0);
   for (int i = 0; i < kScores; ++i) from[i * kScores + i] = 1.0 + i;
   for (int i = 0; i < kScores; ++i) from[kScores * kScores + i] = -1.0 - i;
-  table().highest(from, kBlocks, highest.data());
-  for (int i = 0; i < kScores; ++i) EXPECT_EQ(highest[static_cast<std::size_t>(i)], 1.0 + i);
-  EXPECT_EQ(highest[kScores], -1.0);
+  highest(from, kBlocks, found.data());
+  for (int i = 0; i < kScores; ++i) EXPECT_EQ(found[static_cast<std::size_t>(i)], 1.0 + i);
+  EXPECT_EQ(found[kScores], -1.0);
   for (int i = kScores; i < kBlocks; ++i) {
     const double* const block = from + static_cast<std::ptrdiff_t>(i) * kScores;
-    EXPECT_EQ(highest[static_cast<std::size_t>(i)], *std::max_element(block, block + kScores));
+    EXPECT_EQ(found[static_cast<std::size_t>(i)], *std::max_element(block, block + kScores));
   }
-  EXPECT_EQ(highest[kBlocks], 7.0) << "nothing is written beside";
+  EXPECT_EQ(found[kBlocks], 7.0) << "nothing is written beside";
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Loops, testing::ValuesIn(tables()), [](const auto& one) {
-  return one.param == &kSse2 ? "Sse2" : (one.param == &kAvx2 ? "Avx2" : "Avx512");
-});
-
-TEST(InstructionSet, TheBaselineAlwaysRunsAndTheFastestIsOneThatDoes) {
-  EXPECT_TRUE(runs(baseline()));
-  EXPECT_TRUE(runs(fastest()));
-  EXPECT_STREQ(baseline().name, "SSE2");
+/// The bytes of a row that is taken into a dense piece, and of a triangle that is solved.
+std::vector<double> bytes_on(const std::string& instructions) {
+  const test::OnInstructions on(instructions);
+  Random random(5, "loops_test");
+  const auto drawn = [&](std::size_t size) {
+    Lines out(size);
+    for (std::size_t i = 0; i < size; ++i) out.data()[i] = random.uniform() - 0.5;
+    return out;
+  };
+  constexpr int kDepth = 29;
+  Lines rows = drawn((kDepth + 1) * std::size_t{kPiece});
+  Lines maps = drawn(2 * std::size_t{kPiece});
+  const Lines factor = drawn(kDepth);
+  const Lines covariance = drawn(kPiece);
+  Update update{};
+  update.means = 1;
+  update.coefficient[0] = 0.3;
+  update.mean[0] = maps.data();
+  update.variance = maps.data() + kPiece;
+  absorb_dense({rows.data(), covariance.data(), factor.data(), kDepth, 1.75}, update);
+  Lines lower = drawn(packed_row(64));
+  for (int i = 0; i < 61; ++i) lower.data()[packed_row(i) + static_cast<std::size_t>(i)] = 2.5;
+  Lines x = drawn(64);
+  solve_lower(lower.data(), 61, x.data());
+  std::vector<double> out(maps.data(), maps.data() + maps.size());
+  out.insert(out.end(), x.data(), x.data() + 61);
+  solve_lower_transposed(lower.data(), 61, x.data());
+  out.insert(out.end(), x.data(), x.data() + 61);
+  return out;
 }
+
+TEST(InstructionSets, ThatFuseProductsWithSumsGiveTheSameBytes) {
+  const std::vector<std::string> sets = math::instruction_sets();
+  const std::vector<double> first = bytes_on(sets[0]);
+  for (const std::string& one : sets) {
+    if (one == "baseline") continue;
+    EXPECT_EQ(bytes_on(one), first) << one;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Loops, testing::ValuesIn(math::instruction_sets()),
+                         [](const auto& one) { return test::test_name(one.param); });
 
 TEST(Lines, BeginWithACacheLine) {
   for (const std::size_t size : {1U, 1000U, 131071U, 131072U, 300000U}) {
@@ -281,4 +304,4 @@ TEST(Panels, KeepTheirRowsWhenTheyGrow) {
 }
 
 }  // namespace
-}  // namespace palpate::simd
+}  // namespace palpate::loops

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The hot loops of the posterior, once for each instruction set, and the choice among them.
+// The loops that a posterior spends its time in, in the widest vectors that the processor has (math/highway.hpp).
 //
-// This header is read by translation units that are compiled for different instruction sets. Nothing in it has code:
-// an inline function would be emitted by each of them, and the linker would keep any one for all.
+// All pointers are aligned to a cache line, and what they point to must not overlap. A number is the same on every set of
+// instructions that fuses multiplications with additions, since no sum depends on the width of a vector.
 #pragma once
 
 #include <cstddef>
 
-namespace palpate::simd {
+namespace palpate::loops {
 
 // Memory is laid out in cache lines, whatever the width of the registers, so that no layout depends on the instruction
-// set. All pointers below are aligned to a line; what they point to must not overlap.
+// set.
 constexpr int kLineBytes = 64;
 constexpr int kLine = kLineBytes / static_cast<int>(sizeof(double));  ///< numbers in a line
 constexpr int kPanelLines = 3;                                        ///< width of a panel of a matrix, in lines
@@ -84,39 +84,22 @@ struct Cells {
   bool mirrored;
 };
 
-struct Table {
-  const char* name;
-  /// c = A B.
-  void (*multiply)(const Product&, double* c);
-  /// v = A B, which is never stored, taken into the maps.
-  void (*absorb_product)(const Product&, const Update&);
-  void (*absorb_mirrored)(const MirroredProduct&, const Update&);
-  void (*absorb_dense)(const DenseRow&, const Update&);
-  void (*read)(const Cells&, const Reading&);
-  /// out_i = the highest of the kScores numbers from `from` + i kScores on, of which none is NaN; not aligned either.
-  void (*highest)(const double* from, int count, double* out);
-  // L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
-  // matrix goes. Both work in place on n numbers, with room up to a line.
-  void (*solve_lower)(const double* lower, int n, double* x);             ///< x = L^-1 x
-  void (*solve_lower_transposed)(const double* lower, int n, double* x);  ///< x = L^-T x
-};
+/// c = A B.
+void multiply(const Product& product, double* c);
+/// v = A B, which is never stored, taken into the maps.
+void absorb_product(const Product& product, const Update& update);
+void absorb_mirrored(const MirroredProduct& product, const Update& update);
+void absorb_dense(const DenseRow& row, const Update& update);
+void read(const Cells& cells, const Reading& reading);
+/// out_i = the highest of the kScores numbers from `from` + i kScores on, of which none is NaN; not aligned either.
+void highest(const double* from, int count, double* out);
 
-enum class Lanes;  // palpate/simd.hpp
-const Table& table_of(Lanes lanes);
-/// The fastest of SSE2, AVX2 + FMA and AVX-512 that this processor has.
-const Table& fastest();
-/// SSE2, which every x86-64 has.
-const Table& baseline();
-
-// Each defined in a translation unit of its own. The tests run those that the processor has.
-extern const Table kSse2;
-extern const Table kAvx2;
-extern const Table kAvx512;
-
-/// Whether this processor can run `table`.
-bool runs(const Table& table);
+// L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
+// matrix goes. Both work in place on n numbers, with room up to a line.
+void solve_lower(const double* lower, int n, double* x);             ///< x = L^-1 x
+void solve_lower_transposed(const double* lower, int n, double* x);  ///< x = L^-T x
 
 /// Where row i of a packed lower triangle begins, in numbers. Rows are padded to lines.
 std::size_t packed_row(int i);
 
-}  // namespace palpate::simd
+}  // namespace palpate::loops

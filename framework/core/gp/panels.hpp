@@ -2,14 +2,14 @@
 // Memory for the loops of table.hpp: numbers aligned to cache lines, and matrices in panels that grow by rows.
 #pragma once
 
-#include "gp/simd/table.hpp"
+#include "gp/loops.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
 
-namespace palpate::simd {
+namespace palpate::loops {
 
 constexpr int round_up(int value, int unit) { return (value + unit - 1) / unit * unit; }
 
@@ -95,4 +95,4 @@ class Panels {
   Lines numbers_;
 };
 
-}  // namespace palpate::simd
+}  // namespace palpate::loops

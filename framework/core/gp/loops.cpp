@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: MIT
+#include "gp/loops.hpp"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "gp/loops.cpp"
+#include "math/highway.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace palpate::loops::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+constexpr hn::ScalableTag<double> kReals;
+using Vector = hn::Vec<hn::ScalableTag<double>>;
+constexpr int kLanes = hn::MaxLanes(kReals);
+constexpr int kLineVectors = kLine / kLanes;
+
+// A tile of registers: its sums, a row of B and a number of A fill the register file of 16, or of 32.
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON
+constexpr int kTileRows = 8;
+constexpr int kTileVectors = 3;
+#elif HWY_TARGET == HWY_AVX2
+constexpr int kTileRows = 4;
+constexpr int kTileVectors = 3;
+#else
+constexpr int kTileRows = 4;
+constexpr int kTileVectors = 2;
+#endif
+
+HWY_INLINE Vector at(const double* from) { return hn::Load(kReals, from); }
+HWY_INLINE void put(const Vector& values, double* to) { hn::Store(values, kReals, to); }
+HWY_INLINE Vector all(double value) { return hn::Set(kReals, value); }
+
+/// kRows x kVectors registers of a product, summed over the depth. Rows of B are b_stride apart.
+template <int kRows, int kVectors>
+HWY_INLINE void accumulate(const double* a, const double* b, int b_stride, int depth, Vector (&sum)[kRows][kVectors]) {
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kVectors; ++j) sum[i][j] = hn::Zero(kReals);
+  }
+  for (int k = 0; k < depth; ++k, a += kStripRows, b += b_stride) {
+    Vector row[kVectors];
+#pragma GCC unroll 8
+    for (int j = 0; j < kVectors; ++j) row[j] = at(b + j * kLanes);
+#pragma GCC unroll 8
+    for (int i = 0; i < kRows; ++i) {
+      const Vector own = all(a[i]);
+#pragma GCC unroll 8
+      for (int j = 0; j < kVectors; ++j) sum[i][j] = hn::MulAdd(own, row[j], sum[i][j]);
+    }
+  }
+}
+
+/// What becomes of a tile of registers, the corner of which is `cell` and whose rows are `width` apart: it is stored.
+struct Store {
+  double* c;
+  template <int kRows, int kVectors>
+  HWY_INLINE void take(const Vector (&v)[kRows][kVectors], std::ptrdiff_t cell, int width) const {
+#pragma GCC unroll 8
+    for (int i = 0; i < kRows; ++i) {
+#pragma GCC unroll 8
+      for (int j = 0; j < kVectors; ++j) put(v[i][j], c + cell + i * width + j * kLanes);
+    }
+  }
+};
+
+/// Or it is v, and taken into the maps.
+struct Absorb {
+  const Update update;  ///< a copy, which no store into a map can change
+
+  template <int kRows, int kVectors>
+  HWY_INLINE void take(const Vector (&v)[kRows][kVectors], std::ptrdiff_t cell, int width) const {
+    for (int k = 0; k < update.means; ++k) {
+      const Vector coefficient = all(update.coefficient[k]);
+#pragma GCC unroll 24
+      for (int i = 0; i < kRows; ++i) {
+#pragma GCC unroll 24
+        for (int j = 0; j < kVectors; ++j) {
+          double* const mean = update.mean[k] + cell + i * width + j * kLanes;
+          put(hn::MulAdd(coefficient, v[i][j], at(mean)), mean);
+        }
+      }
+    }
+#pragma GCC unroll 24
+    for (int i = 0; i < kRows; ++i) {
+#pragma GCC unroll 24
+      for (int j = 0; j < kVectors; ++j) {
+        double* const variance = update.variance + cell + i * width + j * kLanes;
+        put(hn::NegMulAdd(v[i][j], v[i][j], at(variance)), variance);
+      }
+    }
+  }
+};
+
+/// The most registers in a row of a tile of registers that divide `all`.
+constexpr int vectors_of(int all) { return all % kTileVectors == 0 ? kTileVectors : (all % 2 == 0 ? 2 : 1); }
+
+/// The tiles of a product, each in as many tiles of registers as it takes.
+struct Plain {
+  const Product& product;
+  std::ptrdiff_t strip_size() const { return static_cast<std::ptrdiff_t>(product.lines) * kLine * kStripRows; }
+
+  template <int kLines, class Sink>
+  HWY_INLINE void tile(const double* a, const double* b, std::ptrdiff_t cell, const Sink& sink) const {
+    constexpr int kWidth = kLines * kLine;
+    constexpr int kVectors = vectors_of(kLines * kLineVectors);
+    for (int row = 0; row < kStripRows; row += kTileRows) {
+      for (int first = 0; first < kWidth; first += kVectors * kLanes) {
+        Vector sum[kTileRows][kVectors];
+        accumulate<kTileRows, kVectors>(a + row, b + first, kWidth, product.depth, sum);
+        sink.take(sum, cell + row * kWidth + first, kWidth);
+      }
+    }
+  }
+};
+
+/// The same with mirror images: half of the rows at a time, as there are two sums.
+struct Mirrored {
+  const MirroredProduct& whole;
+  const Product& product = whole.half;
+  std::ptrdiff_t strip_size() const { return Plain{product}.strip_size() + whole.mirror; }
+
+  template <int kLines, class Sink>
+  HWY_INLINE void tile(const double* a, const double* b, std::ptrdiff_t cell, const Sink& sink) const {
+    constexpr int kWidth = kLines * kLine;
+    constexpr int kVectors = vectors_of(kLines * kLineVectors);
+    constexpr int kRows = kTileRows / 2;
+    const std::ptrdiff_t even = whole.even;
+    for (int row = 0; row < kStripRows; row += kRows) {
+      for (int first = 0; first < kWidth; first += kVectors * kLanes) {
+        Vector left[kRows][kVectors];
+        Vector right[kRows][kVectors];
+        accumulate<kRows, kVectors>(a + row, b + first, kWidth, whole.even, left);
+        accumulate<kRows, kVectors>(a + row + even * kStripRows, b + first + even * kWidth, kWidth,
+                                    product.depth - whole.even, right);
+#pragma GCC unroll 8
+        for (int i = 0; i < kRows; ++i) {
+#pragma GCC unroll 8
+          for (int j = 0; j < kVectors; ++j) {
+            const Vector difference = hn::Sub(left[i][j], right[i][j]);
+            left[i][j] = hn::Add(left[i][j], right[i][j]);
+            right[i][j] = difference;
+          }
+        }
+        const std::ptrdiff_t corner = cell + row * kWidth + first;
+        sink.take(left, corner, kWidth);
+        sink.take(right, corner + whole.mirror, kWidth);
+      }
+    }
+  }
+};
+
+/// Panel by panel, as what a strip has of A is less than what all panels have of B.
+template <class Tiles, class Sink>
+HWY_INLINE void strips(const Tiles& tiles, const Sink& sink) {
+  const Product& product = tiles.product;
+  const int panels = (product.lines + kPanelLines - 1) / kPanelLines;
+  const double* b = product.b;
+  for (int panel = 0; panel < panels; ++panel) {
+    const double* a = product.a;
+    std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(panel) * kStripRows * kPanelLines * kLine;
+    for (int strip = 0; strip < product.strips; ++strip) {
+      switch (product.lines - panel * kPanelLines) {
+        case 1:
+          tiles.template tile<1>(a, b, cell, sink);
+          break;
+        case 2:
+          tiles.template tile<2>(a, b, cell, sink);
+          break;
+        default:
+          tiles.template tile<3>(a, b, cell, sink);
+      }
+      a += product.a_stride;
+      cell += tiles.strip_size();
+    }
+    b += product.panel_stride;
+  }
+}
+
+void multiply(const Product& product, double* c) { strips(Plain{product}, Store{c}); }
+
+void absorb_product(const Product& product, const Update& update) { strips(Plain{product}, Absorb{update}); }
+
+void absorb_mirrored(const MirroredProduct& product, const Update& update) {
+  strips(Mirrored{product}, Absorb{update});
+}
+
+void absorb_dense(const DenseRow& row, const Update& update) {
+  constexpr int kTogether = kTileRows * kTileVectors;
+  double* const v = row.rows + static_cast<std::ptrdiff_t>(row.depth) * kPiece;
+  const Absorb sink{update};
+  const Vector share = all(1.0 / row.pivot);
+  for (int cell = 0; cell < kPiece; cell += kTogether * kLanes) {
+    Vector left[1][kTogether];
+#pragma GCC unroll 24
+    for (int j = 0; j < kTogether; ++j) left[0][j] = at(row.covariance + cell + j * kLanes);
+    const double* earlier = row.rows + cell;
+    for (int k = 0; k < row.depth; ++k, earlier += kPiece) {
+      const Vector factor = all(row.factor[k]);
+#pragma GCC unroll 24
+      for (int j = 0; j < kTogether; ++j) left[0][j] = hn::NegMulAdd(factor, at(earlier + j * kLanes), left[0][j]);
+    }
+#pragma GCC unroll 24
+    for (int j = 0; j < kTogether; ++j) {
+      left[0][j] = hn::Mul(left[0][j], share);
+      put(left[0][j], v + cell + j * kLanes);
+    }
+    sink.take(left, cell, 0);
+  }
+}
+
+/// Cells are padded to lines, places are not. What does not fill a vector at the end of a row is read with the cells
+/// before it once more.
+void read(const Cells& cells, const Reading& reading) {
+  const Vector least = all(reading.least);
+  const Vector most = all(reading.most);
+  const auto read_at = [&](const double* from) {
+    Vector cell = hn::LoadU(kReals, from);
+    cell = hn::IfThenElse(hn::Lt(cell, least), least, cell);
+    cell = hn::IfThenElse(hn::Lt(most, cell), most, cell);
+    return hn::Add(hn::Mul(cell, all(reading.scale)), all(reading.offset));
+  };
+  const double* from = cells.from;
+  double* to = cells.to;
+  for (int row = 0; row < cells.rows; ++row, from += cells.width, to += cells.columns) {
+    if (cells.count < kLanes) {
+      HWY_ALIGN double few[kLanes];
+      put(read_at(from), few);
+      for (int i = 0; i < cells.count; ++i) to[cells.mirrored ? -i : i] = few[i];
+      continue;
+    }
+    const auto move = [&](int i) {
+      if (cells.mirrored) {
+        hn::StoreU(hn::Reverse(kReals, read_at(from + i)), kReals, to - i - (kLanes - 1));
+      } else {
+        hn::StoreU(read_at(from + i), kReals, to + i);
+      }
+    };
+    const int last = cells.count - kLanes;
+    for (int i = 0; i < last; i += kLanes) move(i);
+    move(last);
+  }
+}
+
+// A triangle by blocks of one line of rows, all of the same padded length: where a block begins its rows have `before`
+// numbers of earlier blocks, and then the triangle of its own.
+constexpr int kBlock = kLine;
+
+void solve_lower(const double* lower, int n, double* x) {
+  constexpr int kRows = 2;  // at once
+  for (int before = 0; before < n; before += kBlock) {
+    const int rows = std::min(n - before, kBlock);
+    const int length = before + kBlock;
+    double known[kBlock] = {};  // what earlier blocks have of each row
+    for (int first = 0; first < rows; first += kRows) {
+      Vector sum[kRows][kLineVectors];
+      for (auto& of_row : sum) std::fill_n(of_row, kLineVectors, hn::Zero(kReals));
+      const double* const row = lower + static_cast<std::ptrdiff_t>(first) * length;
+      for (int k = 0; k < before; k += kLine) {
+#pragma GCC unroll 8
+        for (int j = 0; j < kLineVectors; ++j) {
+          const Vector values = at(x + k + j * kLanes);
+#pragma GCC unroll 8
+          for (int r = 0; r < kRows; ++r)
+            sum[r][j] = hn::MulAdd(at(row + r * length + k + j * kLanes), values, sum[r][j]);
+        }
+      }
+      for (int r = 0; r < kRows; ++r) {
+        HWY_ALIGN double parts[kLine];
+        for (int j = 0; j < kLineVectors; ++j) put(sum[r][j], parts + j * kLanes);
+        for (const double part : parts) known[first + r] += part;
+      }
+    }
+    for (int r = 0; r < rows; ++r) {
+      const double* own = lower + r * length + before;
+      double value = x[before + r] - known[r];
+      for (int k = 0; k < r; ++k) value -= own[k] * x[before + k];
+      x[before + r] = value / own[r];
+    }
+    lower += static_cast<std::ptrdiff_t>(kBlock) * length;
+  }
+}
+
+void solve_lower_transposed(const double* lower, int n, double* x) {
+  const int blocks = (n + kBlock - 1) / kBlock;
+  lower += static_cast<std::ptrdiff_t>(kBlock) * kBlock * blocks * (blocks + 1) / 2;
+  for (int before = (blocks - 1) * kBlock; before >= 0; before -= kBlock) {
+    const int rows = std::min(n - before, kBlock);
+    const int length = before + kBlock;
+    lower -= static_cast<std::ptrdiff_t>(kBlock) * length;
+    double own[kBlock] = {};
+    for (int r = rows - 1; r >= 0; --r) {
+      const double* const diagonal = lower + r * length + before;
+      own[r] = x[before + r] / diagonal[r];
+      for (int k = 0; k < r; ++k) x[before + k] -= diagonal[k] * own[r];
+      x[before + r] = own[r];
+    }
+    for (int k = 0; k < before; k += kLanes) {
+      Vector value = at(x + k);
+#pragma GCC unroll 8
+      for (int r = 0; r < kBlock; ++r) {
+        if (r < rows) value = hn::NegMulAdd(all(own[r]), at(lower + r * length + k), value);
+      }
+      put(value, x + k);
+    }
+  }
+}
+
+void highest(const double* from, int count, double* out) {
+  constexpr int kTogether = std::min(kScores / kLanes, 8);  // each comparison waits for the one before
+  for (int i = 0; i < count; ++i, from += kScores) {
+    Vector most[kTogether];
+#pragma GCC unroll 8
+    for (int j = 0; j < kTogether; ++j) most[j] = hn::LoadU(kReals, from + j * kLanes);
+    for (int first = kTogether * kLanes; first < kScores; first += kTogether * kLanes) {
+#pragma GCC unroll 8
+      for (int j = 0; j < kTogether; ++j) most[j] = hn::Max(most[j], hn::LoadU(kReals, from + first + j * kLanes));
+    }
+#pragma GCC unroll 8
+    for (int j = 1; j < kTogether; ++j) most[0] = hn::Max(most[0], most[j]);
+    out[i] = hn::GetLane(hn::MaxOfLanes(kReals, most[0]));
+  }
+}
+
+}  // namespace
+}  // namespace palpate::loops::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate::loops {
+
+HWY_EXPORT(multiply);
+HWY_EXPORT(absorb_product);
+HWY_EXPORT(absorb_mirrored);
+HWY_EXPORT(absorb_dense);
+HWY_EXPORT(read);
+HWY_EXPORT(highest);
+HWY_EXPORT(solve_lower);
+HWY_EXPORT(solve_lower_transposed);
+
+void multiply(const Product& product, double* c) { HWY_DYNAMIC_DISPATCH(multiply)(product, c); }
+
+void absorb_product(const Product& product, const Update& update) {
+  HWY_DYNAMIC_DISPATCH(absorb_product)(product, update);
+}
+
+void absorb_mirrored(const MirroredProduct& product, const Update& update) {
+  HWY_DYNAMIC_DISPATCH(absorb_mirrored)(product, update);
+}
+
+void absorb_dense(const DenseRow& row, const Update& update) { HWY_DYNAMIC_DISPATCH(absorb_dense)(row, update); }
+
+void read(const Cells& cells, const Reading& reading) { HWY_DYNAMIC_DISPATCH(read)(cells, reading); }
+
+void highest(const double* from, int count, double* out) { HWY_DYNAMIC_DISPATCH(highest)(from, count, out); }
+
+void solve_lower(const double* lower, int n, double* x) { HWY_DYNAMIC_DISPATCH(solve_lower)(lower, n, x); }
+
+void solve_lower_transposed(const double* lower, int n, double* x) {
+  HWY_DYNAMIC_DISPATCH(solve_lower_transposed)(lower, n, x);
+}
+
+std::size_t packed_row(int i) {
+  const auto line = static_cast<std::size_t>(kLine);
+  const std::size_t block = static_cast<std::size_t>(i) / line;
+  const std::size_t row = static_cast<std::size_t>(i) % line;
+  // The blocks before have 1, 2, ... lines a row.
+  return line * (line * block * (block + 1) / 2 + row * (block + 1));
+}
+
+}  // namespace palpate::loops
+#endif
