@@ -39,9 +39,9 @@ int replay(Program& program, const std::string& directory) {
   if (report.differences.size() > kShown) print_out("... and {} more\n", report.differences.size() - kShown);
   const std::optional<Tree> manifest = read_manifest(directory);
   const Tree* const recorded = manifest ? manifest->find("instruction_path") : nullptr;
-  if (recorded != nullptr && recorded->text != math::instructions_in_use())
+  if (recorded != nullptr && recorded->text != math::name_of(instructions_in_use()))
     print_out("the run began with the instruction set {}, this command uses {}: the last digits may differ\n",
-              recorded->text, math::instructions_in_use());
+              recorded->text, math::name_of(instructions_in_use()));
   return kFailed;
 }
 

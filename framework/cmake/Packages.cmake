@@ -74,7 +74,7 @@ debian_package(dev palpate-dev libdevel "experiments in active touch - to build 
 Headers and the CMake package for plugins of palpate: kernels, acquisitions,
 fittings, footprints, backends and shapes.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "palpate ${same_version}, libeigen3-dev (>= 3.4), libhwy-dev, cmake (>= 3.25), ninja-build | make")
+    "palpate ${same_version}, libeigen3-dev (>= 3.4), cmake (>= 3.25), ninja-build | make")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS g++)
 
 if(TARGET palpate_python)

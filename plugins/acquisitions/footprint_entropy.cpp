@@ -2,6 +2,7 @@
 // Outline information: the entropy of the footprint, bits. A tap there tells most about whether the place is on an
 // object; where the footprint is a belief over whole outlines, that is the edge of what is not settled.
 #include <palpate/acquisition.hpp>
+#include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 
 #include <cmath>
@@ -15,7 +16,7 @@ class FootprintEntropy final : public Acquisition {
 
   Quantities reads() const override { return Quantity::probability; }
   void score(const Belief& belief, VectorOut out) const override {
-    const auto bits = [](double p) { return p > 0.0 ? -p * std::log2(p) : 0.0; };
+    const auto bits = [](double p) { return p > 0.0 ? -p * math::log2(p) : 0.0; };
     out = belief.probability().unaryExpr([&](double p) { return bits(p) + bits(1.0 - p); });
   }
   double prior_scale() const override { return 1.0; }

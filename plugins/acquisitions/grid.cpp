@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Control: tap the cell centres of a coarse lattice one after the other, row by row, then those of a finer one.
 #include <palpate/acquisition.hpp>
+#include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 
 #include <cmath>
@@ -32,7 +33,7 @@ class GridSearch final : public Acquisition {
     const Area area = belief.area();
     const auto [x, y] = due(belief.taps() - belief.initial_taps(), area);
     const Points& places = belief.candidates();
-    const double diagonal = std::hypot(area.width, area.depth);
+    const double diagonal = math::hypot(area.width, area.depth);
     out = 1.0 - ((places.col(0).array() - x).square() + (places.col(1).array() - y).square()).sqrt() / diagonal;
   }
   double prior_scale() const override { return 1.0; }

@@ -36,8 +36,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::acquisitions {
 
-HWY_EXPORT(count_common);
-
 namespace {
 
 /// A place a column, an outline a bit: whether the outline holds the place.
@@ -47,7 +45,7 @@ using Counts = Eigen::Array<int, Eigen::Dynamic, 1>;
 /// How many outlines hold each of some places, and `here` as well.
 Counts common(const std::uint64_t* here, const Words& holds) {
   Counts out(holds.cols());
-  HWY_DYNAMIC_DISPATCH(count_common)(here, holds.rows(), holds.data(), holds.cols(), out.data());
+  PALPATE_DISPATCH(count_common)(here, holds.rows(), holds.data(), holds.cols(), out.data());
   return out;
 }
 

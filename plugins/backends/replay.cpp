@@ -5,6 +5,7 @@
 #include "reading/reading.hpp"
 
 #include <palpate/backend.hpp>
+#include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 
 #include <algorithm>
@@ -190,7 +191,7 @@ class Replay final : public Backend {
     const Recorded* best = nullptr;
     double least = options_.tolerance;
     for (const Recorded& one : taps_) {
-      const double distance = std::hypot(one.place.x - request.target.x, one.place.y - request.target.y);
+      const double distance = math::hypot(one.place.x - request.target.x, one.place.y - request.target.y);
       if (distance > options_.tolerance) continue;
       if (one.number == request.number) return one.contact;
       if (best == nullptr || distance < least) {

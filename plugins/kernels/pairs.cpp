@@ -22,7 +22,8 @@ HWY_INLINE std::ptrdiff_t take(Reals reals, const Pairs& pairs, std::ptrdiff_t o
   for (; from + lanes <= to; from += lanes, out += lanes) {
     auto sum = hn::Zero(reals);
     for (int axis = 0; axis < pairs.axes; ++axis) {
-      const auto apart = hn::Sub(hn::LoadU(reals, pairs.places[axis] + from), hn::Set(reals, pairs.others[axis][other]));
+      const auto apart =
+          hn::Sub(hn::LoadU(reals, pairs.places[axis] + from), hn::Set(reals, pairs.others[axis][other]));
       const auto scaled = hn::Mul(apart, hn::Set(reals, pairs.per_length[axis]));
       const auto square = hn::Mul(scaled, scaled);
       sum = hn::Add(sum, hn::IfThenElse(hn::Lt(farthest, square), farthest, square));
@@ -51,11 +52,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::kernels {
 
-HWY_EXPORT(squared_distances);
-
 void squared_distances(const Pairs& pairs, std::ptrdiff_t first, std::ptrdiff_t count, double most, double scale,
                        double* out) {
-  HWY_DYNAMIC_DISPATCH(squared_distances)(pairs, first, count, most, scale, out);
+  PALPATE_DISPATCH(squared_distances)(pairs, first, count, most, scale, out);
 }
 
 }  // namespace palpate::kernels

@@ -5,8 +5,8 @@
 #include "kernels/pairs.hpp"
 
 #include <palpate/kernel.hpp>
-#include <palpate/plugin.hpp>
 #include <palpate/math.hpp>
+#include <palpate/plugin.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -108,10 +108,8 @@ class Stationary final : public Kernel {
       const double scale = std::min(1.0 / along_x_, kLargestWithSquare);
       for (Eigen::Index first = 0; first < distances.size(); first += kBlock) {
         const Eigen::Index count = std::min(kBlock, distances.size() - first);
-        const Block r2 = (distances.segment(first, count).array() * scale)
-                             .min(kLargestWithSquare)
-                             .square()
-                             .min(Shape::kFarthest);
+        const Block r2 =
+            (distances.segment(first, count).array() * scale).min(kLargestWithSquare).square().min(Shape::kFarthest);
         Block z = Shape::kScale * r2;
         Numbers bend(along.data() + first, count);
         bend = z;
@@ -149,11 +147,12 @@ class Stationary final : public Kernel {
  private:
   Eigen::Index axes() const { return per_axis_ ? 2 : 1; }
 
-  /// Calls use(first, count) for all pairs of n places with m others, some at a time. Pairs are counted column by column,
-  /// and those of a call follow each other in all of `outs`, from place(out, first) on.
+  /// Calls use(first, count) for all pairs of n places with m others, some at a time. Pairs are counted column by
+  /// column, and those of a call follow each other in all of `outs`, from place(out, first) on.
   template <class Use>
   static void for_blocks(Eigen::Index n, Eigen::Index m, std::initializer_list<const MatrixOut*> outs, const Use& use) {
-    const bool gapless = std::all_of(outs.begin(), outs.end(), [n](const MatrixOut* out) { return out->outerStride() == n; });
+    const bool gapless =
+        std::all_of(outs.begin(), outs.end(), [n](const MatrixOut* out) { return out->outerStride() == n; });
     const Eigen::Index length = gapless ? n * m : n;
     for (Eigen::Index run = 0; run < n * m; run += length) {
       for (Eigen::Index from = 0; from < length; from += kBlock) use(run + from, std::min(kBlock, length - from));

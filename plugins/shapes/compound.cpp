@@ -2,6 +2,8 @@
 // One solid made of several shapes that move as one: a mug is a ring, a bottom and a handle.
 #include "solid.hpp"
 
+#include <palpate/math.hpp>
+
 #include <memory>
 #include <vector>
 
@@ -45,8 +47,8 @@ class Compound final : public Shape {
     for (const PartOptions& one : options.parts) {
       parts_.push_back({context.create<const Shape>(one.shape),
                         {one.at[0], one.at[1], 0.0},
-                        std::cos(one.rotation),
-                        std::sin(one.rotation)});
+                        math::cos(one.rotation),
+                        math::sin(one.rotation)});
     }
     const Vector3d centre{(support({1, 0, 0}) - support({-1, 0, 0})) / 2,
                           (support({0, 1, 0}) - support({0, -1, 0})) / 2, 0.0};

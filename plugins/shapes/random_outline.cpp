@@ -3,6 +3,8 @@
 // and bent, under a smooth random top.
 #include "prism.hpp"
 
+#include <palpate/math.hpp>
+
 #include <array>
 #include <vector>
 
@@ -63,9 +65,9 @@ Outline star(double roughness, Random& random) {
   for (std::size_t i = 0; i < kCorners; ++i) {
     const double angle = kTurn * static_cast<double>(i) / kCorners;
     double logarithm = 0.0;
-    for (int n = 2; n <= kLobes; ++n) logarithm += amplitude[n] * std::cos(n * angle + phase[n]);
-    const double radius = std::exp(logarithm);
-    out.push_back({stretch * radius * std::cos(angle), radius * std::sin(angle)});
+    for (int n = 2; n <= kLobes; ++n) logarithm += amplitude[n] * math::cos(n * angle + phase[n]);
+    const double radius = math::exp(logarithm);
+    out.push_back({stretch * radius * math::cos(angle), radius * math::sin(angle)});
   }
   return out;
 }
@@ -79,7 +81,7 @@ void bend(Outline& outline, Random& random) {
   if (std::abs(curvature) < 1e-3) return;
   for (Point& p : outline) {
     const double radius = 1.0 / curvature - p[1];
-    p = {radius * std::sin(curvature * p[0]), 1.0 / curvature - radius * std::cos(curvature * p[0])};
+    p = {radius * math::sin(curvature * p[0]), 1.0 / curvature - radius * math::cos(curvature * p[0])};
   }
 }
 
@@ -97,7 +99,7 @@ Outline random_outline(const RandomOutlineOptions& o, Random& random) {
     Outline out = star(roughness, random);
     bend(out, random);
     scale(out, o.length);
-    if (std::any_of(out.begin(), out.end(), [](const Point& p) { return std::hypot(p[0], p[1]) < kCore; })) continue;
+    if (std::any_of(out.begin(), out.end(), [](const Point& p) { return math::hypot(p[0], p[1]) < kCore; })) continue;
     const auto [left, right, low, high] = bounds(out);
     for (Point& p : out) p = {p[0] - (left + right) / 2, p[1] - (low + high) / 2};
     return out;
@@ -111,7 +113,7 @@ class RandomOutline final : public Shape {
       : RandomOutline(o, context.random("shape/random_outline", static_cast<std::uint64_t>(o.number))) {}
 
   double top(double s, double t) const override {
-    return contains(outline_, {s, t}) ? middle_ + slope_[0] * s + slope_[1] * t + swell_ * std::cos(phase(s, t))
+    return contains(outline_, {s, t}) ? middle_ + slope_[0] * s + slope_[1] * t + swell_ * math::cos(phase(s, t))
                                       : -kInfinity;
   }
 
@@ -160,7 +162,7 @@ class RandomOutline final : public Shape {
     const double up = std::max(0.0, direction.z());
     const Point rise{direction.x() + up * slope_[0], direction.y() + up * slope_[1]};
     const auto reach = [&](double s, double t, double phase) {
-      return rise[0] * s + rise[1] * t + up * (middle_ + swell_ * std::cos(phase));
+      return rise[0] * s + rise[1] * t + up * (middle_ + swell_ * math::cos(phase));
     };
     double most = -kInfinity;
     for (std::size_t i = 0; i < outline_.size(); ++i) {
@@ -172,7 +174,7 @@ class RandomOutline final : public Shape {
       const double turn = phase(b[0], b[1]) - before;
       const double sine = (rise[0] * (b[0] - a[0]) + rise[1] * (b[1] - a[1])) / (up * swell_ * turn);
       if (!(std::abs(sine) <= 1.0)) continue;
-      const double crest = std::asin(sine);
+      const double crest = math::asin(sine);
       const double there = crest + kTurn * std::round((before + turn / 2 - crest) / kTurn);
       const double share = (there - before) / turn;
       if (share < 0.0 || share > 1.0) continue;
@@ -185,15 +187,15 @@ class RandomOutline final : public Shape {
   RandomOutline(const Options& o, Random random)
       : outline_(random_outline(o, random)), middle_(o.height), relief_(o.height - kLowestTop) {
     double farthest = 0.0;
-    for (const Point& p : outline_) farthest = std::max(farthest, std::hypot(p[0], p[1]));
+    for (const Point& p : outline_) farthest = std::max(farthest, math::hypot(p[0], p[1]));
     // Together no more than the relief: the top stays above kLowestTop.
     const double steepness = between(0.1, 0.6, random) * relief_ / farthest;
     swell_ = between(0.1, 0.4, random) * relief_;
     const double uphill = kTurn * random.uniform();
     const double onwards = kTurn * random.uniform();
     const double rate = kTurn / (between(0.5, 1.0, random) * o.length);
-    slope_ = {steepness * std::cos(uphill), steepness * std::sin(uphill)};
-    wave_ = {rate * std::cos(onwards), rate * std::sin(onwards)};
+    slope_ = {steepness * math::cos(uphill), steepness * math::sin(uphill)};
+    wave_ = {rate * math::cos(onwards), rate * math::sin(onwards)};
     phase_ = kTurn * random.uniform();
   }
 
@@ -223,9 +225,9 @@ class RandomOutline final : public Shape {
     for (double x = from; x <= to;) {
       const Vector3d p = line.origin + x * u;
       const double at = phase(p.x(), p.y());
-      const double clear = sign * (p.z() - (middle_ + slope_[0] * p.x() + slope_[1] * p.y() + swell_ * std::cos(at)));
+      const double clear = sign * (p.z() - (middle_ + slope_[0] * p.x() + slope_[1] * p.y() + swell_ * math::cos(at)));
       if (clear <= 0.0) return x;
-      const double slope = sign * (u.z() - slope_[0] * u.x() - slope_[1] * u.y() + swell_ * rate * std::sin(at));
+      const double slope = sign * (u.z() - slope_[0] * u.x() - slope_[1] * u.y() + swell_ * rate * math::sin(at));
       if (slope >= 0.0 && curvature == 0.0) return kInfinity;
       const double root = std::sqrt(slope * slope + 2 * curvature * clear);
       const double next = x + (slope < 0.0 ? 2 * clear / (root - slope) : (root + slope) / curvature);

@@ -3,6 +3,7 @@
 // and a quadric meets a line in the intersection of their intervals, so that the first hit is exact up to rounding.
 #pragma once
 
+#include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 #include <palpate/shape.hpp>
 
@@ -125,7 +126,7 @@ struct Quadric {
 
 /// The largest product of a direction with a point of the disk of this radius around the axis, in the plane 0.
 inline double disk_support(const Vector3d& direction, double radius) {
-  return radius * std::hypot(direction.x(), direction.y());
+  return radius * math::hypot(direction.x(), direction.y());
 }
 
 /// A quadric between the plane 0 and a height.

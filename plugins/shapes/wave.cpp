@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A block whose top is a wave along its length, the paper's object I: closed form when upright, critical points and
 // bisection when tilted.
+#include <palpate/math.hpp>
+
 #include "solid.hpp"
 
 namespace palpate::shapes {
@@ -79,7 +81,7 @@ class Wave final : public Shape {
   }
 
  private:
-  double height_at(double s) const { return o_.height + o_.amplitude * std::cos(2.0 * kPi * s / o_.period); }
+  double height_at(double s) const { return o_.height + o_.amplitude * math::cos(2.0 * kPi * s / o_.period); }
 
   /// How high the point at x of the line is above the top.
   double clearance(const Line& line, double x) const {
@@ -93,7 +95,7 @@ class Wave final : public Shape {
     const double steepest = o_.amplitude * k_ * along;
     if (!(std::abs(line.direction.z()) < std::abs(steepest))) return kInfinity;
     // With the phase counted along the line.
-    const double turn = std::copysign(1.0, along) * std::asin(-line.direction.z() / steepest);
+    const double turn = std::copysign(1.0, along) * math::asin(-line.direction.z() / steepest);
     const double rate = k_ * std::abs(along);
     const double phase = std::copysign(1.0, along) * k_ * line.origin.x() + rate * from;
     const double least = phase + 1e-9;
@@ -108,7 +110,7 @@ class Wave final : public Shape {
       const double clear = clearance(line, x);
       (clear > 0.0 ? above : below) = x;
       const double s = line.origin.x() + x * line.direction.x();
-      const double slope = line.direction.z() + o_.amplitude * k_ * line.direction.x() * std::sin(k_ * s);
+      const double slope = line.direction.z() + o_.amplitude * k_ * line.direction.x() * math::sin(k_ * s);
       const double next = x - clear / slope;
       if (std::abs(next - x) < 1e-15) return next;
       x = next > std::min(above, below) && next < std::max(above, below) ? next : 0.5 * (above + below);
@@ -123,7 +125,7 @@ class Wave final : public Shape {
     double best = bottom + up * height_at(half_length_);
     // On the top it is largest at an end or where along = up A k sin(k s), on the crest that lies furthest that way.
     if (std::abs(along) > up * o_.amplitude * k_) return best;
-    const double phase = o_.amplitude > 0.0 ? std::asin(along / (up * o_.amplitude * k_)) : 0.0;
+    const double phase = o_.amplitude > 0.0 ? math::asin(along / (up * o_.amplitude * k_)) : 0.0;
     double s = std::abs(phase) / k_;
     if (s > half_length_) return best;
     if (along != 0.0) s += o_.period * std::floor((half_length_ - s) / o_.period);

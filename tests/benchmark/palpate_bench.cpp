@@ -80,7 +80,7 @@ void run(const Arguments& arguments) {
     agree += apart < 1e-9 ? 1 : 0;
   }
   fmt::print("{{\n  \"engine\": \"{}\",\n  \"reason\": \"{}\",\n  \"instruction_path\": \"{}\",\n", process->engine(),
-             process->engine_reason(), math::instructions_in_use());
+             process->engine_reason(), math::name_of(instructions_in_use()));
   fmt::print("  \"candidates\": {},\n  \"taps\": {},\n  \"error_bound\": {:.3g},\n", candidates.size(), process->size(),
              process->error_bound());
   fmt::print("  \"total_seconds\": {{\"least\": {:.6g}, \"median\": {:.6g}}},\n  \"peak_rss_bytes\": {},\n",

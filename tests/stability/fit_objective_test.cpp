@@ -148,16 +148,16 @@ TEST_P(FitObjective, IsTheDensityByDefinition) {
     }
   }
   const auto truth = static_cast<double>(sum / (kPoints * GetParam().outputs));
-  for (const std::string& set : math::instruction_sets()) {
+  for (const Instructions set : math::instruction_sets()) {
     const test::OnInstructions on(set);
-    EXPECT_NEAR(value(x_, false), truth, 1e-9 * std::max(1.0, std::abs(truth))) << set;
+    EXPECT_NEAR(value(x_, false), truth, 1e-9 * std::max(1.0, std::abs(truth))) << math::name_of(set);
   }
 }
 
 TEST_P(FitObjective, HasTheGradientThatDifferencesHave) {
   double here = 0.0;
   std::vector<std::vector<double>> gradients;
-  for (const std::string& set : math::instruction_sets()) {
+  for (const Instructions set : math::instruction_sets()) {
     const test::OnInstructions on(set);
     Objective objective(model_, GetParam().measure, expectations_, true);
     gradients.emplace_back(x_.size());
@@ -188,7 +188,7 @@ Strips strips_of(const Eigen::MatrixXd& matrix) {
   return out;
 }
 
-class FitMatrices : public testing::TestWithParam<std::string> {
+class FitMatrices : public testing::TestWithParam<Instructions> {
   test::OnInstructions on_{GetParam()};
 };
 

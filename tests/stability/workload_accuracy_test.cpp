@@ -49,7 +49,7 @@ TEST_P(WorkloadAccuracy, IsThatPromisedForEveryEngine) {
   using Kind = PosteriorSettings::Kind;
   // Of dense, the memory of W3 would be 1.7 GB.
   // After a thousand taps rounding is 5e-11 with AVX-512, for which there was a bound first, and 1.04e-10 with AVX2.
-  const bool wide = math::instructions_in_use() == "AVX-512";
+  const bool wide = instructions_in_use() == Instructions::avx512;
   std::vector<Limit> limits{{Kind::grid, workload.grid < 400 || wide ? 1e-10 : 2e-10, 1e-13},
                             {Kind::lowrank, 5e-9, 1e-12}};
   if (workload.grid < 400) limits.push_back({Kind::dense, 1e-10, 1e-13});

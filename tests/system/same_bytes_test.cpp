@@ -33,14 +33,17 @@ TEST_F(ARun, GivesTheSameBytesUnderTheSameIdEachTimeAndOnAnyNumberOfThreads) {
 
 TEST_F(ARun, NamesTheInstructionSetOfItsLoopsInTheManifest) {
   EXPECT_THAT(part_of(ran(), "manifest"),
-              HasSubstr(std::string("\"instruction_path\": \"") + math::instructions_in_use() + "\""));
+              HasSubstr(std::string("\"instruction_path\": \"") + math::name_of(instructions_in_use()) + "\""));
   const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "baseline");
   EXPECT_THAT(part_of(ran("--runs baseline"), "manifest"), HasSubstr("\"instruction_path\": \"baseline\""));
 }
 
 TEST_F(ARun, RejectsAnUnknownInstructionSet) {
   const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", "avx");
-  const std::string message = "PALPATE_INSTRUCTIONS: unknown value 'avx', write baseline, or unset it";
+  std::string known;
+  for (const Instructions one : math::instruction_sets())
+    known += (known.empty() ? "" : " or ") + std::string(math::name_of(one));
+  const std::string message = "PALPATE_INSTRUCTIONS: unknown value 'avx', write " + known + ", or unset it";
   EXPECT_THAT(refused(Words{"run", config("paper/object_i.yaml")}), HasSubstr(message));
   EXPECT_THAT(refused(Words{"sweep", config("paper/object_i.yaml"), "seed=1,2", "--runs", "swept"}),
               HasSubstr(message));

@@ -121,11 +121,11 @@ TEST_P(EveryEngine, IsTheSameWithinRoundingOnEveryInstructionSet) {
   const Data data = draw(30);
   const Candidates candidates = regular(91, 70);
   const Process widest = processed(data, candidates, settings_of(GetParam()));
-  for (const std::string& set : math::instruction_sets()) {
+  for (const Instructions set : math::instruction_sets()) {
     const OnInstructions on(set);
     const Process other = processed(data, candidates, settings_of(GetParam()));
-    EXPECT_LT(apart(widest.mean(0), other.mean(0)), 1e-11) << set;
-    EXPECT_LT(apart(widest.relative_variance(), other.relative_variance()), 1e-12) << set;
+    EXPECT_LT(apart(widest.mean(0), other.mean(0)), 1e-11) << math::name_of(set);
+    EXPECT_LT(apart(widest.relative_variance(), other.relative_variance()), 1e-12) << math::name_of(set);
   }
 }
 

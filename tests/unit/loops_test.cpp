@@ -17,7 +17,7 @@
 namespace palpate::loops {
 namespace {
 
-class Loops : public testing::TestWithParam<std::string> {
+class Loops : public testing::TestWithParam<Instructions> {
  protected:
   double draw() { return random_.uniform() - 0.5; }
   Lines drawn(std::size_t size) {
@@ -219,7 +219,7 @@ TEST_P(Loops, FindTheHighestOfEachBlockWhereverItStands) {
 }
 
 /// The bytes of a row that is taken into a dense piece, and of a triangle that is solved.
-std::vector<double> bytes_on(const std::string& instructions) {
+std::vector<double> bytes_on(Instructions instructions) {
   const test::OnInstructions on(instructions);
   Random random(5, "loops_test");
   const auto drawn = [&](std::size_t size) {
@@ -250,11 +250,11 @@ std::vector<double> bytes_on(const std::string& instructions) {
 }
 
 TEST(InstructionSets, ThatFuseProductsWithSumsGiveTheSameBytes) {
-  const std::vector<std::string> sets = math::instruction_sets();
+  const std::vector<Instructions> sets = math::instruction_sets();
   const std::vector<double> first = bytes_on(sets[0]);
-  for (const std::string& one : sets) {
-    if (one == "baseline") continue;
-    EXPECT_EQ(bytes_on(one), first) << one;
+  for (const Instructions one : sets) {
+    if (one == Instructions::baseline) continue;
+    EXPECT_EQ(bytes_on(one), first) << math::name_of(one);
   }
 }
 

@@ -75,7 +75,7 @@ TEST(Pick, IsTheFirstOfTheHighestAmongManyWhicheverLoopsLook) {
         if (all(i)) order.push_back(i);
       }
       std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scores(a) > scores(b); });
-      for (const std::string& set : math::instruction_sets()) {
+      for (const Instructions set : math::instruction_sets()) {
         const OnInstructions on(set);
         const Pick picked = pick_best(scores, all, 1.0, 1e-12);
         ASSERT_EQ(picked.candidate, order.empty() ? -1 : order[0]);

@@ -2,6 +2,7 @@
 #include "config/expand.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <fmt/format.h>
 #include <boost/algorithm/string/trim.hpp>
@@ -92,7 +93,7 @@ std::vector<Tree> expand_logspace(const std::vector<Bound>& from, const Tree& tr
   for (int i = 0; i < static_cast<int>(count); ++i) {
     const double share = i / (count - 1.0);
     // The ends are as written; between them, rounding does not matter.
-    const double value = i == 0 ? first : share == 1.0 ? last : first * std::pow(last / first, share);
+    const double value = i == 0 ? first : share == 1.0 ? last : first * math::pow(last / first, share);
     out.push_back(number(value, from[0].unit, tree));
   }
   return out;
@@ -117,7 +118,7 @@ std::optional<Call> parse_call(const Tree& value, const std::string& key, const 
 
 double ContinuousRange::at(double share) const {
   if (share == 1.0) return last;
-  return logarithmic ? first * std::pow(last / first, share) : first + share * (last - first);
+  return logarithmic ? first * math::pow(last / first, share) : first + share * (last - first);
 }
 
 std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key) {

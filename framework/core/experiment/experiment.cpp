@@ -122,9 +122,8 @@ Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& fa
                        const std::string& directory)
     : options_(options),
       scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
-      context_{factory, *scene_, static_cast<std::uint64_t>(options.seed), interrupted, directory},
-      backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)) {
-  math::choose_instructions();
-}
+      context_{factory,     *scene_,   static_cast<std::uint64_t>(options.seed),
+               interrupted, directory, math::choose_instructions()},
+      backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)) {}
 
 }  // namespace palpate

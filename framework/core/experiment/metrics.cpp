@@ -2,6 +2,7 @@
 #include "experiment/metrics.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <fmt/format.h>
 
@@ -127,7 +128,7 @@ Calibration calibration(const TapBelief& belief, const Truth& truth, const std::
     const double spread = variance(i) + noise;
     if (!truth.on(i) || tapped[static_cast<std::size_t>(i)]) continue;
     const double error = truth.height(i) - mean(i);
-    log_density += -0.5 * (kLogTwoPi + std::log(spread) + error * error / spread);  // not finite when spread is 0
+    log_density += -0.5 * (kLogTwoPi + math::log(spread) + error * error / spread);  // not finite when spread is 0
     inside += std::abs(error) <= kNormal975 * std::sqrt(spread) ? 1 : 0;
     ++cells;
   }

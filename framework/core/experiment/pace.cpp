@@ -2,6 +2,7 @@
 #include "experiment/pace.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <fmt/format.h>
 
@@ -45,7 +46,7 @@ Pace::Choice Pace::choose(const TapBelief& belief, int candidate, const Target& 
   const Prediction& expected = *request.predicted;
   const double p = *expected.probability;
   const double variance = expected.standard_deviation * expected.standard_deviation;
-  const auto bits = [](double q) { return q > 0.0 ? -q * std::log2(q) : 0.0; };
+  const auto bits = [](double q) { return q > 0.0 ? -q * math::log2(q) : 0.0; };
   const double whether = bits(p) + bits(1.0 - p);
   Choice best;
   double most = -1.0;
@@ -55,7 +56,7 @@ Pace::Choice Pace::choose(const TapBelief& belief, int candidate, const Target& 
                            (1.0 - p) * motions_->seconds(request, desk_) + shown.late / (kIdea + shown.contacts);
     const double contacts = (kIdea * kContacts + shown.contacts) / (kIdea + shown.taps);
     const double own = deviation(request.motion);
-    const double how_high = p * 0.5 * std::log2(1.0 + variance / (own * own));
+    const double how_high = p * 0.5 * math::log2(1.0 + variance / (own * own));
     const double worth = contacts * (whether + how_high) / seconds;
     if (worth <= most) continue;
     most = worth;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/search.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -19,7 +21,7 @@ constexpr double kMissed = 0.02;
 constexpr double kFar = 5.0 * kBlur;
 
 /// How probable it is to look so far inside an edge (metres, below 0 outside) and to find nothing.
-double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * std::erfc(-inside / (kBlur * std::sqrt(2.0))); }
+double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * math::erfc(-inside / (kBlur * std::sqrt(2.0))); }
 
 double between(double least, double most, Random& random) { return least + (most - least) * random.uniform(); }
 
@@ -51,10 +53,10 @@ Search::Search(double smallest, const Candidates& candidates, const Area& area, 
 
 void Search::draw_discs() {
   rises_.assign(static_cast<std::size_t>(candidates_.rows) * static_cast<std::size_t>(candidates_.columns + 1), 0);
-  const double ratio = std::log(std::min(area_.width, area_.depth) / smallest_);
+  const double ratio = math::log(std::min(area_.width, area_.depth) / smallest_);
   discs_.reserve(kDiscs);
   for (int i = 0; i < kDiscs; ++i) {
-    const double radius = 0.5 * smallest_ * std::exp(ratio * random_.uniform());
+    const double radius = 0.5 * smallest_ * math::exp(ratio * random_.uniform());
     const double x = between(radius, area_.width - radius, random_);
     const double y = between(radius, area_.depth - radius, random_);
     discs_.push_back({x, y, radius, kWhole});
@@ -128,7 +130,7 @@ std::vector<int> Search::weights() const {
 
 double Search::room(const Target& place) const {
   double out = std::min({place.x, area_.width - place.x, place.y, area_.depth - place.y});
-  for (const Target& tap : looked_) out = std::min(out, std::hypot(place.x - tap.x, place.y - tap.y));
+  for (const Target& tap : looked_) out = std::min(out, math::hypot(place.x - tap.x, place.y - tap.y));
   return out;
 }
 

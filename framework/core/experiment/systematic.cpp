@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/systematic.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -83,7 +85,7 @@ void Systematic::search_from_below(std::vector<bool>& left) const {
 bool Systematic::at_a_rim(const Target& place) const {
   for (std::size_t i = 0; i < touched_.size(); ++i) {
     const Touched& one = touched_[i];
-    if (above_[i] && one.excess < kRim && std::hypot(one.place.x - place.x, one.place.y - place.y) < kBeside)
+    if (above_[i] && one.excess < kRim && math::hypot(one.place.x - place.x, one.place.y - place.y) < kBeside)
       return true;
   }
   return false;

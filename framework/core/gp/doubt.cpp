@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gp/doubt.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,7 +47,7 @@ void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, 
   for (const double share : kNoises) testimony.noises.push_back(share * settings.noise);
   testimony.broad_signal = kBroadSignal * settings.signal;
   testimony.level = settings.mean_ratio * settings.signal;
-  testimony.lie = std::hypot(settings.signal, testimony.level);
+  testimony.lie = math::hypot(settings.signal, testimony.level);
   judgement_ = palpate::judge(testimony);
   if (settings.noise < kExact * settings.signal) {
     testimony.noises.clear();

@@ -76,11 +76,13 @@ class Engine {
 
 /// `kernel` and `candidates` must outlive the engines, and the hyperparameters of the kernel stay as they are. The
 /// latter two need a separable kernel and a product grid.
-std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates);
-std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates);
+std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
+                                   const Candidates& candidates);
+std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
+                                  const Candidates& candidates);
 /// Directions whose share of a covariance is below `tolerance` are left out.
-std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates,
-                                     double tolerance);
+std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
+                                     const Candidates& candidates, double tolerance);
 
 struct PosteriorSettings {
   enum class Kind { automatic, dense, grid, lowrank };

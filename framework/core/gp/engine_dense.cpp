@@ -39,7 +39,7 @@ class Dense final : public Engine {
       std::fill(covariance + count, covariance + padded, 0.0);
       for (int i = 0; i < padded / loops::kPiece; ++i, covariance += loops::kPiece) {
         loops::absorb_dense({rows_.panel(piece + i), covariance, row.factor.data(), depth, row.pivot},
-                                     maps_.update(piece + i, row.coefficients));
+                            maps_.update(piece + i, row.coefficients));
       }
     });
   }
@@ -53,7 +53,8 @@ class Dense final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates) {
+std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
+                                   const Candidates& candidates) {
   return std::make_unique<Dense>(workers, kernel, candidates);
 }
 

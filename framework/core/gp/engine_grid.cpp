@@ -76,7 +76,8 @@ class Grid final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates) {
+std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
+                                  const Candidates& candidates) {
   return std::make_unique<Grid>(workers, kernel, candidates);
 }
 

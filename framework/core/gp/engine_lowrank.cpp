@@ -140,10 +140,9 @@ class Lowrank final : public Engine {
 
   /// S^T U_y^T: what every row of the grid has of every direction along x.
   void form_rows() {
-    loops::multiply(
-        {shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows, in_x_.padded() / kRows,
-         basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(), basis_y_.padded() / kLine},
-        rows_.data());
+    loops::multiply({shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows, in_x_.padded() / kRows,
+                     basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(), basis_y_.padded() / kLine},
+                    rows_.data());
   }
 
   /// The shares of a strip's rows, direction by direction.
@@ -177,8 +176,8 @@ class Lowrank final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates,
-                                     double tolerance) {
+std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
+                                     const Candidates& candidates, double tolerance) {
   return std::make_unique<Lowrank>(workers, kernel, candidates, Axis(kernel, 0, candidates.xs, tolerance),
                                    Axis(kernel, 1, candidates.ys, tolerance));
 }

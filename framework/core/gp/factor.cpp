@@ -3,6 +3,8 @@
 
 #include "regular/regular_factor.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -32,7 +34,7 @@ bool Factor::append(const VectorView& covariance, double diagonal) {
   const double square = diagonal - l.squaredNorm();
   if (!is_regular(square, n, diagonal)) return false;
   row[n] = std::sqrt(square);
-  log_determinant_ += std::log(square);
+  log_determinant_ += math::log(square);
   ++size_;
   follow(largest_, true);
   follow(smallest_, false);
@@ -61,9 +63,9 @@ void Factor::follow(Extreme& extreme, bool largest) const {
   // Among the vectors (s x, c), s^2 + c^2 = 1, |L (s x, c)|^2 is the form [s c] [[v + a^2, a d], [a d, d^2]] [s c]^T
   // with a = l.x, d the pivot and v the value so far.
   const double a = row(n).dot(extreme.vector.head(n));
-  const double angle = 0.5 * std::atan2(2.0 * a * pivot, extreme.value + a * a - pivot * pivot);
-  double s = std::cos(angle);
-  double c = std::sin(angle);
+  const double angle = 0.5 * math::atan2(2.0 * a * pivot, extreme.value + a * a - pivot * pivot);
+  double s = math::cos(angle);
+  double c = math::sin(angle);
   const double image = s * a + c * pivot;
   const double largest_value = s * s * extreme.value + image * image;
   if (largest) {

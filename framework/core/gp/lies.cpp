@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gp/lies.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -45,7 +47,7 @@ class Court {
     log_evidence_ = -0.5 * testimony.heights.dot(heights_) - factor.half_log_determinant();
     const Eigen::ArrayXd pi = testimony.suspicion.array().max(kLeastSuspicion).min(1.0 - kLeastSuspicion);
     const Eigen::ArrayXd lie = testimony.heights.array() / testimony.lie;
-    log_odds_ = (pi / (1.0 - pi)).log() - 0.5 * lie.square() - std::log(testimony.lie);
+    log_odds_ = (pi / (1.0 - pi)).unaryExpr(&math::log) - 0.5 * lie.square() - math::log(testimony.lie);
   }
 
   int taps() const { return static_cast<int>(heights_.size()); }
@@ -72,7 +74,7 @@ class Court {
     const double prior = level_ * level_;
     out.precision = 1.0 / prior + ones;
     out.mean = heights / out.precision;
-    out.log_weight = 0.5 * (out.mean * heights - std::log(out.precision * prior));
+    out.log_weight = 0.5 * (out.mean * heights - math::log(out.precision * prior));
     return out;
   }
 
@@ -159,7 +161,7 @@ class Sets {
     part(to, 3) = diagonal(before) - u.cwiseAbs2();
     part(to, 1)(one.tap) = part(to, 2)(one.tap) = 0.0;
     log_weight = log_weights_[static_cast<std::size_t>(before)] + court_.log_odds()(one.tap) + 0.5 * height * height -
-                 std::log(root);
+                 math::log(root);
   }
 
   /// Log weights of the set with each other tap; those of its own mean nothing.
@@ -169,7 +171,7 @@ class Sets {
     const auto own = diagonal(rest).array();
     out = court_.log_odds() + log_weights_[static_cast<std::size_t>(rest)];
     if (!(court_.level() > 0.0)) {
-      out += 0.5 * (h.square() / own - own.log());
+      out += 0.5 * (h.square() / own - own.unaryExpr(&math::log));
       return;
     }
     const double prior = court_.level() * court_.level();
@@ -177,7 +179,7 @@ class Sets {
     const double without_any = 1.0 / prior + o.sum();
     // With q = precision of the constant times `own`, one logarithm does.
     out += 0.5 * ((h.square() + (all_heights * own - o * h).square() / (without_any * own - o.square())) / own -
-                  ((without_any * own - o.square()) * prior).log());
+                  ((without_any * own - o.square()) * prior).unaryExpr(&math::log));
   }
 
   void add(const One& one, const std::uint64_t* bits) {
@@ -199,8 +201,8 @@ class Sets {
   double weight_of(int set) const { return all_[static_cast<std::size_t>(set)].log_weight; }
 
   void find(const Effort& effort) {
-    const double hopeless = std::log(effort.hopeless);
-    const double negligible = std::log(effort.negligible);
+    const double hopeless = math::log(effort.hopeless);
+    const double negligible = math::log(effort.negligible);
     std::vector<std::uint64_t> bits(words_, 0);
     most_ = court_.log_evidence() + court_.constant(court_.ones().sum(), court_.heights().sum()).log_weight;
     add({-1, -1, -1, most_}, bits.data());
@@ -209,7 +211,7 @@ class Sets {
       const int first = waiting_.front();
       if (weight_of(first) - most_ < hopeless) return;
       if (look == effort.looks) {
-        next_ = std::exp(weight_of(first) - most_);
+        next_ = math::exp(weight_of(first) - most_);
         return;
       }
       waiting_.erase(waiting_.begin());
@@ -305,7 +307,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
       double all = 0.0;
       std::fill(with.begin(), with.end(), 0.0);  // weight of the sets that have a column
       for (const Sets::One& set : sets[i].all()) {
-        const double weight = std::exp(set.log_weight - most);
+        const double weight = math::exp(set.log_weight - most);
         if (weight < effort.negligible) continue;
         const int rest = sets[i].rest_of(set);
         const auto ones = sets[i].ones(rest);
@@ -332,7 +334,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
           if (its->rest >= 0) with[static_cast<std::size_t>(its->rest)] += weight;
         }
       }
-      out.next = std::max(out.next, sets[i].next() * std::exp(sets[i].most() - most));
+      out.next = std::max(out.next, sets[i].next() * math::exp(sets[i].most() - most));
       for (int rest = 0; rest < sets[i].looks(); ++rest) {
         const double weight = with[static_cast<std::size_t>(rest)];
         if (!(weight > 0.0)) continue;
@@ -366,7 +368,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
   out.b /= sum;
   out.s2 /= sum;
   out.b.noalias() -= out.a * out.a.transpose();
-  out.log_evidence = most + std::log(sum / static_cast<double>(courts.size()));
+  out.log_evidence = most + math::log(sum / static_cast<double>(courts.size()));
   return out;
 }
 

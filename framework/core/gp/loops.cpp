@@ -330,35 +330,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::loops {
 
-HWY_EXPORT(multiply);
-HWY_EXPORT(absorb_product);
-HWY_EXPORT(absorb_mirrored);
-HWY_EXPORT(absorb_dense);
-HWY_EXPORT(read);
-HWY_EXPORT(highest);
-HWY_EXPORT(solve_lower);
-HWY_EXPORT(solve_lower_transposed);
+void multiply(const Product& product, double* c) { PALPATE_DISPATCH(multiply)(product, c); }
 
-void multiply(const Product& product, double* c) { HWY_DYNAMIC_DISPATCH(multiply)(product, c); }
-
-void absorb_product(const Product& product, const Update& update) {
-  HWY_DYNAMIC_DISPATCH(absorb_product)(product, update);
-}
+void absorb_product(const Product& product, const Update& update) { PALPATE_DISPATCH(absorb_product)(product, update); }
 
 void absorb_mirrored(const MirroredProduct& product, const Update& update) {
-  HWY_DYNAMIC_DISPATCH(absorb_mirrored)(product, update);
+  PALPATE_DISPATCH(absorb_mirrored)(product, update);
 }
 
-void absorb_dense(const DenseRow& row, const Update& update) { HWY_DYNAMIC_DISPATCH(absorb_dense)(row, update); }
+void absorb_dense(const DenseRow& row, const Update& update) { PALPATE_DISPATCH(absorb_dense)(row, update); }
 
-void read(const Cells& cells, const Reading& reading) { HWY_DYNAMIC_DISPATCH(read)(cells, reading); }
+void read(const Cells& cells, const Reading& reading) { PALPATE_DISPATCH(read)(cells, reading); }
 
-void highest(const double* from, int count, double* out) { HWY_DYNAMIC_DISPATCH(highest)(from, count, out); }
+void highest(const double* from, int count, double* out) { PALPATE_DISPATCH(highest)(from, count, out); }
 
-void solve_lower(const double* lower, int n, double* x) { HWY_DYNAMIC_DISPATCH(solve_lower)(lower, n, x); }
+void solve_lower(const double* lower, int n, double* x) { PALPATE_DISPATCH(solve_lower)(lower, n, x); }
 
 void solve_lower_transposed(const double* lower, int n, double* x) {
-  HWY_DYNAMIC_DISPATCH(solve_lower_transposed)(lower, n, x);
+  PALPATE_DISPATCH(solve_lower_transposed)(lower, n, x);
 }
 
 std::size_t packed_row(int i) {

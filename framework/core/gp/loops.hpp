@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The loops that a posterior spends its time in, in the widest vectors that the processor has (math/highway.hpp).
 //
-// All pointers are aligned to a cache line, and what they point to must not overlap. A number is the same on every set of
-// instructions that fuses multiplications with additions, since no sum depends on the width of a vector.
+// All pointers are aligned to a cache line, and what they point to must not overlap. A number is the same on every set
+// of instructions that fuses multiplications with additions, since no sum depends on the width of a vector.
 #pragma once
 
 #include <cstddef>

@@ -79,9 +79,9 @@ loops::Update Maps::update(int strip, const double* coefficients) {
 void Maps::read(const loops::Lines& map, const loops::Reading& reading, double* out) const {
   workers_->for_each(tiling_.strips(), [&](int strip, int) {
     tiling_.for_blocks(strip, [&](const Tiling::Block& block) {
-      loops::read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows,
-                            block.count, block.mirrored},
-                           reading);
+      loops::read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows, block.count,
+                   block.mirrored},
+                  reading);
     });
   });
 }

@@ -2,6 +2,7 @@
 #include "gp/process.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <algorithm>
 #include <array>
@@ -325,8 +326,8 @@ double Process::log_marginal_likelihood(int output) const {
   const int n = factor_.size();
   if (n == 0) return 0.0;
   double log_determinant = factor_.log_determinant();
-  if (with_constant()) log_determinant += std::log(constant_precision() * prior_of_constant());
-  return -0.5 * (misfit(output) + log_determinant + n * kLogTwoPi) - n * std::log(settings(output).signal);
+  if (with_constant()) log_determinant += math::log(constant_precision() * prior_of_constant());
+  return -0.5 * (misfit(output) + log_determinant + n * kLogTwoPi) - n * math::log(settings(output).signal);
 }
 
 }  // namespace palpate

@@ -22,7 +22,8 @@ namespace {
 Tree manifest_of(const Workshop& workshop, const ResolvedConfig& config) {
   Tree out = Tree::map(
       {{"name", Tree::quote(config.options.name)}, {"id", Tree::quote(config.id)}, {"at", Tree::quote(now_text())}});
-  const Tree build = describe_build(workshop.installation, workshop.host, config.notes.plugins, math::choose_instructions());
+  const Tree build = describe_build(workshop.installation, workshop.host, config.notes.plugins,
+                                    math::name_of(math::choose_instructions()));
   out.entries.insert(out.entries.end(), build.entries.begin(), build.entries.end());
   const auto places = [](const std::vector<ResolveNotes::Origin>& of) {
     Tree all = Tree::map();

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "scene/body.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 namespace palpate {
 
 Body::Body(std::shared_ptr<const Shape> shape, double tilt)
-    : shape_(std::move(shape)), upright_(tilt == 0.0), tilt_cosine_(std::cos(tilt)), tilt_sine_(std::sin(tilt)) {
+    : shape_(std::move(shape)), upright_(tilt == 0.0), tilt_cosine_(math::cos(tilt)), tilt_sine_(math::sin(tilt)) {
   lift_ = shape_->support(untilted(0.0, 0.0, -1.0));
   place(0.0, 0.0, 0.0);
 }
@@ -17,8 +19,8 @@ void Body::place(double x, double y, double rotation) {
   constexpr double kMargin = 1e-9;
   x_ = x;
   y_ = y;
-  cosine_ = std::cos(rotation);
-  sine_ = std::sin(rotation);
+  cosine_ = math::cos(rotation);
+  sine_ = math::sin(rotation);
   left_ = x - reach(-1.0, 0.0) - kMargin;
   right_ = x + reach(1.0, 0.0) + kMargin;
   low_ = y - reach(0.0, -1.0) - kMargin;

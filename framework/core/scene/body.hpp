@@ -2,6 +2,7 @@
 // A shape somewhere on the desk: tilted, set down, turned and moved.
 #pragma once
 
+#include <palpate/math.hpp>
 #include <palpate/shape.hpp>
 
 #include <cmath>
@@ -36,7 +37,7 @@ class Body {
 
   double x() const { return x_; }
   double y() const { return y_; }
-  double rotation() const { return std::atan2(sine_, cosine_); }
+  double rotation() const { return math::atan2(sine_, cosine_); }
 
  private:
   /// A line in the frame of the shape.

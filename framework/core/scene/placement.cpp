@@ -2,6 +2,7 @@
 #include "scene/placement.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 #include <palpate/random.hpp>
 
 #include <fmt/format.h>
@@ -44,7 +45,7 @@ void draw_inside(Body& body, const Area& area, Random& random, std::size_t numbe
 bool separate(const Body& a, const Body& b) {
   const double dx = b.x() - a.x();
   const double dy = b.y() - a.y();
-  const double distance = std::hypot(dx, dy);
+  const double distance = math::hypot(dx, dy);
   if (distance == 0.0) return false;
   const double along = dx / distance;
   const double across = dy / distance;
@@ -52,8 +53,8 @@ bool separate(const Body& a, const Body& b) {
   constexpr int kDirections = 180;
   for (int i = 0; i < kDirections; ++i) {
     const double angle = 0.5 * kPi * i / kDirections;
-    const double cosine = std::cos(angle);
-    const double sine = std::sin(angle);
+    const double cosine = math::cos(angle);
+    const double sine = math::sin(angle);
     if (separates(a, b, cosine * along - sine * across, cosine * across + sine * along)) return true;
     if (separates(a, b, cosine * along + sine * across, cosine * across - sine * along)) return true;
   }
@@ -110,7 +111,7 @@ bool push_about(std::vector<Body>& bodies, const Area& area, const Push& push, s
     for (int i = 0; i < kTries; ++i) {
       const double direction = 2.0 * kPi * random.uniform();
       const double turn = push.turn * (2.0 * random.uniform() - 1.0);
-      body.place(before.x() + push.distance * std::cos(direction), before.y() + push.distance * std::sin(direction),
+      body.place(before.x() + push.distance * math::cos(direction), before.y() + push.distance * math::sin(direction),
                  before.rotation() + turn);
       if (beyond(body, area) <= 0.0 && all_separate(bodies)) break;
       body = before;

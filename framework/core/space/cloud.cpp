@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +40,7 @@ Bundle::Bundle(const Vector3d& centre, double radius, int directions, double pit
     const double z = -1.0 + 1.5 * (k + 0.5) / directions;
     const double angle = kHalfTurn * (3.0 - std::sqrt(5.0)) * k;
     const double level = std::sqrt(1.0 - z * z);
-    const Vector3d direction(level * std::cos(angle), level * std::sin(angle), z);
+    const Vector3d direction(level * math::cos(angle), level * math::sin(angle), z);
     const Vector3d aside = direction.unitOrthogonal();
     const Vector3d beside = direction.cross(aside);
     const int steps = static_cast<int>(radius / pitch);

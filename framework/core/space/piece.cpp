@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -119,7 +121,7 @@ struct Turned {
   double cosine = 1.0, sine = 0.0;
 };
 
-Turned turned_by(double angle) { return {std::cos(angle), std::sin(angle)}; }
+Turned turned_by(double angle) { return {math::cos(angle), math::sin(angle)}; }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include "space/nonnegative.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <Eigen/Geometry>
 
@@ -40,7 +41,7 @@ bool knows_distances_alone(const Kernel& kernel) {
     const double known = between(0.0, 0.0, r, 0.0);
     for (const double angle : {0.0, 0.7, 0.5 * kHalfTurn, 2.3}) {
       for (const double base : {0.0, 0.13}) {
-        const double found = between(base, -0.5 * base, r * std::cos(angle), r * std::sin(angle));
+        const double found = between(base, -0.5 * base, r * math::cos(angle), r * math::sin(angle));
         if (!(std::abs(found - known) <= kRounding * unit)) return false;
       }
     }

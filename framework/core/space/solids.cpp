@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -14,8 +16,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 double normal(Random& random) {
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
-  return radius * std::cos(2.0 * kHalfTurn * random.uniform());
+  const double radius = std::sqrt(-2.0 * math::log(1.0 - random.uniform()));
+  return radius * math::cos(2.0 * kHalfTurn * random.uniform());
 }
 
 Vector3d normal3(Random& random) {
@@ -54,7 +56,7 @@ Piece draw(const Vector3d& near, Random& random) {
   const double form = random.uniform();
   out.form = form < 0.4 ? Piece::Form::box : form < 0.8 ? Piece::Form::cylinder : Piece::Form::ellipsoid;
   out.turn = stance(random);
-  for (Eigen::Index i = 0; i < 3; ++i) out.half(i) = std::exp(between(std::log(0.004), std::log(0.12), random));
+  for (Eigen::Index i = 0; i < 3; ++i) out.half(i) = math::exp(between(math::log(0.004), math::log(0.12), random));
   if (out.form == Piece::Form::cylinder || random.uniform() < 0.3) out.half.y() = out.half.x();
   if (random.uniform() < 0.3) out.wall = between(0.002, 0.007, random);
   Vector3d within;
@@ -99,17 +101,17 @@ double Solids::prior_of(const Piece& piece) const {
   double out = -settings_.pieces;
   const Vector3d up = piece.turn * Vector3d::UnitZ();
   const double tilt = std::abs(up.z());
-  out += tilt > 1.0 - 1e-9 ? std::log(0.65) : tilt < 1e-9 ? std::log(0.2) : std::log(0.15);
-  out += piece.hollow() ? std::log(0.3) : std::log(0.7);
+  out += tilt > 1.0 - 1e-9 ? math::log(0.65) : tilt < 1e-9 ? math::log(0.2) : math::log(0.15);
+  out += piece.hollow() ? math::log(0.3) : math::log(0.7);
   if (piece.half.minCoeff() < settings_.smallest || piece.half.maxCoeff() > settings_.largest) return -kNoHit;
   if (piece.hollow() && (piece.wall < 0.002 || piece.wall > 0.8 * piece.half.minCoeff())) return -kNoHit;
   const Vector3d own = piece.turn.transpose() * Vector3d::UnitZ();
   const double lowest = piece.centre.z() - piece.half.dot(own.cwiseAbs());
   // Nothing reaches into the desk, and what floats needs something that holds it.
-  if (lowest < 0.0) out -= 0.5 * std::pow(lowest / 0.003, 2);
+  if (lowest < 0.0) out -= 0.5 * math::pow(lowest / 0.003, 2);
   if (lowest > 0.003) out -= 1.0;
   // Of two that explain the same the smaller.
-  out -= 0.3 * std::log(1.0 + piece.volume() / 1e-5);
+  out -= 0.3 * math::log(1.0 + piece.volume() / 1e-5);
   return out;
 }
 
@@ -170,7 +172,7 @@ void Solids::look(const std::vector<SurfaceTouch>& view) {
   take_in(view);
   seen_ = touches_.size();
   for (int i = 0; i < kRounds; ++i) {
-    last_power_ = std::min(1.0, std::pow(kFlat, 1.0 - static_cast<double>(i) / kCooling));
+    last_power_ = std::min(1.0, math::pow(kFlat, 1.0 - static_cast<double>(i) / kCooling));
     move_all();
   }
 }
@@ -206,7 +208,7 @@ void Solids::move_all() {
 }
 
 double Solids::least_likelihood(const Composition& one, double prior_gained) {
-  return one.likelihood + (std::log(1.0 - random_.uniform()) - prior_gained) / power_;
+  return one.likelihood + (math::log(1.0 - random_.uniform()) - prior_gained) / power_;
 }
 
 void Solids::resample(const std::vector<double>& weights) {
@@ -215,7 +217,7 @@ void Solids::resample(const std::vector<double>& weights) {
   double total = 0.0;
   double squares = 0.0;
   for (const double w : weights) {
-    shares.push_back(std::exp(w - most));
+    shares.push_back(math::exp(w - most));
     total += shares.back();
     squares += shares.back() * shares.back();
   }
@@ -239,8 +241,8 @@ double Solids::likelihood_with(const Composition& one, std::size_t which, const 
   constexpr double kFarthest = 0.3;
   constexpr std::size_t kAtOnce = 8;  // as many factors have one logarithm
   const double scale = 1.0 / (kTails * settings_.misfit * settings_.misfit);
-  const double most = std::exp(std::min(700.0, -2.0 * least / (kTails + 1.0)));
-  const double of_a_lie = std::exp(2.0 * settings_.most / (kTails + 1.0));
+  const double most = math::exp(std::min(700.0, -2.0 * least / (kTails + 1.0)));
+  const double of_a_lie = math::exp(2.0 * settings_.most / (kTails + 1.0));
   scratch_.reach.resize(touches_.size());
   scratch_.depth.resize(touches_.size());
   double out = 0.0;
@@ -264,7 +266,7 @@ double Solids::likelihood_with(const Composition& one, std::size_t which, const 
     }
     product *= std::min(of_a_lie, 1.0 + scale * (reach * reach + depth * depth));
     if (k % kAtOnce == kAtOnce - 1) {
-      out += std::log(product), product = 1.0;
+      out += math::log(product), product = 1.0;
     }
     if (-0.5 * (kTails + 1.0) * out < least || product > most) {
       // Whoever refuses is asked first the next time.
@@ -273,7 +275,7 @@ double Solids::likelihood_with(const Composition& one, std::size_t which, const 
       return -kNoHit;
     }
   }
-  const double sum = -0.5 * (kTails + 1.0) * (out + std::log(product));
+  const double sum = -0.5 * (kTails + 1.0) * (out + math::log(product));
   return sum < least ? -kNoHit : sum;
 }
 
@@ -289,7 +291,7 @@ void Solids::move(Composition& one) {
   constexpr double kFlat = 0.3;
   constexpr double kCooling = 0.6;
   for (int i = 0; i < moves; ++i) {
-    power_ = last_power_ * std::min(1.0, std::pow(kFlat, 1.0 - i / (kCooling * moves)));
+    power_ = last_power_ * std::min(1.0, math::pow(kFlat, 1.0 - i / (kCooling * moves)));
     const double kind = random_.uniform();
     if (kind < kBirths || one.parts.empty()) {
       give_birth(one);
@@ -388,7 +390,7 @@ bool Solids::fit_to_contact(Piece& piece) {
 /// Changes a piece; false where that makes none.
 bool Solids::change(Piece& piece) {
   const double kind = random_.uniform();
-  const double size = std::exp(between(std::log(0.0005), std::log(0.03), random_));
+  const double size = math::exp(between(math::log(0.0005), math::log(0.03), random_));
   const auto axis = static_cast<Eigen::Index>(random_.index(3));
   if (kind < 0.3) return fit_to_contact(piece);
   if (kind < 0.4) {
@@ -402,14 +404,14 @@ bool Solids::change(Piece& piece) {
     if (piece.form == Piece::Form::cylinder && axis < 2 && random_.uniform() < 0.8)
       piece.half(1 - axis) = piece.half(axis);
   } else if (kind < 0.7) {  // both faces, or all
-    const double factor = std::exp(10.0 * size * normal(random_));
+    const double factor = math::exp(10.0 * size * normal(random_));
     if (random_.uniform() < 0.5 || piece.form != Piece::Form::box) {
       piece.half.head<2>() *= factor;
     } else {
       piece.half(axis) *= factor;
     }
   } else if (kind < 0.82) {
-    double angle = std::exp(between(std::log(0.01), std::log(1.0), random_));
+    double angle = math::exp(between(math::log(0.01), math::log(1.0), random_));
     angle *= normal(random_);
     const double tilt = std::abs(piece.turn(2, 2));
     if (tilt < 1.0 - 1e-9 && tilt > 1e-9 && random_.uniform() < 0.7) {
@@ -425,7 +427,7 @@ bool Solids::change(Piece& piece) {
     if (form == Piece::Form::cylinder) piece.half.y() = piece.half.x();
   } else if (kind < 0.94) {
     if (piece.hollow() && random_.uniform() < 0.5) {
-      piece.wall *= std::exp(0.3 * normal(random_));
+      piece.wall *= math::exp(0.3 * normal(random_));
     } else {
       piece.wall = piece.hollow() ? 0.0 : between(0.002, 0.007, random_);
     }

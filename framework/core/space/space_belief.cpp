@@ -5,6 +5,7 @@
 #include "space/reduction.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <Eigen/Geometry>
 
@@ -153,7 +154,7 @@ void SpaceBelief::update(Quantities reads) {
     // A touch errs by what the solids are off the objects, and by what it is told wrongly.
     const double spread = overtravel_.spread() > Overtravel::kLeastSpread ? overtravel_.spread() : 0.0;
     solids_.read_again({touches_.begin(), touches_.begin() + static_cast<std::ptrdiff_t>(taken_in_)},
-                       std::hypot(misfit_, spread), kLie);
+                       math::hypot(misfit_, spread), kLie);
     skin_.set_noise(std::max(noise_, spread));
     read_again_ = false;
   }
@@ -177,11 +178,12 @@ Line SpaceBelief::random_line(Random& random) const {
     const double z = -1.0 + (1.0 + kSteepestUp) * random.uniform();
     const double angle = 2.0 * kHalfTurn * random.uniform();
     const double level = std::sqrt(1.0 - z * z);
-    const Vector3d direction(level * std::cos(angle), level * std::sin(angle), z);
+    const Vector3d direction(level * math::cos(angle), level * math::sin(angle), z);
     const double away = region_.radius * std::sqrt(random.uniform());
     const double turn = 2.0 * kHalfTurn * random.uniform();
     const Vector3d aside = direction.unitOrthogonal();
-    const Vector3d nearest = region_.centre + away * (std::cos(turn) * aside + std::sin(turn) * direction.cross(aside));
+    const Vector3d nearest =
+        region_.centre + away * (math::cos(turn) * aside + math::sin(turn) * direction.cross(aside));
     const double back = std::sqrt(region_.outside() * region_.outside() - away * away);
     Line out{nearest - back * direction, direction};
     if (out.origin.z() > 0.0) return out;

@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -30,9 +32,9 @@ void take_evenly(const std::vector<SurfaceTouch>& from, std::size_t count, std::
 std::vector<SurfaceTouch> side_view(const SideViewOptions& options, const Scene& scene, const Vector3d& centre,
                                     double radius, Random random) {
   const double azimuth = options.azimuth.value_or(2.0 * kHalfTurn * random.uniform());
-  const Vector3d out(std::cos(azimuth) * std::cos(options.elevation), std::sin(azimuth) * std::cos(options.elevation),
-                     std::sin(options.elevation));
-  const Vector3d right(-std::sin(azimuth), std::cos(azimuth), 0.0);
+  const Vector3d out(math::cos(azimuth) * math::cos(options.elevation),
+                     math::sin(azimuth) * math::cos(options.elevation), math::sin(options.elevation));
+  const Vector3d right(-math::sin(azimuth), math::cos(azimuth), 0.0);
   const Vector3d up = out.cross(right);
   const double away = std::max(kAway, 2.0 * radius);  // outside of all that may stand there
   const Vector3d eye = centre + away * out;

@@ -6,6 +6,7 @@
 #include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -138,7 +139,7 @@ std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& optio
                 "check unit and pose");
   }
   const double noise = options.noise;
-  const double reach = kClearlyAbove * std::hypot(noise, options.bias);
+  const double reach = kClearlyAbove * math::hypot(noise, options.bias);
   std::vector<double> of_desk;
   for (const Square& one : squares) {
     if (std::abs(one.mean().z()) <= reach && one.variance() <= 4.0 * noise * noise) of_desk.push_back(one.mean().z());

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <palpate/error.hpp>
+#include <palpate/instructions.hpp>
 #include <palpate/motions.hpp>
 #include <palpate/options.hpp>
 #include <palpate/random.hpp>
@@ -50,6 +51,7 @@ struct Context {
   /// The folder of the run's record, for files that a plugin leaves beside it; empty where none is kept. It exists from
   /// the first tap on, not before.
   std::string directory = {};
+  Instructions instructions = instructions_in_use();  ///< of the loops of palpate/math.hpp
 
   /// The stream of this run for one purpose, for example "acquisition/random" at tap `number`.
   Random random(const std::string& purpose, std::uint64_t number = 0) const { return {seed, purpose, number}; }
@@ -113,6 +115,7 @@ template <class Plugin, class Interface>
 void* create(Fields& fields, const Context& context) {
   typename Plugin::Options options;
   options.list(fields);
+  use_instructions(context.instructions);
   return static_cast<Interface*>(new Plugin(options, context));
 }
 

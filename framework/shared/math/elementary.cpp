@@ -45,8 +45,9 @@ double exp_of(double x, double low) {
   if (x < -745.2) return 0.0;
   const double n = std::nearbyint(x * 1.44269504088896340736);
   const double r = (x - n * kLog2) - (n * kLog2Low - low);
-  static constexpr double kOf[] = {1.0 / 2,     1.0 / 6,      1.0 / 24,      1.0 / 120,      1.0 / 720,       1.0 / 5040,
-                                   1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
+  static constexpr double kOf[] = {1.0 / 2,       1.0 / 6,        1.0 / 24,        1.0 / 120,
+                                   1.0 / 720,     1.0 / 5040,     1.0 / 40320,     1.0 / 362880,
+                                   1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
   return std::ldexp(1.0 + (r + r * r * polynomial(kOf, r)), static_cast<int>(n));
 }
 
@@ -109,15 +110,16 @@ Reduced reduce(double x) {
 }
 
 double sine(const Pair& r) {
-  static constexpr double kOf[] = {-1.0 / 6,        1.0 / 120,           -1.0 / 5040,         1.0 / 362880,
+  static constexpr double kOf[] = {-1.0 / 6,        1.0 / 120,          -1.0 / 5040,          1.0 / 362880,
                                    -1.0 / 39916800, 1.0 / 6227020800.0, -1.0 / 1307674368000, 1.0 / 355687428096000};
   const double square = r.high * r.high;
   return r.high + (r.low * (1.0 - 0.5 * square) + r.high * square * polynomial(kOf, square));
 }
 
 double cosine(const Pair& r) {
-  static constexpr double kOf[] = {1.0 / 24,          -1.0 / 720,         1.0 / 40320,          -1.0 / 3628800,
-                                   1.0 / 479001600.0, -1.0 / 87178291200, 1.0 / 20922789888000, -1.0 / 6402373705728000};
+  static constexpr double kOf[] = {
+      1.0 / 24,          -1.0 / 720,         1.0 / 40320,          -1.0 / 3628800,
+      1.0 / 479001600.0, -1.0 / 87178291200, 1.0 / 20922789888000, -1.0 / 6402373705728000};
   const double square = r.high * r.high;
   const Pair near = sum(1.0, -0.5 * square);
   return near.high + (near.low + square * square * polynomial(kOf, square) - r.high * r.low);

@@ -26,8 +26,8 @@ HWY_INLINE Vector exponential(Vector x) {
   // ln 2 in two parts, the first of them short enough for n times it to be exact.
   const Vector r = hn::NegMulAdd(n, of(0x1.a39ef35793c76p-33), hn::NegMulAdd(n, of(0x1.62e42feep-1), x));
   Vector sum = of(1.0 / 6227020800);
-  for (const double coefficient : {1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040,
-                                   1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 1.0 / 2})
+  for (const double coefficient : {1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320,
+                                   1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 1.0 / 2})
     sum = hn::MulAdd(sum, r, of(coefficient));
   sum = hn::Add(hn::MulAdd(hn::Mul(sum, r), r, r), of(1.0));
   const hn::RebindToUnsigned<Reals> bits;
@@ -52,9 +52,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::math {
 
-HWY_EXPORT(exponentials);
-
-void exp(const double* x, std::ptrdiff_t count, double* out) { HWY_DYNAMIC_DISPATCH(exponentials)(x, count, out); }
+void exp(const double* x, std::ptrdiff_t count, double* out) { PALPATE_DISPATCH(exponentials)(x, count, out); }
 
 }  // namespace palpate::math
 #endif

@@ -3,77 +3,73 @@
 
 #include <palpate/error.hpp>
 
+#include <atomic>
 #include <cstdlib>
+#include <string>
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "math/instructions.cpp"
-#include "math/highway.hpp"
-
-HWY_BEFORE_NAMESPACE();
-namespace palpate::math::HWY_NAMESPACE {
+namespace palpate {
 namespace {
 
-int64_t target() { return HWY_TARGET; }
-
-}  // namespace
-}  // namespace palpate::math::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace palpate::math {
-
-HWY_EXPORT(target);
-
-namespace {
-
-constexpr const char* kBaseline = "baseline";
-
-std::string name_of(int64_t one) {
-  const std::string name = hwy::TargetName(one);
-  if (one == HWY_STATIC_TARGET && name != "NEON") return kBaseline;
-  return name == "AVX3" ? "AVX-512" : name;
+/// The sets are those that Highway compiles for by the same names (math/highway.hpp).
+Instructions widest() {
+#if defined(__x86_64__)
+  const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
+                    __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0 &&
+                    __builtin_cpu_supports("aes") != 0 && __builtin_cpu_supports("pclmul") != 0;
+  const bool avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+                      __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0;
+  return !avx2 ? Instructions::baseline : avx512 ? Instructions::avx512 : Instructions::avx2;
+#elif defined(__aarch64__)
+  return Instructions::neon;
+#else
+  return Instructions::baseline;
+#endif
 }
 
-/// Loops use the best of these, or the baseline.
-void allow(int64_t targets) {
-  hwy::DisableTargets(~targets);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
-}  // namespace
-
-std::vector<std::string> instruction_sets() {
-  const std::string before = instructions_in_use();
-  std::vector<std::string> out;
-  for (int64_t left = ~int64_t{0}; left != 0;) {
-    allow(left);
-    const int64_t best = HWY_DYNAMIC_DISPATCH(target)();
-    if (!out.empty() && out.back() == name_of(best)) break;
-    out.push_back(name_of(best));
-    left &= ~(best | (best - 1));  // the higher the bit, the fewer the instructions
-  }
-  use_instructions(before);
+std::atomic<Instructions>& chosen() {
+  static std::atomic<Instructions> out{widest()};
   return out;
 }
 
-void use_instructions(std::string_view name) {
-  for (int bit = 0; bit < 63; ++bit) {
-    if (name_of(int64_t{1} << bit) == name && ((int64_t{1} << bit) & HWY_TARGETS) != 0)
-      return allow(int64_t{1} << bit);
+}  // namespace
+
+Instructions instructions_in_use() { return chosen().load(std::memory_order_relaxed); }
+
+void use_instructions(Instructions set) { chosen().store(set, std::memory_order_relaxed); }
+
+namespace math {
+
+const char* name_of(Instructions set) {
+  static constexpr const char* kNames[] = {"baseline", "NEON", "AVX2", "AVX-512"};
+  return kNames[static_cast<std::size_t>(set)];
+}
+
+std::vector<Instructions> instruction_sets() {
+  switch (widest()) {
+    case Instructions::avx512:
+      return {Instructions::avx512, Instructions::avx2, Instructions::baseline};
+    case Instructions::baseline:
+      return {Instructions::baseline};
+    default:
+      return {widest(), Instructions::baseline};
   }
 }
 
-std::string instructions_in_use() { return name_of(HWY_DYNAMIC_DISPATCH(target)()); }
-
-std::string choose_instructions() {
+Instructions choose_instructions() {
   const char* const name = "PALPATE_INSTRUCTIONS";
   const char* const value = std::getenv(name);
-  const std::string chosen = value != nullptr ? value : "";
-  if (!chosen.empty() && chosen != kBaseline)
-    throw Error(name, "unknown value '" + chosen + "'", std::string("write ") + kBaseline + ", or unset it");
-  allow(chosen.empty() ? ~int64_t{0} : HWY_STATIC_TARGET);
-  return instructions_in_use();
+  const std::string wanted = value != nullptr ? value : "";
+  std::string known;
+  for (const Instructions one : instruction_sets()) {
+    if (!wanted.empty() && wanted != name_of(one)) {
+      known += (known.empty() ? "" : " or ") + std::string(name_of(one));
+      continue;
+    }
+    use_instructions(one);
+    return one;
+  }
+  throw Error(name, "unknown value '" + wanted + "'", "write " + known + ", or unset it");
 }
 
-}  // namespace palpate::math
-#endif
+}  // namespace math
+}  // namespace palpate

@@ -1,26 +1,30 @@
 // SPDX-License-Identifier: MIT
-// The instruction set of all loops that are compiled for several (math/highway.hpp).
+// Names of instruction sets, the choice of one by the environment, and the version of a loop that belongs to it.
 #pragma once
 
-#include <string>
-#include <string_view>
+#include <palpate/instructions.hpp>
+
+#include <array>
 #include <vector>
 
 namespace palpate::math {
 
-/// The instruction sets that this processor has and loops are compiled for, the widest first: AVX-512, AVX2, NEON, and
-/// baseline, which every processor has.
-std::vector<std::string> instruction_sets();
+/// AVX-512, AVX2, NEON or baseline.
+const char* name_of(Instructions set);
 
-/// All loops of this process use `name`, one of instruction_sets(), from now on. Not while loops are running.
-void use_instructions(std::string_view name);
+/// The sets that this processor has and loops are compiled for, the widest first.
+std::vector<Instructions> instruction_sets();
 
-/// The name of the set in use: the widest, unless another was chosen.
-std::string instructions_in_use();
+/// Follows the environment variable PALPATE_INSTRUCTIONS: the set that it names, such as `baseline`, so that runs on
+/// different machines give the same bytes; the widest if it is unset or empty. Throws Error if the processor has no set
+/// of that name.
+Instructions choose_instructions();
 
-/// Follows the environment variable PALPATE_INSTRUCTIONS: the widest set if it is unset or empty, the baseline if it is
-/// `baseline`, so that runs on different machines give the same bytes. Returns the name of the set. Throws Error for any
-/// other value.
-std::string choose_instructions();
+/// Of a function that is compiled for several sets, in their order and null for those that are not, the one to call.
+template <class Function>
+Function version_of(const std::array<Function, 4>& versions) {
+  const Function own = versions[static_cast<std::size_t>(instructions_in_use())];
+  return own != nullptr ? own : versions[0];
+}
 
 }  // namespace palpate::math

@@ -4,6 +4,8 @@
 // Processes, the sum over outliers, the skin, the expected reductions, fits and the classifier all follow them.
 #pragma once
 
+#include <palpate/math.hpp>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
@@ -96,7 +98,7 @@ class RegularFactor {
   const FactorReport& report() const { return report_; }
 
   /// The sum of log L_ii over the rows that entered: half of the log determinant.
-  double half_log_determinant() const { return factor_.matrixLLT().diagonal().array().log().sum(); }
+  double half_log_determinant() const { return factor_.matrixLLT().diagonal().unaryExpr(&math::log).sum(); }
 
   /// Replaces b (n rows) by L^-1 b; rows that were set aside become 0.
   template <class Derived>

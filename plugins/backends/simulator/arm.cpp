@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 
 namespace palpate::backends {
@@ -27,7 +29,7 @@ double search(Height height, double radius, double least, Rise rise) {
   double at_x = 0.0;
   double at_y = 0.0;
   const auto attempt = [&](double dx, double dy) {
-    const double distance = std::hypot(dx, dy);
+    const double distance = math::hypot(dx, dy);
     if (distance > radius) return false;
     const double value = height(dx, dy) - rise(distance);
     if (!(value > best)) return false;
@@ -40,7 +42,7 @@ double search(Height height, double radius, double least, Rise rise) {
     const double distance = radius * ring / kRings * (1.0 - 1e-12);  // the rim belongs to the disc, rounded or not
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
       const double angle = 2.0 * kPi * spoke / kSpokes;
-      attempt(distance * std::cos(angle), distance * std::sin(angle));
+      attempt(distance * math::cos(angle), distance * math::sin(angle));
     }
   }
   if (best == least) return best;
@@ -49,7 +51,7 @@ double search(Height height, double radius, double least, Rise rise) {
       moved = false;
       for (int i = 0; i < 8; ++i) {
         const double angle = kPi / 4 * i;
-        moved = attempt(at_x + stride * std::cos(angle), at_y + stride * std::sin(angle)) || moved;
+        moved = attempt(at_x + stride * math::cos(angle), at_y + stride * math::sin(angle)) || moved;
       }
     }
   }
@@ -63,14 +65,14 @@ double search(Height height, double radius, double least, Rise rise) {
 Arm::Arm(const std::optional<JointLag>& lag, double period, double position)
     : lags_(lag && lag->delay > 0.0), position_(position) {
   if (!lags_) return;
-  const double log_overshoot = lag->overshoot > 0.0 ? std::log(lag->overshoot) : 0.0;
+  const double log_overshoot = lag->overshoot > 0.0 ? math::log(lag->overshoot) : 0.0;
   const double zeta =
       lag->overshoot > 0.0 ? -log_overshoot / std::sqrt(kPi * kPi + log_overshoot * log_overshoot) : 1.0;
   const double omega = 2.0 * zeta / lag->delay;
-  const double decay = std::exp(-zeta * omega * period);
+  const double decay = math::exp(-zeta * omega * period);
   const double rate = omega * std::sqrt(std::max(0.0, 1.0 - zeta * zeta));
-  const double cosine = std::cos(rate * period);
-  const double sine = rate > 0.0 ? std::sin(rate * period) / rate : period;  // sin(rate t) / rate
+  const double cosine = math::cos(rate * period);
+  const double sine = rate > 0.0 ? math::sin(rate * period) / rate : period;  // sin(rate t) / rate
   from_deviation_[0] = decay * (cosine + zeta * omega * sine);
   from_deviation_[1] = -decay * omega * omega * sine;
   from_velocity_[0] = decay * sine;

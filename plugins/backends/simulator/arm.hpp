@@ -5,6 +5,7 @@
 #include "tapping/guarded_tap.hpp"
 
 #include <palpate/effects.hpp>
+#include <palpate/math.hpp>
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
 
@@ -24,10 +25,10 @@ class Normal {
 
   double operator()() {
     if (spare_) return *std::exchange(spare_, std::nullopt);
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - random_.uniform()));
+    const double radius = std::sqrt(-2.0 * math::log(1.0 - random_.uniform()));
     const double angle = 2.0 * 3.14159265358979323846 * random_.uniform();
-    spare_ = radius * std::sin(angle);
-    return radius * std::cos(angle);
+    spare_ = radius * math::sin(angle);
+    return radius * math::cos(angle);
   }
 
   /// The stream itself, for what is not normal.

@@ -4,6 +4,7 @@
 #include "simulator/arm.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -52,7 +53,7 @@ bool Simulator::reaches(const Approach& approach) const {
   const auto& [line, length] = approach;
   const double above = line.origin.z() - scene_.desk();
   if (above <= (effects.tip_radius ? effects.tip_radius->radius : 0.0)) return false;
-  if (effects.reach && std::hypot(line.origin.x() - effects.reach->base[0], line.origin.y() - effects.reach->base[1]) >
+  if (effects.reach && math::hypot(line.origin.x() - effects.reach->base[0], line.origin.y() - effects.reach->base[1]) >
                            effects.reach->radius) {
     return false;
   }
@@ -108,7 +109,7 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& ta
   const Effects& effects = scene_.effects();
   const Target& target = request.target;
   if (effects.reach &&
-      std::hypot(target.x - effects.reach->base[0], target.y - effects.reach->base[1]) > effects.reach->radius) {
+      math::hypot(target.x - effects.reach->base[0], target.y - effects.reach->base[1]) > effects.reach->radius) {
     return {Outcome::unreachable, 0.0, 0.0, 0.0, "beyond the reach of the arm"};
   }
   double dx = 0.0;

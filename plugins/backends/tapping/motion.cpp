@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tapping/motion.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -194,7 +196,7 @@ Descent plan_descent(const MotionOptions& motion, double desk, const std::option
 
 double travel_seconds(const MotionOptions& motion, const TapRequest& request) {
   if (!request.previous) return 0.0;
-  return std::hypot(request.target.x - request.previous->x, request.target.y - request.previous->y) /
+  return math::hypot(request.target.x - request.previous->x, request.target.y - request.previous->y) /
          motion.travel_speed;
 }
 
@@ -256,8 +258,8 @@ class Several final : public Motions {
 
   double deviation(int number) const override {
     const MotionOptions& motion = at(number);
-    return std::hypot(kPlace,
-                      kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed));
+    return math::hypot(kPlace,
+                       kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed));
   }
 
  private:

@@ -5,6 +5,7 @@
 #include "options.hpp"
 
 #include <palpate/fitting.hpp>
+#include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 #include <palpate/random.hpp>
 
@@ -162,12 +163,12 @@ Eigen::VectorXd look_around(Objective& objective, const Model& model, const Eige
   consider(now);
   for (int i = 0; extent > 0.0 && i < kLengths; ++i) {
     Eigen::VectorXd x = now;
-    const double length = std::log(spacing) + (std::log(extent) - std::log(spacing)) * i / (kLengths - 1);
+    const double length = math::log(spacing) + (math::log(extent) - math::log(spacing)) * i / (kLengths - 1);
     for (Eigen::Index p = 0; p < count; ++p) {
       if (parameters[static_cast<std::size_t>(p)].unit == Unit::metre) x(p) = length;
     }
     for (const double noise : kNoises) {
-      x(count) = std::log(noise);
+      x(count) = math::log(noise);
       consider(x);
     }
   }
@@ -202,8 +203,7 @@ class Ceres final : public Fitting {
   using Options = CeresOptions;
 
   Ceres(const Options& options, const Context& context)
-      : options_(options),
-        side_(std::max(context.scene.area().width, context.scene.area().depth)) {}
+      : options_(options), side_(std::max(context.scene.area().width, context.scene.area().depth)) {}
 
   bool due(int taps) const override { return taps > 0 && taps % options_.every == 0; }
 
@@ -271,7 +271,7 @@ class Ceres final : public Fitting {
     // calmer and smoother than what is still to be found: from few taps the likelihood alone takes too long a length
     // scale and too small a signal, and is sure where it should not be. framework/docs/runs.md has the figures of both.
     const auto log_normal = [](double median, double spread, double factor) {
-      return Expectation{std::log(median), spread, std::log(median / factor), std::log(median * factor)};
+      return Expectation{math::log(median), spread, math::log(median / factor), math::log(median * factor)};
     };
     std::vector<Expectation> out;
     for (const KernelParameter& one : model.kernel.parameters()) {

@@ -3,6 +3,8 @@
 
 #include "regular/regular_factor.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +18,10 @@ constexpr double kWall = 1.0;
 /// Deviations of targets below this share of their size are rounding.
 constexpr double kRounding = 1e-9;
 
+Eigen::VectorXd exponentials(const double* logs, Eigen::Index count) {
+  return Eigen::Map<const Eigen::VectorXd>(logs, count).unaryExpr([](double x) { return math::exp(x); });
+}
+
 /// Of two rows of lines.
 double product(const double* a, const double* b, Eigen::Index lines) {
   using Numbers = Eigen::Map<const Eigen::VectorXd, Eigen::AlignedMax>;
@@ -26,7 +32,7 @@ double product(const double* a, const double* b, Eigen::Index lines) {
 
 double Model::total(double value) const {
   const auto n = static_cast<double>(size());
-  return value * n * static_cast<double>(outputs()) - n * scales.array().log().sum();
+  return value * n * static_cast<double>(outputs()) - n * scales.unaryExpr(&math::log).sum();
 }
 
 Model model_of(const FitProblem& problem, bool fit_means) {
@@ -66,11 +72,11 @@ Eigen::VectorXd present(const FitProblem& problem, const Model& model) {
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const Eigen::Index outputs = model.outputs();
   Eigen::VectorXd x(count + 1 + outputs * (model.fit_means ? 2 : 1));
-  for (Eigen::Index p = 0; p < count; ++p) x(p) = std::log(parameters[static_cast<std::size_t>(p)].value);
-  x(count) = 2.0 * std::log(problem.noise_ratio);
+  for (Eigen::Index p = 0; p < count; ++p) x(p) = math::log(parameters[static_cast<std::size_t>(p)].value);
+  x(count) = 2.0 * math::log(problem.noise_ratio);
   for (Eigen::Index i = 0; i < outputs; ++i) {
     const FitOutput& output = problem.outputs[model.used[static_cast<std::size_t>(i)]];
-    x(count + 1 + i) = 2.0 * std::log(output.signal / model.scales(i));
+    x(count + 1 + i) = 2.0 * math::log(output.signal / model.scales(i));
   }
   if (model.fit_means) x.tail(outputs) = model.means;
   return x;
@@ -79,11 +85,11 @@ Eigen::VectorXd present(const FitProblem& problem, const Model& model) {
 void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
   const Eigen::Index outputs = model.outputs();
   const Eigen::Index count = x.size() - 1 - outputs * (model.fit_means ? 2 : 1);
-  problem.kernel.set_parameters(x.head(count).array().exp().matrix());
-  problem.noise_ratio = std::exp(0.5 * x(count));
+  problem.kernel.set_parameters(exponentials(x.data(), count));
+  problem.noise_ratio = math::exp(0.5 * x(count));
   for (Eigen::Index i = 0; i < outputs; ++i) {
     FitOutput& output = problem.outputs[model.used[static_cast<std::size_t>(i)]];
-    output.signal = model.scales(i) * std::exp(0.5 * x(count + 1 + i));
+    output.signal = model.scales(i) * math::exp(0.5 * x(count + 1 + i));
     if (model.fit_means) output.mean = model.centres(i) + model.scales(i) * x(count + 1 + outputs + i);
   }
 }
@@ -110,10 +116,10 @@ bool Objective::evaluate(const double* x, double* value, double* gradient) {
   const double* log_signals = x + parameters_ + 1;
   set_kernel(x);
   fill(gradient != nullptr);
-  if (!decompose(std::exp(x[parameters_]))) return false;
+  if (!decompose(math::exp(x[parameters_]))) return false;
   for (Eigen::Index i = 0; i < m; ++i) {
     const double mean = model_.fit_means ? log_signals[m + i] : model_.means(i);
-    standard_.col(i) = (model_.targets.col(i).array() - mean) * std::exp(-0.5 * log_signals[i]);
+    standard_.col(i) = (model_.targets.col(i).array() - mean) * math::exp(-0.5 * log_signals[i]);
   }
   solve(standard_);
   if (gradient != nullptr || measure_ == Measure::leave_one_out) invert();
@@ -126,7 +132,7 @@ bool Objective::evaluate(const double* x, double* value, double* gradient) {
     for (Eigen::Index i = 0; i < m; ++i) *value -= 0.5 * static_cast<double>(model_.size()) * log_signals[i];
   }
   if (gradient != nullptr && model_.fit_means) {
-    for (Eigen::Index i = 0; i < m; ++i) gradient[parameters_ + 1 + m + i] *= std::exp(-0.5 * log_signals[i]);
+    for (Eigen::Index i = 0; i < m; ++i) gradient[parameters_ + 1 + m + i] *= math::exp(-0.5 * log_signals[i]);
   }
   *value += expectations(x, gradient);
   const double unit = 1.0 / static_cast<double>(model_.size() * m);
@@ -144,17 +150,17 @@ double Objective::profiled(const Eigen::VectorXd& kernel_logs, double log_noise,
   const auto n = static_cast<double>(model_.size());
   set_kernel(kernel_logs.data());
   fill(false);
-  if (!decompose(std::exp(log_noise))) return -std::numeric_limits<double>::infinity();
+  if (!decompose(math::exp(log_noise))) return -std::numeric_limits<double>::infinity();
   solve(model_.targets.rowwise() - model_.means.transpose());
   // In the likelihood of an output only -(square / signal^2 + n log signal^2) / 2 depends on the signal.
-  log_signals = (squares_ / n).array().log();
+  log_signals = (squares_ / n).unaryExpr(&math::log);
   const Eigen::Index m = model_.outputs();
   squares_.setConstant(n);
   return likelihood(log_signals.data()) / (n * static_cast<double>(m));
 }
 
 void Objective::set_kernel(const double* logs) {
-  const Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(logs, parameters_).array().exp();
+  const Eigen::VectorXd values = exponentials(logs, parameters_);
   model_.kernel.set_parameters(values);
 }
 
@@ -185,7 +191,7 @@ bool Objective::decompose(double noise) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const double pivot = matrix_(i, i);
     if (!is_regular(pivot * pivot, i, own_(i))) return false;
-    log_determinant_ += 2.0 * std::log(pivot);
+    log_determinant_ += 2.0 * math::log(pivot);
   }
   return true;
 }
@@ -204,7 +210,7 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
   const double prior = model_.mean_ratio * model_.mean_ratio;
   const double precision = 1.0 / prior + ones_.squaredNorm();
   ones_ /= std::sqrt(precision);
-  log_determinant_ += std::log(precision * prior);
+  log_determinant_ += math::log(precision * prior);
   for (Eigen::Index i = 0; i < targets.cols(); ++i) {
     const double common = ones_.dot(solved_.col(i));
     solved_.col(i) -= common * ones_;
@@ -257,7 +263,7 @@ double Objective::leave_one_out(double* gradient) {
   const auto ones = ones_.head(ones_.size() > 0 ? n : 0);
   if (ones.size() > 0) inverse.noalias() -= ones * ones.transpose();
   const Eigen::ArrayXd own = inverse.diagonal();  // 1 / variance of each prediction
-  double sum = 0.5 * static_cast<double>(m) * (own.log() - kLogTwoPi).sum();
+  double sum = 0.5 * static_cast<double>(m) * (own.unaryExpr(&math::log) - kLogTwoPi).sum();
   Eigen::ArrayXd weight = Eigen::ArrayXd::Zero(n);
   Eigen::MatrixXd adjoint = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -302,7 +308,7 @@ double Objective::expectations(const double* x, double* gradient) const {
     const Expectation& one = expectations_[i];
     if (priors_) {
       const double z = (x[i] - one.centre) / one.spread;
-      sum -= 0.5 * (z * z + kLogTwoPi) + std::log(one.spread);
+      sum -= 0.5 * (z * z + kLogTwoPi) + math::log(one.spread);
       if (gradient != nullptr) gradient[i] -= z / one.spread;
     }
     const double beyond = x[i] > one.most ? x[i] - one.most : x[i] < one.least ? x[i] - one.least : 0.0;

@@ -73,7 +73,7 @@ HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, d
 /// Columns [from, to) of A and B: the tiles (s, j) of C, for strips s in [first, last), += or -= A_s B_j^T.
 template <bool kPlus>
 HWY_INLINE void update(Strips& c, const Strips& a, const Strips& b, Index first, Index last, Index j, Index from,
-                           Index to) {
+                       Index to) {
   const double* in[kPacks];
   double* out[kPacks];
   Index packs = 0;
@@ -205,11 +205,6 @@ namespace palpate::fitting {
 
 using Eigen::Index;
 
-HWY_EXPORT(factorise);
-HWY_EXPORT(invert_transposed);
-HWY_EXPORT(square_upper);
-HWY_EXPORT(times);
-
 void Strips::put(Index j, const Eigen::VectorXd& values) {
   const double* from = values.data();
   const Index first = j / 8;
@@ -238,14 +233,14 @@ bool factorise(Strips& matrix, std::vector<double>& reciprocals) {
     if (j >= n) line[j % 8] = 1.0;
   }
   reciprocals.resize(static_cast<std::size_t>(8 * strips));
-  return HWY_DYNAMIC_DISPATCH(factorise)(matrix, reciprocals.data()) &&
+  return PALPATE_DISPATCH(factorise)(matrix, reciprocals.data()) &&
          std::all_of(reciprocals.begin(), reciprocals.end(), [](double one) { return one > 0.0; });
 }
 
 void solve_lower(const Strips& factor, VectorOut b) {
   for (Index s = 0; s < factor.strips(); ++s) {
     Line sum{};
-    HWY_DYNAMIC_DISPATCH(times)(factor, s, 0, 8 * s, b.data(), sum.numbers);
+    PALPATE_DISPATCH(times)(factor, s, 0, 8 * s, b.data(), sum.numbers);
     for (Index r = 0; r < std::min<Index>(8, factor.size() - 8 * s); ++r) {
       double& own = b(8 * s + r);
       own -= sum.numbers[r];
@@ -261,20 +256,20 @@ void invert_transposed(const Strips& factor, const std::vector<double>& reciproc
     std::fill(out.at(s, 0), out.at(s, 0) + 8 * strips, Line{});
     for (Index r = 0; r < 8; ++r) out.at(s, 8 * s + r)->numbers[r] = 1.0;
   }
-  HWY_DYNAMIC_DISPATCH(invert_transposed)(factor, reciprocals.data(), out);
+  PALPATE_DISPATCH(invert_transposed)(factor, reciprocals.data(), out);
 }
 
 void multiply_upper(const Strips& upper, VectorOut b) {
   for (Index s = 0; s < upper.strips(); ++s) {
     Line sum{};
-    HWY_DYNAMIC_DISPATCH(times)(upper, s, 8 * s, upper.size(), b.data(), sum.numbers);
+    PALPATE_DISPATCH(times)(upper, s, 8 * s, upper.size(), b.data(), sum.numbers);
     std::copy_n(sum.numbers, std::min<Index>(8, upper.size() - 8 * s), b.data() + 8 * s);
   }
 }
 
 void square_upper(const Strips& upper, Strips& out) {
   for (Index s = 0; s < upper.strips(); ++s) std::fill(out.at(s, 0), out.at(s, 0) + 8 * (s + 1), Line{});
-  HWY_DYNAMIC_DISPATCH(square_upper)(upper, out);
+  PALPATE_DISPATCH(square_upper)(upper, out);
 }
 
 }  // namespace palpate::fitting

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Dense symmetric positive definite matrices: a fit spends its time here. All three algorithms are made of the same two
-// steps, the product of tiles and the solution by a tile's triangle, in the widest vectors that the processor has (math/highway.hpp).
+// steps, the product of tiles and the solution by a tile's triangle, in the widest vectors that the processor has
+// (math/highway.hpp).
 #pragma once
 
 #include <palpate/types.hpp>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "laplace.hpp"
 
+#include <palpate/math.hpp>
+
 #include <cmath>
 
 namespace palpate::footprints {
@@ -24,20 +26,20 @@ double rest_of_mills(double z) {
 
 }  // namespace
 
-double normal_cdf(double z) { return 0.5 * std::erfc(-z * kRootHalf); }
+double normal_cdf(double z) { return 0.5 * math::erfc(-z * kRootHalf); }
 
 Probit probit(double z) {
   constexpr double kFar = -10.0;
   Probit out;
   const double log_density = -0.5 * z * z - kLogRootTwoPi;
   if (z > kFar) {
-    out.log = std::log(normal_cdf(z));
-    out.slope = std::exp(log_density - out.log);
+    out.log = math::log(normal_cdf(z));
+    out.slope = math::exp(log_density - out.log);
     out.weight = out.slope * (z + out.slope);
   } else {
     const double rest = rest_of_mills(z);
     const double ratio = -(1.0 + rest) / z;
-    out.log = log_density + std::log(ratio);
+    out.log = log_density + math::log(ratio);
     out.slope = 1.0 / ratio;
     // slope + z would cancel: 1 / ratio + z = (1 + z ratio) / ratio.
     out.weight = -out.slope * rest / ratio;

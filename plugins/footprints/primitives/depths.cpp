@@ -139,7 +139,7 @@ HWY_INLINE void take(const Piece& piece, SinglePiece& out) {
 
 /// As Steps::of how deep a word of places lies in a piece.
 HWY_INLINE void steps_in(const SinglePiece& piece, bool exact, float per_metre, const float* xs, const float* ys,
-                             LabelModel::Step* out) {
+                         LabelModel::Step* out) {
   Places8 x, y;
   std::memcpy(&x, xs, sizeof(x));
   std::memcpy(&y, ys, sizeof(y));
@@ -182,15 +182,14 @@ HWY_INLINE void deepest_in(const LabelModel::Step* const* rows, int count, int f
   }
 }
 
-void all_steps(const Piece& piece, bool exact, float per_metre, const float* xs, const float* ys,
-                              int count, LabelModel::Step* out) {
+void all_steps(const Piece& piece, bool exact, float per_metre, const float* xs, const float* ys, int count,
+               LabelModel::Step* out) {
   SinglePiece one;
   take(piece, one);
   for (int from = 0; from < count; from += kWord) steps_in(one, exact, per_metre, xs + from, ys + from, out + from);
 }
 
-void all_contained(const Form& form, const float* xs, const float* ys, int count,
-                                  LabelModel::Step* out) {
+void all_contained(const Form& form, const float* xs, const float* ys, int count, LabelModel::Step* out) {
   const SingleForm one = single(form);
   for (int from = 0; from < count; from += kWord) {
     Places8 x, y;
@@ -249,8 +248,8 @@ bool weigh_change(Places::Change& change, double most, const float* xs, const fl
   return true;
 }
 
-void carry(const Push& push, int count, const float* __restrict xs, const float* __restrict ys,
-                          float* __restrict to_x, float* __restrict to_y) {
+void carry(const Push& push, int count, const float* __restrict xs, const float* __restrict ys, float* __restrict to_x,
+           float* __restrict to_y) {
   const Push by = push;
   for (int i = 0; i < count; ++i) {
     const Target now = by.now(Target{xs[i], ys[i]});
@@ -261,7 +260,7 @@ void carry(const Push& push, int count, const float* __restrict xs, const float*
 
 /// Whether both rows hold any of those that are marked, or one of them does and not the other.
 HWY_INLINE bool any_held_by(bool both, const LabelModel::Step* one, const LabelModel::Step* other,
-                                const LabelModel::Step* marked, int length) {
+                            const LabelModel::Step* marked, int length) {
   Bytes of_one, of_other, which;
   Bytes out{};
   for (int from = 0; from < length; from += kRound) {
@@ -273,8 +272,7 @@ HWY_INLINE bool any_held_by(bool both, const LabelModel::Step* one, const LabelM
   return any(out);
 }
 
-void add_holder(const LabelModel::Step* __restrict row, std::uint16_t bit, int length,
-                               std::uint16_t* __restrict out) {
+void add_holder(const LabelModel::Step* __restrict row, std::uint16_t bit, int length, std::uint16_t* __restrict out) {
   for (int i = 0; i < length; ++i) out[i] = static_cast<std::uint16_t>(out[i] | (LabelModel::holds(row[i]) ? bit : 0));
 }
 
@@ -286,13 +284,13 @@ void deepest_of(const LabelModel::Step* const* rows, int count, int length, Labe
   }
 }
 
-bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other,
-                                      const LabelModel::Step* marked, int length) {
+bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
+                       int length) {
   return any_held_by(false, one, other, marked, length);
 }
 
-bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other,
-                                  const LabelModel::Step* marked, int length) {
+bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
+                   int length) {
   return any_held_by(true, one, other, marked, length);
 }
 
@@ -313,16 +311,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace palpate::footprints {
-
-HWY_EXPORT(all_steps);
-HWY_EXPORT(all_contained);
-HWY_EXPORT(weigh_change);
-HWY_EXPORT(carry);
-HWY_EXPORT(add_holder);
-HWY_EXPORT(deepest_of);
-HWY_EXPORT(differ_in_holding);
-HWY_EXPORT(hold_the_same);
-HWY_EXPORT(holds_any);
 
 namespace {
 
@@ -345,19 +333,21 @@ void Places::seen_after(const Push& push, Places& out) const {
   out.size_ = size_;
   out.xs_ = xs_;
   out.ys_ = ys_;
-  HWY_DYNAMIC_DISPATCH(carry)(push, push.before, xs_.data(), ys_.data(), out.xs_.data(), out.ys_.data());
+  PALPATE_DISPATCH(carry)(push, push.before, xs_.data(), ys_.data(), out.xs_.data(), out.ys_.data());
 }
 
 void Places::steps(const Piece& piece, const LabelModel& labels, LabelModel::Step* row) const {
-  HWY_DYNAMIC_DISPATCH(all_steps)(piece, !labels.blurs(), static_cast<float>(labels.steps().per_metre), xs_.data(), ys_.data(), length(),
-            row);
+  PALPATE_DISPATCH(all_steps)
+  (piece, !labels.blurs(), static_cast<float>(labels.steps().per_metre), xs_.data(), ys_.data(), length(), row);
 }
 
 void Places::contained(const Form& form, LabelModel::Step* row) const {
-  HWY_DYNAMIC_DISPATCH(all_contained)(form, xs_.data(), ys_.data(), (size_ + kWord - 1) / kWord * kWord, row);
+  PALPATE_DISPATCH(all_contained)(form, xs_.data(), ys_.data(), (size_ + kWord - 1) / kWord * kWord, row);
 }
 
-bool Places::weigh(Change& change, double most) const { return HWY_DYNAMIC_DISPATCH(weigh_change)(change, most, xs_.data(), ys_.data()); }
+bool Places::weigh(Change& change, double most) const {
+  return PALPATE_DISPATCH(weigh_change)(change, most, xs_.data(), ys_.data());
+}
 
 void Depths::grow_to(int length) {
   if (length <= length_) return;
@@ -376,25 +366,26 @@ std::uint16_t Depths::holders(std::size_t touch, int pieces) const {
 
 void holders_of(const LabelModel::Step* const* rows, int count, int length, std::uint16_t* out) {
   std::fill_n(out, length, std::uint16_t{0});
-  for (int i = 0; i < count; ++i) HWY_DYNAMIC_DISPATCH(add_holder)(rows[i], static_cast<std::uint16_t>(1U << i), length, out);
+  for (int i = 0; i < count; ++i)
+    PALPATE_DISPATCH(add_holder)(rows[i], static_cast<std::uint16_t>(1U << i), length, out);
 }
 
 void deepest_of(const LabelModel::Step* const* rows, int count, int length, LabelModel::Step* out) {
-  HWY_DYNAMIC_DISPATCH(deepest_of)(rows, count, length, out);
+  PALPATE_DISPATCH(deepest_of)(rows, count, length, out);
 }
 
 bool differ_in_holding(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
                        int length) {
-  return HWY_DYNAMIC_DISPATCH(differ_in_holding)(one, other, marked, length);
+  return PALPATE_DISPATCH(differ_in_holding)(one, other, marked, length);
 }
 
 bool hold_the_same(const LabelModel::Step* one, const LabelModel::Step* other, const LabelModel::Step* marked,
                    int length) {
-  return HWY_DYNAMIC_DISPATCH(hold_the_same)(one, other, marked, length);
+  return PALPATE_DISPATCH(hold_the_same)(one, other, marked, length);
 }
 
 bool holds_any(const LabelModel::Step* row, const LabelModel::Step* marked, int length) {
-  return HWY_DYNAMIC_DISPATCH(holds_any)(row, marked, length);
+  return PALPATE_DISPATCH(holds_any)(row, marked, length);
 }
 
 }  // namespace palpate::footprints

@@ -2,6 +2,8 @@
 // What outlines are made of: boxes and ellipses of all directions.
 #pragma once
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -56,7 +58,7 @@ struct Form {
   double extent() const;
 
   /// Turns it about its centre, radians from x to y.
-  void turn(double angle) { turn_by(std::cos(angle), std::sin(angle)); }
+  void turn(double angle) { turn_by(math::cos(angle), math::sin(angle)); }
   void turn_by(double c, double s) { std::tie(cosine, sine) = std::pair(cosine * c - sine * s, sine * c + cosine * s); }
 
   /// Names the longer axis `a` again, the shape stays.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "forms.hpp"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "primitives/forms.cpp"
 #include "math/highway.hpp"
@@ -19,10 +18,9 @@ HWY_INLINE float reach_of(float along, float across, float ellipse) {
   return ellipse > 0.0F ? round : box;
 }
 
-void mark(const Form& other, const float* __restrict xs, const float* __restrict ys,
-                         const float* __restrict as, const float* __restrict bs, const float* __restrict cosines,
-                         const float* __restrict sines, const float* __restrict ellipses, std::size_t count,
-                         std::uint8_t keeps, std::uint8_t* __restrict met) {
+void mark(const Form& other, const float* __restrict xs, const float* __restrict ys, const float* __restrict as,
+          const float* __restrict bs, const float* __restrict cosines, const float* __restrict sines,
+          const float* __restrict ellipses, std::size_t count, std::uint8_t keeps, std::uint8_t* __restrict met) {
   const SingleForm one = single(other);
   const float ellipse = one.box ? 0.0F : 1.0F;
   for (std::size_t from = 0; from < count; from += Forms::kRound) {
@@ -68,9 +66,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::footprints {
 
-HWY_EXPORT(mark);
-HWY_EXPORT(add_up);
-
 void Forms::clear() {
   count_ = 0;
   for (auto* numbers : {&x_, &y_, &a_, &b_, &cosine_, &sine_, &ellipse_}) numbers->clear();
@@ -92,14 +87,14 @@ void Forms::add(const Form& form) {
 
 void Forms::mark_met(const Form& other, bool too, std::vector<std::uint8_t>& met) const {
   met.resize(x_.size(), 0);
-  HWY_DYNAMIC_DISPATCH(mark)
+  PALPATE_DISPATCH(mark)
   (other, x_.data(), y_.data(), a_.data(), b_.data(), cosine_.data(), sine_.data(), ellipse_.data(), x_.size(),
-       too ? 1 : 0, met.data());
+   too ? 1 : 0, met.data());
 }
 
 void Forms::count_met(const std::vector<std::uint8_t>& met, std::vector<std::uint8_t>& times) {
   times.resize(met.size(), 0);
-  HWY_DYNAMIC_DISPATCH(add_up)(met.data(), met.size(), times.data());
+  PALPATE_DISPATCH(add_up)(met.data(), met.size(), times.data());
 }
 
 }  // namespace palpate::footprints

@@ -3,6 +3,8 @@
 
 #include "form.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,20 +13,20 @@
 namespace palpate::footprints {
 
 LabelModel::LabelModel(double mistaken, double lies, double blur)
-    : blurs_(blur > 0.0), mistake_(0.5 * std::log((1.0 - mistaken) / mistaken)) {
+    : blurs_(blur > 0.0), mistake_(0.5 * math::log((1.0 - mistaken) / mistaken)) {
   constexpr double kDeviations = 3.5;  // beyond, the place decides in one of some thousand touches
   // Without a blur a step is so short that no touch is within one of a rim.
   reach_ = kDeviations * std::max(blur, 1e-12);
   steps_per_metre_ = 0.5 * kSteps / reach_;
   for (int place = 0; place < kSteps + 2; ++place) {
     const double depth = ((place - 0.5) / (0.5 * kSteps) - 1.0) * kDeviations;
-    double inside = 0.5 * std::erfc(-depth / std::sqrt(2.0));
+    double inside = 0.5 * math::erfc(-depth / std::sqrt(2.0));
     if (place == kOutside) inside = 0.0;
     if (place == kInside) inside = 1.0;
     const double on = inside * (1.0 - mistaken) + (1.0 - inside) * lies;
     const double off = inside * mistaken + (1.0 - inside) * (1.0 - lies);
-    table_.push_back({off, std::log((1.0 - lies) / off), inside * mistaken / off});
-    table_.push_back({on, std::log((1.0 - mistaken) / on), (1.0 - inside) * lies / on});
+    table_.push_back({off, math::log((1.0 - lies) / off), inside * mistaken / off});
+    table_.push_back({on, math::log((1.0 - mistaken) / on), (1.0 - inside) * lies / on});
   }
 }
 
@@ -47,11 +49,11 @@ constexpr std::size_t kNeighbours = 8;
 /// The logarithm of the density of a height given one so far away, over that of any height. `slope`: standard
 /// deviation.
 double gain(const Touch& earlier, const Touch& later, double slope) {
-  const double distance = std::hypot(later.place.x - earlier.place.x, later.place.y - earlier.place.y);
-  const double scale = std::hypot(kStep, slope * distance);
+  const double distance = math::hypot(later.place.x - earlier.place.x, later.place.y - earlier.place.y);
+  const double scale = math::hypot(kStep, slope * distance);
   const double z = (later.height - earlier.height) / scale;
   // One in fifty is an error.
-  return std::log(0.98 * std::exp(-0.5 * z * z) / (scale * std::sqrt(2.0 * kPi)) * kRange + 0.02);
+  return math::log(0.98 * math::exp(-0.5 * z * z) / (scale * std::sqrt(2.0 * kPi)) * kRange + 0.02);
 }
 
 }  // namespace
@@ -70,7 +72,7 @@ void HeightModel::add(const Touch& touch, std::size_t number) {
     const Touch& earlier = touches_[nearest[i].second];
     neighbours.push_back({numbers_[nearest[i].second], gain(earlier, touch, kLevel), gain(earlier, touch, kSlope)});
   }
-  beside_.push_back(neighbours.empty() ? 0.0 : std::log(1.0 - kBeside + kBeside * std::exp(neighbours[0].level)));
+  beside_.push_back(neighbours.empty() ? 0.0 : math::log(1.0 - kBeside + kBeside * math::exp(neighbours[0].level)));
   touches_.push_back(touch);
   numbers_.push_back(number);
 }
@@ -99,8 +101,8 @@ double HeightModel::evidence(const std::vector<std::uint16_t>& holders, int piec
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(pieces); ++i) {
     const double most = std::max({level[i], slope[i], 0.0});
-    out += most + std::log(kLevels * std::exp(level[i] - most) + kSlopes * std::exp(slope[i] - most) +
-                           (1.0 - kLevels - kSlopes) * std::exp(-most));
+    out += most + math::log(kLevels * math::exp(level[i] - most) + kSlopes * math::exp(slope[i] - most) +
+                            (1.0 - kLevels - kSlopes) * math::exp(-most));
   }
   return out;
 }

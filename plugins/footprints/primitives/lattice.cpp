@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lattice.hpp"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "primitives/lattice.cpp"
 #include "math/highway.hpp"
@@ -33,8 +32,7 @@ void fill_rows(int rows, std::size_t columns, std::size_t words, std::uint64_t* 
   }
 }
 
-void count_bits(std::size_t places, std::size_t words, const std::uint64_t* bits,
-                               double* __restrict out) {
+void count_bits(std::size_t places, std::size_t words, const std::uint64_t* bits, double* __restrict out) {
   for (std::size_t place = 0; place < places; ++place) {
     int count = 0;
     for (std::size_t word = 0; word < words; ++word) count += __builtin_popcountll(*bits++);
@@ -88,32 +86,25 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::footprints {
 
-HWY_EXPORT(set_word);
-HWY_EXPORT(fill_rows);
-HWY_EXPORT(count_bits);
-HWY_EXPORT(cut_rows);
-
 void LatticeBits::fill() {
-  HWY_DYNAMIC_DISPATCH(fill_rows)
-  (lattice_.rows(), static_cast<std::size_t>(lattice_.columns()), words_, bits_.data());
+  PALPATE_DISPATCH(fill_rows)(lattice_.rows(), static_cast<std::size_t>(lattice_.columns()), words_, bits_.data());
 }
 
 void LatticeBits::count(VectorOut out) const {
   const auto columns = static_cast<std::size_t>(lattice_.columns());
   for (int row = 0; row < lattice_.rows(); ++row) {
     const std::size_t first = static_cast<std::size_t>(row) * (columns + 1) * words_;
-    HWY_DYNAMIC_DISPATCH(count_bits)
-    (columns, words_, bits_.data() + first,
-               out.data() + static_cast<std::ptrdiff_t>(row) * lattice_.columns());
+    PALPATE_DISPATCH(count_bits)
+    (columns, words_, bits_.data() + first, out.data() + static_cast<std::ptrdiff_t>(row) * lattice_.columns());
   }
 }
 
 void set_bits(const Cells& rows, const Ends& ends, int word, std::uint64_t* bits) {
-  HWY_DYNAMIC_DISPATCH(set_word)(rows, ends, word * 64, ~std::uint64_t{0}, bits);
+  PALPATE_DISPATCH(set_word)(rows, ends, word * 64, ~std::uint64_t{0}, bits);
 }
 
 void Cuts::rows(int begin, int end, int columns, int* begins, int* ends) const {
-  HWY_DYNAMIC_DISPATCH(cut_rows)(*this, begin, end, columns, begins, ends);
+  PALPATE_DISPATCH(cut_rows)(*this, begin, end, columns, begins, ends);
 }
 
 }  // namespace palpate::footprints

@@ -2,6 +2,7 @@
 #include "outline.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/math.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +24,12 @@ class Round {
   /// `apart` and `size` in [0, 1], even ones for even logarithms.
   void set(Form& form, double apart, double size) const {
     const double by = most_ * apart;
-    form.b = shortest_ * std::exp((range_ - by) * size);
-    form.a = form.b * std::exp(by);
+    form.b = shortest_ * math::exp((range_ - by) * size);
+    form.a = form.b * math::exp(by);
   }
   double density(const Form& form) const {
     if (form.a > kRatio * form.b) return 0.0;
-    const double by = std::log(form.a / form.b);
+    const double by = math::log(form.a / form.b);
     return by < most_ ? 1.0 / (most_ * (range_ - by)) : 0.0;
   }
 
@@ -68,13 +69,13 @@ void Piece::order_axes() {
 OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
   const Area& area = settings_.area;
   // What is longer than the diagonal never fits.
-  longest_ = 0.5 * std::min(settings_.largest, std::hypot(area.width, area.depth));
+  longest_ = 0.5 * std::min(settings_.largest, math::hypot(area.width, area.depth));
   // Which share of the forms that keep no bounds fits: summed up over a grid, fine enough for a thousandth.
   constexpr int kAxes = 48;
   constexpr int kTurns = 32;
   const double shortest = 0.5 * settings_.smallest;
-  range_ = std::log(longest_ / shortest);
-  const auto half_axis = [&](int i) { return shortest * std::pow(longest_ / shortest, (i + 0.5) / kAxes); };
+  range_ = math::log(longest_ / shortest);
+  const auto half_axis = [&](int i) { return shortest * math::pow(longest_ / shortest, (i + 0.5) / kAxes); };
   std::array<double, kAxes> halves{};
   for (int i = 0; i < kAxes; ++i) halves[static_cast<std::size_t>(i)] = half_axis(i);
   // About round ones are hardly other from one to the next.
@@ -119,12 +120,12 @@ OutlinePrior::OutlinePrior(const Settings& settings) : settings_(settings) {
 
 Form OutlinePrior::draw_form(double longest, Random& random) const {
   const double shortest = 0.5 * settings_.smallest;
-  const auto half_axis = [&] { return shortest * std::pow(longest / shortest, random.uniform()); };
+  const auto half_axis = [&] { return shortest * math::pow(longest / shortest, random.uniform()); };
   Form out;
   out.family = random.uniform() < settings_.ellipses ? Form::Family::ellipse : Form::Family::box;
   if (out.family == Form::Family::ellipse && random.uniform() < settings_.round) {
     const double apart = random.uniform();
-    Round(shortest, std::log(longest / shortest)).set(out, apart, random.uniform());
+    Round(shortest, math::log(longest / shortest)).set(out, apart, random.uniform());
   } else {
     std::tie(out.b, out.a) = std::minmax({half_axis(), half_axis()});
   }
@@ -192,8 +193,8 @@ Piece OutlinePrior::draw_piece_or_hollow(Random& random) const {
 Outline OutlinePrior::draw(Random& random) const {
   for (;;) {
     Outline out;
-    double time = -std::log(1.0 - random.uniform());
-    for (; time < settings_.expected && out.size() < settings_.most; time -= std::log(1.0 - random.uniform()))
+    double time = -math::log(1.0 - random.uniform());
+    for (; time < settings_.expected && out.size() < settings_.most; time -= math::log(1.0 - random.uniform()))
       out.add(draw_piece_or_hollow(random));
     if (time >= settings_.expected) return out;
   }
@@ -248,7 +249,7 @@ double OutlinePrior::density(const Piece& piece) const {
   const double of_hole = hole_centre_density(piece.form, piece.hole);
   if (!(of_hole > 0.0)) return 0.0;
   return of_hollow * (1.0 - settings_.fitted) * of_hole * family(piece.hole) *
-         axes(piece.hole, std::log(piece.form.a / (0.5 * settings_.smallest)));
+         axes(piece.hole, math::log(piece.form.a / (0.5 * settings_.smallest)));
 }
 
 }  // namespace palpate::footprints

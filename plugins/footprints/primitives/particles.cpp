@@ -3,6 +3,8 @@
 
 #include "exchange.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -101,7 +103,7 @@ double Particles::add(const Touch& touch) {
   depths_.grow_to(places_.length());
   if (touch.on) heights_.add(touch, number);
   const Unseen::Holding unseen = unseen_.holding(touch.place);
-  const double something_new = 1.0 - std::exp(-unseen.rate());
+  const double something_new = 1.0 - math::exp(-unseen.rate());
   std::vector<double> weights;
   weights.reserve(particles_.size());
   double sum = 0.0;
@@ -118,7 +120,7 @@ double Particles::add(const Touch& touch) {
     of_label += weight;
     if (touch.on && settings_.heights) {
       const double gain = evidence(particle.depths.rows().data(), particle.outline.size());
-      weight *= std::exp(gain - particle.heights);
+      weight *= math::exp(gain - particle.heights);
       particle.heights = gain;
     }
     weights.push_back(weight);
@@ -294,7 +296,7 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
   change.deepest = depths_.deepest();
   if (!seen_after(proposal.push).weigh(change, most)) return false;
   const double more = change.loss - change.loss_before;
-  if (more > allowed || (more > log_below(ratio) && more > std::log(ratio))) return false;
+  if (more > allowed || (more > log_below(ratio) && more > math::log(ratio))) return false;
   const int length = places_.length();
   bool held_otherwise = outline.size() != particle.outline.size();
   for (int k = 0; k < change.changes; ++k) {
@@ -309,7 +311,7 @@ bool Particles::weigh(Particle& particle, const Proposal& proposal, bool blurred
     // A piece that holds no touch of an object would be one that was not seen.
     if (!all_touched(change.rows.data(), outline.size())) return false;
     heights = evidence(change.rows.data(), outline.size());
-    if (heights < particle.heights && std::log(1.0 - random_.uniform()) > heights - particle.heights) return false;
+    if (heights < particle.heights && math::log(1.0 - random_.uniform()) > heights - particle.heights) return false;
   }
   particle.mistakes += change.mistakes;
   particle.labels += more;

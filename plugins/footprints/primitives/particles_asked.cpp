@@ -3,6 +3,8 @@
 #include "lattice.hpp"
 #include "particles.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -22,7 +24,7 @@ double Particles::mean_pieces() const {
   return sum / size();
 }
 
-double Particles::undiscovered_probability(double size) const { return 1.0 - std::exp(-unseen_.apart(size)); }
+double Particles::undiscovered_probability(double size) const { return 1.0 - math::exp(-unseen_.apart(size)); }
 
 void Particles::doubt(VectorOut out) const {
   out.setZero();
@@ -59,7 +61,7 @@ Particles::Pushed Particles::pushed() const {
     const Target then = particle.push.then({first.x, first.y});
     out.share += 1.0;
     out.before += particle.push.before;
-    out.shift += std::hypot(first.x - then.x, first.y - then.y);
+    out.shift += math::hypot(first.x - then.x, first.y - then.y);
   }
   if (!(out.share > 0.0)) return out;
   out.before /= out.share;
@@ -89,7 +91,9 @@ void Particles::probability(const PointsView& places, VectorOut out) {
         out(i) += particle.outline.contains(places(i, 0), places(i, 1)) ? 1.0 : 0.0;
     }
   }
-  out = (1.0 - (1.0 - out.array() / size()) * (-rates.array()).exp()).cwiseMax(0.0).cwiseMin(1.0);
+  rates = -rates;
+  math::exp(rates.data(), rates.size(), rates.data());  // that nothing undiscovered is there
+  out = (1.0 - (1.0 - out.array() / size()) * rates.array()).cwiseMax(0.0).cwiseMin(1.0);
 }
 
 void Particles::sample(const PointsView& places, int count, OutlineSample& out) const {

@@ -3,6 +3,8 @@
 
 #include "steps.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -101,7 +103,7 @@ double density_near(const std::vector<Target>& near, const Form& form) {
   for (const Target& place : near) {
     const double dx = (form.x - place.x) / kNear;
     const double dy = (form.y - place.y) / kNear;
-    sum += std::exp(-0.5 * (dx * dx + dy * dy));
+    sum += math::exp(-0.5 * (dx * dx + dy * dy));
   }
   return sum / (2.0 * kPi * kNear * kNear * static_cast<double>(near.size()));
 }

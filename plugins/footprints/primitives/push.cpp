@@ -4,6 +4,8 @@
 #include "proposals.hpp"
 #include "steps.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,7 +20,7 @@ constexpr double kTurned = 0.1;
 /// Of a push, up to a factor.
 double density(const Push& push) {
   const double angle = push.angle() / kTurned;
-  return std::exp(-0.5 * ((push.dx * push.dx + push.dy * push.dy) / (kPushed * kPushed) + angle * angle));
+  return math::exp(-0.5 * ((push.dx * push.dx + push.dy * push.dy) / (kPushed * kPushed) + angle * angle));
 }
 
 Push some_push(const Area& area, Random& random) {
@@ -28,8 +30,8 @@ Push some_push(const Area& area, Random& random) {
   out.dx = kPushed * normal(random);
   out.dy = kPushed * normal(random);
   const double angle = kTurned * normal(random);
-  out.cosine = std::cos(angle);
-  out.sine = std::sin(angle);
+  out.cosine = math::cos(angle);
+  out.sine = math::sin(angle);
   return out;
 }
 
@@ -68,8 +70,8 @@ void propose_push(Proposal& out, const OutlinePrior& prior, int touches, double 
       out.push.dx += 2.0 * kPushed * shift.one;
       out.push.dy += 2.0 * kPushed * shift.other;
       const double angle = from.angle() + 2.0 * kTurned * Steps(random).one;
-      out.push.cosine = std::cos(angle);
-      out.push.sine = std::sin(angle);
+      out.push.cosine = math::cos(angle);
+      out.push.sine = math::sin(angle);
       if (stays_before) {
         from.carry_then(out.outline);
         out.push.carry_now(out.outline);

@@ -4,6 +4,7 @@
 
 #include "outline.hpp"
 
+#include <palpate/math.hpp>
 #include <palpate/types.hpp>
 
 #include <cmath>
@@ -23,7 +24,7 @@ struct Push {
     return before == other.before && dx == other.dx && dy == other.dy && cosine == other.cosine && sine == other.sine &&
            origin_x == other.origin_x && origin_y == other.origin_y;
   }
-  double angle() const { return std::atan2(sine, cosine); }
+  double angle() const { return math::atan2(sine, cosine); }
 
   /// Where a place on the object, as it stood before, is now.
   Target now(const Target& then) const {

@@ -4,6 +4,8 @@
 #include "proposals.hpp"
 #include "steps.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,8 +23,8 @@ class About {
     out.family = random.uniform() < prior.settings().ellipses ? Form::Family::ellipse : Form::Family::box;
     out.x += shift_ * normal(random);
     out.y += shift_ * normal(random);
-    out.a *= std::exp(kSize * normal(random));
-    out.b *= std::exp(kSize * normal(random));
+    out.a *= math::exp(kSize * normal(random));
+    out.b *= math::exp(kSize * normal(random));
     out.turn(kAngle * normal(random));
     return out;
   }
@@ -31,11 +33,11 @@ class About {
   double density(const OutlinePrior& prior, const Form& form) const {
     const auto square = [](double x) { return x * x; };
     const double apart = square((form.x - fit_.x) / shift_) + square((form.y - fit_.y) / shift_) +
-                         square(std::log(form.a / fit_.a) / kSize) + square(std::log(form.b / fit_.b) / kSize);
+                         square(math::log(form.a / fit_.a) / kSize) + square(math::log(form.b / fit_.b) / kSize);
     return factor(prior, form) / (fit_.a * fit_.b) *
            turned(fit_.cosine * form.sine - fit_.sine * form.cosine,
                   fit_.cosine * form.cosine + fit_.sine * form.sine) *
-           std::exp(-0.5 * apart);
+           math::exp(-0.5 * apart);
   }
 
   // The parts of this density, for one about many forms. How much of it the family has, times a density's factor but
@@ -48,10 +50,10 @@ class About {
   }
   /// Of an angle that has such a sine and cosine: directions have no sign.
   static double turned(double sine, double cosine) {
-    const double angle = std::atan(sine / cosine);
+    const double angle = math::atan2(sine / cosine, 1.0);
     const double there = angle / kAngle;
     const double other_way = (std::abs(angle) - kPi) / kAngle;
-    return std::exp(-0.5 * there * there) + std::exp(-0.5 * other_way * other_way);
+    return math::exp(-0.5 * there * there) + math::exp(-0.5 * other_way * other_way);
   }
 
   static constexpr double kShift = 0.25;  // of the mean half axis
@@ -110,10 +112,10 @@ Form joined(const Form& first, const Form& second) {
   add(first, share);
   add(second, 1.0 - share);
   const double middle = 0.5 * (xx + yy);
-  const double spread = std::hypot(0.5 * (xx - yy), xy);
+  const double spread = math::hypot(0.5 * (xx - yy), xy);
   out.a = std::sqrt(3.0 * (middle + spread));
   out.b = std::sqrt(3.0 * std::max(middle - spread, 0.0));
-  out.turn(0.5 * std::atan2(2.0 * xy, xx - yy));
+  out.turn(0.5 * math::atan2(2.0 * xy, xx - yy));
   return out;
 }
 
@@ -126,7 +128,7 @@ class Pairs {
       for (int b = 0; b < a; ++b) {
         const Form& one = outline[a].form;
         const Form& other = outline[b].form;
-        wish(a, b) = wish(b, a) = std::exp(-std::hypot(one.x - other.x, one.y - other.y) / kClose);
+        wish(a, b) = wish(b, a) = math::exp(-math::hypot(one.x - other.x, one.y - other.y) / kClose);
       }
       wish(a, a) = 0.0;
     }
@@ -165,9 +167,9 @@ class Part {
   Part(const OutlinePrior& prior, const Form& whole, const Form& part)
       : whole_(whole),
         part_(part),
-        along_(std::log(part.a / whole.a)),
-        across_(std::log(part.b / whole.b)),
-        slender_(std::log(whole.a / whole.b)),
+        along_(math::log(part.a / whole.a)),
+        across_(math::log(part.b / whole.b)),
+        slender_(math::log(whole.a / whole.b)),
         factor_(About::factor(prior, part) / (whole.a * whole.b)) {
     const double sine = whole.cosine * part.sine - whole.sine * part.cosine;
     const double cosine = whole.cosine * part.cosine + whole.sine * part.sine;
@@ -204,7 +206,7 @@ class Part {
 double density_of_split(const OutlinePrior& prior, const Form& whole, const Form& first, const Form& second) {
   const Part one(prior, whole, first);
   const Part other(prior, whole, second);
-  static const std::array<double, 3> logs{std::log(kShares[0]), std::log(kShares[1]), std::log(kShares[2])};
+  static const std::array<double, 3> logs{math::log(kShares[0]), math::log(kShares[1]), math::log(kShares[2])};
   const auto log_of = [](int share) { return logs[static_cast<std::size_t>(share)]; };
   double out = 0.0;
   for (int way = 0; way < kCuts; ++way) {
@@ -212,7 +214,7 @@ double density_of_split(const OutlinePrior& prior, const Form& whole, const Form
     // What one part leaves to the other is a share, too.
     const Part::Density of_one = one.about(a, share_of(way), log_of(way % 3), is_along(way));
     const Part::Density of_other = other.about(b, 1.0 - share_of(way), log_of(2 - way % 3), is_along(way));
-    out += of_one.factor * of_other.factor * std::exp(-0.5 * (of_one.exponent + of_other.exponent));
+    out += of_one.factor * of_other.factor * math::exp(-0.5 * (of_one.exponent + of_other.exponent));
   }
   return 2.0 * out / kCuts;
 }

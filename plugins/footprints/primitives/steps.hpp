@@ -5,6 +5,7 @@
 
 #include "form.hpp"
 
+#include <palpate/math.hpp>
 #include <palpate/random.hpp>
 
 #include <array>
@@ -16,8 +17,8 @@ namespace palpate::footprints {
 
 /// Standard normal (Box and Muller 1958).
 inline double normal(Random& random) {
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
-  return radius * std::cos(2.0 * kPi * random.uniform());
+  const double radius = std::sqrt(-2.0 * math::log(1.0 - random.uniform()));
+  return radius * math::cos(2.0 * kPi * random.uniform());
 }
 
 /// What a move of a form steps by, all of one draw of 64 bits: as good as normal steps where steps are of all sizes
@@ -28,7 +29,7 @@ struct Steps {
     constexpr int kScales = 16;
     static const std::array<double, kScales> scales = [] {
       std::array<double, kScales> out{};
-      for (int i = 0; i < kScales; ++i) out[static_cast<std::size_t>(i)] = std::pow(1.0 / 20.0, i / (kScales - 1.0));
+      for (int i = 0; i < kScales; ++i) out[static_cast<std::size_t>(i)] = math::pow(1.0 / 20.0, i / (kScales - 1.0));
       return out;
     }();
     const std::uint64_t bits = random.bits();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "unseen.hpp"
 
+#include <palpate/math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -186,7 +188,7 @@ std::vector<Unseen::Drawn> Unseen::draw(std::size_t count, Random& random) const
   std::vector<Drawn> out;
   // Poisson: as many as fit into a unit of time.
   const double time = unit_ * static_cast<double>(sum);
-  const auto pause = [&] { return -std::log(1.0 - random.uniform()); };
+  const auto pause = [&] { return -math::log(1.0 - random.uniform()); };
   for (std::size_t one = 0; one < count; ++one) {
     for (double at = pause(); at < time; at += pause()) out.push_back({one, Holding::draw(reached, random)});
   }
