@@ -119,7 +119,7 @@ build() {
     fi
     printf '%s\n' "$installed" >"$folder/packages"
   fi
-  quiet=
+  shown=yes # progress and output of ninja, else only if it fails
   if [ $first = yes ]; then
     # Minutes of one core, and space, for everything, for ./check, and for the first ./palpate run.
     case "$preset $*" in
@@ -137,8 +137,14 @@ build() {
     if [ "${steps:-0}" -ge 10 ]; then
       say "building the parts that this command needs: $steps steps, $(minutes $((steps / 12)))"
     else
-      quiet=--quiet
+      shown=no
     fi
   fi
-  ninja -C "$folder" "$@" $quiet >&2 || { say "building failed"; exit 1; }
+  status=0
+  if [ $shown = yes ]; then
+    ninja -C "$folder" "$@" >&2 || status=1
+  else
+    ninja -C "$folder" "$@" >"$folder.log" 2>&1 || { status=1; cat "$folder.log" >&2; }
+  fi
+  [ $status = 0 ] || { say "building failed"; exit 1; }
 }

@@ -105,8 +105,8 @@ TEST_F(SetUp, BuildsWhatTheCommandTakesAndThenWhatThatNames) {
   const Ended ended = script_ended("palpate", "run a.yaml");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(text_of(here() / "built"),
-            "palpate palpate_build_stamp \npalpate_kernel_sum --quiet \npalpate_kernel_rbf "
-            "palpate_kernel_sum --quiet\n");
+            "palpate palpate_build_stamp \npalpate_kernel_sum  \npalpate_kernel_rbf "
+            "palpate_kernel_sum \n");
 }
 
 TEST_F(SetUp, ACompletionNeitherWaitsNorBuilds) {
