@@ -283,26 +283,4 @@ if [ "$mode" = write ] && [ "$judged" = 0 ]; then
   cp "$work/table" "$table"
   cp "$work/seeds" "$seeds_file"
 fi
-
-# The last commit that made a recorded value worse, or took it from other seeds, has its reason beside it. No line goes.
-cd "$root"
-last=$(git log -1 --format=%H -- tests/benchmark/accuracy.csv 2>/dev/null || true)
-if [ "$mode" = check ] && [ -n "$last" ] && git show "$last~1:tests/benchmark/accuracy.csv" >"$work/before.csv" 2>/dev/null; then
-  git show "$last:tests/benchmark/accuracy.csv" | awk -F, -v last="$last" '
-    function text(line) { sub(/^[^,]*,[^,]*,[^,]*,[^,]*,[^,]*,[^,]*,/, "", line); return line }
-    function fail(what) { print "accuracy: " last " " what >"/dev/stderr"; bad = 1 }
-    { key = $1 "," $2 "," $3 }
-    NR == FNR { seeds[key] = $4; value[key] = $5; why[key] = text($0); next }
-    !(key in value) || FNR == 1 { delete value[key]; next }
-    seeds[key] > 0 {
-      worse = ($3 == "iou" ? value[key] - $5 : $5 - value[key]) > 1e-7 * value[key]
-      if ((worse || $4 != seeds[key]) && (text($0) == "" || text($0) == why[key]))
-        fail("made " key (worse ? " worse, " value[key] " -> " $5 : " a value of " seeds[key] " -> " $4 " seeds") ", without a reason beside it")
-    }
-    { delete value[key] }
-    END {
-      for (key in value) fail("deleted the line " key ": give it 0 seeds and a reason")
-      exit bad
-    }' "$work/before.csv" - || judged=1
-fi
 exit "$judged"

@@ -174,6 +174,9 @@ words() {
       if ($0 ~ /^ *#/) finish() }
     END { finish(); report(); if (mode == "what") print "" }' "$@"
 }
+# No folder grows beyond its ceiling.
+sh tests/size.sh 2>&1 >/dev/null | sed 's/^size.sh: //' >"$found/size" || true
+
 pages=$(git ls-files '*.md')
 # shellcheck disable=SC2086 # the names are to be split
 words long $pages >"$found/sentences"
@@ -210,11 +213,12 @@ each "$(echo "$changed" | grep '^framework/.*\.hpp$')" \
 # What ROS generates is there only where it was built.
 sources=$(echo "$changed" | grep '\.cpp$' | grep -vE '/(baxter|fake_baxter|fuzz|bad_plugins)/' || true)
 if [ -n "$sources" ] && of14 clang-tidy; then
-  cmake --preset habits >/dev/null
+  # Every file alone: the files of a unity build have no entries of their own.
+  cmake --preset release -B build/tidy -DPALPATE_BATCH=1 -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
   [ "$(echo "$sources" | wc -l)" -le "$most" ] ||
     echo "habits: clang-tidy reads $most of $(echo "$sources" | wc -l) changed files, the rest with --all" >&2
   each "$(echo "$sources" | head -n "$most")" \
-    "clang-tidy --quiet --checks='$analyzer' -p build/habits FILE | grep -E '(error|warning):' | sed 's|^$PWD/||'"
+    "clang-tidy --quiet --checks='$analyzer' -p build/tidy FILE | grep -E '(error|warning):' | sed 's|^$PWD/||'"
 fi
 
 cat "$found"/* | sort -u >&2

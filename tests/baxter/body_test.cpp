@@ -15,7 +15,6 @@ using fake_baxter::Body;
 using fake_baxter::parse_fault;
 using fake_baxter::parse_trigger;
 using fake_baxter::Said;
-using ::testing::HasSubstr;
 using State = baxter::StateReading;
 
 TEST(FakeBody, StandsStraightDownAboveTheMiddle) {
@@ -24,14 +23,6 @@ TEST(FakeBody, StandsStraightDownAboveTheMiddle) {
   const Eigen::Vector3d along = bench.tool.tip(bench.body.joints()).rotation * Eigen::Vector3d::UnitZ();
   EXPECT_LT((along + Eigen::Vector3d::UnitZ()).norm(), 1e-4);
   EXPECT_LT(baxter::beyond_limits(bench.body.joints(), 0.1), 0);
-}
-
-TEST(FakeBody, StandsWhereItIsTold) {
-  const auto at = [](const Eigen::Vector3d& place) {
-    return BodyBench(kBare, "{}", [&](auto& o) { o.start_at = place; }).body.tip();
-  };
-  EXPECT_LT((at({0.02, 0.2, 0.05}) - Eigen::Vector3d(0.02, 0.2, 0.05)).norm(), 2e-6);
-  EXPECT_THROW(at({2.0, 0.2, 0.05}), Error);
 }
 
 TEST(FakeBody, TrailsItsSetPointInEveryJointByAThirdOfASecondTimesTheSpeed) {
@@ -79,14 +70,6 @@ TEST(FakeBody, HoldsWhenCommandsStopFor200Milliseconds) {
   bench.body.command(bench.target);
   bench.wait(0.9);
   EXPECT_EQ(bench.body.mode(), Body::Mode::following);
-}
-
-TEST(FakeBody, KeepsTheTimeoutThatAnotherProgramLeft) {
-  BodyBench bench(kBare, "{}", [](auto& o) { o.command_timeout = 0.02; });
-  bench.hold(0.1);
-  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
-  bench.wait(0.02);
-  EXPECT_EQ(bench.body.mode(), Body::Mode::timed_out);
 }
 
 TEST(FakeBody, PressesByItsStiffnessTimesTheDepth) {
@@ -166,38 +149,6 @@ TEST(FakeBody, LeftPressingItIsHeldAgainAndAgainAndALittleWayUpEachTimeSetsItFre
   EXPECT_NEAR(bench.body.tip().z(), 0.05, 1e-4);
 }
 
-TEST(FakeBody, HasNoiseAndABiasThatDependsOnThePose) {
-  BodyBench bench;
-  const auto mean = [&] {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double squares = 0.0;
-    for (int i = 0; i < 1000; ++i) {
-      bench.hold(Body::kPeriod);
-      const Eigen::Vector3d force = bench.force();
-      sum += force;
-      squares += force.z() * force.z();
-    }
-    const double z = sum.z() / 1000;
-    EXPECT_NEAR(std::sqrt(squares / 1000 - z * z), 1.5, 0.15);
-    return Eigen::Vector3d(sum / 1000);
-  };
-  const Eigen::Vector3d here = mean();
-  EXPECT_GT(here.norm(), 0.5);
-  bench.lead({0.02, 0.2, 0.12}, 0.2);
-  bench.hold(2.0);
-  EXPECT_GT((mean() - here).norm(), 0.2);
-}
-
-TEST(FakeBody, IsTheSameForEqualSeedsAndAnotherForOthers) {
-  BodyBench one;
-  BodyBench two;
-  BodyBench other(kObjectI, kLikeBaxter, [](auto& o) { o.seed = 2; });
-  for (BodyBench* bench : {&one, &two, &other}) bench->lead({0.1, 0.1, 0.12}, 0.1);
-  EXPECT_EQ(one.force(), two.force());
-  EXPECT_EQ(one.body.joints(), two.body.joints());
-  EXPECT_NE(one.force(), other.force());
-}
-
 TEST(FakeBody, AnEmergencyStopNeedsItsButtonReleasedThenAResetAndThenEnable) {
   BodyBench bench;
   bench.inject("estop=1");
@@ -260,14 +211,6 @@ TEST(FakeBody, IsReadyOnlyWhileItIsEnabledAndStoppedByAnythingButItsButtonDoesNo
   bench.lead({0.115, 0.115, 0.10}, 0.05);
   bench.hold(2.0);
   EXPECT_NEAR(bench.body.tip().z(), 0.10, 1e-4) << "a complaint stops nothing";
-}
-
-TEST(FakeBody, TuckedItRefusesToBeEnabled) {
-  BodyBench bench;
-  bench.inject("tucked");
-  EXPECT_LT(bench.body.said().joints->position(1), -1.6);
-  bench.body.enable(true);
-  EXPECT_FALSE(bench.state().enabled);
 }
 
 TEST(FakeBody, AFaultBeginsOnTheDescentAndAtTheHeightAskedFor) {
@@ -341,49 +284,6 @@ TEST(FakeBody, OfWhichTheToolIsCaughtPullsByItsSpringAndTheArmsAndIsHeldByItsFir
   bench.body.release();
   bench.hold(3.0);
   EXPECT_EQ(bench.body.pressing(), 0.0);
-}
-
-TEST(FakeBody, RenewsASlowForceInEveryFifthMessage) {
-  BodyBench bench;
-  bench.inject("slow_force");
-  int renewed = 0;
-  Eigen::Vector3d before = bench.force();
-  for (int i = 0; i < 100; ++i) {
-    bench.hold(Body::kPeriod);
-    renewed += bench.force() != before ? 1 : 0;
-    before = bench.force();
-  }
-  EXPECT_EQ(renewed, 20);
-}
-
-TEST(FakeBody, DroppedCommandsLetTheArmStopAndGoOnWhenTheyAreHeardAgain) {
-  BodyBench bench;
-  bench.inject("drop_commands=1");
-  bench.hold(0.9);
-  EXPECT_EQ(bench.body.mode(), Body::Mode::timed_out);
-  bench.hold(0.2);
-  EXPECT_EQ(bench.body.mode(), Body::Mode::following);
-}
-
-TEST(FakeBody, FaultsAreNamedOrRefusedInOneLine) {
-  const auto refusal = [](const auto& parse, const std::string& words) {
-    try {
-      parse(words);
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("taken");
-  };
-  EXPECT_THAT(refusal(parse_fault, "estopp"), HasSubstr("there is no fault 'estopp', there are estop, stop, error,"));
-  EXPECT_THAT(refusal(parse_fault, "bias=much"), HasSubstr("bias takes a number, not 'much'"));
-  EXPECT_THAT(refusal(parse_fault, "error=1"), HasSubstr("error takes no value"));
-  EXPECT_THAT(refusal(parse_fault, "no_data=nothing"), HasSubstr("endpoint, joints, state, collision or avoidance"));
-  EXPECT_EQ(refusal(parse_fault, "software=1.1.1"), "taken");
-  for (const char* at : {"", "later", "0:8cm", "1:", "1.5:8cm", "1:8", "x:8cm"}) {
-    EXPECT_NE(refusal(parse_trigger, at), "taken") << at;
-  }
-  EXPECT_EQ(parse_trigger("3:8cm").descent, 3);
-  EXPECT_DOUBLE_EQ(parse_trigger("3:8cm").height, 0.08);
 }
 
 }  // namespace

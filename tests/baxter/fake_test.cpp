@@ -22,10 +22,7 @@
 namespace palpate::test {
 namespace {
 
-using ::testing::Contains;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 /// The lines of what the probe heard: "sender topic size count rate", by the first three.
 struct Heard {
@@ -124,16 +121,6 @@ TEST(FakeRobot, ASecondNodeMayClaimToBeTheRobotAndOldFirmwareIsNotUnderstood) {
   EXPECT_EQ(streams.count("/realtime_loop /robot/joint_states 17"), 1U);
 }
 
-TEST(FakeRobot, TellsOfItsOptionsAndFaults) {
-  const Ended ended = run_program({fake_baxter_file().string(), "--help"}, ".");
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  for (const char* word : {"--speed-ratio", "--command-timeout", "--gripper", "--tool-mass", "  complaint ", "  stop ",
-                           "  slow_endpoint ", "  bursts ", "  stall ", "  spikes ", "  moving_force ", "  avoid ",
-                           "  second_sender ", "  slow_force ", "  caught "}) {
-    EXPECT_THAT(ended.out, HasSubstr(word));
-  }
-}
-
 TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
   const auto refusal = [](std::vector<std::string> words) {
     words.insert(words.begin(), fake_baxter_file().string());
@@ -149,18 +136,6 @@ TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
   EXPECT_THAT(refusal(robot_words({"--arm", "rubber"})), HasSubstr("--arm: "));
   EXPECT_THAT(refusal(robot_words({"--start-at", "0.1,0.1"})), HasSubstr("--start-at: "));
   EXPECT_THAT(refusal({robot_words().front()}), HasSubstr("add backend=fake_baxter"));
-}
-
-TEST(FakeRobot, EndsWhenItIsToldAndUnregistersItsNodes) {
-  RobotLab lab(robot_words());
-  EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop"));
-  const Ended ended = lab.end_robot();
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(lab.nodes(), IsEmpty());
-  const std::vector<Cells> trace = lab.trace();
-  ASSERT_FALSE(trace.empty());
-  EXPECT_EQ(trace.back().at("mode"), "timed_out");
-  EXPECT_NEAR(std::stod(trace.back().at("z")), 0.165, 1e-4);
 }
 
 /// The processes that have this one for a parent.

@@ -106,51 +106,6 @@ TEST(TheArmWithSprings, TrailsItsSetPointInFlightAsARealOne) {
   }
 }
 
-TEST(TheArmWithSprings, FeelsWhatItPressesWith) {
-  for (const double stiffness : {1500.0, 20000.0}) {
-    BodyBench bench = bare(kSprings, stiffness, 0.01);
-    bench.hold(2.0);
-    const double zero = bench.body.arm().felt.z();
-    EXPECT_NEAR(zero, 0.0, 0.01);
-    bench.lead({kMiddle.x(), kMiddle.y(), -0.008}, 0.01);
-    bench.hold(3.0);
-    EXPECT_GT(bench.body.pressing(), 5.0);
-    EXPECT_NEAR(bench.body.arm().felt.z(), bench.body.pressing(), 0.02 * bench.body.pressing());
-    EXPECT_NEAR(bench.body.tip().z(), -bench.body.pressing() / stiffness, 1e-6);
-  }
-}
-
-TEST(TheArmWithSprings, TakesTheFrictionOfItsJointsForAForceWhileItMovesAndAfter) {
-  const auto felt = [](double friction) {
-    BodyBench bench = bare({Type::springs, friction, 1e-3});
-    const auto go = [&](double height) {
-      bench.lead({kMiddle.x(), kMiddle.y(), height}, 0.03);
-      const double moving = bench.body.arm().felt.z();
-      bench.hold(2.0);
-      return std::make_pair(moving, bench.body.arm().felt.z());
-    };
-    const auto down = go(0.08);
-    const auto up = go(0.15);
-    EXPECT_EQ(bench.body.pressing(), 0.0);
-    return std::make_pair(down.first - up.first, down.second - up.second);
-  };
-  const auto smooth = felt(0.0);
-  EXPECT_LT(std::abs(smooth.first), 1.0);
-  EXPECT_LT(std::abs(smooth.second), 0.05);
-  const auto rough = felt(0.4);
-  EXPECT_GT(rough.first, 2.0);
-  EXPECT_GT(rough.second, 1.0) << "joints that stick keep what they have been turned with";
-}
-
-TEST(TheArmWithSprings, SticksWithoutCreeping) {
-  BodyBench bench = bare({Type::springs, 0.4, 1e-3});
-  bench.lead({kMiddle.x(), kMiddle.y(), 0.08}, 0.03);
-  bench.hold(5.0);
-  const Joints rested = bench.body.joints();
-  bench.hold(5.0);
-  EXPECT_LT((bench.body.joints() - rested).cwiseAbs().maxCoeff(), 1e-9);
-}
-
 /// A touch that is guarded by the true force: down until it is above 6 N, then the measured joints.
 struct Touch {
   double peak = 0.0;    ///< N

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a tap of the simulator costs and how far off it is, without effects and with each of them. Built a second time
-// over a simulator that has the effects compiled out (tap_cost_without_effects): a test compares the instructions that
-// both need for a perfect tap.
+// The cost and error of a simulated tap, without effects and with each of them. tests/instructions.sh counts the
+// instructions of perfect taps: effects that a scene does not name cost nothing.
 //     tap_cost                  the table
 //     tap_cost --perfect N      N taps of object I without effects, nothing else
 #include "scene/scene_options.hpp"

@@ -169,5 +169,18 @@ TEST(ShippedKernel, HasItsFormulaInThisFile) {
   }
 }
 
+TEST(Compositions, NameTheirParametersByTheirOptions) {
+  const auto kernel = make<Kernel>(contract_host(), "sum",
+                                   "{kernels: [{type: scale, factor: 2, kernel: {type: rational_quadratic, alpha: 3}}, "
+                                   "{type: rbf, length_scale: 2 cm, length_scale_y: 1 cm}]}");
+  std::string text;
+  for (const KernelParameter& one : kernel->parameters()) {
+    text += one.name + "=" + std::to_string(one.value) + (one.unit == Unit::metre ? "m " : " ");
+  }
+  EXPECT_EQ(text,
+            "kernels.0.factor=2.000000 kernels.0.kernel.length_scale=0.017000m kernels.0.kernel.alpha=3.000000 "
+            "kernels.1.length_scale=0.020000m kernels.1.length_scale_y=0.010000m ");
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -5,7 +5,6 @@
 #include "record/recording.hpp"
 #include "report/browser.hpp"
 #include "report/history.hpp"
-#include "support/parts.hpp"
 #include "support/programs.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +16,6 @@ namespace palpate {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr int kTaps = 10;
 
@@ -93,34 +91,6 @@ TEST_P(AnySidePage, DrawsTheSurfaceAfterEachTapAndTheTapsAsArrows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Browser, AnySidePage, ::testing::Bool(), test::webgl_name);
-
-class AnySideLive : public test::Reports {};
-
-TEST_F(AnySideLive, ThePageGrowsWithItsRun) {
-  const fs::path directory = touched(folder_);
-  const std::string record = test::text_of(directory / "record.jsonl");
-  const std::string first = test::record_until(record, 6);
-  const fs::path rest = folder_.path() / "rest";
-  write_file(rest, test::record_until(record, kTaps).substr(first.size()));
-  fs::remove(directory / "summary.json");
-  write_file(directory / "record.jsonl", first);
-  test::Child server({test::program_file().string(), "watch", directory.string()}, folder_.path());
-  ASSERT_TRUE(test::eventually([&] { return server.out().find('\n') != std::string::npos || !server.running(); }));
-  const std::string line = server.out();
-  const Browsed live =
-      test::browse(line.substr(0, line.find('\n')),
-                   {drawn(6), "window.mark = 1",
-                    fmt::format("shell cat {} >> {}", rest.string(), (directory / "record.jsonl").string()),
-                    drawn(kTaps), "return window.mark", kMesh},
-                   true);
-  ASSERT_EQ(live.trouble, "");
-  EXPECT_THAT(live.severe, IsEmpty());
-  report(directory);
-  const Browsed still = test::browse(directory / "report.html", {drawn(kTaps), kMesh}, true);
-  ASSERT_EQ(still.trouble, "");
-  EXPECT_EQ(live.values.at(1), 1);
-  EXPECT_EQ(live.values.back(), still.values.back());
-}
 
 }  // namespace
 }  // namespace palpate

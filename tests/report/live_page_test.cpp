@@ -54,8 +54,6 @@ class LivePage : public test::Reports {
 const std::string kMark = "window.mark = 'still here'; return window.mark";
 const std::string kMarked = "return window.mark";
 const std::string kAt = "return [document.getElementById('at').textContent, document.getElementById('slider').max]";
-const std::string kMaps =
-    "return ['map_u', 'map_w', 'map_e'].map((id) => document.getElementById(id).data[0].z.flat())";
 
 std::string slide(int tap) {
   return fmt::format(
@@ -82,61 +80,6 @@ TEST_F(LivePage, ShowsATapThatIsRecordedWithoutBeingLoadedAgainAndStaysWhereItsR
   EXPECT_EQ(seen.values.at(8), "live");
 }
 
-TEST_F(LivePage, HasTheMapsAndCurvesOfTheReportWhenTheRunHasEnded) {
-  const std::string url = serve(under_way(3));
-  const std::string end = fmt::format("shell cp {} {}", (whole_ / "record.jsonl").string(), directory_.string());
-  const std::string curves =
-      "return [...document.querySelectorAll('#curves .plot')].map((plot) => plot.data.map((trace) => trace.y))";
-  const std::string words = "return document.getElementById('standing').textContent";
-  const std::vector<std::string> looks{
-      kMaps, curves, words, slide(9), drawn(9), kMaps, "return document.getElementById('story').textContent"};
-  std::vector<std::string> steps{drawn(3),
-                                 grow(4, 11),
-                                 drawn(11),
-                                 grow(12, 17),
-                                 drawn(17),
-                                 end,
-                                 "await document.getElementById('standing').textContent.includes('stopped by')"};
-  steps.insert(steps.end(), looks.begin(), looks.end());
-  const Browsed live = test::browse(url, steps, false);
-  ASSERT_EQ(live.trouble, "");
-  EXPECT_THAT(live.severe, IsEmpty());
-  report(directory_);
-  steps = {drawn(17)};
-  steps.insert(steps.end(), looks.begin(), looks.end());
-  const Browsed still = test::browse(directory_ / "report.html", steps, false);
-  ASSERT_EQ(still.trouble, "");
-  ASSERT_EQ(live.values.size(), still.values.size());
-  for (const std::size_t same : {1U, 2U, 5U}) EXPECT_EQ(live.values.at(same), still.values.at(same)) << same;
-  // Maps are rounded to 1 / 131070 of their range, that of the moments that came together.
-  for (const std::size_t maps : {0U, 4U}) {
-    for (std::size_t map = 0; map < 3; ++map) {
-      const auto one = live.values.at(maps).at(map).get<std::vector<double>>();
-      const auto other = still.values.at(maps).at(map).get<std::vector<double>>();
-      ASSERT_EQ(one.size(), other.size());
-      double worst = 0.0;
-      for (std::size_t i = 0; i < one.size(); ++i) worst = std::max(worst, std::abs(one[i] - other[i]));
-      EXPECT_LT(worst, 5.0 / 65535.0) << map;
-    }
-  }
-}
-
-TEST_F(LivePage, GoesOnWhereTheRunWasKilledAndCarriedOnWithoutBeingLoadedAgain) {
-  const fs::path directory = under_way(4);
-  const std::string url = serve(directory);
-  const std::string resume =
-      fmt::format("shell {} resume {} --quiet --force", test::program_file().string(), directory.string());
-  const Browsed seen =
-      test::browse(url,
-                   {drawn(4), kMark, "shell printf '{\"tap\": 5, \"ha' >> " + (directory / "record.jsonl").string(),
-                    resume, drawn(17), kMarked, kAt},
-                   false);
-  ASSERT_EQ(seen.trouble, "");
-  EXPECT_THAT(seen.severe, IsEmpty());
-  EXPECT_EQ(seen.values.at(1), "still here");
-  EXPECT_EQ(seen.values.at(2), (json{"after tap 17 of 17", "17"}));
-}
-
 TEST_F(LivePage, BeginsWithTheFirstTapAndSaysWhenItsServerIsGone) {
   const std::string url = serve(under_way(0));
   const Browsed seen = test::browse(
@@ -149,40 +92,6 @@ TEST_F(LivePage, BeginsWithTheFirstTapAndSaysWhenItsServerIsGone) {
   EXPECT_EQ(seen.values.at(0), (json{"after tap 2 of 2", "2"}));
   EXPECT_EQ(seen.values.at(1), (json{"after tap 1 of 2", "2"})) << "what was shown can be read on";
   EXPECT_EQ(server_->wait().status, 0);
-}
-
-TEST_F(LivePage, OfASweepFillsUpAndLeadsToThePagesOfItsJobs) {
-  const test::Ended swept = test::palpate({"sweep", paper_, "seed=range(0,4)", "taps=5", "--quiet"}, folder_.path());
-  ASSERT_EQ(swept.status, 0) << swept.err;
-  const fs::path directory = test::only_run(folder_.path() / "runs");
-  const std::vector<Cells> jobs = csv_rows(text_of(directory / "results.csv"));
-  const auto record = [&](std::size_t job) { return directory / "jobs" / jobs.at(job).at("id") / "record.jsonl"; };
-  for (std::size_t job = 1; job < 4; ++job) {
-    fs::copy_file(record(job), folder_.path() / std::to_string(job));
-    test::forget_end(record(job).parent_path());
-  }
-  const auto ends = [&](std::size_t job) {
-    return fmt::format("shell mv {} {}", (folder_.path() / std::to_string(job)).string(), record(job).string());
-  };
-  const std::string url = serve(directory);
-  const auto done = [](int count) {
-    return fmt::format("await document.getElementById('standing').textContent.includes('{}done')", count);
-  };
-  const std::string rows = "return [...document.querySelectorAll('#jobs tr.done')].length";
-  const Browsed seen = test::browse(
-      url,
-      {drawn(1), kMark, done(1), rows,
-       "const s = document.getElementById('metric'); s.value = 'taps'; s.dispatchEvent(new Event('change')); return 1",
-       ends(1), done(2), ends(2), ends(3), done(4), rows, kMarked, "return document.getElementById('metric').value",
-       "document.querySelector('#jobs a').click()", "await location.pathname.includes('/jobs/')", drawn(5), kAt},
-      false);
-  ASSERT_EQ(seen.trouble, "");
-  EXPECT_THAT(seen.severe, IsEmpty());
-  EXPECT_EQ(seen.values.at(1), 1);
-  EXPECT_EQ(seen.values.at(3), 4);
-  EXPECT_EQ(seen.values.at(4), "still here");
-  EXPECT_EQ(seen.values.at(5), "taps") << "what its reader chose";
-  EXPECT_EQ(seen.values.back(), (json{"after tap 5 of 5", "5"}));
 }
 
 TEST_F(LivePage, OfAFileOrAServerPlaysItsTapsOneByOne) {

@@ -8,7 +8,6 @@
 namespace palpate {
 namespace {
 
-using ::testing::Contains;
 using ::testing::Not;
 
 class Looks : public test::SweepPages {
@@ -82,25 +81,6 @@ TEST_P(Looks, OfARunAreDarkWithTheSystemUntilSomebodySwitchesAndThePageRemembers
   expect_light(shown.at(5));
 }
 
-TEST_P(Looks, SwitchAlsoWhereNothingMayBeKept) {
-  const fs::path directory = run_with_page({"taps=4", "candidates.count=12"});
-  const std::string forbid = "devtools Page.addScriptToEvaluateOnNewDocument " +
-                             json{{"source",
-                                   "Object.defineProperty(window, 'localStorage', {get() { throw new "
-                                   "DOMException('no', 'SecurityError'); }})"}}
-                                 .dump();
-  const Browsed seen = browse(directory, {forbid, "reload", drawn(4), kWatchPlots,
-                                          "try { localStorage; return 'kept' } catch { return 'forbidden' }",
-                                          kClickTheme, plots_are("dark"), kLightness, "reload", drawn(4), kLightness});
-  std::vector<json> shown;
-  std::copy_if(seen.values.begin(), seen.values.end(), std::back_inserter(shown),
-               [](const json& one) { return !one.is_null(); });
-  ASSERT_EQ(shown.size(), 3U);
-  EXPECT_EQ(shown.at(0), "forbidden");
-  expect_dark(shown.at(1));
-  expect_light(shown.at(2));
-}
-
 const char* const kPhone =
     R"(devtools Emulation.setDeviceMetricsOverride {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": true})";
 /// The width of the page, and of the widest plot that does not scroll within a frame of its own.
@@ -135,16 +115,6 @@ TEST_P(Looks, OfARunOnAPhoneAreOneColumnWithTheSurfaceFirst) {
   EXPECT_LT(tops.at("facts"), tops.at("maps"));
   EXPECT_LT(tops.at("bottom"), 740) << "on the first screen";
   for (const json& left : seen.values.at(2)) EXPECT_EQ(left, seen.values.at(2).at(0)) << "one column";
-}
-
-TEST_P(Looks, OfASweepOnAPhoneFitItsWidth) {
-  const fs::path directory = swept({paper_, "acquisition=weighted,uncertainty", "kernel.length_scale=1.7cm,3cm",
-                                    "seed=range(0,2)", "taps=5", "candidates.count=12"});
-  report(directory);
-  const Browsed seen = browse(directory, {kPhone, "reload", drawn(1), kWidths});
-  EXPECT_EQ(seen.values.at(0).at(0), 360);
-  EXPECT_LE(seen.values.at(0).at(1), 360);
-  EXPECT_LE(seen.values.at(0).at(2), 360);
 }
 
 TEST_P(Looks, OfASweepAreDarkAndItsJobsLinkToNothingButPagesThatAreThere) {
@@ -212,21 +182,6 @@ const std::string kPanels =
     "const text = (s) => [...document.querySelectorAll(s)].map((e) => e.textContent); return [text('figcaption'), "
     "text('.constants').join(' ')]";
 
-TEST_P(Looks, WhatNeverChangesIsALineAndNoPanel) {
-  const fs::path fixed = run_with_page({"seed=4", "taps=8", "candidates.count=16"});
-  const Browsed seen = browse(fixed, {drawn(8), kPanels});
-  const auto titles = seen.values.at(0).at(0).get<std::vector<std::string>>();
-  const auto words = seen.values.at(0).at(1).get<std::string>();
-  EXPECT_THAT(titles, Contains("Error of the surface (rms)"));
-  EXPECT_THAT(titles, Not(Contains(HasSubstr("Hyperparameters"))));
-  EXPECT_THAT(words, HasSubstr("Hyperparameters of the height GP: signal 1, noise 0.0001, length_scale 0.017 SI"));
-
-  fs::remove_all(folder_.path() / "runs");
-  const fs::path fitted = run_with_page({"seed=4", "taps=8", "candidates.count=16", "fitting=ceres"});
-  const Browsed moving = browse(fitted, {drawn(8), kPanels});
-  EXPECT_THAT(moving.values.at(0).at(0).get<std::vector<std::string>>(), Contains("Hyperparameters of the height GP"));
-}
-
 TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
   const fs::path missed = run_with_page({"taps=3", "candidates.count=12"});  // nothing is hit
   const Browsed seen = browse(missed, {drawn(3), kPanels, "return document.getElementById('map_w') === null"});
@@ -244,44 +199,6 @@ TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
     EXPECT_THAT(title.get<std::string>(), Not(HasSubstr("Error")));
     EXPECT_THAT(title.get<std::string>(), Not(HasSubstr("IoU")));
   }
-}
-
-TEST_P(Looks, PicturesCallMapsAndCurvesAsThePageDoes) {
-  for (const char* footprint : {"footprint=gp_regression", "footprint=gp_classifier"}) {
-    const fs::path directory = run_with_page({"seed=3", "taps=8", footprint});
-    const test::Ended drawn_too = test::palpate({"report", directory.string(), "--figures"}, folder_.path());
-    ASSERT_EQ(drawn_too.status, 0) << drawn_too.err;
-    const Browsed seen = browse(directory, {drawn(8),
-                                            "const of = (s) => [...document.querySelectorAll(s)].map((e) => "
-                                            "e.textContent); return [of('#maps_row figcaption'), "
-                                            "of('.row.small figcaption')]"});
-    const std::string maps = text_of(directory / "figures/maps.gnuplot");
-    const std::string curves = text_of(directory / "figures/curves.gnuplot");
-    ASSERT_GE(seen.values.at(0).at(0).size(), 2U);
-    for (const json& title : seen.values.at(0).at(0)) {
-      if (title == "Standard deviation of the height") continue;  // colours of surface.png, as of the page's surface
-      EXPECT_THAT(maps, HasSubstr("set label '" + title.get<std::string>()));
-    }
-    for (const json& title : seen.values.at(0).at(1))
-      EXPECT_THAT(curves, HasSubstr("set label '" + title.get<std::string>()));
-    EXPECT_THAT(curves, HasSubstr("Constant over all taps:"));
-    fs::remove_all(folder_.path() / "runs");
-  }
-}
-
-TEST_P(Looks, AColumnThatIsTheSameInEveryJobIsALineAndNoPanel) {
-  const fs::path directory =
-      swept({paper_, "acquisition=weighted,uncertainty", "seed=range(0,3)", "taps=5", "candidates.count=12"});
-  report(directory);
-  const std::string seen_plots =
-      "return ['cells_mean', 'cells_spread', 'groups'].map((id) => document.getElementById(id).offsetParent !== null)";
-  const std::string caption = "return document.getElementById('groups').closest('figure').textContent";
-  const Browsed seen =
-      browse(directory, {drawn(1), choose("metric", "taps"), drawn(2), seen_plots, caption, choose("metric", "rmse_m"),
-                         drawn(3), choose("up", "seed"), drawn(4), seen_plots});
-  EXPECT_EQ(seen.values.at(1), json({false, false, false}));
-  EXPECT_EQ(seen.values.at(2), "taps: 5 in each of 6 jobs.");
-  EXPECT_EQ(seen.values.at(5), json({true, false, true})) << "a cell with one job has no spread";
 }
 
 // Without WebGL a page lacks its surface, and looks the same but for it: run_page_test.cpp has both.

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <sstream>
 
 namespace palpate {
 namespace {
@@ -58,19 +57,6 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
   EXPECT_THAT(seen.values.at(4).get<std::string>(), HasSubstr("Before the first tap."));
   EXPECT_EQ(seen.values.at(5).at(0), GetParam() ? "surface" : "heatmap");
   EXPECT_EQ(seen.values.back(), !GetParam()) << "what the colours of the surface say is a map where there is none";
-}
-
-TEST_F(ReportedRun, SaysByWhichMotionATapWasMadeWhereThereAreSeveral) {
-  const auto story = [&](const std::string& motion) {
-    const fs::path directory = made(folder_, {"taps=3", "motion=" + motion, "--runs", motion});
-    report(directory);
-    const Browsed seen = test::browse(directory / "report.html",
-                                      {drawn(3), "return document.getElementById('story').textContent"}, true);
-    EXPECT_EQ(seen.trouble, "");
-    return seen.values.at(0).get<std::string>();
-  };
-  EXPECT_THAT(story("per_tap"), testing::ContainsRegex("chosen by [a-z ]+, by motion [01], touched"));
-  EXPECT_THAT(story("paper"), testing::Not(HasSubstr("by motion")));
 }
 
 TEST_F(ReportedRun, MarksTapsAsTheyAreReadAtTheMomentThatIsShown) {
@@ -129,31 +115,6 @@ TEST_F(ReportedRun, ShowsTheExpectedErrorAndQuantitiesInTheirUnitsWithTheDigitsT
   EXPECT_NEAR(drawn_error, millimetres("expected_rmse_m"), 1e-9);
   EXPECT_EQ(seen.values.at(2), "[mm]");
   EXPECT_EQ(seen.values.at(3), json({"0.00324 mm", "15.7 mm", "65.5 s", "–", "1.23e-9"}));
-}
-
-TEST_F(ReportedRun, ShowsMarksAboveTheSurfaceAndTheNextTap) {
-  const fs::path directory = made(folder_, {"seed=4"});
-  report(directory);
-  const Browsed seen = test::browse(
-      directory / "report.html",
-      {drawn(17), "key ARROW_LEFT", drawn(16),
-       "const data = document.getElementById('surface').data; const of = (name) => data.find((t) => t.name === name);"
-       "return {x: of('next').x, y: of('next').y, on: of('on the object').z, pins: of('pins').z}"},
-      true);
-  ASSERT_EQ(seen.trouble, "");
-  const json& shown = seen.values.at(0);
-  const std::vector<Cells> taps = csv_rows(text_of(directory / "taps.csv"));
-  ASSERT_EQ(shown.at("x").size(), 1U);
-  EXPECT_NEAR(shown.at("x").at(0).get<double>(), 100 * std::stod(taps.at(16).at("x")), 1e-6);
-  EXPECT_NEAR(shown.at("y").at(0).get<double>(), 100 * std::stod(taps.at(16).at("y")), 1e-6);
-  std::size_t on = 0;
-  for (std::size_t i = 0; i < 16; ++i) {
-    if (taps[i].at("on_object") != "true") continue;
-    EXPECT_GT(shown.at("on").at(on).get<double>(), 100 * std::stod(taps[i].at("height")) + 0.3) << "on a pin";
-    ++on;
-  }
-  EXPECT_EQ(shown.at("on").size(), on);
-  EXPECT_EQ(shown.at("pins").size(), 3 * (16 + 1));
 }
 
 TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {

@@ -2,14 +2,11 @@
 // Runs side by side on one page: what it says of them is what their records say.
 #include "report/browser.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace palpate {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 class RunsPage : public test::Reports {
@@ -93,16 +90,6 @@ TEST_F(RunsPage, SaysWhatDiffersInTheirConfigsAndNothingElse) {
                         "line.split('\\t').map((cell) => cell.trim()))"});
   EXPECT_EQ(seen.values.at(0), json::parse(R"([["key", "A", "B"], ["seed", "4", "5"],
                                               ["kernel.length_scale", "0.017 m", "0.02 m"]])"));
-}
-
-TEST_F(RunsPage, OfOtherCandidatesHasNoDifferenceAndSaysSo) {
-  const fs::path first = made("a", {"taps=5"});
-  const fs::path second = made("b", {"taps=5", "candidates.count=20"});
-  const Browsed seen = opened({first, second}, {drawn(5), "return document.getElementById('difference_1') === null",
-                                                "return document.body.innerText"});
-  EXPECT_EQ(seen.values.at(0), true);
-  EXPECT_THAT(seen.values.at(1).get<std::string>(),
-              HasSubstr("Without a difference, because their candidates differ from A's: B."));
 }
 
 }  // namespace

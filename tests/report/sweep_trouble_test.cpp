@@ -196,29 +196,6 @@ TEST_P(SweepTrouble, StaysSmallAndDrawnWithAThousandJobs) {
   EXPECT_LE(seen.values.at(8).at(1), 40) << "as many names as can be read";
 }
 
-TEST_P(SweepTrouble, SaysOfVeryManyJobsWhichOfThemItHasAndCountsThemAll) {
-  const Sweep sweep = test::large_sweep(folder_.path() / "0123456789ab", 300);
-  const auto quietly = [](int, int) {};
-  write_file(sweep.directory / "report.html", sweep_page(sweep, quietly, 150));
-  const Browsed seen =
-      browse(sweep.directory, {drawn(1), "return [...document.querySelectorAll('.facts li')].map((f) => f.textContent)",
-                               "return document.getElementById('sampled').textContent",
-                               "return [...document.querySelectorAll('#warnings li')].map((f) => f.textContent)",
-                               "return document.getElementById('jobs_note').textContent",
-                               data_of("groups", "d.map((box, i) => [l.yaxis.ticktext[i], box.x.length, box.x[1]])")});
-  ASSERT_EQ(seen.values.size(), 5U);
-  EXPECT_EQ(seen.values.at(0), json({"600jobs", "594done", "6failed"}));
-  EXPECT_THAT(seen.values.at(1).get<std::string>(),
-              StartsWith("This page has 150 of 600 jobs, one of 4, taken evenly from all settings"));
-  EXPECT_EQ(seen.values.at(2),
-            json({"6 jobs failed, the first is job 7 (seed=3, acquisition=uncertainty): out of luck"}));
-  EXPECT_EQ(seen.values.at(3), "150 jobs, one of 4 of 600: the others are in results.csv");
-  // Job 8 has seed 4 and is the second of its setting on the page; 9 mm is what it came to.
-  EXPECT_EQ(seen.values.at(4).at(0).at(0), "weighted");
-  EXPECT_EQ(seen.values.at(4).at(0).at(1), 75);
-  EXPECT_NEAR(seen.values.at(4).at(0).at(2).get<double>(), 9.0, 1e-12);
-}
-
 INSTANTIATE_TEST_SUITE_P(InABrowser, SweepTrouble, ::testing::Bool(), test::webgl_name);
 
 }  // namespace

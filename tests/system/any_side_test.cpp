@@ -15,7 +15,6 @@
 
 #include <map>
 
-#include <cmath>
 #include <string>
 
 namespace palpate {
@@ -36,12 +35,6 @@ class AnySide : public Shell {
     return ran(set_by({"scene=any_bowl", "space.approaches=200", "space.moves=100"}, more), config());
   }
 };
-
-TEST_F(AnySide, TheLastLinesHaveNoFootprintWhichOnlyTapsFromAboveLeave) {
-  const Ended ended = palpate({"run", config(), "scene=any_bowl", "space.approaches=200", "space.moves=20", "taps=5"});
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, AllOf(ContainsRegex("\nerror: .* on the object\n"), Not(HasSubstr("IoU -"))));
-}
 
 TEST_F(AnySide, ARunTellsOfEachTapWhereItBeganInWhichDirectionAndHowFarItWent) {
   const fs::path run = touched("taps=12");
@@ -147,21 +140,6 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
   EXPECT_GT(places, 0);
 }
 
-TEST_F(AnySide, ARunThatWasBrokenOffEndsAsTheUnbrokenOneDoes) {
-  const fs::path whole = touched("taps=9 name=whole");
-  const fs::path broken = touched("taps=9 name=broken");
-  break_off(broken);
-  ASSERT_EQ(resume(broken).status, 0);
-  EXPECT_EQ(text_of(broken / "taps.csv"), text_of(whole / "taps.csv"));
-  EXPECT_EQ(text_of(broken / "surface.ply"), text_of(whole / "surface.ply"));
-}
-
-TEST_F(AnySide, ARunIsPlayedAgainToTheLastBit) {
-  const Ended ended = palpate({"replay", touched("taps=9")});
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, testing::HasSubstr("all equal"));
-}
-
 TEST_F(AnySide, ARunWhoseApproachesAreLimitedByTheToolOrTheArmIsPlayedAgainAndExplainedAsItWas) {
   const Words few = "taps=6 space.moves=20 name=limited";
   const std::vector<double> free = starts_of(touched(set_by(few, "name=free")));
@@ -246,7 +224,7 @@ TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedR
   const fs::path broken = touched(seen + "name=broken");
   break_off(broken);
   ASSERT_EQ(resume(broken).status, 0);
-  EXPECT_EQ(text_of(broken / "taps.csv"), text_of(whole / "taps.csv"));
+  for (const char* name : {"taps.csv", "surface.ply"}) EXPECT_EQ(text_of(broken / name), text_of(whole / name));
   if (test::kSanitized) return;  // what follows makes the same of other numbers
   const Ended replayed = palpate({"replay", whole});
   EXPECT_EQ(replayed.status, 0) << replayed.err;
@@ -292,27 +270,6 @@ TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes)
   EXPECT_THAT(refusal("spoon"), testing::HasSubstr("spoon is none of"));
   fs::copy_file(solids / "jug.stl", folder / "jug/jug.stl", fs::copy_options::overwrite_existing);
   EXPECT_THAT(refusal("jug"), testing::HasSubstr("at first use it was"));
-}
-
-TEST_F(AnySide, EachRuleTakesApproachesOfItsOwnAfterTheSameFirstOnes) {
-  std::vector<std::vector<Row>> runs;
-  for (const Words& rule :
-       {Words("acquisition=random"), Words("acquisition=uncertainty"), Words("acquisition=discovery")}) {
-    runs.push_back(rows_of(touched(rule + "taps=12"), "tap"));
-  }
-  // The first ones go on until an object is hit, which happens to all of them at the same tap.
-  const auto start = [&](std::size_t run, std::size_t tap) { return runs[run][tap].number("x").value(); };
-  std::size_t first = 0;
-  while (first < runs[0].size() && runs[0][first].text("source") == "initial") ++first;
-  ASSERT_GE(first, 3U);
-  ASSERT_LT(first, runs[0].size());
-  for (std::size_t tap = 0; tap < first; ++tap) {
-    EXPECT_EQ(start(0, tap), start(1, tap));
-    EXPECT_EQ(start(0, tap), start(2, tap));
-  }
-  EXPECT_NE(start(0, first), start(1, first));
-  EXPECT_NE(start(0, first), start(2, first));
-  EXPECT_NE(start(1, first), start(2, first));
 }
 
 TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
@@ -377,27 +334,6 @@ TEST_F(AnySide, ARecordIsReadByAllThatReadOneWithoutItsBackendBeingBuilt) {
   break_off(run);
   ASSERT_EQ(resume(run).status, 0);
   EXPECT_EQ(part_of(run, "tap"), taps);
-}
-
-TEST_F(AnySide, ARecordThatHasLostTheLineOfATapIsSaidToBeDamaged) {
-  const fs::path run = touched("taps=4");
-  replace(run / "record.jsonl", "\"z\": ", "\"lost\": ");
-  for (const Words& command : {Words{"report", run}, Words{"export", run}, Words{"explain", run, "1"}}) {
-    const Ended ended = palpate(command);
-    EXPECT_EQ(ended.status, 1);
-    EXPECT_THAT(ended.err,
-                testing::HasSubstr("a tap of a run from any side has no z and no direction, its record is damaged"));
-  }
-  const fs::path other = touched("taps=4 name=other");
-  std::string taps = part_of(other, "tap");
-  const std::string lost = "\"along\": ";
-  for (auto at = taps.find(lost); at != std::string::npos; at = taps.find(lost))
-    taps.replace(at, lost.size(), "\"lost\": ");
-  test::write_part(other, "tap", taps);
-  for (const char* const command : {"report", "replay", "export"}) {
-    EXPECT_THAT(refused({command, other}),
-                testing::HasSubstr("has no number 'along', how far the tool went to its contact, the file is damaged"));
-  }
 }
 
 TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {

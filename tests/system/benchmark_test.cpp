@@ -122,61 +122,6 @@ TEST_F(Benchmark, ShowsATableOfAllMetricsAfterEachNumberOfTaps) {
   EXPECT_EQ(again.err, "") << "nothing is computed twice";
 }
 
-TEST_F(Benchmark, AfterFewerTapsIsWhatASweepWithThatBudgetComesTo) {
-  const Words two_blocks = "scene=two_blocks strategy=weighted_two_part,default";
-  const fs::path directory = narrowed(two_blocks);
-  const fs::path there = narrowed(two_blocks, 8);
-  const Words words = "--by strategy --metric rmse_m,object_taps,robot_seconds";
-  EXPECT_EQ(compare(directory, words + "--at 8").status, 0);
-  EXPECT_EQ(compare(there, words).status, 0);
-  const std::vector<Cells> earlier = csv_rows(text_of(directory / "results_at_8.csv"));
-  const std::vector<Cells> budgeted = csv_rows(text_of(there / "results.csv"));
-  ASSERT_EQ(earlier.size(), budgeted.size());
-  for (std::size_t i = 0; i < earlier.size(); ++i) {
-    for (const auto& [column, value] : budgeted[i]) {
-      const bool of_machine = column.find("compute") == 0 || column == "wall_seconds" || column == "peak_rss_bytes";
-      const bool of_budget = column == "id" || column == "taps" || column.find("engine_reason") != std::string::npos;
-      if (of_machine || of_budget) continue;
-      EXPECT_EQ(earlier[i].at(column), value) << column;
-    }
-  }
-  for (const char* metric : {"rmse_m", "object_taps", "robot_seconds"}) {
-    const std::string stem = std::string("compare_strategy_") + metric;
-    const std::vector<Cells> here = csv_rows(text_of(directory / (stem + "_at_8.csv")));
-    const std::vector<Cells> other = csv_rows(text_of(there / (stem + ".csv")));
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      EXPECT_EQ(here[i].at("at"), "8");
-      EXPECT_EQ(here[i].at("mean"), other[i].at("mean"));
-      EXPECT_EQ(here[i].at("high_95"), other[i].at("high_95"));
-    }
-  }
-}
-
-TEST_F(Benchmark, ComputesAgainWhatBelongsToAnotherResult) {
-  const fs::path directory = cubes(20);
-  const Words words = "--by strategy --metric rmse_m --at 8";
-  const Ended before = compare(directory, words);
-  EXPECT_THAT(before.err, HasSubstr("4 of 4 jobs done"));
-  // As after a job that was run again: its summary is another.
-  const fs::path job = job_of(directory, 0);
-  const std::string kept = text_of(job / "summary_at_8.json");
-  replace(job / "record.jsonl", "\"wall_seconds\": ", "\"wall_seconds\": 123");
-  const Ended after = compare(directory, words);
-  EXPECT_THAT(after.err, HasSubstr("1 of 1 jobs done"));
-  EXPECT_EQ(after.out, before.out);
-  EXPECT_NE(text_of(job / "summary_at_8.json"), kept);
-}
-
-TEST_F(Benchmark, TakesANumberOfTapsOnceAndAConditionAsItHeldThen) {
-  const fs::path directory = cubes(8);
-  const Words words =
-      Words("--by strategy --metric rmse_m,found --format markdown --where") + Words{"desk_taps <= 3", "--at"};
-  const Ended once = compare(directory, words + "3");
-  EXPECT_EQ(once.status, 0) << once.err;
-  EXPECT_EQ(lines(once.out), 4) << once.out;
-  EXPECT_EQ(compare(directory, words + "3,3 -j 1").out, once.out);
-}
-
 TEST_F(Benchmark, CountsAJobThatNeverGetsThereAsItEnded) {
   const fs::path directory = narrowed("strategy=random,default scene=object_i scene.effects=none", 40);
   const Words words = "--by strategy --metric robot_seconds,rmse_m,reached --ratio --until rmse_m=15mm";
@@ -198,17 +143,6 @@ TEST_F(Benchmark, CountsAJobThatNeverGetsThereAsItEnded) {
   EXPECT_EQ(compare(directory, words).err.find("jobs done"), std::string::npos) << "nothing is computed twice";
   EXPECT_THAT(compare(directory, "--by strategy --metric robot_seconds --format markdown --until rmse_m=15mm").out,
               HasSubstr("\n2 jobs never reached the goal and count with their final values.\n"));
-}
-
-TEST_F(Benchmark, NamesAJobWhoseRecordHasLostATap) {
-  const fs::path directory = cubes(8);
-  const fs::path record = job_of(directory, 0) / "record.jsonl";
-  std::string text = text_of(record);
-  const std::size_t fifth = text.find("{\"tap\": 5,");
-  write(record, text.erase(fifth, text.find("{\"tap\": 6,") - fifth));
-  const Ended ended = compare(directory, "--by strategy --metric rmse_m --at 8,7");
-  EXPECT_NE(ended.status, 0);
-  EXPECT_THAT(ended.err, HasSubstr(record.string() + ":12: has tap 6 instead of tap 5: a line is missing"));
 }
 
 TEST_F(Benchmark, ShowsRatiosOfPairsIfAskedFor) {

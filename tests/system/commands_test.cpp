@@ -109,16 +109,6 @@ TEST_F(Plugins, ListsEveryOneAndTheOptionsOfOne) {
   EXPECT_EQ(refused("plugins kernel/rfb"), "no plugin kernel/rfb, did you mean 'rbf'?\n");
 }
 
-TEST_F(CommandLine, HelpGoesToStdoutWithStatus0) {
-  for (const char* command :
-       {"", "run", "sweep", "resume", "list", "status", "replay", "validate", "plugins", "schema"}) {
-    const Ended help = palpate(Words(command) + "--help");
-    EXPECT_EQ(help.status, 0) << command;
-    EXPECT_EQ(help.err, "") << command;
-    EXPECT_THAT(help.out, HasSubstr("--help")) << command;
-  }
-}
-
 TEST_F(CommandLine, HelpSaysWhatItTakesWithNamesThatEveryVersionOfItsLibraryAccepts) {
   // CLI11 2.4 refuses names of positional arguments with '=' or '/' in them before it has read any.
   EXPECT_THAT(palpate("run --help").out, AllOf(ContainsRegex("Usage: palpate run .* CONFIG \\[OVERRIDE\\.\\.\\.\\]\n"),

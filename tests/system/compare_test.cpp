@@ -145,24 +145,6 @@ TEST_F(Compare, WithAConditionHasAFileOfItsOwnThatNamesIt) {
   }
 }
 
-TEST_F(Compare, CountsWhatFailedAndWhatHasNotEnded) {
-  const fs::path directory = swept(
-      "scene.placement=random scene.objects.0.length=10cm,40cm acquisition=random,grid seed=range(0,3)", paper(), 1);
-  for (const Cells& job : csv_rows(text_of(directory / "results.csv"))) {
-    if (job.at("scene.objects.0.length") == "10cm" && job.at("acquisition") == "random" && job.at("seed") == "1")
-      test::forget_end(directory / "jobs" / job.at("id"));
-  }
-  EXPECT_THAT(compare(directory, "--by acquisition --metric rmse_m").out,
-              HasSubstr("grid - random: pairs lost: 1 unfinished, 3 failed\n"));
-  const Cells first = csv_rows(text_of(directory / "compare_acquisition_rmse_m.csv")).at(0);
-  EXPECT_EQ(first.at("group"), "random");
-  EXPECT_EQ(first.at("jobs"), "6");
-  EXPECT_EQ(first.at("failed"), "3");
-  EXPECT_EQ(first.at("unfinished"), "1");
-  EXPECT_EQ(first.at("n"), "2");
-  EXPECT_EQ(first.at("low_95"), "") << "two values have no interval";
-}
-
 TEST_F(Compare, ReachesASweptKeyAndTheResultOfTheSameName) {
   const fs::path directory = strategies();
   const Ended ended = compare(directory, "--by taps --metric taps,summary.taps --until rmse_m=3cm --format csv");

@@ -5,7 +5,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <regex>
 #include <set>
@@ -118,27 +117,6 @@ std::vector<double> numbers_in(const std::string& text, const std::string& patte
   return out;
 }
 
-/// A PDF and after it what its compressed parts hold: cairo 1.18 keeps the size of a page in one.
-std::string with_inflated_parts(const std::string& pdf) {
-  const std::string begin = "stream\n";
-  std::string out = pdf;
-  for (auto at = pdf.find(begin); at != std::string::npos; at = pdf.find(begin, at)) {
-    at += begin.size();
-    std::vector<Bytef> packed(pdf.begin() + static_cast<std::ptrdiff_t>(at), pdf.end());
-    std::vector<Bytef> part(std::size_t{1} << 20U);
-    z_stream stream{};
-    if (::inflateInit(&stream) != Z_OK) return out;
-    stream.next_in = packed.data();
-    stream.avail_in = static_cast<uInt>(packed.size());
-    stream.next_out = part.data();
-    stream.avail_out = static_cast<uInt>(part.size());
-    ::inflate(&stream, Z_FINISH);  // of what is not compressed it makes nothing
-    out.append(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(stream.total_out));
-    ::inflateEnd(&stream);
-  }
-  return out;
-}
-
 /// Where a text of an SVG begins, points from the upper left corner: below it stand its letters.
 struct Spot {
   double x = -1;
@@ -168,34 +146,6 @@ class FigureOfCurves : public CurvesOfGroups {
   }
 };
 
-TEST_F(FigureOfCurves, FitsTheTextOfAPaperWithLettersOfEightPoints) {
-  const fs::path directory = three_scenes();
-  constexpr double kCentimetresPerInch = 2.54;
-  for (const double width : {17.8, 8.8}) {
-    const Words words = width < 10 ? Words("--width 8.8cm") : Words();
-    curves(directory, words + "-o a.pdf -o a.svg -o a.png");
-    const std::vector<double> points =
-        numbers_in(with_inflated_parts(text_of(here() / "a.pdf")), R"(MediaBox \[ 0 0 ([\d.]+))");
-    ASSERT_EQ(points.size(), 1U);
-    EXPECT_LE(points[0] / 72 * kCentimetresPerInch, width);
-    EXPECT_GT(points[0] / 72 * kCentimetresPerInch, width - 0.1) << "a point is 0.35 mm";
-    const std::string svg = text_of(here() / "a.svg");
-    const double pixels = numbers_in(svg, "<svg[^>]*width=\"([\\d.]+)").at(0);
-    EXPECT_NEAR(pixels / 96 * kCentimetresPerInch, width, 0.1);
-    const std::vector<double> letters = numbers_in(svg, "font-size=\"([\\d.]+)");
-    ASSERT_GT(letters.size(), 10U);
-    for (const double one : letters) EXPECT_NEAR(one / 96 * 72, 8.0, 0.01);
-    const std::string png = text_of(here() / "a.png");
-    const auto byte = [&](std::size_t at) { return static_cast<double>(static_cast<unsigned char>(png.at(at))); };
-    EXPECT_GE((256 * byte(18) + byte(19)) / (width / kCentimetresPerInch), 200.0) << "pixels per inch";
-    // The lower edges of the panels: rows.
-    std::set<double> rows;
-    for (const double one : numbers_in(text_of(here() / "a.gnuplot"), R"(set bmargin at screen down\(([\d.]+))"))
-      rows.insert(one);
-    EXPECT_EQ(rows.size(), width < 10 ? 3U : 2U) << "one of them is the legend's";
-  }
-}
-
 TEST_F(FigureOfCurves, HasOneRangeForAllPanelsThatTheDataFill) {
   const fs::path directory = three_scenes();
   for (const std::string metric : {"rmse_m", "footprint_iou"}) {
@@ -224,28 +174,6 @@ TEST_F(FigureOfCurves, HasOneRangeForAllPanelsThatTheDataFill) {
     }
     EXPECT_EQ(low[0] == 0.0, metric == "footprint_iou");
   }
-}
-
-TEST_F(FigureOfCurves, BeginsABandInAPointWhereAllSeedsAreEqual) {
-  curves(three_scenes(), "-o a.svg -o a.csv");
-  const std::map<std::string, Lines> blocks = blocks_of(here() / "a.gnuplot");
-  ASSERT_EQ(blocks.size(), 6U) << "three scenes, two groups";
-  int equal = 0;
-  std::size_t row = 0;
-  const std::vector<Cells> rows = csv_rows(text_of(here() / "a.csv"));
-  for (const auto& [name, lines] : blocks) {
-    for (const auto& line : lines) {
-      const Cells& cells = rows.at(row++);
-      EXPECT_NEAR(line[1], 1e3 * std::stod(cells.at("mean")), 1e-3) << name;
-      for (const auto& [column, cell] : {std::pair{2, "low_95"}, std::pair{3, "high_95"}}) {
-        const std::string& text = cells.at(cell);
-        const double drawn = line[static_cast<std::size_t>(column)];
-        EXPECT_NEAR(drawn, text.empty() ? line[1] : 1e3 * std::stod(text), 1e-3) << name;
-        equal += text.empty() ? 1 : 0;
-      }
-    }
-  }
-  EXPECT_GT(equal, 0) << "the first tap on the ring";
 }
 
 TEST_F(FigureOfCurves, TellsGroupsApartWithoutColourAndTheirLongNamesHaveRoom) {
@@ -280,44 +208,6 @@ TEST_F(FigureOfCurves, TellsGroupsApartWithoutColourAndTheirLongNamesHaveRoom) {
     EXPECT_EQ(dashes.size(), 4U);
     EXPECT_EQ(marks.size(), 4U);
   }
-}
-
-TEST_F(FigureOfCurves, HasRoomForNamesThatSomebodyChangesInItsScript) {
-  curves(three_scenes(), "-o a.svg");
-  const fs::path script = here() / "a.gnuplot";
-  const std::string before = text_of(here() / "a.svg");
-  const double lowest = spots_of(before, "taps").at(0).y;
-  std::string name = "weighted";
-  // As wide as a figure takes beside another name, and as it takes alone; an m is 7.8 points wide at eight.
-  for (const std::size_t letters : {std::size_t{40}, std::size_t{52}}) {
-    const std::string longer(letters, 'm');
-    replace(script, "name_1 = '" + name + "'", "name_1 = '" + longer + "'");
-    name = longer;
-    const Ended drawn = test::run_program({"/usr/bin/env", "LC_ALL=C", "/usr/bin/gnuplot", script.string()}, here());
-    ASSERT_EQ(drawn.status, 0) << drawn.err;
-    EXPECT_EQ(drawn.err, "") << "no warning of an encoding";
-    const std::string svg = text_of(here() / "a.svg");
-    const Spot first = spots_of(svg, name).at(0);
-    const Spot second = spots_of(svg, "random").at(0);
-    const Spot panel = spots_of(svg, "scene: ring").at(0);
-    if (letters == 40) {
-      EXPECT_EQ(second.y, first.y);
-      EXPECT_GE(second.x - kSample, first.x + 7.79 * static_cast<double>(letters));
-      EXPECT_EQ(panel.y, spots_of(before, "scene: ring").at(0).y);
-    } else {
-      EXPECT_NEAR(second.y, first.y + 11, 0.1);
-      EXPECT_GE(panel.y, second.y + 8) << "panels make room";
-    }
-    EXPECT_NEAR(spots_of(svg, "taps").at(0).y, lowest, 1.5);
-  }
-}
-
-TEST_F(FigureOfCurves, HasAScriptThatDrawsThePdfWhereOneIsAskedFor) {
-  curves(three_scenes(), "-o a.pdf -o a.png");
-  for (const char* file : {"a.pdf", "a.png"}) EXPECT_TRUE(fs::remove(here() / file));
-  ASSERT_EQ(test::run_program({"/usr/bin/gnuplot", "a.gnuplot"}, here()).status, 0);
-  EXPECT_TRUE(fs::exists(here() / "a.pdf"));
-  EXPECT_FALSE(fs::exists(here() / "a.png"));
 }
 
 TEST_F(FigureOfCurves, HasWordsOnItsAxesNoTitleAndItsScriptBesideIt) {

@@ -182,23 +182,5 @@ TEST_F(Figures, OfASweepShowWhatResultsCsvHas) {
   }
 }
 
-TEST_F(Figures, OfTheResultsAreSmallPicturesOfThePapers) {
-  const std::string page = text_of(test::source_folder() / "framework/docs/results.md");
-  for (const std::string figure : {"figure_2", "figure_3", "figure_4", "figure_5"}) {
-    const std::string file = "runs/reference/" + figure + ".png";
-    EXPECT_THAT(page, HasSubstr("](../../" + file + ")"));
-    const std::string picture = text_of(test::source_folder() / file);
-    EXPECT_EQ(picture.compare(0, 8, "\x89PNG\r\n\x1a\n"), 0) << file;
-    EXPECT_LE(picture.size(), 200000U) << file;
-  }
-}
-
-TEST_F(Figures, OfASweepWithOneKeyHaveNoHeatMap) {
-  const fs::path directory = swept("taps=4,5 seed=1,2");
-  EXPECT_EQ(report(directory, "--figures").status, 0);
-  EXPECT_TRUE(fs::exists(directory / "figures/distributions.png"));
-  EXPECT_FALSE(fs::exists(directory / "figures/heat_map.png"));
-}
-
 }  // namespace
 }  // namespace palpate

@@ -190,18 +190,6 @@ class LostMesh : public Shell {
   }
 };
 
-TEST_F(LostMesh, IsNamedWhereAFileOfTheRecordWithTheTrueHeightsIsToBeMadeAgain) {
-  put("mug");
-  const fs::path run = ran("taps=5 candidates.count=12", own_config());
-  const std::string surface = text_of(run / "surface.csv");
-  fs::remove(run / "surface.csv");
-  fs::remove(here() / "a.stl");
-  EXPECT_THAT(refused({"resume", run, "--quiet"}), HasSubstr("a.stl: no such file"));
-  put("mug");
-  EXPECT_EQ(resume(run).status, 0);
-  EXPECT_EQ(text_of(run / "surface.csv"), surface);
-}
-
 TEST_F(LostMesh, ASweepIsReadAndWhatItsRecordsLackIsRefusedByTheNameOfTheFile) {
   put("mug");
   const fs::path sweep = swept("taps=5 candidates.count=12 acquisition=random,uncertainty seed=1,2", own_config());

@@ -56,13 +56,6 @@ TEST_F(FirstCommand, ARunTakesThePluginsThatItsConfigNamesAndNothingElse) {
   EXPECT_THAT(found, Not(Contains("palpate_shape_mesh")));
 }
 
-TEST_F(FirstCommand, OverridesAndDefaultsCountAsTheConfigDoes) {
-  const Targets found = needs({"run", paper(), "kernel=matern52", "footprint=gp_classifier"});
-  EXPECT_THAT(found, Contains("palpate_kernel_matern52"));
-  EXPECT_THAT(found, Contains("palpate_footprint_gp_classifier"));
-  EXPECT_THAT(found, Not(Contains("palpate_kernel_rbf")));
-}
-
 TEST_F(FirstCommand, WhatAPluginNamesIsKnownOnceThatIsBuilt) {
   write("sum.yaml",
         "defaults:\n  - acquisition: weighted\n  - fitting: fixed\n  - backend: simulator\n  - scene: object_i\n"
@@ -73,16 +66,6 @@ TEST_F(FirstCommand, WhatAPluginNamesIsKnownOnceThatIsBuilt) {
   EXPECT_THAT(first, Not(Contains("palpate_kernel_matern32")));
   built("kernel", "sum");
   EXPECT_THAT(needs({"run", "sum.yaml"}), Contains("palpate_kernel_matern32"));
-}
-
-TEST_F(FirstCommand, WhatIsWrongWithAConfigIsSaidByTheCommandAlone) {
-  write("bad.yaml", "kernel: {type: rbf}\nspeling: 3\n");
-  const Ended asked = call({"--needs", "run", "bad.yaml"});
-  EXPECT_EQ(asked.status, 0);
-  EXPECT_EQ(asked.err, "");
-  EXPECT_THAT(asked.out, HasSubstr("palpate_kernel_rbf"));
-  EXPECT_EQ(call({"--needs", "--help"}).out, "");
-  EXPECT_EQ(call({"--needs", "run", "missing.yaml"}).out, "");
 }
 
 TEST_F(FirstCommand, SweepsTakeEverythingAndTheirTablesNoPlugin) {
@@ -124,13 +107,6 @@ TEST_F(FirstCommand, CalledByItselfTheProgramSaysWhatIsNotBuilt) {
   EXPECT_EQ(lines(sweep.err), 1);
 }
 
-TEST_F(FirstCommand, AMisspeltPluginIsLookedForAmongThoseThatAreNotBuilt) {
-  built("kernel", "rbf");
-  const Ended run = call({"run", paper(), "kernel.type=matern25"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_THAT(run.err, HasSubstr("no plugin kernel/matern25, did you mean 'matern52'?"));
-}
-
 using Builds = Shell;
 
 TEST_F(Builds, AJobOfASweepIsOfTheBuildOfARun) {
@@ -139,27 +115,6 @@ TEST_F(Builds, AJobOfASweepIsOfTheBuildOfARun) {
     return manifest.substr(manifest.find("\"build\": \""), 30);
   };
   EXPECT_EQ(build(ran("taps=3")), build(jobs_of(swept("taps=3 seed=1,2")).front()));
-}
-
-TEST_F(Builds, CoreIsNamedByWhatWasCompiledAndByNothingElse) {
-  const auto hash = [&] {
-    const std::string script = (source_folder() / "framework/cmake/CoreHash.cmake").string();
-    const std::string out = (here() / "hash.cpp").string();
-    const std::string files = "-DFILES=" + (here() / "a.o").string() + ";" + (here() / "b.o").string();
-    const Ended ended = run_program({"cmake", files, "-DFLAGS=-O2", "-DOUTPUT=" + out, "-P", script}, here());
-    EXPECT_EQ(ended.status, 0) << ended.err;
-    return text_of(out);
-  };
-  write("a.o", "one");
-  write("b.o", "two");
-  const std::string first = hash();
-  EXPECT_THAT(first, testing::ContainsRegex("kCoreHash = \"[0-9a-f]{64}\""));
-  const auto made = fs::last_write_time(here() / "hash.cpp");
-  write("a.o", "one");
-  EXPECT_EQ(hash(), first);
-  EXPECT_EQ(fs::last_write_time(here() / "hash.cpp"), made) << "or every program would be linked again";
-  write("b.o", "twi");
-  EXPECT_NE(hash(), first);
 }
 
 }  // namespace

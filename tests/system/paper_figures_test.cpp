@@ -106,15 +106,6 @@ TEST_F(PaperFigures, Figure2ShowsObjectIAsItsRunWasRecorded) {
   }
 }
 
-TEST_F(PaperFigures, Figure3ShowsObjectIIUpToItsNineteenthTap) {
-  const Recorded run = job("object_ii", "weighted");
-  EXPECT_EQ(run.count(), 19);
-  for (const int iteration : {1, 6, 12, 17}) {
-    expect_panel("figure_3", run, "weighted", iteration, "scores_", "score");
-    expect_surface("figure_3", iteration);
-  }
-}
-
 TEST_F(PaperFigures, Figures4And5ShowBothStrategiesFromTheSameStartWithThePapersCounts) {
   const Recorded rival = job("object_i_right", "uncertainty");
   const Recorded explorer = job("object_i_right", "weighted");
@@ -129,48 +120,6 @@ TEST_F(PaperFigures, Figures4And5ShowBothStrategiesFromTheSameStartWithThePapers
       expect_panel("figure_5", *run, strategy, iteration, "u_", "u");
     }
   }
-}
-
-TEST_F(PaperFigures, HaveNoOtherTapsThanThoseOfTheirPanels) {
-  const std::map<std::string, int> panels{{"figure_2", 4}, {"figure_3", 4}, {"figure_4", 6}, {"figure_5", 6}};
-  for (const auto& [figure, count] : panels) {
-    int next = 0;
-    int taps = 0;
-    const auto blocks = blocks_of(script(figure));
-    for (const auto& [name, lines] : blocks) {
-      if (const auto seen = name.find("_seen_"); seen != std::string::npos) {
-        // The surface's: of those of its map, the ones that nothing hides.
-        const auto& all = blocks.at(std::string(name).erase(seen, 5));
-        for (const auto& line : lines) EXPECT_THAT(all, ::testing::Contains(line)) << figure << " " << name;
-        continue;
-      }
-      next += name.rfind("next_", 0) == 0 ? 1 : 0;
-      taps += name.rfind("on_", 0) == 0 || name.rfind("off_", 0) == 0 ? 1 : 0;
-      EXPECT_NE(name.rfind("failed_", 0), 0U) << figure;
-    }
-    EXPECT_EQ(next, count) << figure;
-    EXPECT_LE(taps, 2 * count) << figure;
-  }
-}
-
-TEST_F(PaperFigures, EachScriptDrawsTheSamePictureAgainWhereverItIs) {
-  const TemporaryFolder elsewhere;
-  for (const std::string figure : {"figure_2", "figure_3", "figure_4", "figure_5"}) {
-    const Ended drawn = test::run_program(
-        {"gnuplot", elsewhere.write(figure + ".gnuplot", text_of(script(figure))).string()}, elsewhere.path());
-    EXPECT_EQ(drawn.status, 0) << drawn.err;
-    const std::string again = text_of(elsewhere.path() / (figure + ".png"));
-    EXPECT_EQ(again.compare(0, 8, "\x89PNG\r\n\x1a\n"), 0) << figure;
-    EXPECT_TRUE(again == text_of(sweep() / "figures" / (figure + ".png"))) << figure;
-  }
-}
-
-TEST_F(PaperFigures, AreWrittenForARunAloneInTheLayoutOfFigure2) {
-  const Recorded run = job("object_i", "weighted");
-  const Ended drawn = test::palpate({"report", run.directory.string(), "--paper"}, run.directory);
-  ASSERT_EQ(drawn.status, 0) << drawn.err;
-  const auto alone = blocks_of(run.directory / "figures/paper_progress.gnuplot");
-  for (const auto& [name, lines] : blocks_of(script("figure_2"))) EXPECT_TRUE(alone.at(name) == lines) << name;
 }
 
 }  // namespace

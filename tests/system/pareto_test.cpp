@@ -33,16 +33,6 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-TEST_F(Pareto, PrintsItsTableBeforeItsWordsAboutFilesWhereBothStreamsAreOne) {
-  const fs::path directory = settings();
-  std::string command = "'" + test::program_file().string() + "'";
-  for (const std::string& word : words(directory, "robot_seconds", "rmse_m")) command += " '" + word + "'";
-  const Ended ended = test::run_program({"/bin/sh", "-c", command + " 2>&1"}, here());
-  EXPECT_EQ(ended.status, 0) << ended.out;
-  EXPECT_THAT(ended.out, StartsWith("front  setting "));
-  EXPECT_LT(ended.out.find("can miss the true mean"), ended.out.find("picture: ")) << ended.out;
-}
-
 TEST_F(Pareto, PrintsATableAndLeavesAPictureAndTheTableAsCsv) {
   const fs::path directory = settings();
   const Ended ended = pareto(directory);
@@ -107,73 +97,6 @@ TEST_F(Pareto, WhereNothingIsWithinNamesTheNearestAndEndsWith1) {
           "\n"
           "no setting keeps rmse_m within 0.001 mm, the nearest is acquisition=[a-z]+, taps=[0-9]+: rmse_m [0-9.]+ .*\n"
           "$"));
-}
-
-TEST_F(Pareto, AsksForTheLowerBoundOfWhatIsBetterWhenItIsMore) {
-  const fs::path directory = settings();
-  const Ended ended = palpate(words(directory, "compute_seconds", "found") + "--within -1");
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, HasSubstr("whose lower 95 % bound of found is at least -1"));
-  EXPECT_EQ(palpate(words(directory, "compute_seconds", "found") + "--within 1.01").status, 1);
-}
-
-TEST_F(Pareto, NotesJobsThatHaveNotEndedAndComparesOnlyTheOthers) {
-  const fs::path directory = settings();
-  test::forget_end(job_of(directory, 0));
-  const Ended ended = pareto(directory);
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, StartsWith("1 of 16 jobs have not ended"));
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("1 of 4 unfinished"), HasSubstr("are not compared\n")));
-}
-
-TEST_F(Pareto, OfTwoScenesNamesASettingOnTheOneThatIsAskedForAndNeverOneWithAFailedJob) {
-  const fs::path directory =
-      swept("scene.placement=random scene.objects.0.length=10cm,40cm seed=range(0,3)", paper(), 1);
-  EXPECT_THAT(pareto(directory).out, HasSubstr("3 of 3 failed"));
-  EXPECT_THAT(pareto(directory, "--within 1m").err,
-              StartsWith("command line: --within: the sweep has 2 scenes, whose best settings may differ, choose one: "
-                         "--where \"scene.objects.0.length == 10cm\"\n"));
-  const Ended ended = pareto(directory, Words{"--within", "1m", "--where", "scene.objects.0.length == 10cm"});
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, StartsWith("# scene.objects.0.length=10cm\n"));
-  EXPECT_THAT(ended.err, ContainsRegex("pareto_robot_seconds_rmse_m_where_[0-9a-f]+\\.png"));
-  EXPECT_EQ(pareto(directory, Words{"--within", "1m", "--where", "scene.objects.0.length == 40cm"}).status, 1);
-}
-
-TEST_F(Pareto, WithoutAPictureItSaysWhyAndTheTableIsStillRight) {
-  const fs::path directory = settings();
-  fs::permissions(write("bin/gnuplot", "#!/bin/sh\necho out of ink >&2\nexit 3\n"), fs::perms::owner_all);
-  const std::vector<std::pair<std::string, std::string>> ways{
-      {"/nowhere", "gnuplot is not installed, install the package gnuplot-nox"},
-      {here() / "bin", "gnuplot failed: out of ink; table: "}};
-  for (const auto& [path, why] : ways) {
-    environment_ = {"PATH=" + path};
-    const Ended ended = pareto(directory);
-    EXPECT_EQ(ended.status, 0);
-    EXPECT_THAT(ended.out, StartsWith("front  setting "));
-    EXPECT_THAT(ended.err, StartsWith("no picture was drawn: " + why));
-    EXPECT_EQ(lines(ended.err), 1);
-    EXPECT_TRUE(fs::remove(directory / "pareto_robot_seconds_rmse_m.csv"));
-    EXPECT_FALSE(fs::exists(directory / "pareto_robot_seconds_rmse_m.png"));
-  }
-}
-
-TEST_F(Pareto, ANameFullOfCommandsIsOnlyAName) {
-  const fs::path directory = settings();
-  const std::string config = text_of(directory / "config.yaml");
-  replace(directory / "config.yaml", config.substr(0, config.find('\n')),
-          "name: |-\n  x'; system(\"touch owned\"); `touch owned` $(touch owned) @owned {/Bold b} \\n");
-  Sweep sweep = read_sweep(directory);
-  for (Job& job : sweep.jobs) {
-    for (std::string& value : job.values)
-      value = value == "weighted" ? "`touch owned` x'; system('touch owned')" : value;
-  }
-  write(directory / "manifest.jsonl", manifest_text(sweep, sweep_id(read_run_config(directory), sweep)));
-  const Ended ended = pareto(directory);
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, StartsWith("picture: "));
-  EXPECT_TRUE(fs::exists(directory / "pareto_robot_seconds_rmse_m.png"));
-  for (const fs::path& place : {here(), directory}) EXPECT_FALSE(fs::exists(place / "owned")) << place;
 }
 
 TEST_F(Pareto, RefusesWhatCannotBeComparedInOneLine) {

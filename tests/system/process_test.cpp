@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <set>
 #include <sstream>
 
 namespace palpate {
@@ -89,51 +88,6 @@ for ask in asks():
   EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"failed_taps\": 6"));
 }
 
-TEST_F(ProcessRun, OneHeightInMillimetresFailsItsTapAndLeavesTheSurfaceAsItIs) {
-  const fs::path run =
-      ran({"acquisition=random", "backend.scene_is_truth=true",
-           "scene.objects=[{type: dome, diameter: 12 cm, height: 6 cm, at: [11.5 cm, 11.5 cm]}]", command(R"(
-for ask in asks():
-    away = ((ask["x"] - 0.115) ** 2 + (ask["y"] - 0.115) ** 2) ** 0.5
-    height = max(0.0, 0.06**2 - away**2) ** 0.5
-    tell(ask, outcome="contact", height=-3.0 if ask["tap"] == 5 else height, force=8, seconds=3)
-)")},
-          config("process.yaml"));
-  EXPECT_EQ(outcomes(run)[4], "aborted");
-  const std::string summary = text_of(run / "summary.json");
-  EXPECT_THAT(summary, HasSubstr("\"failed_taps\": 1"));
-  const auto value = summary.find("\"rmse_m\": ");
-  ASSERT_NE(value, std::string::npos);
-  EXPECT_LT(std::stod(summary.substr(value + 10)), 0.03) << "0.012 m without that tap";
-}
-
-TEST_F(ProcessRun, KilledWithinATapItLeavesNoProgramAndResumesWithAnUnknownTap) {
-  const std::string program = command(R"(
-print("begin", os.getpid(), file=sys.stderr, flush=True)
-for ask in asks():
-    if ask["tap"] == 3 and not os.path.exists("seen"):
-        open("seen", "w")
-        time.sleep(0.2)
-    contact(ask)
-)");
-  const auto child = begin(process({program, "taps=5", "backend.repeatable=false"}));
-  EXPECT_TRUE(eventually([&] { return fs::exists(here() / "seen"); }));
-  child->signal(SIGKILL);
-  child->wait();
-  const long pid = std::stol(diary().substr(6));
-  EXPECT_TRUE(eventually([&] { return !test::running(pid); })) << "its stdin ended, and with that the program";
-  const Ended ended = resume(directory());
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(outcomes(directory()), (std::vector<std::string>{"contact", "contact", "unknown", "contact", "contact"}));
-  EXPECT_NE(part_of(directory(), "intent"), "");
-  const Cells unknown = csv_rows(text_of(directory() / "taps.csv"))[2];
-  EXPECT_EQ(unknown.at("height"), "");
-  EXPECT_THAT(text_of(directory() / "summary.json"), HasSubstr("\"failed_taps\": 1"));
-  const std::string said = diary();
-  EXPECT_THAT(said, ::testing::StartsWith("begin "));
-  EXPECT_NE(said.find("begin ", 1), std::string::npos) << "appended to";
-}
-
 TEST_F(ProcessRun, InterruptedWhileItWaitsTheRunEndsAtOnceAndLeavesNoProgram) {
   const std::string program = command(
       "print(os.getpid(), file=sys.stderr, flush=True)\n"
@@ -148,49 +102,10 @@ TEST_F(ProcessRun, InterruptedWhileItWaitsTheRunEndsAtOnceAndLeavesNoProgram) {
   EXPECT_THAT(part_of(directory(), "tap"), HasSubstr("\"reason\": \"interrupted\""));
 }
 
-TEST_F(ProcessRun, ASweepInThreadsHasAProgramForEachRun) {
-  const std::string program = command(
-      "print(os.getpid(), file=sys.stderr, flush=True)\n"
-      "for ask in asks(): tell(ask, outcome='contact', height=0.01 * ask['seed'], seconds=ask['x'])");
-  std::set<std::string> pids;
-  for (const fs::path& job :
-       jobs_of(swept({program, "seed=range(0,8)", "taps=5", "-j", "4"}, config("process.yaml")))) {
-    const std::string pid = text_of(job / "process.stderr.txt");
-    EXPECT_FALSE(test::running(std::stol(pid)));
-    pids.insert(pid);
-    for (const Cells& row : csv_rows(text_of(job / "taps.csv"))) {
-      EXPECT_EQ(row.at("outcome"), "contact");
-      EXPECT_EQ(row.at("robot_seconds"), row.at("x")) << "the answer to this very ask";
-    }
-  }
-  EXPECT_EQ(pids.size(), 8U);
-}
-
 TEST_F(ProcessRun, AMissingProgramIsOneLineAndLeavesNoRun) {
   EXPECT_EQ(palpate({"validate", config("process.yaml")}).status, 0);
   EXPECT_THAT(refused(process({"backend.command=pyhton3 x.py"})), HasSubstr("there is no program 'pyhton3'"));
   EXPECT_TRUE(left_nothing());
-}
-
-TEST_F(ProcessRun, AProgramThatSaysTooMuchHasItsFirstAndLastWordsKept) {
-  ran({"taps=4", "initial.count=4",
-       command("print('the first word', file=sys.stderr)\n"
-               "for ask in asks():\n"
-               "    for i in range(40000): print('%010d, %020d' % (ask['tap'], i), file=sys.stderr)\n"
-               "    contact(ask)\n"
-               "print('the last word', file=sys.stderr)\n")},
-      config("process.yaml"));
-  const std::string text = diary();
-  const std::size_t said = 4 * 40000 * 33 + std::string("the first word\nthe last word\n").size();
-  EXPECT_LT(text.size(), 800'000U);
-  EXPECT_EQ(text.substr(0, 15), "the first word\n");
-  EXPECT_EQ(text.substr(text.size() - 14), "the last word\n");
-  const std::size_t note = text.find("\n[here ");
-  ASSERT_NE(note, std::string::npos);
-  EXPECT_EQ(text.find("[here ", note + 2), std::string::npos);
-  // What it says while the middle is cut out may be lost: no more than a pipe or a page of it.
-  const double left_out = std::stod(text.substr(note + 7));
-  EXPECT_NEAR(left_out + static_cast<double>(text.size() - 43), static_cast<double>(said), 200'000.0);
 }
 
 TEST_F(ProcessRun, WhatAProgramStartedIsEndedWithItWhereverItWent) {

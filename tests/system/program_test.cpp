@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Runs and sweeps whose acquisition is a program: killed, resumed, read by others; and the one to begin with.
-#include "support/lasting.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 
@@ -13,7 +12,6 @@ namespace palpate {
 namespace {
 
 using test::eventually;
-using test::run_in;
 
 class ProgramRun : public Shell {
  protected:
@@ -27,13 +25,6 @@ class ProgramRun : public Shell {
     return Words{acquisition, "taps=9"} + more;
   }
   static std::string default_config() { return (test::source_folder() / "configs/default.yaml").string(); }
-
-  /// taps.csv of every job, by its number.
-  std::vector<std::string> tables(const fs::path& sweep, int jobs) const {
-    std::vector<std::string> out;
-    for (int i = 0; i < jobs; ++i) out.push_back(text_of(job_of(sweep, i) / "taps.csv"));
-    return out;
-  }
 };
 
 TEST_F(ProgramRun, TapsAsThePluginWithTheSameScoresOnAnyNumberOfThreads) {
@@ -43,32 +34,6 @@ TEST_F(ProgramRun, TapsAsThePluginWithTheSameScoresOnAnyNumberOfThreads) {
   EXPECT_EQ(text_of(own / "taps.csv"), text_of(plugin / "taps.csv"));
   const fs::path threads = ran(few(acquisition, "name=threads engine.threads=2 tie_tolerance=0"));
   EXPECT_EQ(text_of(own / "taps.csv"), text_of(threads / "taps.csv"));
-}
-
-TEST_F(ProgramRun, ASweepThatIsKilledAndResumedEqualsTheUnbrokenOne) {
-  // After as many answers in all it waits until the killed sweep has gone.
-  const std::string wait = "echo >> '" + (here() / "answers").string() + "'; n=0; while [ \"$(wc -l < '" +
-                           (here() / "answers").string() + "')\" -ge 6 ] && [ ! -e '" + (here() / "go").string() +
-                           "' ] && [ $n -lt 6000 ]; do n=$((n + 1)); sleep 0.1; done";
-  const Words words = few(echo("uncertainty", wait), "seed=range(0,3) -j 2 --quiet");
-  const auto child = begin(Words{"sweep", paper()} + words);
-  const auto taps = [&] {
-    const fs::path sweep = run_in(here() / "runs");
-    return sweep.empty() || !fs::exists(job_of(sweep, 0) / "record.jsonl") ? 0
-                                                                           : lines(part_of(job_of(sweep, 0), "tap"));
-  };
-  EXPECT_TRUE(eventually([&] { return lines(text_of(here() / "answers")) >= 6 && taps() >= 3; })) << child->err();
-  child->signal(SIGKILL);
-  child->wait();
-  write("go", "");
-  const fs::path sweep = directory();
-  EXPECT_LT(taps(), 9) << "it is not done";
-  // From another folder: where the program lies is known.
-  const Ended resumed = test::palpate({"resume", sweep.string(), "--quiet"}, sweep);
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  const fs::path unbroken = swept(words + Words{"--runs", "unbroken"});
-  EXPECT_EQ(tables(sweep, 3), tables(unbroken, 3));
-  EXPECT_EQ(lines(tables(sweep, 3).at(2)), 10);
 }
 
 TEST_F(ProgramRun, BesideARobotsProgramLeavesThatToEndByItself) {
@@ -166,18 +131,6 @@ TEST_F(ProgramRun, ASweepWhoseProgramIsChangedStopsAndNoJobFailsByIt) {
   write("echo.sh", before);
   EXPECT_EQ(resume(sweep).status, 0) << "without --retry-failed";
   EXPECT_THAT(status_of(sweep).out, HasSubstr("4 jobs, 4 done"));
-}
-
-TEST_F(ProgramRun, AProgramThatIsGoneFailsNoJobEither) {
-  echo("uncertainty");
-  write("echo.sh", "#!/bin/sh\n" + text_of(here() / "echo.sh"));
-  fs::permissions(here() / "echo.sh", fs::perms::owner_all);
-  const fs::path run = ran(few("acquisition={type: program, command: ./echo.sh}"));
-  cut_taps(run);
-  fs::rename(here() / "echo.sh", here() / "away");
-  EXPECT_THAT(refused({"resume", run, "--quiet"}, 75), HasSubstr("restore the program that the run started with"));
-  fs::rename(here() / "away", here() / "echo.sh");
-  EXPECT_EQ(resume(run).status, 0);
 }
 
 TEST_F(ProgramRun, AProgramThatDiesFailsTheRunInOneLineAndTheRunIsCarriedOn) {

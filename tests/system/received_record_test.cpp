@@ -8,8 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -150,36 +148,6 @@ TEST_F(Received, TextThatIsPrintedMovesNoCursorAndTurnsNoLine) {
       test::begun_record() + "{\"end\": \"failed\", \"reason\": \"a\\u001b[31mb\\u0007\\u009b2Jc\\u202ed \\u00e4\"}\n");
   EXPECT_THAT(bounded({"status", run}).out, EndsWith(": a\\x1b[31mb\\x07\\x9b2Jc\\u202ed \xc3\xa4\n"));
   EXPECT_THAT(refusal_of({"run", test::paper(), "na\xc2\x9bme=a"}), HasSubstr("'na\\x9bme'"));
-}
-
-TEST_F(Received, ARecordWithALineMissingDoubledOrOutOfOrderIsRefusedByFileAndLine) {
-  const auto changed = [&](int line, const std::function<void(std::vector<std::string>&)>& change, const char* reason) {
-    const fs::path file = run_again() / "record.jsonl";
-    std::vector<std::string> lines;
-    std::istringstream in(text_of(file));
-    for (std::string one; std::getline(in, one);) lines.push_back(one + "\n");
-    change(lines);
-    std::string text;
-    for (const std::string& one : lines) text += one;
-    write(file, text);
-    for (const char* command : {"resume", "status", "report"}) {
-      EXPECT_EQ(refusal_of({command, here() / "run"}),
-                file.string() + ":" + std::to_string(line) + ": " + reason +
-                    ", put the file back as it was, or start again with 'palpate run --force'\n");
-    }
-    EXPECT_EQ(text_of(file), text) << "nothing is added to a damaged record";
-  };
-  // Manifest, attempt and set-up; then each tap with its times.
-  using Lines = std::vector<std::string>;
-  changed(
-      8, [](Lines& lines) { lines.erase(lines.begin() + 7); }, "has the times of tap 3, but does not follow that tap");
-  changed(
-      4, [](Lines& lines) { lines.erase(lines.begin() + 3, lines.begin() + 5); },
-      "has tap 2 instead of tap 1: a line is missing");
-  changed(
-      9, [](Lines& lines) { lines.insert(lines.begin() + 8, lines[7]); }, "has tap 3 a second time instead of tap 4");
-  changed(
-      8, [](Lines& lines) { std::swap(lines[7], lines[9]); }, "has tap 4 instead of tap 3: a line is missing");
 }
 
 }  // namespace

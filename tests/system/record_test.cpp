@@ -50,32 +50,6 @@ TEST_F(Record, ThatCouldNotBeReadAgainIsNotBegun) {
   EXPECT_TRUE(left_nothing());
 }
 
-TEST_F(Record, WithAStrayByteBehindItsManifestIsRefusedInOneLine) {
-  const fs::path directory = ran("taps=4");
-  std::string record = text_of(directory / "record.jsonl");
-  write(directory / "record.jsonl", record.insert(record.find('\n'), ","));
-  for (const char* command : {"report", "resume", "replay", "status"}) {
-    EXPECT_EQ(refused({command, directory}),
-              (directory / "record.jsonl").string() + ":1: is not a JSON object, the file is damaged\n");
-  }
-}
-
-TEST_F(Record, OfWhichTheEndWasCutOffIsNotTakenForTheWholeRun) {
-  const fs::path directory = ran();
-  const std::string whole = text_of(directory / "record.jsonl");
-  const std::string taps = part_of(directory, "tap");
-  const std::size_t end = whole.find("{\"tap\": 9,");
-  for (const std::size_t cut : {end, end + 10}) {
-    fs::resize_file(directory / "record.jsonl", cut);
-    const Ended status = status_of(directory);
-    EXPECT_THAT(status.out, HasSubstr("unfinished after 8 of 17 taps"));
-    EXPECT_THAT(status.err, HasSubstr("record.jsonl: was cut short, because summary.json says that the run had ended"));
-    EXPECT_EQ(resume(directory).status, 0);
-    EXPECT_EQ(part_of(directory, "tap"), taps);
-    EXPECT_EQ(status_of(directory).err, "");
-  }
-}
-
 TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
   const fs::path directory = ran();
   const auto whole = test::lasting_files(directory);

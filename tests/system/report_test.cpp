@@ -32,33 +32,6 @@ class Report : public Shell {
   }
 };
 
-TEST_F(Report, OfASweepHoldsEveryJobItsStateAndItsNumbersAndTheNameOfTheCommandLine) {
-  const fs::path directory = swept("acquisition=weighted,uncertainty seed=range(0,3) taps=6 name=other");
-  const auto results = csv_rows(text_of(directory / "results.csv"));
-  test::forget_end(directory / "jobs" / results.at(4).at("id"));  // as if killed before its end
-  const json data = reported(directory);
-  EXPECT_EQ(data.at("name"), "other");
-  EXPECT_EQ(data.at("id"), directory.filename().string());
-  ASSERT_EQ(data.at("jobs").size(), 6U);
-  for (std::size_t job = 0; job < 6; ++job) {
-    EXPECT_EQ(data.at("jobs").at(job).at("id"), results.at(job).at("id"));
-    EXPECT_EQ(data.at("jobs").at(job).at("state"), job == 4 ? "unfinished" : "done");
-  }
-  int compared = 0;
-  for (const json& column : data.at("columns")) {
-    if (column.at("name") != "rmse_m") continue;
-    for (std::size_t job = 0; job < 6; ++job, ++compared) {
-      const json& number = column.at("numbers").at(job);
-      if (job == 4) {
-        EXPECT_TRUE(number.is_null());
-      } else {
-        EXPECT_EQ(number.get<double>(), std::stod(results.at(job).at("rmse_m")));
-      }
-    }
-  }
-  EXPECT_EQ(compared, 6);
-}
-
 TEST_F(Report, OfARunThatIsUnderWayShowsWhatThereIsAndChangesNothingElse) {
   const fs::path directory = ran();
   fs::remove(directory / "summary.json");
@@ -87,40 +60,6 @@ TEST_F(Report, SaysThatAProgramChoosesTheNextTapAndOfAPluginWhereThatIs) {
     const std::string maps = text_of(directory / "figures/maps.gnuplot");
     EXPECT_EQ(maps.find("next tap") != std::string::npos, !asks);
   }
-}
-
-TEST_F(Report, OfAFootprintNamesItAndShowsWhatItTells) {
-  const fs::path directory = ran("footprint.max_contradictions=0.01 log.maps=true", config("default.yaml"));
-  const json data = reported(directory);
-  EXPECT_EQ(data.at("footprint"), "primitives");
-  std::vector<std::string> names;
-  for (const json& map : data.at("maps")) names.push_back(map.at("name"));
-  EXPECT_THAT(names, ElementsAre("height", "deviation", "u", "p", "score", "truth"));
-  const json summary = json::parse(text_of(directory / "summary.json"));
-  const auto& panels = data.at("curves");
-  const auto told = std::find_if(panels.begin(), panels.end(), [](const json& panel) {
-    return panel.at("title") == "Numbers of footprint/primitives";
-  });
-  ASSERT_NE(told, panels.end());
-  json last{{"remark", data.at("moments").back().at("remark")}};
-  for (const json& curve : told->at("curves")) {
-    std::string name = curve.at("name");
-    std::replace(name.begin(), name.end(), ' ', '_');
-    last[name] = curve.at("values").back();
-  }
-  EXPECT_EQ(last, summary.at("footprint"));
-  EXPECT_TRUE(data.at("moments").back().at("least_weight").is_null());
-  const std::string remark = summary.at("footprint").at("remark");
-  EXPECT_THAT(data.at("warnings").dump(), HasSubstr("Remark of the footprint primitives: " + remark + "."));
-  const auto maps = csv_rows(text_of(directory / "maps/tap_030.csv"));
-  EXPECT_EQ(maps.at(0).count("p"), 1U) << "the maps that log.maps keeps have it, too";
-  EXPECT_EQ(maps.at(0).count("w"), 0U);
-}
-
-TEST_F(Report, OfARunThatFailedWithoutAReasonSaysSo) {
-  const fs::path directory = ran("taps=4");
-  test::set_end(directory, R"({"status": "failed", "stop_reason": null})");
-  EXPECT_EQ(reported(directory).at("warnings").at(0), "The run failed without a reason.");
 }
 
 TEST_F(Report, OfWhatIsNoRunOrHasNoTapIsRefusedInOneLine) {

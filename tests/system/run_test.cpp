@@ -2,7 +2,6 @@
 // `palpate run` as a user calls it: what it prints, where, with which exit status, and what it leaves behind.
 #include "record/files.hpp"
 #include "record/json.hpp"
-#include "support/lasting.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 
@@ -154,19 +153,6 @@ TEST_F(ARun, SwapsEveryStrategyFromTheCommandLine) {
     EXPECT_EQ(ended.status, 0) << choice << ": " << ended.err;
     EXPECT_EQ(value(ended.out, "taps"), Scalar{std::int64_t{17}}) << choice;
   }
-}
-
-TEST_F(ARun, TheReplayBackendRepeatsARecordedRunFromItsTable) {
-  const fs::path first = ran();
-  const fs::path second = ran({"backend={type: replay, record: " + first.string() + "}"});
-  const auto contacts = [](const fs::path& run) {
-    std::string out;
-    for (const Row& row : rows_of(run, "tap")) {
-      for (const char* name : {"x", "y", "outcome", "height", "score", "ties"}) out += csv_cell(*row.find(name)) + " ";
-    }
-    return out;
-  };
-  EXPECT_EQ(contacts(second), contacts(first));
 }
 
 TEST_F(ARun, WritesTheMapsOfEachChoiceWhereTheConfigAsksForThem) {

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -14,7 +15,8 @@
 namespace palpate {
 namespace {
 
-const int kSeeds = test::brief() ? 10 : 200;
+// PALPATE_LONG=1, as in ./check --long, takes 200.
+const int kSeeds = test::brief() ? 10 : std::getenv("PALPATE_LONG") != nullptr ? 200 : 20;
 
 std::vector<int> taps_of(const ExperimentOptions& options) {
   FromAbove experiment(options, test::shared_host(), nullptr);

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ostream>
 
 namespace palpate {
 namespace {
@@ -83,60 +82,6 @@ TEST_F(SweepDescription, NarrowsTheSweepOfAConfigFromTheCommandLine) {
   }
   EXPECT_EQ(listed({"seed=3", "scene=object_i", "sweep.where=kernel.alpha < 1"}, config("sweep/kernels.yaml")),
             expected);
-}
-
-struct Wrong {
-  const char* name;
-  Words words;
-  std::string message;
-};
-
-void PrintTo(const Wrong& one, std::ostream* out) { *out << one.name; }
-
-class WrongSweep : public Shell, public testing::WithParamInterface<Wrong> {};
-
-TEST_P(WrongSweep, IsRefusedInOneLineBeforeAnythingRuns) {
-  EXPECT_EQ(refused(Words{"sweep", paper()} + GetParam().words), "command line: " + GetParam().message + "\n");
-  EXPECT_TRUE(left_nothing());
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Of, WrongSweep,
-    testing::Values(
-        Wrong{"AZipOfUnlikeLengths",
-              {"sweep.zip={taps: [12, 17], seed: [1, 2, 3]}"},
-              "sweep.zip: 'seed' has 3 values, 'taps' has 2, give all keys the same number of values, or combine them "
-              "in 'grid'"},
-        Wrong{"AConditionThatNothingFulfils",
-              {"taps=12,17", "sweep.where=taps > 20"},
-              "sweep.where: matches none of the 2 combinations, relax the condition, or sweep other values"},
-        Wrong{"AConditionCutShort",
-              {"taps=12,17", "sweep.where=taps >"},
-              "the condition 'taps >': a value is missing after 'taps >', write it like taps >= 12 and not surface == "
-              "two_part"},
-        Wrong{"EndsOfUnlikeUnits",
-              {"sweep.sobol={samples: 4, keys: {height.noise: 'uniform(0.1 mm, 1 cm)'}}"},
-              "height.noise: 'uniform(0.1 mm, 1 cm)' has ends with different units, write uniform(0.1 mm, 1 mm) or "
-              "log_uniform(1 cm, 10 cm), both ends with the same unit"},
-        Wrong{"AnOptionThatNoJobHas", "acquisition=weighted,grid acquisition.conut=3,4",
-              "no job of the sweep has an option 'acquisition.conut', did you mean 'count'?"},
-        Wrong{"AnUnknownBlock", "sweep.sobl={}", "unknown option 'sobl' of sweep, did you mean 'sobol'?"},
-        Wrong{"MillionsOfJobs", "seed=range(0,2000) taps=range(3,1000)",
-              "taps: the sweep has more than a million jobs, use fewer values"}),
-    [](const auto& one) { return std::string(one.param.name); });
-
-TEST_F(SweepDescription, WithAKeyInTwoBlocksIsRefusedWithBothPlaces) {
-  write("twice.yaml", "sweep:\n  grid: {seed: [1, 2]}\n  zip: {seed: [1, 2]}\n");
-  EXPECT_EQ(refused("sweep twice.yaml"),
-            "twice.yaml:3:16: 'seed' is in sweep.zip and, at twice.yaml:2:17, in sweep.grid, write each key in one "
-            "block only\n");
-}
-
-TEST_F(SweepDescription, OfAShippedConfigRunsToItsEnd) {
-  const Ended ended = sweep("seed=1", config("sweep/kernels.yaml"));
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(lines(text_of(directory() / "results.csv")), 1 + 2 * (3 + 2 + 2 + 4));
-  EXPECT_THAT(ended.out, Not(HasSubstr("kernel.alpha= "))) << "what a setting does not have is not shown";
 }
 
 TEST_F(SweepDescription, ASingleRunLeavesItAsideAndSaysSo) {

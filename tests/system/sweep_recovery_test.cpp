@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a sweep survives: jobs that crash, are killed or fail, launchers that are killed, several at once, changed
 // files.
-#include "record/json.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 
@@ -120,17 +119,6 @@ TEST_F(Recovery, AJobThatIsKilledIsBegunAgainButNotForEver) {
   EXPECT_EQ(attempts(1), 8);
 }
 
-TEST_F(Recovery, WhatFailedKeepsItsReasonAndIsTriedAgainOnRequestOnly) {
-  ASSERT_EQ(dying("none,fail").status, 1);
-  const Ended again = resume();
-  EXPECT_EQ(again.status, 1) << "a failure is not forgotten";
-  EXPECT_THAT(again.out, HasSubstr("its arm has fallen off"));
-  EXPECT_EQ(attempts(1), 1);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(resume("--retry-failed").status, 1);
-  EXPECT_EQ(attempts(0), 1);
-  EXPECT_EQ(attempts(1), 4) << "once a request";
-}
-
 TEST_F(Recovery, AKilledLauncherTakesItsJobsAlongAndResumeDoesTheRest) {
   const auto child = begun(5, kLong);
   child->signal(SIGKILL);
@@ -162,14 +150,6 @@ TEST_F(Recovery, AnInterruptEndsTheTapsUnderWayAndLeavesTheRest) {
   EXPECT_THAT(part_of(job(0), "end"), HasSubstr("\"end\": \"interrupted\""));
   ASSERT_EQ(resume().status, 0);
   expect_done(5);
-}
-
-TEST_F(Recovery, TwoLaunchersShareTheWorkAndRunNoJobTwice) {
-  const auto first = begun(6);
-  EXPECT_EQ(palpate(slow(6)).status, 0) << "it waits for the jobs of the other";
-  EXPECT_EQ(first->wait().status, 0);
-  for (int i = 0; i < 6; ++i) EXPECT_EQ(attempts(i), 1);
-  expect_whole(6);
 }
 
 TEST_F(Recovery, AChangedConfigOfAJobFailsThatJobAndOneOfTheSweepRefusesItAll) {
@@ -214,34 +194,6 @@ TEST_F(Recovery, SomeJobsAloneCanBeCarriedOn) {
   const Ended judged = resume("--jobs 0 --junit part.xml");
   EXPECT_EQ(judged.status, 2);
   EXPECT_THAT(judged.err, HasSubstr("--jobs and --junit exclude each other"));
-}
-
-TEST_F(Recovery, HalfALineDoesNoHarm) {
-  ASSERT_EQ(dying("none,fail").status, 1);
-  const fs::path file = job(1) / "record.jsonl";
-  const std::string whole = text_of(file);
-  write(file, whole + "{\"attem");
-  EXPECT_EQ(resume("--retry-failed").status, 1);
-  EXPECT_EQ(attempts(1), 2);
-  EXPECT_THAT(text_of(file), AllOf(StartsWith(whole), Not(HasSubstr("{\"attem{"))));
-  EXPECT_THAT(part_of(job(1), "attempt"), HasSubstr("\"cut\": 7}"));
-
-  write(file, "{\"attem");
-  EXPECT_EQ(resume("--retry-failed").status, 1);
-  EXPECT_EQ(attempts(1), 1) << "half a line is no attempt, and the next begins a line of its own";
-}
-
-TEST_F(Recovery, AJobThatWasKilledBetweenItsEndAndItsSummaryGetsThatAndIsNotRunAgain) {
-  const fs::path sweep = swept("seed=range(0,3)");
-  const std::string summary = text_of(job(1) / "summary.json");
-  const std::string taps = text_of(job(2) / "taps.csv");
-  fs::remove(job(1) / "summary.json");
-  fs::resize_file(job(2) / "taps.csv", 99);
-  EXPECT_THAT(status(), StartsWith("3 jobs, 3 done"));
-  ASSERT_EQ(resume().status, 0);
-  EXPECT_EQ(text_of(job(1) / "summary.json"), summary);
-  EXPECT_EQ(text_of(job(2) / "taps.csv"), taps);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(attempts(i), 1);
 }
 
 TEST_F(Recovery, WhatExistsOnceIsMovedByOneJobAtATime) {
@@ -292,21 +244,6 @@ TEST_F(Recovery, AJobWhoseFolderWasDeletedIsRunAgainByTheSweepWithItsConfig) {
   EXPECT_EQ(dying("none,exit").status, 1);
   EXPECT_EQ(text_of(job(0) / "config.yaml"), config);
   EXPECT_EQ(palpate({"replay", job(0)}).status, 0);
-}
-
-TEST_F(Recovery, OfADamagedResultItIsSaidWhichFileToPutBack) {
-  swept("taps=4 seed=1,2");
-  const fs::path file = job(1) / "record.jsonl";
-  const std::string whole = text_of(file);
-  write(file, whole.substr(0, whole.size() - 2) + "\n");
-  for (const Ended& ended : {status_of(directory()), resume()}) {
-    EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 1"), HasSubstr(file.string() + ": its last line is not"),
-                                 HasSubstr("put the file back as it was")));
-  }
-  EXPECT_EQ(resume().status, 1);
-  write(file, whole);
-  EXPECT_EQ(resume().status, 0);
-  EXPECT_EQ(attempts(1), 1);
 }
 
 }  // namespace

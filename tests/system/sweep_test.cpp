@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
@@ -128,19 +127,6 @@ TEST_F(Sweeps, CountAsDeadStartsFromAnySideWhatNeverHitAndNoneWhereACameraLooked
   EXPECT_EQ(of({"space.view={azimuth: 30 deg, rays: 100}", "name=view"}), "-");
 }
 
-TEST_F(Sweeps, CarryOnWithWhatIsMissing) {
-  const fs::path directory = swept("seed=range(0,5)");
-  const int before = lines(text_of(directory / "results.csv"));
-  const fs::path job = jobs_of(directory).front();
-  const std::string taps = text_of(job / "taps.csv");
-  for (const char* name : {"summary.json", "taps.csv", "record.jsonl"}) fs::remove(job / name);
-  EXPECT_THAT(status_of(directory).out, HasSubstr("4 done, 0 running, 0 failed, 0 unfinished, 1 missing"));
-  EXPECT_EQ(palpate({"resume", directory}).status, 0);
-  EXPECT_EQ(text_of(job / "taps.csv"), taps);
-  EXPECT_EQ(lines(text_of(directory / "results.csv")), before);
-  for (const fs::path& other : jobs_of(directory)) EXPECT_EQ(lines(part_of(other, "attempt")), 1);
-}
-
 TEST_F(Sweeps, CalledAgainRunWhatIsMissingAndTellTheSame) {
   const Ended first = sweep("seed=range(0,3)");
   const fs::path before = directory();
@@ -171,14 +157,6 @@ TEST_F(Sweeps, CarryOnAJobThatWasBrokenOffThoughOtherJobsUseOtherPlugins) {
               text_of(job / "config.yaml").find("type: random") != std::string::npos)
         << "a manifest names the plugins of its own run";
   }
-}
-
-TEST_F(Sweeps, CountAFailedJobNameItAndRunTheOthers) {
-  const Ended ended = sweep("scene.placement=random scene.objects.0.length=10cm,16cm,40cm");
-  EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("failed: job 2"), HasSubstr("does not fit into the area")));
-  EXPECT_THAT(status_of(directory()).out, StartsWith("3 jobs, 2 done, 0 running, 1 failed"));
-  EXPECT_EQ(lines(text_of(directory() / "results.csv")), 4);
 }
 
 }  // namespace

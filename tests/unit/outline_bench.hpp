@@ -63,10 +63,8 @@ inline Parts parts_of(const Outline& outline, const std::vector<Touch>& touches)
   return out;
 }
 
-/// Pieces come as often as the law of Poisson says, and those of them stay of which `stays` says so: what the prior
-/// says of these, up to its `most` of them.
-template <class Stays>
-Outline drawn_if(const OutlinePrior& prior, Random& random, const Stays& stays) {
+/// Draws the touched pieces of the prior, up to its `most`; pieces come as often as the law of Poisson says.
+inline Outline drawn_and_touched(const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
   const OutlinePrior::Settings& settings = prior.settings();
   for (;;) {
     Outline out;
@@ -74,17 +72,12 @@ Outline drawn_if(const OutlinePrior& prior, Random& random, const Stays& stays) 
     double time = -std::log(1.0 - random.uniform());
     for (; time < settings.expected && !too_many; time -= std::log(1.0 - random.uniform())) {
       const Piece piece = prior.draw_piece_or_hollow(random);
-      if (!stays(piece)) continue;
+      if (!touched(piece, touches)) continue;
       too_many = out.size() == settings.most;
       if (!too_many) out.add(piece);
     }
     if (!too_many) return out;
   }
-}
-
-/// What the prior says of the pieces that were touched.
-inline Outline drawn_and_touched(const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
-  return drawn_if(prior, random, [&](const Piece& piece) { return touched(piece, touches); });
 }
 
 /// The probabilities of 0 to `most` by the law of Poisson, of these alone.
@@ -106,24 +99,7 @@ inline double deviation_of_chi_square(double sum, double freedom) {
   return (std::cbrt(sum / freedom) - (1.0 - spread)) / std::sqrt(spread);
 }
 
-/// The same of counts, of as many draws each of two distributions. Counts that are too small go together.
-inline double deviation_of_counts(const std::vector<long>& one, const std::vector<long>& other) {
-  double sum = 0.0;
-  double cells = 0.0;
-  long a = 0;
-  long b = 0;
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    a += one[i];
-    b += other[i];
-    if (a + b < 40) continue;
-    sum += static_cast<double>((a - b) * (a - b)) / static_cast<double>(a + b);
-    cells += 1.0;
-    a = b = 0;
-  }
-  return cells < 2.0 ? 0.0 : deviation_of_chi_square(sum, cells - 1.0);
-}
-
-/// And of counts whose expectations are known.
+/// The same of counts whose expectations are known. Counts that are too small go together.
 inline double deviation_from(const std::vector<double>& expected, const std::vector<long>& counts) {
   double sum = 0.0;
   double cells = 0.0;
@@ -205,45 +181,6 @@ inline std::array<Number, 4> numbers_of(const Outline& outline, const OutlinePri
            {"extent", covered / (covered + 0.02)}}};
 }
 
-/// How many of a set of outlines have each number within each of some ranges. Of the pieces one is taken by lot: what
-/// moves do to their order is of no meaning.
-class Tally {
- public:
-  explicit Tally(const OutlinePrior::Settings& prior) : prior_(prior) {}
-
-  void add(const Outline& outline, Random& lot) {
-    std::size_t at = 0;
-    for (const Number& number : numbers_of(outline, prior_)) count(at++, number);
-    if (outline.size() == 0) return;
-    const auto one = static_cast<int>(lot.index(static_cast<std::uint64_t>(outline.size())));
-    for (const Number& number : numbers_of(outline[one], prior_)) count(at++, number);
-  }
-
-  /// The greatest deviation, and of which number.
-  std::pair<double, std::string> deviation(const Tally& other) const {
-    std::pair<double, std::string> out{-1e9, ""};
-    for (std::size_t i = 0; i < counts_.size(); ++i)
-      out = std::max(out, {deviation_of_counts(counts_[i], other.counts_[i]), names_[i]});
-    return out;
-  }
-
- private:
-  static constexpr int kRanges = 26;
-  void count(std::size_t at, const Number& number) {
-    if (at >= counts_.size()) {
-      counts_.resize(at + 1, std::vector<long>(kRanges + 1, 0));
-      names_.resize(at + 1);
-    }
-    names_[at] = number.name;
-    const double range = number.value < 0.0 ? 0.0 : 1.0 + std::min(number.value * kRanges, kRanges - 1.0);
-    ++counts_[at][static_cast<std::size_t>(range)];
-  }
-
-  OutlinePrior::Settings prior_;
-  std::vector<std::vector<long>> counts_;
-  std::vector<std::string> names_;
-};
-
 /// What moves that leave a distribution as it is do to its outlines on average: nothing. Each outline is compared with
 /// itself, so that little is needed to see more.
 class Drift {
@@ -253,16 +190,12 @@ class Drift {
   void add(const Outline& before, const Outline& after) {
     const auto one = sums(before);
     const auto other = sums(after);
-    bool same = true;
     for (std::size_t i = 0; i < kSums; ++i) {
       const double change = other[i].value - one[i].value;
-      same = same && change == 0.0;
       names_[i] = one[i].name;
       sum_[i] += change;
       squares_[i] += change * change;
     }
-    ++count_;
-    moved_ += same ? 0 : 1;
   }
 
   /// The greatest mean change in standard errors of itself, and of which sum.
@@ -273,8 +206,6 @@ class Drift {
     }
     return out;
   }
-  /// Share of outlines that are not what they were.
-  double moved() const { return static_cast<double>(moved_) / static_cast<double>(count_); }
 
  private:
   static constexpr std::size_t kSums = 6 + kNumbers;
@@ -298,8 +229,6 @@ class Drift {
   OutlinePrior::Settings prior_;
   std::array<const char*, kSums> names_{};
   std::array<double, kSums> sum_{}, squares_{};
-  long count_ = 0;
-  long moved_ = 0;
 };
 
 }  // namespace palpate::footprints

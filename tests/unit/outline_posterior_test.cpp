@@ -214,39 +214,6 @@ TEST_P(Posteriors, AreWhatDrawsOfThePriorComeToThatAreWeighedByLabelsAndHeights)
   EXPECT_GT(std::min(exact.mean(kPlaces + 1), exact.mean(kPlaces + 2)), 0.05) << "but not whether two were touched";
 }
 
-TEST(Particles, KnowHowProbableTheLabelsWere) {
-  const OutlinePrior prior(about_three_pieces());
-  ParticleSettings how = settled(0.0, false);
-  Random random(2, "outline posterior test");
-  const int draws = test::brief() ? 30000 : 300000;
-  double sum = 0.0;
-  double squares = 0.0;
-  for (int i = 0; i < draws; ++i) {
-    const Outline outline = prior.draw(random);
-    double weight = 1.0;
-    for (const Touch& touch : kTwoThings) {
-      const LabelProbability label = of_label(outline, touch, how, false);
-      weight *= label.right + label.wrong;
-    }
-    sum += weight / draws;
-    squares += weight / draws * weight / draws;
-  }
-  how.moves = 20;
-  const int runs = test::brief() ? 10 : 30;
-  double found = 0.0;
-  double found_squares = 0.0;
-  for (int run = 0; run < runs; ++run) {
-    Particles belief(prior, how, Random(static_cast<std::uint64_t>(run), "outline posterior test: evidence"));
-    double product = 1.0;
-    for (const Touch& touch : kTwoThings) product *= belief.add(touch);
-    found += product / runs;
-    found_squares += product * product / runs;
-  }
-  const double error = std::sqrt((found_squares - found * found) / (runs - 1) + squares);
-  EXPECT_NEAR(found, sum, 5.0 * error);
-  EXPECT_LT(error / sum, test::brief() ? 0.1 : 0.03);
-}
-
 TEST(Particles, DoubtALabelAsOftenAsTheDrawsDoThatAreWeighedByAllLabels) {
   OutlinePrior::Settings settings = about_three_pieces();
   settings.expected = 0.5;  // with few pieces a lie is soon one

@@ -81,6 +81,17 @@ TEST(SkinOfMany, SaysOfEachWhatItSaysOfOne) {
   EXPECT_EQ(skin.means({}).size(), 0);
 }
 
+TEST(SkinOfAPlate, KeepsWhatIsLearntOfOneSideOfAWallFromTheOther) {
+  Composition plate;
+  plate.parts.push_back(
+      {{Piece::Form::box, {0, 0, 0.1}, Eigen::Matrix3d::Identity(), {0.1, 0.002, 0.1}, 0.0}, {}, {}, 0.0});
+  Skin skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005});
+  skin.fit(plate, {{{{0, 0.2, 0.1}, {0, -1, 0}}, 0.195, true, false}});  // 3 mm in front of it
+  EXPECT_NEAR(skin.mean({{0, 0.002, 0.1}, {0, 1, 0}}), 0.003, 2e-4);
+  EXPECT_NEAR(skin.mean({{0, -0.002, 0.1}, {0, -1, 0}}), 0.0, 1e-12);
+  EXPECT_NEAR(skin.variance({{0, -0.002, 0.1}, {0, -1, 0}}), skin.signal() * skin.signal(), 1e-12);
+}
+
 TEST(SkinBeforeAnyTouch, IsItsPrior) {
   const Composition solids = ball();
   Skin skin(kernel_of("scale", "{factor: 4, kernel: {type: matern52, length_scale: 3 cm}}"), {0.006, 0.0005});
