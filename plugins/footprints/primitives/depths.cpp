@@ -18,6 +18,7 @@ namespace {
 constexpr int kRound = Places::kRound;
 constexpr int kWord = Places::kWord;
 
+
 using Bytes = LabelModel::Step __attribute__((vector_size(kRound)));
 using Word = LabelModel::Step __attribute__((vector_size(kWord)));
 
@@ -311,12 +312,9 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace palpate::footprints {
-
 namespace {
 
 constexpr float kFar = 1e3F;  // metres
-constexpr int kRound = Places::kRound;
-constexpr int kWord = Places::kWord;
 
 }  // namespace
 
