@@ -72,7 +72,6 @@ struct TaskArray {
 struct LaunchOrder {
   const Workshop& workshop;
   const Sweep& sweep;
-  std::function<ResolvedConfig(std::size_t job)> config_of;  ///< called in the process of the job
   LaunchOptions options;
   std::function<void(const TaskArray&)> submitted;  ///< hears of every array as soon as a cluster has taken it
 };
