@@ -132,15 +132,17 @@ bool is_on_cluster(const Campaign& campaign) { return campaign.launch.launcher !
 LaunchOptions launch_options(const Campaign& campaign) {
   const LaunchArguments& launch = campaign.launch;
   const int workers = launch.workers.value_or(is_on_cluster(campaign) ? 1 : cores());
+  std::vector<std::string> words;
+  if (!launch.partition.empty()) words.push_back("--partition=" + launch.partition);
+  if (!launch.time.empty()) words.push_back("--time=" + launch.time);
+  if (!launch.account.empty()) words.push_back("--account=" + launch.account);
+  words.insert(words.end(), launch.sbatch.begin(), launch.sbatch.end());
   return {campaign.one_at_a_time ? 1 : workers,
           campaign.options,
           launch.attempts,
           campaign.only.empty(),
           campaign.one_at_a_time,
-          launch.partition,
-          launch.time,
-          launch.account,
-          launch.sbatch,
+          std::move(words),
           launch.jobs_per_task.value_or(1)};
 }
 
