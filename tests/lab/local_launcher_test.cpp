@@ -60,19 +60,6 @@ TEST_F(TwoJobs, WithoutAFolderAreNotRecordedWhichIsSaidInPrintableText) {
               testing::ContainsRegex("^job 0: .*a\\\\x9bb/jobs/000000000000: is missing, it has no config.yaml"));
 }
 
-TEST_F(TwoJobs, RunOneAfterTheOtherWithoutAPauseThatAnybodySees) {
-  LocalLauncher local = launcher();
-  std::vector<int> running;
-  testing::internal::CaptureStderr();
-  conduct(local, sweep_, standing_of(sweep_, {0, 1}), nullptr,
-          [&](const SweepProgress& now) { running.push_back(now.running); });
-  testing::internal::GetCapturedStderr();
-  ASSERT_GE(running.size(), 2U);
-  EXPECT_EQ(running.back(), 0);
-  running.pop_back();
-  EXPECT_THAT(running, testing::Each(1));
-}
-
 TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
   Returning cluster;
   const Standing begun = standing_of(sweep_, {0, 1});
