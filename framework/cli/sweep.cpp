@@ -28,7 +28,6 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -42,11 +41,12 @@ namespace {
 struct Campaign {
   const Program& program;
   const Sweep& sweep;
-  std::function<ResolvedConfig(std::size_t job)> config_of;
   ResumeOptions options;
   const LaunchArguments& launch;
   std::vector<std::size_t> only;  ///< these jobs; none for all
   bool one_at_a_time = false;     ///< a job's backend moves what exists only once
+  /// As the command line has it now, with what is expected now; none of a sweep that is resumed.
+  std::optional<ResolvedConfig> first = std::nullopt;
 };
 
 /// Those that are to run, as far as they are missing.
@@ -68,7 +68,8 @@ int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted, boo
 /// The config of a job; none of a damaged one, which the job itself says, and costs itself alone.
 std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::size_t job) {
   std::optional<ResolvedConfig> config;
-  trouble_in([&] { config = campaign.config_of(job); });
+  trouble_in(
+      [&] { config = load_run(campaign.program.host, job_directory(campaign.sweep, campaign.sweep.jobs[job])); });
   return config;
 }
 
@@ -117,7 +118,7 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
             directory);
   if (interrupted) return kInterrupted;
   // What is expected stands in every job's config, and is judged of all: the first that can be read will do.
-  std::optional<ResolvedConfig> config;
+  std::optional<ResolvedConfig> config = campaign.first;
   for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(campaign, job);
   if (!config) throw Error(sweep.directory.string(), "no job has a readable config.yaml", "restore these files");
   const bool is_judged = !config->expectations.empty() || !campaign.launch.junit.empty();
@@ -131,15 +132,17 @@ bool is_on_cluster(const Campaign& campaign) { return campaign.launch.launcher !
 LaunchOptions launch_options(const Campaign& campaign) {
   const LaunchArguments& launch = campaign.launch;
   const int workers = launch.workers.value_or(is_on_cluster(campaign) ? 1 : cores());
+  std::vector<std::string> words;
+  if (!launch.partition.empty()) words.push_back("--partition=" + launch.partition);
+  if (!launch.time.empty()) words.push_back("--time=" + launch.time);
+  if (!launch.account.empty()) words.push_back("--account=" + launch.account);
+  words.insert(words.end(), launch.sbatch.begin(), launch.sbatch.end());
   return {campaign.one_at_a_time ? 1 : workers,
           campaign.options,
           launch.attempts,
           campaign.only.empty(),
           campaign.one_at_a_time,
-          launch.partition,
-          launch.time,
-          launch.account,
-          launch.sbatch,
+          std::move(words),
           launch.jobs_per_task.value_or(1)};
 }
 
@@ -160,8 +163,8 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
     flush_output();
   };
   const Program& program = campaign.program;
-  const std::unique_ptr<Launcher> launcher = make_launcher(
-      campaign.launch.launcher, {program, campaign.sweep, campaign.config_of, launch_options(campaign), print_array});
+  const std::unique_ptr<Launcher> launcher =
+      make_launcher(campaign.launch.launcher, {program, campaign.sweep, launch_options(campaign), print_array});
   if (is_on_cluster(campaign)) {
     if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // there is nothing to submit
     if (!campaign.launch.wait) {
@@ -273,18 +276,17 @@ int sweep(Program& program, const SweepArguments& arguments) {
   // Before there is a folder that nobody would run.
   if (arguments.launch.launcher != kLocal && !arguments.list) slurm::check_installed();
   bool one_at_a_time = false;
-  std::vector<std::string> left_out;
+  std::optional<ResolvedConfig> first;
   std::optional<SweepDraft> draft;
   if (!arguments.list) draft.emplace(arguments.runs);
   const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
                                     [&](const Job& job, const ResolvedConfig& config) {
                                       if (draft) check_who_taps(config, "backend");
                                       if (draft) draft->add(job, config);
-                                      if (job.index == 0) left_out = half_said_sizes(config.tree, config.notes);
+                                      if (job.index == 0) first = config;
                                       one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
                                     });
-  const auto config_of = [&](std::size_t job) { return planned_config(plan, program.host, job); };
-  Campaign campaign{program, plan.sweep, config_of, {}, arguments.launch, {}, one_at_a_time};
+  Campaign campaign{program, plan.sweep, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
   const std::string jobs = counted(static_cast<long>(plan.sweep.jobs.size()), "job");
   if (arguments.list) {
     for (const Job& job : plan.sweep.jobs) {
@@ -297,7 +299,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   draft.reset();
   if (!is_new) check_builds(campaign, jobs_of(campaign));
   if (!arguments.launch.quiet) {
-    for (const std::string& line : left_out) mention(line + "\n");
+    for (const std::string& line : half_said_sizes(campaign.first->tree, campaign.first->notes)) mention(line + "\n");
     mention(fmt::format("{} in {}{}\n", jobs, plan.sweep.directory.string(),
                         is_new ? "" : ", which exists: only missing jobs are run"));
   }
@@ -309,8 +311,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);
-  const auto config_of = [&](std::size_t job) { return load_run(program.host, job_directory(sweep, sweep.jobs[job])); };
-  Campaign campaign{program, sweep, config_of, arguments.options, arguments.launch, {}, false};
+  Campaign campaign{program, sweep, arguments.options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) {
     campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
     const char* const hint = "leave one of them out";
@@ -321,8 +322,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
   }
   Standing begun = standing_of(sweep, jobs_of(campaign));
   const std::vector<std::size_t> left = undone(begun);
-  std::optional<ResolvedConfig> next;
-  if (!left.empty()) trouble_in([&] { next = config_of(left.front()); });  // a damaged job fails alone
+  const std::optional<ResolvedConfig> next = left.empty() ? std::nullopt : readable_config(campaign, left.front());
   if (next) check_who_taps(*next, arguments.directory);
   check_builds(campaign, left);
   return run_campaign(campaign, std::move(begun));

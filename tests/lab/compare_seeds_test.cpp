@@ -62,50 +62,6 @@ TEST(CompareSeeds, ResamplesSeedsWithAllOfTheirJobs) {
   EXPECT_GT(of_means.high - of_means.low, 1.9 * (of_jobs.high - of_jobs.low)) << "as if there were 80 seeds";
 }
 
-TEST(CompareSeeds, CopiesOfARunNarrowNoIntervalAndNoP) {
-  const auto jobs = [](const std::vector<std::string>& kernels) {
-    std::vector<MadeJob> out;
-    for (const MadeJob& one : seeds_that_matter(12, {"k"})) {
-      for (const std::string& kernel : kernels) out.push_back({one.strategy, kernel, one.seed, one.rmse});
-    }
-    return MadeSweep(out).by({"acquisition"});
-  };
-  const Comparison one = jobs({"k"});
-  const Comparison three = jobs({"k", "l", "m"});
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(three.groups[i].mean.count, 36U);
-    EXPECT_EQ(three.groups[i].mean.interval.has_value(), one.groups[i].mean.interval.has_value());
-  }
-  for (const bool low : {true, false}) {
-    const auto end = [&](const MeanEstimate& mean) { return low ? mean.interval->low : mean.interval->high; };
-    EXPECT_NEAR(end(three.groups[1].mean), end(one.groups[1].mean), 1e-12);
-    EXPECT_NEAR(end(three.pairs[0].difference), end(one.pairs[0].difference), 1e-12);
-  }
-  EXPECT_EQ(*three.pairs[0].test.p, *one.pairs[0].test.p);
-  EXPECT_EQ(*three.pairs[0].test.effect, *one.pairs[0].test.effect);
-  EXPECT_FALSE(three.groups[0].mean.interval) << "equal values say nothing of others";
-}
-
-TEST(CompareSeeds, WeighsASeedByItsJobsWhereSomeAreMissing) {
-  std::vector<MadeJob> jobs = seeds_that_matter(12, {"k", "l", "m"});
-  for (MadeJob& one : jobs) {
-    if (one.seed % 3 == 0 && one.kernel != "k") one.status = "absent";
-  }
-  const Comparison made = MadeSweep(jobs).by({"acquisition"});
-  double sum = 0.0;
-  int count = 0;
-  for (const MadeJob& one : jobs) {
-    if (one.strategy != "b" || one.status != "done") continue;
-    sum += *one.rmse;
-    ++count;
-  }
-  EXPECT_EQ(made.groups[1].mean.count, static_cast<std::size_t>(count));
-  EXPECT_EQ(made.groups[1].mean.clusters, 12U);
-  EXPECT_NEAR(made.groups[1].mean.mean, sum / count, 1e-12);
-  EXPECT_LT(made.groups[1].mean.interval->low, made.groups[1].mean.mean);
-  EXPECT_GT(made.groups[1].mean.interval->high, made.groups[1].mean.mean);
-}
-
 TEST(CompareSeeds, SaysHowManySeedsThereAreAndWhatFewMean) {
   const Comparison few = MadeSweep(seeds_that_matter(6, {"k", "l"})).by({"acquisition"});
   EXPECT_THAT(compare_tables(few), HasSubstr("   n  seeds  mean [95 % interval]"));

@@ -45,19 +45,6 @@ TEST(Compare, PairsJobsThatAreEqualInAllButTheKeyThatMakesTheGroups) {
   EXPECT_FALSE(made.pairs[0].p_holm) << "one pair needs no adjustment";
 }
 
-TEST(Compare, MakesGroupsOfSeveralKeysAndAdjustsForAllPairs) {
-  const Comparison made = MadeSweep(two_by_two(5)).by({"kernel", "acquisition"});
-  ASSERT_EQ(made.groups.size(), 4U);
-  EXPECT_EQ(made.groups[0].name, "rbf, a");
-  EXPECT_EQ(made.groups[3].name, "matern, b");
-  EXPECT_EQ(made.pairing, std::vector<std::string>{"seed"});
-  ASSERT_EQ(made.pairs.size(), 6U);
-  std::vector<double> p;
-  for (const ComparedPair& pair : made.pairs) p.push_back(*pair.test.p);
-  const std::vector<double> adjusted = holm_adjusted(p);
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(*made.pairs[i].p_holm, adjusted[i]);
-}
-
 TEST(Compare, SortsGroupsByTheFirstKeyThenByTheSecondInTheOrderOfTheSweep) {
   const auto names = [](const std::vector<std::string>& by) {
     std::vector<std::string> out;
@@ -75,14 +62,6 @@ TEST(Compare, NamesAGroupWhoseJobsLackAnOption) {
   EXPECT_EQ(both.groups[0].name, "a, (none)");
   EXPECT_EQ(both.groups[1].name, "b, 4");
   EXPECT_THAT(compare_tables(made.by({"kernel"})), HasSubstr("\n4 - (none) "));
-}
-
-TEST(Compare, TheMeanDifferenceOfCompletePairsIsTheDifferenceOfTheMeans) {
-  const Comparison made = MadeSweep(two_by_two(30)).by({"acquisition"});
-  EXPECT_NEAR(made.pairs[0].difference.mean, made.groups[1].mean.mean - made.groups[0].mean.mean, 1e-12);
-  EXPECT_LT(made.pairs[0].difference.interval->low, made.pairs[0].difference.mean);
-  EXPECT_GT(made.pairs[0].difference.interval->high, made.pairs[0].difference.mean);
-  EXPECT_NEAR(made.groups[0].median, 0.12, 1e-12);
 }
 
 TEST(Compare, CountsFailedUnfinishedAndValuelessJobsAndLeavesThemOutOfTheMean) {
@@ -185,21 +164,6 @@ TEST(Compare, ManyGroupsAreComparedWithTheFirstAloneAndItSaysSo) {
   EXPECT_THAT(compare_tables(eight), Not(HasSubstr("alone")));
 }
 
-TEST(Compare, OneGroupIsShownAloneWithANote) {
-  const Comparison made = MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 0.2}}).by({"acquisition"});
-  EXPECT_TRUE(made.pairs.empty());
-  EXPECT_THAT(compare_tables(made), HasSubstr("only one group: nothing to compare\n"));
-  EXPECT_THAT(compare_legend({made}), Not(HasSubstr("Wilcoxon")));
-}
-
-TEST(Compare, GroupsWithoutACommonJobHaveNoPairAndNoP) {
-  const Comparison made = MadeSweep({{"a", "k", 1, 0.1}, {"b", "m", 1, 0.2}}).by({"acquisition"});
-  EXPECT_EQ(made.pairs[0].difference.count, 0U);
-  EXPECT_FALSE(made.pairs[0].test.p);
-  EXPECT_EQ(made.pairs[0].lost.of(Fate::without_partner), 2);
-  EXPECT_THAT(compare_tables(made), HasSubstr("b - a           0     2                     -               0/0/0  -"));
-}
-
 TEST(Compare, SaysWhichKeyLeavesGroupsWithoutPairsAndWhatPairsThem) {
   // a has no such option, and c shares one value of it with b.
   const MadeSweep made({{"a", "", 1, 0.1}, {"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
@@ -216,13 +180,6 @@ TEST(Compare, SaysWhichKeyLeavesGroupsWithoutPairsAndWhatPairsThem) {
   EXPECT_THAT(compare_tables(seeds), Not(HasSubstr("--by"))) << "--by acquisition,seed is rejected";
   const MadeSweep shared({{"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
   EXPECT_TRUE(shared.by({"acquisition"}).apart.empty()) << "one lost pair of two is no reason to group otherwise";
-}
-
-TEST(Compare, AJobThatASweepHoldsTwiceIsPairedWithItsLike) {
-  const Comparison made =
-      MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 1, 0.1}, {"b", "k", 1, 0.3}, {"b", "k", 1, 0.3}}).by({"acquisition"});
-  EXPECT_EQ(made.groups[0].counts.all(), 2);
-  EXPECT_EQ(made.pairs[0].difference.count, 2U);
 }
 
 TEST(CompareWhere, LeavesJobsOutAndCountsThemAndThePairsThatItBreaks) {

@@ -72,14 +72,6 @@ TEST(Condition, TakesWhatIsInQuotesForAText) {
   none_holds({"kernel == 'kernel'", "taps == '17.0'"});
 }
 
-TEST(Condition, BindsNotBeforeAndBeforeOr) {
-  all_hold({"taps == 17 or taps == 17 and taps == 1",  // not (a or a) and b
-            "not (taps == 17 and taps == 1)", "not not taps == 17",
-            "taps >= 12 and (surface == single or not kernel == matern52)"});
-  none_holds({"(taps == 17 or taps == 17) and taps == 1",
-              "not taps == 17 and taps == 1"});  // (not a) and b, not not (a and b)
-}
-
 TEST(Condition, AgreesWithATruthTable) {
   // seed == 3 is true, seed == 4 is false: every way to join three of them, against C++'s own operators.
   for (int bits = 0; bits < 8; ++bits) {

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <set>
 
 namespace palpate {
 namespace {
@@ -63,13 +62,6 @@ TEST(List, TakesItsItemsOneAfterTheOtherEachAGridOfItsOwn) {
             "a=1; a=2 b=x c=u; a=2 b=x c=v; a=2 b=y c=u; a=2 b=y c=v; ");
 }
 
-TEST(List, HasACombinationThatSaysNothingForAnEmptyItem) {
-  const SweepDescription description = described(" {list: [{}, {a: 1}]}");
-  ASSERT_EQ(description.combinations().size(), 2U);
-  EXPECT_TRUE(description.combinations()[0].empty());
-  EXPECT_EQ(description.combinations()[1].size(), 1U);
-}
-
 TEST(Blocks, MultiplyInTheOrderInWhichTheyAreWritten) {
   EXPECT_EQ(shown(described(" {zip: {a: [1, 2], b: [x, y]}, grid: {c: [u, v]}}")),
             "a=1 b=x c=u; a=1 b=x c=v; a=2 b=y c=u; a=2 b=y c=v; ");
@@ -87,20 +79,6 @@ TEST(Blocks, NameTheirKeysInTheOrderOfWriting) {
 TEST(Blocks, AreNothingWhenEmpty) {
   EXPECT_TRUE(described(" {}").keys().empty());
   EXPECT_EQ(shown(described(" {grid: {a: [1]}, zip: {}, list: [], sobol: {}, where: []}")), "a=1; ");
-}
-
-TEST(Blocks, MakeEachCombinationOnce) {
-  const SweepDescription description =
-      described(" {list: [{a: [1, 2, 3]}, {b: [1, 2]}], zip: {c: [1, 2], d: [1, 2]}, grid: {e: 'range(0,7)'}}");
-  EXPECT_EQ(description.combinations().size(), (3U + 2U) * 2U * 7U);
-  std::set<std::string> different;
-  for (std::size_t i = 0; i < description.combinations().size(); ++i) {
-    std::string text;
-    for (const SweptValue& one : description.combinations()[i])
-      text += one.axis->key + "=" + value_text(one.value()) + " ";
-    different.insert(text);
-  }
-  EXPECT_EQ(different.size(), description.combinations().size());
 }
 
 TEST(Where, KeepsTheCombinationsForWhichItHolds) {
@@ -169,20 +147,6 @@ TEST(Sobol, SpreadsALogarithmicRangeInTheLogarithmAndKeepsToItsEnds) {
     EXPECT_EQ(axes[0].values[i].text.substr(axes[0].values[i].text.find(' ')), " cm");
   }
   EXPECT_EQ(below, 16);
-}
-
-TEST(Sobol, GivesTheSamePointsEveryTimeAndFewerAreTheFirstOfMore) {
-  const auto values = [](int samples) {
-    std::vector<std::string> out;
-    const std::string text =
-        "{samples: " + std::to_string(samples) + ", keys: {a: 'log_uniform(1,9)', b: 'uniform(0,1)'}}";
-    for (const Axis& axis : sobol_axes(parse_yaml(text, "c"), fresh())) {
-      for (std::size_t i = 0; i < 5; ++i) out.push_back(axis.values[i].text);
-    }
-    return out;
-  };
-  EXPECT_EQ(values(5), values(100));
-  EXPECT_EQ(values(5), values(5));
 }
 
 TEST(Sobol, RefusesWhatIsNoContinuousRange) {
@@ -315,34 +279,6 @@ TEST(Words, KeepWhatIsExpectedApart) {
   ASSERT_EQ(words.axes.size(), 1U);
   EXPECT_EQ(test::error_of([] { parse_sweep_words({"expect.rmse_m=1,2"}); }),
             "command line: expect.rmse_m: expectations cannot be swept, give it one value");
-}
-
-TEST(WrittenDescription, ReadsBackAsTheSameCombinations) {
-  const std::vector<std::pair<std::string, std::vector<std::string>>> cases{
-      {" {grid: {seed: 'range(0,3)', b: [[1, 2], x, 'logspace(1,2,3)']}}", {}},
-      {" {zip: {a: [1, 2], b: 'logspace(1 cm,2 cm,2)'}, grid: {c: ['1', {type: rbf}]}}", {"d=1,range(2,4)"}},
-      {" {list: [{a: 1}, {a: 2, b: [x, y]}, {}], where: ['a == 2 or c > 1', not b == x]}", {"c=1,2"}},
-      {" {sobol: {samples: 8, keys: {a: 'uniform(0 m,1 m)', b: 'log_uniform(1,9)'}}}", {"b=range(0,2)"}},
-      {" {where: a > 1}", {"a=1,2", "sweep.list=[{b: 1}]"}},
-  };
-  for (const auto& [sweep, words] : cases) {
-    const SweepDescription first = described(sweep, words);
-    const Tree tree = parse_yaml(to_yaml(first.written()), "config.yaml");
-    const SweepDescription again(&tree, {});
-    EXPECT_EQ(shown(again, {{"a", "1"}, {"b", "0"}}), shown(first, {{"a", "1"}, {"b", "0"}})) << sweep;
-    EXPECT_EQ(again.keys(), first.keys());
-    EXPECT_EQ(to_yaml(again.written()), to_yaml(first.written()));
-  }
-}
-
-TEST(Overrides, HoldChoicesAboveOptionsAndBothAboveTheConfig) {
-  const SweepDescription description =
-      described(" {grid: {kernel: [rbf], motion.type: [paper], kernel.length_scale: [1 cm]}}");
-  const std::vector<Override> overrides = overrides_of(description.combinations()[0]);
-  ASSERT_EQ(overrides.size(), 3U);
-  EXPECT_GT(overrides[0].value.layer, overrides[2].value.layer);
-  EXPECT_GT(overrides[1].value.layer, overrides[2].value.layer);
-  EXPECT_GT(overrides[2].value.layer, kFileLayer);
 }
 
 }  // namespace

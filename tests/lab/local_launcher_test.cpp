@@ -11,7 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <functional>
+#include <string>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -20,21 +21,23 @@ namespace {
 class TwoJobs : public testing::Test {
  protected:
   TwoJobs() {
-    folder_.write("manifest.jsonl", "");
-    for (const Job& job : sweep_.jobs) folder_.write("jobs/" + job.id + "/config.yaml", "");
+    folder_.write(kFolder + "/manifest.jsonl", "");
+    for (const Job& job : sweep_.jobs) folder_.write(kFolder + "/jobs/" + job.id + "/config.yaml", kConfig);
   }
 
-  using ConfigOf = std::function<ResolvedConfig(std::size_t job)>;
-
-  LocalLauncher launcher(const ConfigOf& config_of) const {
-    return LocalLauncher({workshop_, sweep_, config_of, {}, {}});
-  }
+  LocalLauncher launcher() const { return LocalLauncher({workshop_, sweep_, {}, {}}); }
   std::filesystem::path job(std::size_t index) const { return job_directory(sweep_, sweep_.jobs[index]); }
 
+  inline static const std::string kFolder =
+      "a\xc2\x9b"
+      "b";
+  /// It cannot be read: there is no such plugin.
+  static constexpr const char* kConfig = "kernel: {type: nowhere}\n";
+
   const test::TemporaryFolder folder_;
-  const Sweep sweep_{folder_.path(), {}, {Job{0, "000000000000", {}}, Job{1, "111111111111", {}}}};
+  const Sweep sweep_{folder_.path() / kFolder, {}, {Job{0, "000000000000", {}}, Job{1, "111111111111", {}}}};
   const Installation installation_;
-  const PluginHost host_{{}};
+  PluginHost host_{{}};
   const Workshop workshop_{host_, installation_, {}, nullptr};
 };
 
@@ -48,30 +51,13 @@ class Returning : public Launcher {
   State state_;
 };
 
-TEST_F(TwoJobs, StayOpenWhileAnotherProcessHasTheirArmWhichIsSaidOnce) {
-  LocalLauncher local = launcher([](std::size_t) -> ResolvedConfig {
-    throw Error("backend", "the arm \xc2\x9b[31mleft is used by process 7", "wait until that process has ended",
-                Error::Kind::busy);
-  });
+TEST_F(TwoJobs, WithoutAFolderAreNotRecordedWhichIsSaidInPrintableText) {
+  std::filesystem::remove_all(job(0));
+  LocalLauncher local = launcher();
   testing::internal::CaptureStderr();
-  const bool all_recorded = conduct(local, sweep_, standing_of(sweep_, {0, 1}), nullptr, [](const SweepProgress&) {});
-  EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "job 0: backend: the arm \\x9b[31mleft is used by process 7, wait until that process has ended\n");
-  EXPECT_TRUE(all_recorded);
-  EXPECT_THAT(standing_of(sweep_, {0, 1}).open, testing::ElementsAre(0, 1));
-}
-
-TEST_F(TwoJobs, RunOneAfterTheOtherWithoutAPauseThatAnybodySees) {
-  LocalLauncher local = launcher([](std::size_t) -> ResolvedConfig { throw Error("", "it cannot be read"); });
-  std::vector<int> running;
-  testing::internal::CaptureStderr();
-  conduct(local, sweep_, standing_of(sweep_, {0, 1}), nullptr,
-          [&](const SweepProgress& now) { running.push_back(now.running); });
-  testing::internal::GetCapturedStderr();
-  ASSERT_GE(running.size(), 2U);
-  EXPECT_EQ(running.back(), 0);
-  running.pop_back();
-  EXPECT_THAT(running, testing::Each(1));
+  EXPECT_FALSE(conduct(local, sweep_, standing_of(sweep_, {0}), nullptr, [](const SweepProgress&) {}));
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::ContainsRegex("^job 0: .*a\\\\x9bb/jobs/000000000000: is missing, it has no config.yaml"));
 }
 
 TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
@@ -92,11 +78,12 @@ TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
 }
 
 TEST_F(TwoJobs, ThatAreKilledBeforeTheirAttemptIsNotedAreNotBegunForEver) {
-  const auto dies = [](std::size_t) -> ResolvedConfig {
+  // While the config is read, where the error is to suggest another name.
+  host_.set_group_names([](const std::string&) {
     std::raise(SIGKILL);
-    throw std::logic_error("survived");
-  };
-  LocalLauncher local = launcher(dies);
+    return std::vector<std::string>();
+  });
+  LocalLauncher local = launcher();
   local.submit({0});
   Launcher::State state;
   int polls = 0;

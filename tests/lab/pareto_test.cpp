@@ -110,20 +110,6 @@ TEST(Pareto, GroupsOverTheSeedAndNamesOnlyTheKeysThatDiffer) {
   EXPECT_DOUBLE_EQ(a.error.mean, 0.04);
 }
 
-TEST(Pareto, NumbersTheFrontInTheOrderOfCost) {
-  const Pareto pareto = MadeUp({{"dear", "1", 30, 0.01}, {"bad", "1", 20, 0.05}, {"cheap", "1", 10, 0.03}}).pareto();
-  EXPECT_EQ(setting(pareto, "acquisition=cheap").front, 1);
-  EXPECT_EQ(setting(pareto, "acquisition=dear").front, 2);
-  EXPECT_EQ(setting(pareto, "acquisition=bad").front, 0);
-}
-
-TEST(Pareto, PutsEqualSettingsOnTheFrontTogether) {
-  const Pareto pareto = MadeUp({{"a", "1", 10, 0.01}, {"b", "1", 10, 0.01}, {"c", "1", 10, 0.02}}).pareto();
-  EXPECT_GT(setting(pareto, "acquisition=a").front, 0);
-  EXPECT_GT(setting(pareto, "acquisition=b").front, 0);
-  EXPECT_EQ(setting(pareto, "acquisition=c").front, 0);
-}
-
 TEST(Pareto, TakesMoreForBetterWhereItIs) {
   const Pareto pareto = MadeUp({{"a", "1", 10, 0, 0.2}, {"b", "1", 20, 0, 0.9}, {"c", "1", 30, 0, 0.5}})
                             .pareto("robot_seconds", "footprint_iou");

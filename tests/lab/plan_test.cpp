@@ -4,15 +4,11 @@
 
 #include "config/yaml.hpp"
 #include "support/runs.hpp"
-#include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
-#include <malloc.h>
 
 namespace palpate {
 namespace {
@@ -51,12 +47,6 @@ std::string refused(const Texts& words) {
   return test::error_of([&] { plan_of(words); });
 }
 
-std::string all_of(const ResolvedConfig& config) {
-  std::string out = config.id + "\n" + to_yaml(config.tree) + std::to_string(config.options.seed);
-  for (const ResolveNotes::Origin& one : config.notes.origins) out += "\n" + one.path + " " + one.place;
-  return out;
-}
-
 /// A table of the swept values, a job a line.
 Texts rows(const SweepPlan& plan) {
   Texts out;
@@ -68,35 +58,12 @@ Texts rows(const SweepPlan& plan) {
   return out;
 }
 
-TEST(Plan, GivesEveryJobTheConfigOfASingleRunWhateverConfigItIs) {
-  for (const char* folder : {"paper", "ci"}) {
-    for (const auto& entry : fs::directory_iterator(kConfigs / folder)) {
-      const std::string file = std::string(folder) + "/" + entry.path().filename().string();
-      for (const Texts& more :
-           {Texts{}, Texts{"kernel=matern52"}, Texts{"taps=12", "height.kernel=rational_quadratic"}}) {
-        // Their own sweeps are other tests' work: here it is the seed alone that runs.
-        Texts words = more;
-        words.insert(words.end(), {"seed=3,17,4", "sweep.grid={}", "sweep.list=[{}]", "acquisition=uncertainty",
-                                   "log.surface=true"});
-        const Planned out = planned(entry.path(), words);
-        ASSERT_EQ(out.configs.size(), 3U) << file;
-        for (std::size_t i = 0; i < 3; ++i) {
-          Texts single = more;
-          single.insert(single.end(),
-                        {"seed=" + Texts{"3", "17", "4"}[i], "acquisition=uncertainty", "log.surface=true"});
-          EXPECT_EQ(all_of(out.configs[i]), all_of(test::shipped_config(file, single))) << file;
-        }
-      }
-    }
-  }
-}
-
 TEST(Plan, GivesEveryJobTheConfigOfASingleRunWhereverTheSeedStands) {
   for (const Texts& words :
        {Texts{"seed=range(0,5)", "acquisition=weighted,random"},
         Texts{"acquisition=weighted,random", "seed=range(0,5)"}, Texts{"sweep.zip={seed: [1, 2], taps: [12, 17]}"},
         Texts{"sweep.list=[{seed: [5, 6]}, {taps: 12, seed: [3, 4]}, {}, {taps: 9}]"},
-        Texts{"seed=range(0,3)", "taps=range(10,80)"}}) {
+        Texts{"seed=range(0,3)", "taps=10,11"}}) {
     const Planned out = planned(kPaper, words);
     ASSERT_GE(out.configs.size(), 2U);
     for (std::size_t i = 0; i < out.configs.size(); ++i) {
@@ -104,35 +71,7 @@ TEST(Plan, GivesEveryJobTheConfigOfASingleRunWhereverTheSeedStands) {
       for (std::size_t key = 0; key < out.plan.sweep.keys.size(); ++key)
         single.push_back(out.plan.sweep.keys[key] + "=" + out.plan.sweep.jobs[i].values[key]);
       EXPECT_EQ(to_yaml(out.configs[i].tree), to_yaml(test::shipped_config("paper/object_i.yaml", single).tree)) << i;
-      if (out.plan.configs[i].config == nullptr) continue;  // more than are kept: read from the job's own file
-      EXPECT_EQ(all_of(planned_config(out.plan, test::shared_host(), i)), all_of(out.configs[i])) << i;
     }
-  }
-}
-
-TEST(Plan, OfManyJobsKeepsLittleOfEachAsTheProcessOfEveryJobBeginsWithACopyOfAll) {
-  if (test::kSanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
-  const auto in_use = [] {
-    const struct mallinfo2 now = ::mallinfo2();
-    return now.uordblks + now.hblkhd;
-  };
-  Composer composer(kConfigs, config_keys());
-  const auto plan_seeds = [&](std::size_t count) {
-    return plan_sweep(composer, test::shared_host(), kPaper, {fmt::format("seed=range(0,{})", count)}, "runs");
-  };
-  plan_seeds(2);
-  const std::size_t before = in_use();
-  constexpr std::size_t kJobs = 32000;  // of which vectors that double have room for hardly more
-  const SweepPlan plan = plan_seeds(kJobs);
-  ASSERT_EQ(plan.sweep.jobs.size(), kJobs);
-  EXPECT_LT((in_use() - before) / kJobs, 230U) << "bytes";
-}
-
-TEST(Plan, RefusesWhatIsNoSeedAsASingleRunDoes) {
-  for (const std::string& bad : Texts{"-1", "2.5", "1 cm", "x", "99999999999999999999"}) {
-    const std::string single = test::error_of([&] { test::shipped_config("paper/object_i.yaml", {"seed=" + bad}); });
-    EXPECT_NE(single, "accepted");
-    EXPECT_EQ(refused({"seed=1," + bad}), single);
   }
 }
 
@@ -268,6 +207,8 @@ TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
        {"sweep.sobol={samples: 5, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)', height.noise: "
         "'uniform(0.1mm,1mm)'}}",
         "expect.failed_runs=<= 1", "name=points"}},
+      {"paper/object_i.yaml",
+       {"sweep.sobol={samples: 2, keys: {kernel.length_scale: 'uniform(1cm,3cm)', taps: 'uniform(8,9)'}}", "taps=8,9"}},
       {"paper/comparison.yaml", {"seed=range(0,3)"}},
       {"sweep/fitting.yaml", {"seed=4", "taps=17"}},
       {"sweep/trade_compute.yaml", {"seed=4"}},

@@ -89,18 +89,6 @@ TEST_F(RunsTable, IsThisLetterByLetter) {
   EXPECT_EQ(runs_table({}), "");
 }
 
-TEST_F(RunsTable, SetsThoseOfANameApartByTheKeysInWhichTheyDiffer) {
-  const auto begun = [&](const std::string& id, const std::string& config) {
-    return list_record(folder_.write(id + "/config.yaml", "name: a\n" + config).parent_path());
-  };
-  const std::vector<Row> rows = rows_of({begun("1", "taps: 30\nkernel: {type: rbf, length_scale: 1 cm}\nseed: 1\n"),
-                                         begun("2", "taps: 30\nkernel: {type: rbf, length_scale: 2 cm}\nseed: 2\n"),
-                                         list_record(done("other", 1, "0.01"))});
-  EXPECT_EQ(rows.at(0).text("apart"), "seed 1, kernel.length_scale 1 cm");
-  EXPECT_EQ(rows.at(1).text("apart"), "seed 2, kernel.length_scale 2 cm");
-  EXPECT_EQ(rows.at(2).text("apart"), "") << "the only one of its name";
-}
-
 TEST_F(RunsTable, SetsRunsApartBySceneBackendAndAcquisitionAndNotByWhatTheyShareOrBySweepsOfTheirName) {
   const auto begun = [&](const std::string& id, const std::string& acquisition, const std::string& scene,
                          const std::string& motion) {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 namespace palpate {
@@ -15,26 +14,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-/// CIE L* of "#rrggbb" under D65: how light a colour looks, 0 to 100.
-double lightness(const std::string& colour) {
-  const auto linear = [&](std::size_t at) {
-    const double c = static_cast<double>(std::strtol(colour.substr(at, 2).c_str(), nullptr, 16)) / 255.0;
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-  };
-  const double y = 0.2126 * linear(1) + 0.7152 * linear(3) + 0.0722 * linear(5);
-  return y > 0.008856 ? 116.0 * std::cbrt(y) - 16.0 : 903.3 * y;
-}
-
-TEST(PaletteTest, GrowsLighterInEvenSteps) {
-  for (const Palette palette : {Palette::viridis, Palette::cividis}) {
-    const std::vector<std::string>& stops = palette_stops(palette);
-    const double step = (lightness(stops.back()) - lightness(stops.front())) / static_cast<double>(stops.size() - 1);
-    EXPECT_GT(step * static_cast<double>(stops.size() - 1), 70.0) << "from dark to light";
-    for (std::size_t i = 1; i < stops.size(); ++i)
-      EXPECT_NEAR(lightness(stops[i]) - lightness(stops[i - 1]), step, 0.35 * step) << stops[i];
-  }
-}
 
 std::vector<std::vector<double>> numbers_in(const std::string& text) {
   std::vector<std::vector<double>> out;

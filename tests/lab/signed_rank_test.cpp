@@ -17,26 +17,6 @@ SignedRank against_zero(const std::vector<double>& differences) {
   return signed_rank_test(differences, std::vector<double>(differences.size(), 0.0));
 }
 
-/// Differences of the sizes 1 to `count`, of which the lower ones have this sum of ranks.
-std::vector<double> with_lower_sum(int count, int sum) {
-  std::vector<double> differences;
-  for (int size = count; size >= 1; --size) {
-    differences.push_back(size <= sum ? -size : size);
-    if (size <= sum) sum -= size;
-  }
-  return differences;
-}
-
-TEST(SignedRank, HasTheCriticalValuesOfThePrintedTables) {
-  // The largest smaller sum that is significant, two-sided at 5 %, in every textbook's appendix.
-  const std::pair<int, int> table[] = {{6, 0},   {7, 2},   {8, 3},   {9, 5},   {10, 8},  {11, 10}, {12, 13}, {13, 17},
-                                       {14, 21}, {15, 25}, {16, 29}, {17, 34}, {18, 40}, {19, 46}, {20, 52}, {25, 89}};
-  for (const auto& [count, sum] : table) {
-    EXPECT_LE(*against_zero(with_lower_sum(count, sum)).p, 0.05) << count;
-    EXPECT_GT(*against_zero(with_lower_sum(count, sum + 1)).p, 0.05) << count;
-  }
-}
-
 TEST(SignedRank, OfTheDepressionScalesIsThatOfTheTextbook) {
   // Hollander and Wolfe 1973, page 29: T+ = 40, one-sided p = 0.020, here doubled: 20 of the 512 patterns.
   const SignedRank test = signed_rank_test({1.83, 0.50, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.30},
@@ -45,14 +25,6 @@ TEST(SignedRank, OfTheDepressionScalesIsThatOfTheTextbook) {
   EXPECT_EQ(test.rank_sum_lower, 5.0);
   EXPECT_DOUBLE_EQ(*test.p, 20.0 / 512.0);
   EXPECT_DOUBLE_EQ(*test.effect, 35.0 / 45.0);
-}
-
-// python3 -c "from scipy.stats import wilcoxon as w; print(w([1.1, ...], mode='exact'))"
-TEST(SignedRank, IsScipysWhereNothingIsTied) {
-  const SignedRank test = against_zero({1.1, -2.2, 3.3, 4.4, -5.5, 6.6, 7.7, 8.8, 9.9, -10.1, 11.2, 12.3});
-  EXPECT_TRUE(test.exact);
-  EXPECT_EQ(test.rank_sum_lower, 17.0);
-  EXPECT_NEAR(*test.p, 0.09228515625, 1e-15);
 }
 
 // python3 -c "from scipy.stats import wilcoxon as w; print(w([i * 37 % 101 - 40 for i in range(1, 401)],
@@ -119,32 +91,6 @@ TEST(SignedRank, IsTheCountOfAllSignsInHundredsOfCasesWithTiesAndZeros) {
   }
 }
 
-TEST(SignedRank, AtTheEndOfTheExactOneTheApproximationIsClose) {
-  std::vector<double> differences;
-  for (std::size_t i = 0; i < kExactSignedRanks; ++i)
-    differences.push_back((i % 9 < 5 ? 1.0 : -1.0) * static_cast<double>(1 + i * 7 % 60));
-  const SignedRank exact = against_zero(differences);
-  ASSERT_TRUE(exact.exact);
-  ASSERT_GT(*exact.p, 0.01);
-  ASSERT_LT(*exact.p, 0.3);
-  differences.push_back(0.5);
-  const SignedRank normal = against_zero(differences);
-  EXPECT_FALSE(normal.exact);
-  // One more difference, the smallest, moves p itself by some per cent.
-  EXPECT_NEAR(*normal.p / *exact.p, 1.0, 0.05);
-}
-
-TEST(SignedRank, OfSwappedSidesHasTheSamePAndTheOppositeEffect) {
-  const std::vector<double> a{3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8};
-  const std::vector<double> b{2, 7, 1, 8, 2, 8, 1, 8, 2, 8, 4, 5};
-  const SignedRank one = signed_rank_test(a, b);
-  const SignedRank other = signed_rank_test(b, a);
-  EXPECT_EQ(*one.p, *other.p);
-  EXPECT_EQ(*one.effect, -*other.effect);
-  EXPECT_EQ(one.higher, other.lower);
-  EXPECT_EQ(one.equal, other.equal);
-}
-
 TEST(SignedRank, DoesNotChangeWithShiftScaleAndOrder) {
   const std::vector<double> a{0.3, 0.1, 0.4, 0.1, 0.5, 0.9, 0.2, 0.6};
   const std::vector<double> b{0.2, 0.7, 0.1, 0.2, 0.5, 0.8, 0.1, 0.8};
@@ -176,19 +122,6 @@ TEST(SignedRank, OfPairsThatAllPointOneWayIsTwoOfAllPatterns) {
   EXPECT_DOUBLE_EQ(*against_zero({-2}).p, 1.0);
   EXPECT_DOUBLE_EQ(*against_zero({-2}).effect, -1.0);
   EXPECT_NEAR(*against_zero(std::vector<double>(kExactSignedRanks, 2.0)).p / std::pow(2.0, -299.0), 1.0, 1e-12);
-}
-
-TEST(SignedRank, RejectsTheTruthAsOftenAsItSays) {
-  int rejected = 0;
-  for (std::uint64_t i = 0; i < 2000; ++i) {
-    Random random(i, "under the null");
-    std::vector<double> differences(30);
-    for (double& one : differences) one = random.uniform() - 0.5;
-    rejected += *against_zero(differences).p <= 0.05 ? 1 : 0;
-  }
-  // The exact level is just below 5 %: 100 of 2000, with a standard deviation of 10.
-  EXPECT_GE(rejected, 65);
-  EXPECT_LE(rejected, 130);
 }
 
 TEST(Holm, IsWhatOneComputesByHand) {

@@ -83,15 +83,6 @@ TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
   }
 }
 
-TEST(SurfaceMesh, HasNormalsOfLengthOneOnTheSideOfItsTriangles) {
-  const SurfaceMesh mesh = mesh_of([](double x, double y) { return 0.1 * std::sin(90 * x) * std::cos(50 * y); });
-  for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i) {
-    EXPECT_NEAR(mesh.normals.row(i).norm(), 1.0, kRounding);
-    EXPECT_GT(mesh.normals(i, 2), 0.0);
-  }
-  for (const auto& triangle : mesh.triangles) EXPECT_GT(area_vector(mesh, triangle).z(), 0.0);
-}
-
 TEST(SurfaceMesh, CoversTheRectangleOfItsVerticesOnce) {
   const double tilt = 2.0;
   const SurfaceMesh mesh = mesh_of([&](double x, double) { return tilt * x; });

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The page of a sweep of very many jobs has some of them, evenly, and says what became of all; tables have all of them.
+// The page of a sweep of very many jobs has some of them, evenly, and says what became of all.
 #include "report/page/sweep_page.hpp"
-#include "analysis/compare.hpp"
-#include "analysis/runs_table.hpp"
 #include "support/large_sweep.hpp"
 #include "support/support.hpp"
 
@@ -105,30 +103,6 @@ TEST_F(LargeSweep, HasAllJobsOnItsPageWhereThereIsRoom) {
   EXPECT_EQ(page.at("jobs").size(), 2000U);
   EXPECT_EQ(page.count("sampled"), 0U);
   EXPECT_EQ(data(sweep_, 1999).at("jobs").size(), 1000U) << "one more than there is room for";
-}
-
-TEST_F(LargeSweep, HasAllJobsInItsTableItsComparisonAndTheList) {
-  const Sweep read = read_sweep(sweep_.directory);
-  const std::vector<Row> results = write_results(read);
-  ASSERT_EQ(results.size(), 2000U);
-  const std::vector<test::Cells> rows = test::csv_rows(test::text_of(read.directory / "results.csv"));
-  ASSERT_EQ(rows.size(), 2000U);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto index = static_cast<int>(i);
-    EXPECT_EQ(rows[i].at("id"), sweep_.jobs[i].id);
-    EXPECT_EQ(rows[i].at("seed"), sweep_.jobs[i].values[0]);
-    EXPECT_EQ(rows[i].at("taps"), "3");
-    EXPECT_EQ(rows[i].at("rmse_m"), FakedJob::failed(index) ? "" : csv_cell(FakedJob::error(index)));
-  }
-  const Comparison compared =
-      compare(read, results, {{"acquisition"}, "rmse_m", nullptr, {}, false, CompareExtent::means});
-  ASSERT_EQ(compared.groups.size(), 2U);
-  EXPECT_EQ(compared.groups[0].mean.count, 1000U);
-  EXPECT_EQ(compared.groups[1].mean.count, 980U) << "all that failed are of this one";
-  const Row listed = list_record(read.directory).row;
-  EXPECT_EQ(listed.number("jobs"), 2000.0);
-  EXPECT_EQ(listed.number("jobs_done"), 1980.0);
-  EXPECT_EQ(listed.number("jobs_failed"), 20.0);
 }
 
 }  // namespace

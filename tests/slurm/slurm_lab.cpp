@@ -22,8 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kAttempts = 3;
-
 /// Daemons lie where users' PATH does not look.
 std::string program(const std::string& name) {
   const char* path = std::getenv("PATH");
@@ -42,69 +40,51 @@ std::string node_name() {
   return text.substr(0, text.find('.'));
 }
 
-std::string user_name(int user) {
-  const passwd* entry = ::getpwuid(user < 0 ? ::geteuid() : static_cast<uid_t>(user));
+std::string user_name() {
+  const passwd* entry = ::getpwuid(::geteuid());
   if (entry == nullptr) throw std::runtime_error("who runs this has no name, and Slurm wants one");
   return entry->pw_name;
-}
-
-/// Waits like eventually(), for longer: a cluster starts its tasks when it sees fit.
-template <class Condition>
-bool within_a_minute(const Condition& holds) {
-  for (int i = 0; i < 6; ++i) {
-    if (eventually(holds)) return true;
-  }
-  return false;
 }
 
 }  // namespace
 
 std::string SlurmLab::missing() {
-  const std::array<std::pair<const char*, const char*>, 6> wanted{{{"slurmctld", "slurmctld"},
-                                                                   {"slurmd", "slurmd"},
-                                                                   {"sbatch", "slurm-client"},
-                                                                   {"squeue", "slurm-client"},
-                                                                   {"munged", "munge"},
-                                                                   {"mungekey", "munge"}}};
-  for (const auto& [name, package] : wanted) {
-    if (program(name).empty()) return std::string(name) + " is not installed, install the package " + package;
+  for (const char* name : {"slurmctld", "slurmd", "sbatch", "squeue", "munged", "mungekey"}) {
+    if (program(name).empty()) return std::string(name) + " is not installed: see packages.txt";
   }
   return {};
 }
 
 SlurmLab::SlurmLab(const SlurmSettings& settings) : settings_(settings) {
-  fs::create_directories(cluster() / "state");
-  fs::create_directories(cluster() / "spool");
-  fs::create_directories(cluster() / "munge");
-  if (settings_.user >= 0) {
-    for (const fs::path& one : {folder(), cluster(), cluster() / "state", cluster() / "spool", cluster() / "munge"}) {
-      const auto user = static_cast<uid_t>(settings_.user);
-      if (::chown(one.c_str(), user, user) != 0) throw std::runtime_error("cannot give away " + one.string());
-    }
-  }
-  // A port may be taken by somebody between the look for it and its use.
-  for (int i = 0; i < kAttempts; ++i) {
-    if (start()) return;
-  }
-  const std::string words = text_of(cluster() / "lab.log") + text_of(cluster() / "slurmctld.log") +
-                            text_of(cluster() / "slurmd.log") + text_of(cluster() / "munge" / "log");
-  keeper_.reset();
-  throw std::runtime_error("no cluster comes up: " + words);
+  const fs::path munge = cluster() / "munge";
+  for (const fs::path& one : {cluster() / "state", cluster() / "spool", munge}) fs::create_directories(one);
+  write_config();
+  run({program("mungekey"), "--create", "--keyfile=" + (munge / "key").string()});
+  begin({program("munged"), "--foreground", "--force", "--socket=" + (munge / "socket").string(),
+         "--key-file=" + (munge / "key").string(), "--pid-file=" + (munge / "pid").string(),
+         "--log-file=" + (munge / "log").string(), "--seed-file=" + (munge / "seed").string()},
+        [&] { return fs::exists(munge / "socket"); });
+  begin({program("slurmctld"), "-D", "-c"}, [&] { return run({"sinfo"}).status == 0; });
+  begin({program("slurmd"), "-D", "-c", "-N", node_name()}, [&] {
+    return run({"sinfo", "--noheader", "--format=%t"}).out == "idle\n";
+  });
+}
+
+void SlurmLab::begin(const std::vector<std::string>& daemon, const std::function<bool()>& is_up) {
+  daemons_.push_back(std::make_unique<Child>(daemon, folder(), environment()));
+  const Child& own = *daemons_.back();
+  if (!eventually([&] { return is_up() || !own.running(); }) || !own.running())
+    throw std::runtime_error("no cluster comes up: " + own.err() + text_of(cluster() / "munge" / "log"));
 }
 
 SlurmLab::~SlurmLab() {
-  for (const char* name : {"slurmd.pid", "slurmctld.pid"}) {
-    const int pid = std::atoi(text_of(cluster() / name).c_str());
-    if (pid > 0) ::kill(pid, SIGTERM);
-  }
-  const auto daemons = [&] { return fs::exists(cluster() / "slurmd.pid") || fs::exists(cluster() / "slurmctld.pid"); };
-  eventually([&] { return !daemons(); });
-  const int munged = std::atoi(text_of(cluster() / "munge" / "pid").c_str());
-  if (munged > 0) ::kill(munged, SIGTERM);
+  run({"scancel", "--user=" + user_name()});
+  becomes_idle();
+  while (!daemons_.empty()) daemons_.pop_back();
 }
 
 void SlurmLab::write_config() const {
-  const std::string user = user_name(settings_.user);
+  const std::string user = user_name();
   const std::string at = cluster().string();
   const std::string node = node_name();
   std::ofstream out(cluster() / "slurm.conf");
@@ -128,31 +108,6 @@ void SlurmLab::write_config() const {
       << "PartitionName=lab Nodes=ALL Default=YES MaxTime=INFINITE State=UP\n";
 }
 
-std::vector<std::string> SlurmLab::as_user(const std::vector<std::string>& words) const {
-  if (settings_.user < 0) return words;
-  const std::string user = std::to_string(settings_.user);
-  std::vector<std::string> out{"setpriv", "--reuid=" + user, "--regid=" + user, "--clear-groups"};
-  out.insert(out.end(), words.begin(), words.end());
-  return out;
-}
-
-bool SlurmLab::start() {
-  keeper_.reset();
-  write_config();
-  const fs::path munge = cluster() / "munge";
-  std::error_code none;
-  fs::remove(munge / "key", none);
-  keeper_ = std::make_unique<Keeper>(
-      std::vector<std::vector<std::string>>{
-          as_user({program("mungekey"), "--create", "--keyfile=" + (munge / "key").string()}),
-          as_user({program("munged"), "--force", "--socket=" + (munge / "socket").string(),
-                   "--key-file=" + (munge / "key").string(), "--pid-file=" + (munge / "pid").string(),
-                   "--log-file=" + (munge / "log").string(), "--seed-file=" + (munge / "seed").string()}),
-          as_user({program("slurmctld"), "-c"}), as_user({program("slurmd"), "-c", "-N", node_name()})},
-      environment(), (cluster() / "lab.log").string());
-  return keeper_->ready() && eventually([&] { return run({"sinfo", "--noheader", "--format=%t"}).out == "idle\n"; });
-}
-
 std::vector<std::string> SlurmLab::environment() const {
   return {"SLURM_CONF=" + (cluster() / "slurm.conf").string(), "PALPATE_PLUGIN_PATH"};
 }
@@ -160,13 +115,13 @@ std::vector<std::string> SlurmLab::environment() const {
 Ended SlurmLab::run(const std::vector<std::string>& words, const std::vector<std::string>& more) const {
   std::vector<std::string> all = environment();
   all.insert(all.end(), more.begin(), more.end());
-  return run_program(as_user(words), folder(), all);
+  return run_program(words, folder(), all);
 }
 
 std::unique_ptr<Child> SlurmLab::start_palpate(const std::vector<std::string>& words) const {
   std::vector<std::string> all{program_file().string()};
   all.insert(all.end(), words.begin(), words.end());
-  return std::make_unique<Child>(as_user(all), folder(), environment());
+  return std::make_unique<Child>(all, folder(), environment());
 }
 
 Ended SlurmLab::palpate(const std::vector<std::string>& words, const std::vector<std::string>& more) const {
@@ -193,7 +148,7 @@ std::vector<int> SlurmLab::indices(int array) const {
 }
 
 bool SlurmLab::becomes_idle() const {
-  return within_a_minute([&] { return run({"squeue", "--noheader"}).out.empty(); });
+  return eventually([&] { return run({"squeue", "--noheader"}).out.empty(); });
 }
 
 }  // namespace palpate::test

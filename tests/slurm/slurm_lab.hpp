@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A cluster of one node on this machine, for one test: Slurm's own daemons on free ports of the loopback, all they
-// write in one folder. Tests may run at the same time; none leaves anything running.
+// write in one folder. Tests may run at the same time. The daemons end with the test, even one that is killed; tasks
+// that run then go on to their own end.
 #pragma once
 
-#include "keeper.hpp"
 #include "support/support.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +17,6 @@ namespace palpate::test {
 struct SlurmSettings {
   int cpus = 8;  ///< of the node, whatever the machine has: tasks of these tests mostly sleep
   int max_array_size = 1001;
-  int user = -1;  ///< to whom the cluster belongs and who runs palpate; -1 for who runs the test
 };
 
 class SlurmLab {
@@ -26,7 +26,7 @@ class SlurmLab {
 
   /// Starts munged, slurmctld and slurmd and waits until the node is idle. Throws std::runtime_error with their words.
   explicit SlurmLab(const SlurmSettings& settings = {});
-  /// Ends the daemons by their pid files; what they leave running is killed.
+  /// Cancels what is in the queue, and ends the daemons.
   ~SlurmLab();
   SlurmLab(const SlurmLab&) = delete;
   SlurmLab& operator=(const SlurmLab&) = delete;
@@ -53,18 +53,15 @@ class SlurmLab {
   /// Waits until every task has ended, at most a minute; whether that is so.
   bool becomes_idle() const;
 
-  /// The cluster's processes, slurmstepd and tasks included.
-  std::vector<int> processes() const { return keeper_->processes(); }
-
  private:
-  bool start();
+  /// Starts a daemon and waits until it is up.
+  void begin(const std::vector<std::string>& daemon, const std::function<bool()>& is_up);
   void write_config() const;
   std::filesystem::path cluster() const { return folder_.path() / "cluster"; }
-  std::vector<std::string> as_user(const std::vector<std::string>& words) const;
 
   SlurmSettings settings_;
   TemporaryFolder folder_;
-  std::unique_ptr<Keeper> keeper_;
+  std::vector<std::unique_ptr<Child>> daemons_;
 };
 
 }  // namespace palpate::test

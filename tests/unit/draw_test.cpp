@@ -119,16 +119,6 @@ TEST(Draw, GivesARunWhoseConfigMakesTheSameTaps) {
   EXPECT_EQ(part_of(first, "objects"), part_of(second, "objects"));
 }
 
-TEST(Draw, IsMadeAnewForAnotherSeed) {
-  ResolvedConfig config = clutter(1);
-  set_seed(config, Tree::scalar("12"), shared_host());
-  const ResolvedConfig whole = clutter(12);
-  EXPECT_EQ(config.id, whole.id);
-  EXPECT_EQ(to_yaml(config.tree), to_yaml(whole.tree));
-  EXPECT_EQ(config.options.seed, 12);
-  EXPECT_EQ(config.options.scene.objects.size(), list_of(whole).size());
-}
-
 TEST(Draw, KnowsWhereEachValueWasWritten) {
   const ResolvedConfig config = clutter(1, {"scene.objects.draw.of=[{type: cone, height: \"uniform(4 cm, 6 cm)\"}]"});
   const auto& origins = config.notes.origins;

@@ -262,7 +262,7 @@ void ExperimentOptions::list(Fields& fields) {
               Field("name", "name of the experiment. The name, as a slug, is also the name of the folder for the runs")
                   .of_run()
                   .not_identifying());
-  fields.integer(seed, seed_field());
+  fields.integer(seed, Field("seed", "seed of all random draws").at_least(0).of_run());
   fields.integer(
       taps, Field("taps", "maximum number of taps, the initial taps included").of_run().at_least(1).at_most(100000));
   fields.section(initial,
@@ -361,8 +361,6 @@ void ExperimentOptions::list(Fields& fields) {
                  fmt::format("{} taps, but there are only {} candidates, use fewer initial taps or more candidates",
                              initial.count, columns * rows));
 }
-
-Field seed_field() { return Field("seed", "seed of all random draws").at_least(0).of_run(); }
 
 std::vector<Field> keys_beside_options() {
   return {Field("defaults",

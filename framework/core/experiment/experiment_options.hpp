@@ -140,9 +140,6 @@ struct ExperimentOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// The option `seed`: alone, because a sweep gives many seeds to one config.
-Field seed_field();
-
 /// The keys that a config has beside these options, for those who read them: what each is for.
 std::vector<Field> keys_beside_options();
 

@@ -7,7 +7,6 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
-#include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
@@ -31,10 +30,6 @@ constexpr std::array kStatistics{
     StatisticName{"p25", Statistic::quantile, 0.25}, StatisticName{"p75", Statistic::quantile, 0.75},
     StatisticName{"p90", Statistic::quantile, 0.9},  StatisticName{"p95", Statistic::quantile, 0.95},
 };
-
-/// None begins one after it.
-constexpr std::array kComparisons{Relation::at_least, Relation::above, Relation::at_most, Relation::below,
-                                  Relation::equal};
 
 /// One key with its value, once nested maps are undone.
 struct Clause {
@@ -135,11 +130,11 @@ Expectation read_comparison(const RecordField& field, Expectation out, const Tre
   if (!value.is_scalar()) refuse("is not a comparison");
   if (value.text.empty()) refuse("has no value (one that begins with > needs quotes)");
   const std::string& written = value.text;
-  const auto sign = std::find_if(kComparisons.begin(), kComparisons.end(),
-                                 [&](Relation one) { return boost::starts_with(written, sign_of(one)); });
+  const std::string leading = written.substr(0, written.find_first_not_of("<=>"));
+  const std::optional<Relation> sign = relation_of(leading);
   Tree rest = value;
-  if (sign != kComparisons.end()) {
-    rest.text = boost::trim_left_copy(written.substr(sign_of(*sign).size()));
+  if (sign) {
+    rest.text = boost::trim_left_copy(written.substr(leading.size()));
     out.comparison = *sign;
   }
   out.wanted = fmt::format("{} {}", sign_of(out.comparison), rest.text);
@@ -153,7 +148,7 @@ Expectation read_comparison(const RecordField& field, Expectation out, const Tre
     out.text = rest.text;
     return out;
   }
-  if (sign == kComparisons.end()) refuse(fmt::format("'{}' has no comparison", written));
+  if (!sign) refuse(fmt::format("'{}' has no comparison", written));
   rest.place = value.place;
   out.bound = read_quantity(rest, name, field.unit);
   out.unit = boost::trim_copy(rest.text.substr(decimal_length(rest.text)));

@@ -14,19 +14,6 @@
 #include <utility>
 
 namespace palpate {
-namespace {
-
-void identify(ResolvedConfig& config) {
-  config.identity = hash_of(identity_text(config.notes));
-  config.id = config.identity.substr(0, kIdLength);
-}
-
-struct SeedOptions : Options {
-  std::int64_t seed = 0;
-  void list(Fields& fields) override { fields.integer(seed, seed_field()); }
-};
-
-}  // namespace
 
 std::string identity_text(const ResolveNotes& notes) {
   std::vector<std::string_view> lines(notes.identity.begin(), notes.identity.end());
@@ -44,7 +31,6 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   if (draws_objects(input)) {
     if (const Tree* seed = input.find("seed")) out.options.seed = read_integer(*seed, "seed");
     draw_objects(input, static_cast<std::uint64_t>(out.options.seed), plugins);
-    out.composed = std::make_shared<const Tree>(composed);
   }
   std::vector<std::string> beside;
   for (const Field& field : keys_beside_options()) beside.emplace_back(field.name);
@@ -53,31 +39,9 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   out.expectations = read_expectations(expect);
   if (!out.expectations.empty()) out.tree.at("expect") = resolved_expect(*expect, out.notes);
   check_readable(out.tree, composed.place.text());
-  identify(out);
+  out.identity = hash_of(identity_text(out.notes));
+  out.id = out.identity.substr(0, kIdLength);
   return out;
-}
-
-void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins) {
-  if (config.composed) {
-    Tree anew = *config.composed;
-    anew.at("seed") = seed;
-    config = resolve_experiment(anew, plugins);
-    return;
-  }
-  Tree input = Tree::map();
-  input.at("seed") = seed;
-  SeedOptions options;
-  ResolveNotes notes;
-  const Tree resolved = resolve(options, input, plugins, notes);
-  config.options.seed = options.seed;
-  config.tree.at("seed") = *resolved.find("seed");
-  for (ResolveNotes::Origin& origin : config.notes.origins) {
-    if (origin.path == "seed") origin = notes.origins.front();
-  }
-  for (std::string& line : config.notes.identity) {
-    if (line.rfind("seed=", 0) == 0) line = notes.identity.front();
-  }
-  identify(config);
 }
 
 bool begins_with_id(const std::string& folder) {

@@ -6,7 +6,6 @@
 #include "experiment/experiment_options.hpp"
 #include "record/expectation.hpp"
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,6 @@ struct ResolvedConfig {
   std::vector<Expectation> expectations;  ///< of `expect:`
   std::string identity;                   ///< 32 hex digits: a hash of all that decides what a run computes
   std::string id;                         ///< the first 12 of them
-  std::shared_ptr<const Tree> composed;   ///< where the seed draws objects: what was resolved, for another seed
 };
 
 /// Returns the text of which `identity` is the hash: a line `palpate-id 1`, then a line `path=value` for all that
@@ -28,11 +26,6 @@ std::string identity_text(const ResolveNotes& notes);
 
 /// Checks a composed tree (a `sweep:` in it is left aside) and opens the plugins that it names. Throws Error.
 ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plugins);
-
-/// Gives `config` another seed, with all that follows from it: what composing and resolving would give, but at a tenth
-/// of the cost where no other option depends on the seed, as objects that are drawn do. Throws the same Error for what
-/// is no seed.
-void set_seed(ResolvedConfig& config, const Tree& seed, const PluginSource& plugins);
 
 /// Hex digits of an id.
 inline constexpr std::size_t kIdLength = 12;

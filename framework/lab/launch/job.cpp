@@ -33,12 +33,11 @@ void write_failure(RunDirectory& held, const std::string& reason) {
 }
 
 /// Under the lock: the attempt from its beginning to its end.
-JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of, RunDirectory& held,
-                   const ResumeOptions& options) {
+JobEnd attempt_job(const Workshop& workshop, RunDirectory& held, const ResumeOptions& options) {
   const fs::path& directory = held.path();
   JobEnd end = JobEnd::failed;
   const std::optional<Error> trouble = trouble_in([&] {
-    const ResolvedConfig config = config_of();
+    const ResolvedConfig config = load_run(workshop.host, directory);
     end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
   });
   if (trouble) {  // ends the job alone, not the sweep
@@ -55,8 +54,7 @@ JobEnd attempt_job(const Workshop& workshop, const std::function<ResolvedConfig(
 
 }  // namespace
 
-JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& config_of, const fs::path& directory,
-               const ResumeOptions& options) {
+JobEnd run_job(const Workshop& workshop, const fs::path& directory, const ResumeOptions& options) {
   refuse_link(directory.parent_path());
   refuse_link(directory);
   std::error_code none;
@@ -84,7 +82,7 @@ JobEnd run_job(const Workshop& workshop, const std::function<ResolvedConfig()>& 
     if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;
   }
-  return attempt_job(workshop, config_of, *held, options);
+  return attempt_job(workshop, *held, options);
 }
 
 bool has_ended(const fs::path& directory) { return read_ending(directory).end.has_value(); }

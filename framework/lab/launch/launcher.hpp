@@ -54,9 +54,8 @@ struct LaunchOptions {
   int most_attempts = 3;        ///< a job that was begun so often and always killed has failed
   bool wait_for_others = true;  ///< here: jobs that other processes have in hand are awaited, in case those die
   // On a cluster:
-  bool one_at_a_time = false;                  ///< tasks, of all arrays together
-  std::string partition{}, time{}, account{};  ///< passed on as given; "" for the cluster's own choice
-  std::vector<std::string> more{};             ///< words for sbatch, each with its dashes
+  bool one_at_a_time = false;       ///< tasks, of all arrays together
+  std::vector<std::string> more{};  ///< words for sbatch, each with its dashes
   int jobs_per_task = 1;
 };
 
@@ -72,7 +71,6 @@ struct TaskArray {
 struct LaunchOrder {
   const Workshop& workshop;
   const Sweep& sweep;
-  std::function<ResolvedConfig(std::size_t job)> config_of;  ///< called in the process of the job
   LaunchOptions options;
   std::function<void(const TaskArray&)> submitted;  ///< hears of every array as soon as a cluster has taken it
 };

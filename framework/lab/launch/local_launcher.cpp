@@ -58,8 +58,7 @@ bool LocalLauncher::start(std::size_t job) {
 JobEnd LocalLauncher::run(std::size_t job) const {
   JobEnd end = JobEnd::unrecorded;
   try {
-    return run_job(
-        order_.workshop, [&] { return order_.config_of(job); }, directory_of(job), order_.options.resume);
+    return run_job(order_.workshop, directory_of(job), order_.options.resume);
   } catch (const std::exception& trouble) {  // which nobody but the terminal can be told of
     const auto* const error = dynamic_cast<const Error*>(&trouble);
     if (error != nullptr && error->kind() == Error::Kind::busy) end = JobEnd::blocked;

@@ -17,8 +17,9 @@ namespace palpate {
 
 namespace {
 
-using Formula = Condition::Formula;
-using Logical = Condition::Logical;
+using Value = Condition::Value;
+/// Whether something holds; nullopt where that is undecided.
+using Decision = std::optional<bool>;
 
 constexpr const char* kHowTo = "write it like taps >= 12 and not surface == two_part";
 constexpr int kMaxDepth = 100;
@@ -42,22 +43,19 @@ std::string meant_by(const std::string& sign) {
   return found != kMeant.end() ? fmt::format("write '{}'", (*found)[1]) : "known: ==, !=, <, <=, >, >=";
 }
 
-Logical negation(Logical truth) {
-  if (truth == Logical::undecided) return truth;
-  return truth == Logical::yes ? Logical::no : Logical::yes;
-}
-
-/// Reads the text of a condition by descent: or, and, not, comparison.
+/// Reads the text of a condition by descent, or, and, not, comparison, and decides it on the way.
 class Reader {
  public:
-  Reader(const std::string& text, std::string place, Condition::Comparisons& comparisons)
-      : text_(text), place_(std::move(place)), comparisons_(comparisons) {
+  /// Without `value_of` nothing is decided.
+  Reader(const std::string& text, const std::string& place, const Condition::Values& value_of = nullptr,
+         const std::vector<std::string>& known = {})
+      : text_(text), place_(place), value_of_(value_of), known_(known) {
     cut();
   }
 
-  Formula read() {
+  Decision read() {
     if (tokens_.empty()) throw refuse("it is empty");
-    Formula out = any(0);
+    const Decision out = any(0, true);
     if (at(")")) throw refuse("there is a ')' without a '('");
     if (next_ < tokens_.size()) throw refuse(fmt::format("'{}' is not expected here", shown()));
     return out;
@@ -108,76 +106,101 @@ class Reader {
   /// The next token as it is read: of a quoted text what stands in the quotes.
   std::string shown() const { return tokens_[next_].substr(at_quoted() ? 1 : 0); }
 
-  /// Parts with `word` between them: one that comes out as `decides` decides for all, else one that is undecided does.
-  Formula joined(Logical decides, const char* word, Formula (Reader::*part)(int), int depth) {
-    std::vector<Formula> parts{(this->*part)(depth)};
-    while (take(word)) parts.push_back((this->*part)(depth));
-    if (parts.size() == 1) return parts.front();
-    return [decides, parts = std::move(parts)](const auto& decide) {
-      Logical out = negation(decides);
-      for (const Formula& one : parts) {
-        const Logical truth = one(decide);
-        if (truth == decides) return decides;
-        if (truth == Logical::undecided) out = truth;
-      }
-      return out;
-    };
+  /// Parts with `word` between them: one that comes out as `decides` decides for all, and what follows is read only;
+  /// else one that is undecided does.
+  Decision joined(bool decides, const char* word, Decision (Reader::*part)(int, bool), int depth, bool asked) {
+    Decision out = (this->*part)(depth, asked);
+    while (take(word)) {
+      const Decision next = (this->*part)(depth, asked && out != decides);
+      if (out != decides && next != !decides) out = next;
+    }
+    return out;
   }
 
-  Formula any(int depth) { return joined(Logical::yes, "or", &Reader::all, depth); }
-  Formula all(int depth) { return joined(Logical::no, "and", &Reader::one, depth); }
+  Decision any(int depth, bool asked) { return joined(true, "or", &Reader::all, depth, asked); }
+  Decision all(int depth, bool asked) { return joined(false, "and", &Reader::one, depth, asked); }
 
-  Formula one(int depth) {
+  Decision one(int depth, bool asked) {
     if (depth > kMaxDepth) throw refuse("nested too deeply", "at most 100 levels");
     if (take("not")) {
-      return [inner = one(depth + 1)](const auto& decide) { return negation(inner(decide)); };
+      const Decision inner = one(depth + 1, asked);
+      return inner ? Decision(!*inner) : inner;
     }
-    if (!take("(")) return comparison();
-    Formula out = any(depth + 1);
+    if (!take("(")) return comparison(asked);
+    const Decision out = any(depth + 1, asked);
     if (!take(")")) throw refuse("a '(' is not closed", "close it");
     return out;
   }
 
-  Formula comparison() {
+  Decision comparison(bool asked) {
     if (at_sign()) throw refuse(fmt::format("'{}' is not expected here", shown()), meant_by(shown()));
     if (!at_value()) throw refuse("a comparison is missing");
-    Condition::Comparison out;
-    out.name = shown();
-    if (at_quoted() || (out.name[0] >= '0' && out.name[0] <= '9'))
-      throw refuse(fmt::format("'{}' is not a name", out.name), "write the name first: taps >= 12");
+    const std::string name = shown();
+    if (at_quoted() || (name[0] >= '0' && name[0] <= '9'))
+      throw refuse(fmt::format("'{}' is not a name", name), "write the name first: taps >= 12");
     ++next_;
-    if (!at_sign()) throw refuse(fmt::format("a comparison is missing after '{}'", out.name));
-    out.sign = tokens_[next_++];
-    if (!relation_of(out.sign)) throw refuse(fmt::format("'{}' is not a comparison", out.sign), meant_by(out.sign));
-    if (!at_value()) throw refuse(fmt::format("a value is missing after '{} {}'", out.name, out.sign));
-    out.quoted = at_quoted();
-    out.value = shown();
+    if (!at_sign()) throw refuse(fmt::format("a comparison is missing after '{}'", name));
+    const std::string sign = tokens_[next_++];
+    const std::optional<Relation> relation = relation_of(sign);
+    if (!relation) throw refuse(fmt::format("'{}' is not a comparison", sign), meant_by(sign));
+    if (!at_value()) throw refuse(fmt::format("a value is missing after '{} {}'", name, sign));
+    const bool quoted = at_quoted();
+    std::string value = shown();
     ++next_;
     // A number and its unit are two words.
-    while (!out.quoted && !at_quoted() && at_value()) out.value += " " + tokens_[next_++];
+    while (!quoted && !at_quoted() && at_value()) value += " " + tokens_[next_++];
     if (at_sign()) {
       const bool joins = shown()[0] == '&' || shown()[0] == '|';
       throw refuse(fmt::format("'{}' is not expected here", shown()),
                    joins ? meant_by(shown()) : "join two comparisons by 'and'");
     }
-    comparisons_.push_back(std::move(out));
-    return [number = comparisons_.size() - 1](const auto& decide) { return decide(number); };
+    if (!value_of_) return std::nullopt;
+    const std::string written = fmt::format("{} {} {}", name, sign, value);
+    const std::optional<Value> left = value_of_(name);
+    // Names that no evaluation may reach are checked all the same.
+    if (!left)
+      throw Error(place_, fmt::format("the condition '{}' has the unknown name '{}'", written, name),
+                  suggestion(name, known_));
+    return asked ? decide(*left, *relation, value, quoted, written) : std::nullopt;
+  }
+
+  Decision decide(const Value& left, Relation relation, const std::string& value, bool quoted,
+                  const std::string& written) const {
+    const Value right = quoted ? Value{value} : value_of_(value).value_or(Value{value});
+    // A value as it is written is never empty unless it is quoted: who has none is a name.
+    const bool lacks_right = right.text.empty() && !quoted;
+    if ((left.text.empty() && left.is_result) || (lacks_right && right.is_result)) return std::nullopt;
+    if (left.text.empty() || lacks_right) return false;
+    const std::optional<AnyQuantity> a = quoted ? std::nullopt : any_quantity(left.text);
+    const std::optional<AnyQuantity> b = quoted ? std::nullopt : any_quantity(right.text);
+    if (a && b) {
+      if (a->unit == b->unit) return satisfies(a->value, relation, b->value);
+      throw Error(place_,
+                  fmt::format("the condition '{}' compares a {} ('{}') with a {} ('{}')", written,
+                              dimension_name(a->unit), left.text, dimension_name(b->unit), right.text),
+                  "give both the same dimension");
+    }
+    if (relation == Relation::equal) return left.text == right.text;
+    if (relation == Relation::unequal) return left.text != right.text;
+    throw Error(
+        place_,
+        fmt::format("the condition '{}' compares the order of texts: '{}' and '{}'", written, left.text, right.text),
+        "compare texts with == or !=");
   }
 
   const std::string& text_;
-  std::string place_;
-  Condition::Comparisons& comparisons_;
+  const std::string& place_;
+  const Condition::Values& value_of_;
+  const std::vector<std::string>& known_;
   std::vector<std::string> tokens_;  ///< a word, a sign, a parenthesis, or a quoted text behind its first quote
   std::size_t next_ = 0;
 };
 
-Logical decided(bool holds) { return holds ? Logical::yes : Logical::no; }
-
 }  // namespace
 
-Condition::Condition(const Tree& text) : place_(text.place.text()) {
+Condition::Condition(const Tree& text) : place_(text.place.text()), text_(text.text) {
   if (!text.is_scalar()) throw Error(place_, "a condition is a text", kHowTo);
-  formula_ = Reader(text.text, place_, comparisons_).read();
+  Reader(text_, place_).read();
 }
 
 Condition Condition::of_command_line(const std::string& text) {
@@ -187,38 +210,7 @@ Condition Condition::of_command_line(const std::string& text) {
 }
 
 bool Condition::holds(const Values& value_of, const std::vector<std::string>& known) const {
-  // Names that no evaluation may reach are checked all the same.
-  for (const Comparison& one : comparisons_) {
-    if (value_of(one.name)) continue;
-    throw Error(place_, fmt::format("the condition '{}' has the unknown name '{}'", one.shown(), one.name),
-                suggestion(one.name, known));
-  }
-  return formula_([&](std::size_t number) { return decide(comparisons_[number], value_of); }) == Logical::yes;
-}
-
-Condition::Logical Condition::decide(const Comparison& comparison, const Values& value_of) const {
-  const auto& [name, sign, value, quoted] = comparison;
-  const Value left = *value_of(name);
-  const Value right = quoted ? Value{value} : value_of(value).value_or(Value{value});
-  // A value as it is written is never empty unless it is quoted: who has none is a name.
-  const bool lacks_right = right.text.empty() && !quoted;
-  if ((left.text.empty() && left.is_result) || (lacks_right && right.is_result)) return Logical::undecided;
-  if (left.text.empty() || lacks_right) return Logical::no;
-  const std::optional<AnyQuantity> a = quoted ? std::nullopt : any_quantity(left.text);
-  const std::optional<AnyQuantity> b = quoted ? std::nullopt : any_quantity(right.text);
-  if (a && b) {
-    if (a->unit == b->unit) return decided(satisfies(a->value, relation_of(sign).value(), b->value));
-    throw Error(place_,
-                fmt::format("the condition '{}' compares a {} ('{}') with a {} ('{}')", comparison.shown(),
-                            dimension_name(a->unit), left.text, dimension_name(b->unit), right.text),
-                "give both the same dimension");
-  }
-  if (sign == sign_of(Relation::equal)) return decided(left.text == right.text);
-  if (sign == sign_of(Relation::unequal)) return decided(left.text != right.text);
-  throw Error(place_,
-              fmt::format("the condition '{}' compares the order of texts: '{}' and '{}'", comparison.shown(),
-                          left.text, right.text),
-              "compare texts with == or !=");
+  return Reader(text_, place_, value_of, known).read() == true;
 }
 
 }  // namespace palpate

@@ -19,22 +19,6 @@ namespace palpate {
 /// one is known, else a value. A value in quotes is always a text, and may hold any character.
 class Condition {
  public:
-  /// One of those that it joins.
-  struct Comparison {
-    std::string name;
-    std::string sign;
-    std::string value;
-    bool quoted = false;
-    std::string shown() const { return name + " " + sign + " " + value; }
-  };
-  using Comparisons = std::vector<Comparison>;
-
-  /// Whether a comparison, or what comparisons are joined to, holds. In this order `and` is the least, `or` the largest
-  /// (Kleene's logic of three values), and the negation of `undecided` is `undecided`.
-  enum class Logical { no, undecided, yes };
-  /// How they are joined: whether it holds, given for each of them, by its number, whether it does.
-  using Formula = std::function<Logical(const std::function<Logical(std::size_t comparison)>& decide)>;
-
   /// What a name stands for.
   struct Value {
     std::string text;        ///< "2 cm", "rbf"; "" where there is none
@@ -50,20 +34,17 @@ class Condition {
 
   /// A comparison with an option that has no value does not hold, whatever it compares: a job without a kernel.alpha is
   /// kept by `not kernel.alpha > 1`. With a result that is missing or not finite a comparison is undecided, so that it
-  /// selects nothing, negated or not: `rmse_m <= 3 mm` and `not rmse_m <= 3 mm` both leave such a job out. `and` and
-  /// `or` look no further than they need to, so `spacing != none and spacing > 2 mm` is fine. Throws Error, with the
-  /// place of the condition, for any name on the left that is not known (`known` is what to suggest from), for an order
-  /// of texts, and for units that do not go together.
+  /// selects nothing, negated or not: `rmse_m <= 3 mm` and `not rmse_m <= 3 mm` both leave such a job out (Kleene's
+  /// logic of three values). `and` and `or` look no further than they need to, so `spacing != none and spacing > 2 mm`
+  /// is fine. Throws Error, with the place of the condition, for any name on the left that is not known (`known` is
+  /// what to suggest from), for an order of texts, and for units that do not go together.
   bool holds(const Values& value_of, const std::vector<std::string>& known) const;
 
   const std::string& place() const { return place_; }
 
  private:
-  Logical decide(const Comparison& comparison, const Values& value_of) const;
-
   std::string place_;
-  Comparisons comparisons_;
-  Formula formula_;
+  std::string text_;
 };
 
 }  // namespace palpate

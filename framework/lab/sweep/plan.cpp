@@ -3,7 +3,6 @@
 
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
-#include "record/session.hpp"
 #include "sweep/description.hpp"
 
 #include <palpate/error.hpp>
@@ -12,7 +11,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -23,18 +21,6 @@ namespace palpate {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// As many configs are kept: enough for a sweep whose seeds run slowest over the settings of a usual one.
-constexpr std::size_t kMostKept = 64;
-
-/// A combination but for its seed: of each axis which value, the first for any seed.
-using Settings = std::vector<std::pair<const Axis*, std::size_t>>;
-
-/// Such a combination resolved: the config, and what each key came to in it.
-struct Resolved {
-  std::shared_ptr<ResolvedConfig> config;
-  std::vector<std::string> values;  ///< one a key
-};
 
 /// What has become of a swept key in the jobs so far.
 struct KeyUse {
@@ -55,23 +41,14 @@ class Planner {
 
   /// `combination` must outlive this.
   void add(const Combination& combination, const JobSink& sink) {
-    const Tree* seed = nullptr;
-    Settings settings;
-    for (const SweptValue& one : combination) {
-      const bool is_seed = one.axis->key == "seed";
-      if (is_seed) seed = &one.value();
-      settings.emplace_back(one.axis, is_seed ? 0 : one.digit);
-    }
-    const Resolved& resolved = resolve(settings, combination);
-    Job job{static_cast<int>(jobs_.size()), {}, resolved.values};
-    if (seed != nullptr) {
-      set_seed(*resolved.config, *seed, host_);
-      job.values[key_numbers_.at("seed")] = value_text(*seed);
-    }
-    job.id = resolved.config->id;
+    std::vector<Override> overrides = shared_;
+    for (Override& one : overrides_of(combination)) overrides.push_back(std::move(one));
+    const Tree composed = composer_.compose(file_, overrides);
+    const ResolvedConfig resolved = resolve_experiment(composed, host_);
+    Job job{static_cast<int>(jobs_.size()), resolved.id, values_of(combination, composed, resolved)};
     const auto [twin, is_new] = seen_.emplace(job.id, jobs_.size());
     if (!is_new) {
-      if (identities_[twin->second] != resolved.config->identity) {
+      if (identities_[twin->second] != resolved.identity) {
         throw Error(
             file_.string(),
             fmt::format("jobs {} and {} of the sweep have the same id {} by chance", twin->second, job.index, job.id),
@@ -80,14 +57,10 @@ class Planner {
       if (differs_by_what_is_left_out(twin->second, job, combination)) return;
       throw same_run(jobs_[twin->second], job);
     }
-    sink(job, *resolved.config);
+    sink(job, resolved);
     jobs_.push_back(std::move(job));
-    identities_.push_back(resolved.config->identity);
+    identities_.push_back(resolved.identity);
     combinations_.push_back(&combination);
-    configs_.push_back({many_ ? nullptr : resolved.config});
-    if (seed == nullptr) return;
-    configs_.back().seed = seed->place;
-    configs_.back().layer = seed->layer;
   }
 
   /// Throws Error for a key that no job has.
@@ -102,36 +75,29 @@ class Planner {
   }
 
   std::vector<Job> take_jobs() { return std::move(jobs_); }
-  std::vector<PlannedConfig> take_configs() { return std::move(configs_); }
 
  private:
-  const Resolved& resolve(const Settings& settings, const Combination& combination) {
-    const auto known = resolved_.find(settings);
-    if (known != resolved_.end()) return known->second;
-    many_ = many_ || resolved_.size() == kMostKept;
-    if (resolved_.size() == kMostKept) resolved_.clear();
-    std::vector<Override> overrides = shared_;
-    for (Override& one : overrides_of(combination)) overrides.push_back(std::move(one));
-    const Tree composed = composer_.compose(file_, overrides);
-    Resolved out{std::make_shared<ResolvedConfig>(resolve_experiment(composed, host_)), {}};
-    out.values.resize(keys_.size());
+  /// What each key came to in a job.
+  std::vector<std::string> values_of(const Combination& combination, const Tree& composed,
+                                     const ResolvedConfig& resolved) {
+    std::vector<std::string> values(keys_.size());
     std::vector<bool> said(keys_.size());
     for (const SweptValue& setting : combination) {
       const std::size_t key = key_numbers_.at(setting.axis->key);
       said[key] = true;
       uses_[key].asker = setting.axis;
-      if (is_left_out(setting.axis->key, composed, out.config->notes)) {
-        note_siblings(key, out.config->notes);
+      if (is_left_out(setting.axis->key, composed, resolved.notes)) {
+        note_siblings(key, resolved.notes);
         continue;
       }
       uses_[key].takes_part = true;
-      out.values[key] = value_text(setting.value());
+      values[key] = value_text(setting.value());
     }
     // Where other combinations set a key and this one does not, the table says what this one has there.
     for (std::size_t key = 0; key < keys_.size(); ++key) {
-      if (!said[key]) out.values[key] = unswept_text(keys_[key], composed, out.config->tree);
+      if (!said[key]) values[key] = unswept_text(keys_[key], composed, resolved.tree);
     }
-    return resolved_.emplace(settings, std::move(out)).first->second;
+    return values;
   }
 
   /// Whether plugins chosen later do not have the option, neither where it stands nor where it is inherited.
@@ -203,10 +169,7 @@ class Planner {
   std::vector<const Combination*> combinations_;  ///< of each job
   std::unordered_map<std::string, std::size_t> key_numbers_;
   std::unordered_map<std::string, std::size_t> seen_;  ///< the job of each id
-  std::map<Settings, Resolved> resolved_;
-  std::vector<PlannedConfig> configs_;
-  bool many_ = false;         ///< more than can be kept
-  std::vector<KeyUse> uses_;  ///< of each key
+  std::vector<KeyUse> uses_;                           ///< of each key
 };
 
 /// Top-level keys, in the order in which a resolved config has them.
@@ -321,26 +284,10 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
                 "relax the condition, or sweep other values");
   }
   planner.finish();
-  SweepPlan plan{{{}, description.keys(), planner.take_jobs()},
-                 written_config(file, base, alone, description, *first),
-                 planner.take_configs()};
+  SweepPlan plan{{{}, description.keys(), planner.take_jobs()}, written_config(file, base, alone, description, *first)};
   check_readable(plan.config, file.string());
   plan.sweep.directory = runs / slug(first->options.name) / sweep_id(plan.config, plan.sweep);
   return plan;
-}
-
-ResolvedConfig planned_config(const SweepPlan& plan, const PluginHost& host, std::size_t index) {
-  const PlannedConfig& planned = plan.configs[index];
-  const Job& job = plan.sweep.jobs[index];
-  if (planned.config == nullptr) return load_run(host, job_directory(plan.sweep, job));
-  ResolvedConfig config = *planned.config;
-  if (!planned.seed) return config;
-  const auto at = std::find(plan.sweep.keys.begin(), plan.sweep.keys.end(), "seed") - plan.sweep.keys.begin();
-  Tree seed = Tree::scalar(job.values[static_cast<std::size_t>(at)]);
-  seed.place = *planned.seed;
-  seed.layer = planned.layer;
-  set_seed(config, seed, host);
-  return config;
 }
 
 }  // namespace palpate

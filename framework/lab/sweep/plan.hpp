@@ -8,30 +8,17 @@
 #include "record/resolved.hpp"
 #include "sweep/sweep.hpp"
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace palpate {
 
-/// The config of a job but for its seed, which many jobs share: another costs a tenth of what reading a file does.
-/// Small, because the process of every job begins with a copy of all of them.
-struct PlannedConfig {
-  std::shared_ptr<const ResolvedConfig> config;  ///< null where there are too many: the job's config.yaml has it
-  // Of the seed, whose value the job has: where it was written, none where the sweep sets none, and its layer.
-  std::optional<Place> seed{};
-  Layer layer = kSweepLayer;
-};
-
 /// What a sweep will run.
 struct SweepPlan {
   Sweep sweep;  ///< its directory is where it would be
   Tree config;  ///< what `palpate sweep` would make the same jobs of: whole where the sweep leaves it alone
-  std::vector<PlannedConfig> configs;  ///< of each job
 };
 
 /// Called for each job of a plan, in their order, once it is checked.
@@ -44,8 +31,5 @@ using JobSink = std::function<void(const Job& job, const ResolvedConfig& config)
 SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const std::filesystem::path& file,
                      const std::vector<std::string>& words, const std::filesystem::path& runs,
                      const JobSink& sink = nullptr);
-
-/// The config of the job at `index`, as it was checked, in a sweep whose directory has been made.
-ResolvedConfig planned_config(const SweepPlan& plan, const PluginHost& host, std::size_t index);
 
 }  // namespace palpate

@@ -122,18 +122,11 @@ Sweep read_sweep(const fs::path& directory) {
   for (const Row& row : lines.rows) {
     const Job job{static_cast<int>(sweep.jobs.size()), row.text("id"), texts_at(row, "value")};
     // What is read must be all that the line says, and an id is the name of a folder: nothing of it is believed before.
-    const bool whole = is_id(job.id) && job.values.size() == sweep.keys.size();
-    const auto says = [&](const std::string& of) { return job_list().row({sweep.keys, job, of}).fields == row.fields; };
-    if (whole && !id.empty() && says(id)) {
-      sweep.jobs.push_back(job);
-      continue;
-    }
-    if (whole && says("")) {
-      throw Error(directory.string(), "an older palpate made this sweep: later changes of its jobs cannot be detected",
-                  "results.csv is still valid; to repeat the sweep, run 'palpate sweep' on its config.yaml");
-    }
-    throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is not a job of this sweep",
-                "the file is damaged: put it back as it was");
+    if (!is_id(job.id) || job.values.size() != sweep.keys.size() || id.empty() ||
+        job_list().row({sweep.keys, job, id}).fields != row.fields)
+      throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is not a job of this sweep",
+                  "the file is damaged: put it back as it was");
+    sweep.jobs.push_back(job);
   }
   if (sweep_id(read_run_config(directory), sweep) != id) {
     throw Error(directory.string(), "config.yaml or manifest.jsonl was changed after this sweep started",
