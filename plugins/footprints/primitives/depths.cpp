@@ -18,7 +18,6 @@ namespace {
 constexpr int kRound = Places::kRound;
 constexpr int kWord = Places::kWord;
 
-
 using Bytes = LabelModel::Step __attribute__((vector_size(kRound)));
 using Word = LabelModel::Step __attribute__((vector_size(kWord)));
 
