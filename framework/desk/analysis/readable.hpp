@@ -5,6 +5,7 @@
 
 #include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
+#include "config/layout.hpp"
 #include "config/scale.hpp"
 
 #include <palpate/options.hpp>
@@ -38,13 +39,6 @@ std::string few_words(std::size_t units, bool seeds, std::size_t least);
 
 /// A line that tells how many of a group's jobs are copies of a run, where jobs are the units.
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units);
-
-/// Lines of as many cells each, under each other and two blanks apart; `sides` has an l or r for each column. A
-/// column that is empty in all lines takes no room.
-std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides);
-
-/// The text in lines of at most `longest` letters, broken behind commas where that can be.
-std::vector<std::string> wrapped(const std::string& text, std::size_t longest);
 
 /// Adds `prefix`mean and the ends of its interval, null where there are none.
 void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate);
