@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a tap of the simulator costs and how far off it is, without effects and with each of them. Built a second time
-// over a simulator that has the effects compiled out (tap_cost_without_effects): a test compares the instructions that
+// over a simulator whose taps know nothing of effects (tap_cost_without_effects): a test compares the instructions that
 // both need for a perfect tap.
 //     tap_cost                  the table
 //     tap_cost --perfect N      N taps of object I without effects, nothing else

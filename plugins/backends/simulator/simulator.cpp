@@ -33,13 +33,11 @@ Simulator::Simulator(const Options& options, const Context& context)
 Contact Simulator::tap(const TapRequest& request) {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
-#ifndef PALPATE_WITHOUT_EFFECTS  // a build without them is what a test compares the cost of a perfect tap with
   if (request.approach) return tap_along(request);
   if (!perfect_) {
     if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
     return imperfect_tap(request, down, pushed_ ? *pushed_ : scene_);
   }
-#endif
   const double surface = scene_.height(request.target.x, request.target.y);
   Contact contact = ideal_tap(down, surface);
   contact.seconds += tapping::travel_seconds(motion, request);
@@ -68,7 +66,6 @@ Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
   return {Outcome::contact, surface, tap.motion.threshold, down + up, {}};
 }
 
-#ifndef PALPATE_WITHOUT_EFFECTS
 /// Along its approach the arm does what it does above a place: what is left of the way stands for the height. Where the
 /// tool is other than the arm thinks, it meets things elsewhere.
 Contact Simulator::tap_along(const TapRequest& request) const {
@@ -152,7 +149,6 @@ Contact Simulator::simulated_tap(int number, const Descending& tap, double surfa
   contact.peak = touch.peak();
   return contact;
 }
-#endif
 
 /// Lets real time pass in small portions; an aborted tap when the user wants to stop meanwhile.
 Contact Simulator::paced(Contact contact) const {
