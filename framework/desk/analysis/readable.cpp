@@ -50,11 +50,4 @@ void add_counts(Row& row, const FateCounts& counts, bool left_out) {
   row.add("without_value", counts.of(Fate::without_value));
 }
 
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return text;
-}
-
 }  // namespace palpate

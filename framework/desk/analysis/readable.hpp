@@ -7,6 +7,7 @@
 #include "analysis/statistics.hpp"
 #include "config/layout.hpp"
 #include "config/scale.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/options.hpp>
 
@@ -46,8 +47,5 @@ void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate)
 void add_interval(Row& row, const std::string& prefix, const std::optional<MeanInterval>& ends);
 /// Adds how many jobs there are and what became of them, on request with those that a condition leaves out.
 void add_counts(Row& row, const FateCounts& counts, bool left_out = false);
-
-/// The text with blanks for control characters: one line, whatever stood in a config.
-std::string one_line(std::string text);
 
 }  // namespace palpate
