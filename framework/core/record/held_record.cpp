@@ -111,16 +111,16 @@ void HeldRecord::add_end(const Ending& ending, bool sync) {
   row.add("attempt", attempts_);
   row.add("at", now_text());
   row.add("reason", ending.reason);
-  Tree line = tree_of(row);
-  if (!ending.summary.fields.empty()) line.at("summary") = tree_of(ending.summary);
-  Tree& files = line.at("files") = Tree::map();
+  for (const auto& [name, value] : ending.summary.fields) row.add("summary." + name, value);
+  Tree files = Tree::map();
   for (const Ending::File& one : ending.files) {
     files.at(one.name) =
         Tree::map({{"bytes", Tree::scalar(std::to_string(one.bytes))}, {"hash", Tree::quote(one.hash)}});
   }
+  row.add("files", JsonList{to_json_line(files)});
   check_held();
   log().flush();
-  append(to_json_line(line) + "\n", sync);
+  append(to_json_line(row) + "\n", sync);
   ended_ = true;
   log().flush();
 }

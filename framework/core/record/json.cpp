@@ -124,58 +124,81 @@ const char* add_fields(Row& row, const Tree& map, const std::string& prefix) {
   return nullptr;
 }
 
-Tree tree_of(const Scalar& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return Tree::quote(*text);
-  std::string text = std::holds_alternative<JsonList>(value) ? std::get<JsonList>(value).text : csv_cell(value);
-  return text.empty() ? Tree() : Tree::scalar(std::move(text));
-}
-
-/// The fields from `next` on that share the prefix `prefix`, as a map; `next` is then behind the last of them.
-Tree tree_of(const Row& row, std::size_t& next, std::string_view prefix) {
-  Tree out = Tree::map();
-  out.entries.reserve(row.fields.size() - next);
-  while (next < row.fields.size()) {
-    const auto& [name, value] = row.fields[next];
-    if (name.compare(0, prefix.size(), prefix) != 0) break;
-    const std::size_t dot = name.find('.', prefix.size());
-    std::string key = name.substr(prefix.size(), dot - prefix.size());
-    if (dot == std::string::npos) ++next;
-    out.entries.push_back(
-        {std::move(key), {}, dot == std::string::npos ? tree_of(value) : tree_of(row, next, name.substr(0, dot + 1))});
-  }
-  return out;
-}
-
-void append_quoted(std::string& out, const std::string& text) {
+void append_quoted(std::string& out, std::string_view text) {
   const auto is_plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
   // A tenth of the time of a run would go into the search of others for what to escape.
   if (std::all_of(text.begin(), text.end(), is_plain)) {
-    out.append("\"").append(text).append("\"");
+    out += '"';
+    out += text;
+    out += '"';
   } else {
-    out += Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    out += Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 }
 
-/// `indent`: what a line of it begins with; "" for one line alone.
+/// The beginning of a value in a list or map: what separates it from the one before, and the line that it is on.
+class Next {
+ public:
+  /// `indent`: what a line of the list begins with; "" for one line alone.
+  explicit Next(const std::string& indent) : indent_(indent.empty() ? "" : indent + "  ") {}
+  void operator()(std::string& out) {
+    out += separator_;
+    out += indent_;
+    separator_ = indent_.empty() ? ", " : ",";
+  }
+  bool came() const { return !separator_.empty(); }
+  const std::string& indent() const { return indent_; }
+
+ private:
+  std::string_view separator_;
+  std::string indent_;
+};
+
 void append(std::string& out, const Tree& tree, const std::string& indent) {
   if (tree.kind == Tree::Kind::null) out += "null";
   if (tree.is_scalar()) tree.quoted ? append_quoted(out, tree.text) : void(out += tree.text);
   if (tree.kind == Tree::Kind::null || tree.is_scalar()) return;
-  const std::string inner = indent.empty() ? "" : indent + "  ";
-  const char* separator = "";
-  const auto next = [&] { out.append(std::exchange(separator, indent.empty() ? ", " : ",")).append(inner); };
+  Next next(indent);
   out += tree.is_map() ? "{" : "[";
   for (const Tree& item : tree.items) {
-    next();
-    append(out, item, inner);
+    next(out);
+    append(out, item, next.indent());
   }
   for (const Tree::Entry& entry : tree.entries) {
-    next();
+    next(out);
     append_quoted(out, entry.key);
-    append(out += ": ", entry.value, inner);
+    append(out += ": ", entry.value, next.indent());
   }
-  if (!tree.items.empty() || !tree.entries.empty()) out += indent;
+  if (next.came()) out += indent;
   out += tree.is_map() ? "}" : "]";
+}
+
+void append(std::string& out, const Scalar& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return append_quoted(out, *text);
+  const auto* list = std::get_if<JsonList>(&value);
+  const std::string text = list != nullptr ? list->text : csv_cell(value);
+  out += text.empty() ? "null" : text;
+}
+
+/// The fields from number `field` on that share the prefix `prefix`, as a map; `field` is then behind the last of them.
+void append(std::string& out, const Row& row, std::size_t& field, std::string_view prefix, const std::string& indent) {
+  Next next(indent);
+  out += "{";
+  while (field < row.fields.size()) {
+    const std::string_view name = row.fields[field].first;
+    if (name.substr(0, prefix.size()) != prefix) break;
+    const std::size_t dot = name.find('.', prefix.size());
+    next(out);
+    append_quoted(out, name.substr(prefix.size(), dot - prefix.size()));
+    out += ": ";
+    if (dot == std::string_view::npos) {
+      append(out, row.fields[field++].second);
+    } else {
+      append(out, row, field, name.substr(0, dot + 1), next.indent());
+    }
+  }
+  if (next.came()) out += indent;
+  out += "}";
 }
 
 }  // namespace
@@ -219,9 +242,9 @@ std::vector<Row> rows_of(const JsonList& list) {
 }
 
 JsonList list_of(const std::vector<Row>& rows) {
-  Tree list = Tree::list();
-  for (const Row& row : rows) list.items.push_back(tree_of(row));
-  return {to_json_line(list)};
+  std::string out = "[";
+  for (const Row& row : rows) out.append(out.size() > 1 ? ", " : "").append(to_json_line(row));
+  return {out + "]"};
 }
 
 JsonLines read_json_lines(const std::filesystem::path& file) {
@@ -246,9 +269,18 @@ Tree parse_json(const std::string& text, const std::filesystem::path& file) {
   throw Error(place_in(file.string(), text, reader.bytes - 1), "is not valid JSON", kDamagedFile);
 }
 
-Tree tree_of(const Row& row) {
-  std::size_t next = 0;
-  return tree_of(row, next, "");
+std::string to_json(const Row& row) {
+  std::string out;
+  std::size_t field = 0;
+  append(out, row, field, "", "\n");
+  return out + "\n";
+}
+
+std::string to_json_line(const Row& row) {
+  std::string out;
+  std::size_t field = 0;
+  append(out, row, field, "", "");
+  return out;
 }
 
 std::string to_json(const Tree& tree) {

@@ -64,16 +64,14 @@ Tree read_json(const std::filesystem::path& file, Origin origin = Origin::record
 /// The same of the text of a file. Throws Error.
 Tree parse_json(const std::string& text, const std::filesystem::path& file);
 
-/// A row as a map, nested by the dots of its names. Numbers as in csv_cell; what is not finite is null.
-Tree tree_of(const Row& row);
-
 /// A tree as indented JSON: unquoted scalars stand as they are (numbers, true, false), quoted ones become strings, in
 /// which bytes that are not UTF-8 become U+FFFD.
 std::string to_json(const Tree& tree);
-inline std::string to_json(const Row& row) { return to_json(tree_of(row)); }
+/// The same of a row as a map, nested by the dots of its names. Numbers as in csv_cell; what is not finite is null.
+std::string to_json(const Row& row);
 
 /// The same as one line without its end.
 std::string to_json_line(const Tree& tree);
-inline std::string to_json_line(const Row& row) { return to_json_line(tree_of(row)); }
+std::string to_json_line(const Row& row);
 
 }  // namespace palpate

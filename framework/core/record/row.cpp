@@ -60,7 +60,8 @@ void append_cell(std::string& out, const Scalar& value) {
 
 void append_number(std::string& out, double value) {
   std::array<char, 32> text;  // the longest has 24 characters: -2.2250738585072014e-308
-  out.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
+  const char* const end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  out.append(text.data(), static_cast<std::size_t>(end - text.data()));
 }
 
 const Scalar* Row::find(std::string_view name, std::size_t& near) const {

@@ -36,7 +36,7 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
     return text;
   };
   std::vector<std::string> xs;
-  for (int column = 0; column < candidates.columns; ++column) xs.push_back(text_of(candidates.points(column, 0)));
+  for (int column = 0; column < candidates.columns; ++column) xs.push_back(text_of(candidates.points(column, 0)) + ",");
   std::vector<std::size_t> first;  // of the columns with the same map
   for (const Column& column : columns) {
     const auto same = [&](const Column& other) { return other.second == column.second; };
@@ -46,16 +46,17 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   for (int row = 0, cell = 0; row < candidates.rows; ++row) {
     const std::string y = text_of(candidates.points(cell, 1));
     for (int column = 0; column < candidates.columns; ++column, ++cell) {
-      out.append(xs[static_cast<std::size_t>(column)]).append(",").append(y);
+      out.append(xs[static_cast<std::size_t>(column)]).append(y);
       for (std::size_t i = 0; i < columns.size(); ++i) {
-        const auto [place, length] = cells[first[i]];
-        const std::size_t begin = (out += ',').size();
+        out += ',';
         if (first[i] < i) {
+          const auto [place, length] = cells[first[i]];
           out.append(out, place, length);
-        } else if (columns[i].second != nullptr) {
-          append_number(out, (*columns[i].second)(cell));
+          continue;
         }
-        cells[i] = {begin, out.size() - begin};
+        cells[i].first = out.size();
+        if (columns[i].second != nullptr) append_number(out, (*columns[i].second)(cell));
+        cells[i].second = out.size() - cells[i].first;
       }
       out += '\n';
     }
