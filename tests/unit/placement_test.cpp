@@ -3,6 +3,7 @@
 #include "support/shape_cases.hpp"
 #include "support/testing.hpp"
 
+#include <palpate/math.hpp>
 #include <palpate/random.hpp>
 
 namespace palpate::test {
@@ -86,7 +87,7 @@ TEST(RandomPlacement, DrawsForAnObjectAloneWhatItAlwaysDrew) {
       const double s = cosine * (px - x) + sine * (py - y);
       const double t = cosine * (py - y) - sine * (px - x);
       const bool over = std::abs(s) <= 0.08 && std::abs(t) <= 0.03;
-      ASSERT_EQ(scene->height(px, py), over ? 0.09 + 0.02 * std::cos(2.0 * kPi * s / 0.08) : 0.0) << seed;
+      ASSERT_EQ(scene->height(px, py), over ? 0.09 + 0.02 * math::cos(2.0 * kPi * s / 0.08) : 0.0) << seed;
     }
   }
 }
@@ -104,7 +105,7 @@ TEST(FixedPlacement, OfThePapersObjectsHasTheSameBitsAsTheClosedForms) {
     const double s = cosine * (x - 0.175) + sine * (y - 0.115);
     const double t = cosine * (y - 0.115) - sine * (x - 0.175);
     const bool across = std::abs(t) <= 0.03;
-    ASSERT_EQ(wave->height(x, y), across && std::abs(s) <= 0.08 ? 0.09 + 0.02 * std::cos(2.0 * kPi * s / 0.08) : 0.0);
+    ASSERT_EQ(wave->height(x, y), across && std::abs(s) <= 0.08 ? 0.09 + 0.02 * math::cos(2.0 * kPi * s / 0.08) : 0.0);
     ASSERT_EQ(slope->height(x, y), across && std::abs(s) <= 0.085 ? 0.02 + (0.08 - 0.02) * (s / 0.17 + 0.5) : 0.0);
   }
   EXPECT_EQ(wave->highest(), 0.09 + 0.02);

@@ -157,7 +157,8 @@ double log(double x) {
 double log1p(double x) {
   const double above = 1.0 + x;
   // What was rounded off of 1 + x is taken in to first order.
-  return above == 1.0 ? x : std::isinf(above) ? above : log(above) + (x - (above - 1.0)) / above;
+  if (above == 1.0) return x;
+  return above == 0.0 || std::isinf(above) ? log(above) : log(above) + (x - (above - 1.0)) / above;
 }
 
 double pow(double x, double y) {
