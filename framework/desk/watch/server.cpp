@@ -7,6 +7,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -23,6 +24,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <locale>
 #include <optional>
 #include <random>
 #include <set>
@@ -71,9 +73,7 @@ std::string host_of(std::string_view text) {
   const bool bare = end == std::string_view::npos || text.find(']', end) != std::string_view::npos;
   std::string_view host = bare ? text : text.substr(0, end);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  std::string out(host);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
+  return boost::algorithm::to_lower_copy(std::string(host), std::locale::classic());
 }
 
 struct Question {
