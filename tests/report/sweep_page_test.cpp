@@ -105,10 +105,7 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
               kCells,
               boxes,
               kFront,
-              data_of("parallel",
-                      "d[0].type == 'parcoords' ? ['parcoords', d[0].dimensions.length, d[0].line.color] : "
-                      "['lines', l.annotations.filter((a) => a.yanchor == 'bottom').length, "
-                      "d.flatMap((t) => t.y.filter((y) => y === null))]"),
+              data_of("parallel", "[d[0].type, d[0].dimensions.length, d[0].line.color]"),
               choose("up", "taps"),
               drawn(2),
               choose("across", "kernel.length_scale"),
@@ -138,9 +135,8 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
               "const f = document.getElementById('filter'); f.value = 'taps=12'; f.dispatchEvent(new Event('input'))",
               table,
               "return [...document.querySelectorAll('#jobs a')].map((a) => a.getAttribute('href'))",
-              "return Promise.all(['cells_mean', 'groups', 'parallel', 'front'].map((id) => Plotly.toImage(id, "
-              "{format: 'png', "
-              "width: 500, height: 300})))"});
+              ("return Promise.all(['cells_mean', 'groups', 'parallel', 'front'].map((id) => Plotly.toImage(id, "
+               "{format: 'png', width: 500, height: 300})))")});
   ASSERT_EQ(seen.values.size(), 24U);
 
   const json& cells = seen.values.at(0);

@@ -137,8 +137,8 @@ TEST_P(SweepTrouble, TakesTextOfNamesValuesAndReasonsForTextAndNothingElse) {
        drawn(2),
        choose("group", "backend.command"),
        drawn(3),
-       "return [...document.querySelectorAll('#cells_mean .xtick text, #cells_mean .ytick text, #groups .ytick "
-       "text')].map((t) => t.textContent)",
+       ("return [...document.querySelectorAll('#cells_mean .xtick text, #cells_mean .ytick text, #groups .ytick "
+        "text')].map((t) => t.textContent)"),
        "return document.getElementById('warnings').textContent",
        "return getComputedStyle(document.querySelector('h1 bdi')).unicodeBidi",
        "return [...document.querySelectorAll('#parallel text')].map((t) => t.textContent)",

@@ -189,8 +189,8 @@ static Json true_contours_of(const History& history) {
   return out;
 }
 
-/// A mesh: its vertices in tenths of a millimetre, their standard deviations in hundredths of one, and the corners of its
-/// triangles.
+/// A mesh: its vertices in tenths of a millimetre, their standard deviations in hundredths of one, and the corners of
+/// its triangles.
 static Json json_of_surface(const Crossings& surface) {
   const ClosedMesh mesh = close_mesh(surface);
   const auto along = [&](Eigen::Index axis) {
