@@ -80,42 +80,6 @@ TEST(PackedMaps, KeepAMapThatIsEverywhereTheSame) {
   for (const double value : unpack_frame(packed.bytes, 0, 9, 0.25, 0.25)) EXPECT_EQ(value, 0.25);
 }
 
-TEST(PackedSurface, HasABitANodeAndTwoBytesAVertex) {
-  Crossings surface;
-  surface.origin = {1.0, 2.0, 3.0};
-  surface.side = 0.01;
-  surface.nodes = {3, 3, 3};
-  surface.inside.assign(27, 0);
-  surface.inside[13] = 1;  // the one in the middle, with six neighbours outside
-  const Eigen::Vector3d middle = surface.origin.array() + 0.01;
-  const auto at = [&](int axis, double steps, double deviation) {
-    surface.vertices.push_back(
-        {middle + 0.01 * steps * Eigen::Vector3d::Unit(axis), Eigen::Vector3d::UnitZ(), deviation});
-  };
-  at(2, -0.75, 0.001);  // from the node below, a quarter of the way
-  at(1, -0.5, 0.002);
-  at(0, -0.2, 0.003);
-  at(0, 0.4, 0.002);
-  at(1, 0.0 + 1.0 / 255.0, 0.001);
-  at(2, 0.99, 0.003);
-  const PackedSurface packed = pack_surface(surface);
-  EXPECT_EQ(packed.least, 0.001);
-  EXPECT_EQ(packed.most, 0.003);
-  ASSERT_EQ(packed.bytes.size(), 4U + 2U * 6U);
-  const auto byte = [&](std::size_t i) { return int{static_cast<unsigned char>(packed.bytes[i])}; };
-  EXPECT_EQ(byte(0), 0);
-  EXPECT_EQ(byte(1), 1 << 5);
-  EXPECT_EQ(byte(2) + byte(3), 0);
-  const std::vector<int> shares{64, 128, 204, 102, 1, 252};
-  const std::vector<int> levels{0, 128, 255, 128, 0, 255};
-  int level = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_NEAR(byte(4 + i), shares[i], 1) << i;
-    level = (level + byte(10 + i)) % 256;
-    EXPECT_EQ(level, levels[i]) << i;
-  }
-}
-
 TEST(PageData, HasRowsWithTheirDottedNamesAndNullForWhatIsAbsentOrNoNumber) {
   Row row;
   row.add("a.b", 1);

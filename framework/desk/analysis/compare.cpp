@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <boost/algorithm/string/erase.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -173,10 +174,7 @@ void adjust(std::vector<ComparedPair>& pairs) {
 }
 
 /// "weighted,rbf" names the group "weighted, rbf", too.
-std::string without_blanks(std::string name) {
-  name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
-  return name;
-}
+std::string without_blanks(const std::string& name) { return boost::algorithm::erase_all_copy(name, " "); }
 
 /// Groups that are compared with each other. Results on one scene say nothing about another, so these are the groups of
 /// one scene, unless nothing but the scene makes the groups.

@@ -11,9 +11,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
-#include <system_error>
+#include <regex>
 #include <utility>
 
 namespace palpate {
@@ -33,17 +32,10 @@ struct Position {
 
 /// Zeros for what is none: three numbers of digits alone, as RunFollower::at() writes them.
 Position parse_position(const std::string& at) {
-  Position out;
-  const char* next = at.data();
-  const char* const end = next + at.size();
-  for (int* const number : {&out.generation, &out.moments, &out.revision}) {
-    if (number != &out.generation && (next == end || *next++ != '.')) return {};
-    if (next == end || *next < '0' || *next > '9') return {};  // from_chars() takes a minus
-    const auto read = std::from_chars(next, end, *number);
-    if (read.ec != std::errc()) return {};
-    next = read.ptr;
-  }
-  return next == end ? out : Position{};
+  static const std::regex form("([0-9]{1,9})\\.([0-9]{1,9})\\.([0-9]{1,9})");
+  std::smatch parts;
+  if (!std::regex_match(at, parts, form)) return {};
+  return {std::stoi(parts[1]), std::stoi(parts[2]), std::stoi(parts[3])};
 }
 
 }  // namespace

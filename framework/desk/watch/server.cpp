@@ -7,6 +7,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -21,16 +22,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
+#include <locale>
 #include <optional>
+#include <random>
 #include <set>
 #include <string_view>
 #include <utility>
-
-#include <sys/random.h>
 
 namespace palpate {
 namespace {
@@ -53,17 +52,10 @@ constexpr std::size_t kMostCallers = 64;
 constexpr std::size_t kMostStrangers = 16;  ///< of them without the token; the oldest of more makes way for the next
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 
+/// 128 bits that nobody can guess.
 std::string random_token() {
-  std::array<unsigned char, 16> bytes{};
-  std::size_t filled = 0;
-  while (filled < bytes.size()) {
-    const ssize_t got = ::getrandom(bytes.data() + filled, bytes.size() - filled, 0);
-    if (got < 0 && errno != EINTR) throw Error("watch", std::string("no random numbers: ") + std::strerror(errno));
-    filled += got > 0 ? static_cast<std::size_t>(got) : 0;
-  }
-  std::string out;
-  for (const unsigned char byte : bytes) out += fmt::format("{:02x}", byte);
-  return out;
+  std::random_device random("/dev/urandom");
+  return fmt::format("{:08x}{:08x}{:08x}{:08x}", random(), random(), random(), random());
 }
 
 /// Takes as long wherever they differ, so that nobody finds a token digit by digit.
@@ -81,9 +73,7 @@ std::string host_of(std::string_view text) {
   const bool bare = end == std::string_view::npos || text.find(']', end) != std::string_view::npos;
   std::string_view host = bare ? text : text.substr(0, end);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  std::string out(host);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
+  return boost::algorithm::to_lower_copy(std::string(host), std::locale::classic());
 }
 
 struct Question {

@@ -45,16 +45,27 @@ Contact Simulator::tap(const TapRequest& request) {
   return paced(std::move(contact));
 }
 
+bool Simulator::beyond_reach(double x, double y) const {
+  const auto& reach = scene_.effects().reach;
+  return reach && math::hypot(x - reach->base[0], y - reach->base[1]) > reach->radius;
+}
+
+Eigen::Vector3d Simulator::pose_error(const TapRequest& request) const {
+  const auto& noise = scene_.effects().pose_noise;
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  if (!noise) return out;
+  Normal normal(context_.random("simulator/pose", static_cast<std::uint64_t>(request.number)));
+  for (const Eigen::Index axis : {0, 1, 2}) out(axis) = (axis == 2 ? noise->vertical : noise->lateral) * normal();
+  return out;
+}
+
 /// The tool begins clear of the desk: of its wide part, which has no end behind it, all.
 bool Simulator::reaches(const Approach& approach) const {
   const Effects& effects = scene_.effects();
   const auto& [line, length] = approach;
   const double above = line.origin.z() - scene_.desk();
   if (above <= (effects.tip_radius ? effects.tip_radius->radius : 0.0)) return false;
-  if (effects.reach && math::hypot(line.origin.x() - effects.reach->base[0], line.origin.y() - effects.reach->base[1]) >
-                           effects.reach->radius) {
-    return false;
-  }
+  if (beyond_reach(line.origin.x(), line.origin.y())) return false;
   if (!effects.shaft) return true;
   const double level = std::sqrt(std::max(0.0, 1.0 - line.direction.z() * line.direction.z()));
   return line.direction.z() <= 0.0 && above > effects.shaft->radius * level;
@@ -73,13 +84,7 @@ Contact Simulator::tap_along(const TapRequest& request) const {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Effects& effects = scene_.effects();
   const auto& [line, length] = *request.approach;
-  Line true_line = line;
-  if (effects.pose_noise) {
-    Normal normal(context_.random("simulator/pose", static_cast<std::uint64_t>(request.number)));
-    true_line.origin.x() += effects.pose_noise->lateral * normal();
-    true_line.origin.y() += effects.pose_noise->lateral * normal();
-    true_line.origin.z() += effects.pose_noise->vertical * normal();
-  }
+  Line true_line{line.origin + pose_error(request), line.direction};
   if (effects.height_offset)
     true_line.origin.z() -= effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
   const std::unique_ptr<const Scene> pushed = scene_.after(request.number - 1);
@@ -105,27 +110,18 @@ Contact Simulator::tap_along(const TapRequest& request) const {
 Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const {
   const Effects& effects = scene_.effects();
   const Target& target = request.target;
-  if (effects.reach &&
-      math::hypot(target.x - effects.reach->base[0], target.y - effects.reach->base[1]) > effects.reach->radius) {
-    return {Outcome::unreachable, 0.0, 0.0, 0.0, "beyond the reach of the arm"};
-  }
-  double dx = 0.0;
-  double dy = 0.0;
-  double dz = 0.0;
-  if (effects.pose_noise) {
-    Normal normal(context_.random("simulator/pose", static_cast<std::uint64_t>(request.number)));
-    dx = effects.pose_noise->lateral * normal();
-    dy = effects.pose_noise->lateral * normal();
-    dz = effects.pose_noise->vertical * normal();
-  }
-  double surface = contact_height(scene, effects, target.x + dx, target.y + dy);
+  if (beyond_reach(target.x, target.y)) return {Outcome::unreachable, 0.0, 0.0, 0.0, "beyond the reach of the arm"};
+  const Eigen::Vector3d error = pose_error(request);
+  const double x = target.x + error.x();
+  const double y = target.y + error.y();
+  double surface = contact_height(scene, effects, x, y);
   const bool desk = surface <= scene_.desk();
   if (effects.foreign_objects) {
-    surface = std::min(surface + outlier(*effects.foreign_objects, context_.seed, target.x + dx, target.y + dy),
-                       tap.descent.hover);
+    surface = std::min(surface + outlier(*effects.foreign_objects, context_.seed, x, y), tap.descent.hover);
   }
   Contact contact = moves_ ? simulated_tap(request.number, tap, surface, desk) : ideal_tap(tap, surface);
   contact.seconds += tapping::travel_seconds(tap.motion, request);
+  double dz = error.z();
   if (effects.height_offset) dz += effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
   if (contact.outcome == Outcome::contact) contact.height += dz;
   return paced(std::move(contact));

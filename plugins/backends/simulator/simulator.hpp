@@ -44,6 +44,9 @@ class Simulator final : public Backend {
     const tapping::MotionOptions& motion;
     tapping::Descent descent;
   };
+  bool beyond_reach(double x, double y) const;
+  /// What a tap is off the place that is asked for, without the offset of heights; metres.
+  Eigen::Vector3d pose_error(const TapRequest& request) const;
   Contact ideal_tap(const Descending& tap, double surface) const;
   Contact imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
   Contact simulated_tap(int number, const Descending& tap, double surface, bool desk) const;

@@ -168,6 +168,7 @@ std::vector<std::string> lines_within(const std::string& text, double width) {
 
 /// The name of a group in the legend, in as many lines as it takes.
 struct LegendEntry {
+  double x = 0.0;
   std::size_t row = 0;
   std::vector<std::string> lines;
 };
@@ -175,8 +176,7 @@ struct LegendEntry {
 constexpr double kNameGap = 5;  ///< between a sample and its name
 constexpr double kBetweenNames = 16;
 
-/// Names side by side; one that is longer than the figure is wide has rows of its own. draw_legend() has gnuplot do
-/// the same with names that somebody changed.
+/// Names side by side; one that is longer than the figure is wide has rows of its own.
 std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width) {
   std::vector<LegendEntry> out;
   double x = left;
@@ -188,7 +188,7 @@ std::vector<LegendEntry> place_names(const std::vector<std::string>& names, doub
       x = left;
       ++row;
     }
-    out.push_back({row, lines});
+    out.push_back({x, row, lines});
     x += length + kBetweenNames;
     if (lines.size() > 1) {
       x = left;
@@ -198,60 +198,26 @@ std::vector<LegendEntry> place_names(const std::vector<std::string>& names, doub
   return out;
 }
 
-/// gnuplot's variable with a line of a name.
-std::string name_variable(std::size_t entry, std::size_t line) {
-  return fmt::format("name_{}", entry + 1) + (line > 0 ? fmt::format("_{}", line + 1) : "");
-}
-
-/// The names, to be changed by whoever reads the script; how wide each is; and a height of the panels below them, which
-/// begin at `top` and have less room where changed names take more rows. Lengths are points from the upper left corner.
-std::string legend_variables(const Sheet& sheet, const std::vector<LegendEntry>& entries, double top) {
-  std::string out = "# The names in the legend; longer names move the following ones.\n";
+/// Bands, lines, marks and names of the groups.
+void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
+  std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    for (std::size_t line = 0; line < entries[i].lines.size(); ++line)
-      out += fmt::format("{} = {}\n", name_variable(i, line), gnuplot_text(entries[i].lines[line]));
-  }
-  out += fmt::format("wide(name) = {} * (sum [i=1:strlen(name)] (", kFont);
-  for (const LetterClass& one : kLetterClasses)
-    out += fmt::format("strstrt({}, name[i:i]) ? {} : ", gnuplot_text(one.letters), one.width);
-  out += fmt::format("{}))\nmore = 0\n", kOtherLetters);
-  return out + fmt::format("down(y) = 1 - (y + (y > {1:.2f} ? more * ({0} - y) / ({0} - {1:.2f}) : 0)) / {0}.0\n",
-                           sheet.height(), top);
-}
-
-/// Bands, lines, marks and names of the groups, which begin `left` of the left edge.
-void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries, double left) {
-  const double end = sheet.width() - kEndRoom;
-  const auto at = [&](const std::string& x, double y) {
-    return fmt::format("screen (at_x + {}) / {}.0, screen down(at_y + {})", x, sheet.width(), y);
-  };
-  const double sample = kSampleLength;
-  const std::string right = fmt::format("{}", sample);
-  std::string settings =
-      fmt::format("unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\nat_x = {}\nat_y = {}\n", left,
-                  4 + 0.5 * kLineHeight);
-  const std::string new_row = fmt::format("at_x = {}; at_y = at_y + {}", left, kLineHeight);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::vector<std::string>& lines = entries[i].lines;
+    const LegendEntry& entry = entries[i];
     const LineStyle style = line_style(i);
-    const std::string length = fmt::format("{} + wide({})", sample + kNameGap, name_variable(i, 0));
-    settings += lines.size() > 1
-                    ? fmt::format("if (at_x > {}) {{ {} }}\n", left, new_row)
-                    : fmt::format("if (at_x > {} && at_x + {} > {}) {{ {} }}\n", left, length, end, new_row);
+    const double right = entry.x + kSampleLength;
+    double y = 4 + kLineHeight * (static_cast<double>(entry.row) + 0.5);
     settings += fmt::format("set object rectangle from {} to {} fc rgb '{}' fs transparent solid 0.18 noborder\n",
-                            at("0", -3.5), at(right, 3.5), style.colour);
-    settings += fmt::format("set arrow from {} to {} nohead {}\n", at("0", 0), at(right, 0), style.line);
-    settings += fmt::format("set label '' at {} point {} lc rgb '{}' front\n", at(fmt::format("{}", 0.5 * sample), 0),
-                            style.point, style.colour);
-    for (std::size_t line = 0; line < lines.size(); ++line)
-      settings += fmt::format("{}set label {} at {} left\n", line > 0 ? new_row + "\n" : "", name_variable(i, line),
-                              at(fmt::format("{}", sample + kNameGap), 0));
-    if (i + 1 == entries.size()) break;
-    settings += lines.size() > 1 ? new_row + "\n" : fmt::format("at_x = at_x + {} + {}\n", length, kBetweenNames);
+                            sheet.at(entry.x, y - 3.5), sheet.at(right, y + 3.5), style.colour);
+    settings +=
+        fmt::format("set arrow from {} to {} nohead {}\n", sheet.at(entry.x, y), sheet.at(right, y), style.line);
+    settings += sheet.label("", 0.5 * (entry.x + right), y,
+                            fmt::format("point {} lc rgb '{}' front", style.point, style.colour));
+    for (const std::string& line : entry.lines) {
+      settings += sheet.label(line, right + kNameGap, y, "left");
+      y += kLineHeight;
+    }
   }
-  const double last = 4 + kLineHeight * (static_cast<double>(entries.back().row + entries.back().lines.size()) - 0.5);
   sheet.plot({0, 0, 10, 10}, settings, "plot NaN");
-  sheet.then(fmt::format("more = at_y > {0} ? at_y - {0} : 0\n", last));
 }
 
 /// The panel's name: "scene: ring", without the keys where there is no room for them, in as many lines as it takes.
@@ -392,13 +358,7 @@ std::string write_curves_figure(const GroupCurves& curves, const std::string& ti
   const AxisRange y_range = value_range(drawn, scale.factor);
 
   Sheet sheet(static_cast<int>(layout.width), static_cast<int>(layout.height));
-  const auto label = [&](const std::string& text, double x, double y, const char* style) {
-    return fmt::format("set label {} at screen {:.5f}, screen {} {}\n", gnuplot_text(text), x / sheet.width(),
-                       sheet.height_at(y), style);
-  };
-  sheet.begin(legend_variables(sheet, layout.legend, layout.top));
-  sheet.place_by("down");
-  draw_legend(sheet, layout.legend, layout.left);
+  draw_legend(sheet, layout.legend);
   for (std::size_t s = 0; s < layout.scenes.size(); ++s) {
     const Box box = layout.box(s);
     CurveClauses clauses;
@@ -412,20 +372,20 @@ std::string write_curves_figure(const GroupCurves& curves, const std::string& ti
     std::string settings = "set border 3 lc rgb '#555555' lw 0.5\nset grid y lc rgb '#e4e4e4' lt 1 lw 0.5\n";
     double y = box.top - layout.head + 0.5 * kLineHeight;
     for (const std::string& line : panel_title(curves, layout.scenes[s], box.width)) {
-      settings += label(line, box.left, y, "left");
+      settings += sheet.label(line, box.left, y, "left");
       y += kLineHeight;
     }
     settings += x_range.settings('x', box.width, curves.against.name == kAgainstTaps);
     settings += y_range.settings('y', box.height, false);
     if (s % layout.across > 0) settings += "set ytics format ''\n";
     if (s + layout.across >= layout.scenes.size())
-      settings += label(axis.title(curves.against.words()), box.left + 0.5 * box.width,
-                        box.top + box.height + kNumbersRoom + 0.6 * kLineHeight, "center");
+      settings += sheet.label(axis.title(curves.against.words()), box.left + 0.5 * box.width,
+                              box.top + box.height + kNumbersRoom + 0.6 * kLineHeight, "center");
     if (s == 0) {
       const Box below = layout.box(layout.scenes.size() - 1);
       for (std::size_t line = 0; line < layout.y_title.size(); ++line)
-        settings += label(layout.y_title[line], 7 + kLineHeight * static_cast<double>(line),
-                          0.5 * (box.top + below.top + below.height), "center rotate by 90");
+        settings += sheet.label(layout.y_title[line], 7 + kLineHeight * static_cast<double>(line),
+                                0.5 * (box.top + below.top + below.height), "center rotate by 90");
     }
     sheet.plot(box, settings, clauses.plot());
   }

@@ -217,21 +217,20 @@ void Sheet::upright(const std::string& words, double x, double middle, int point
   texts_ += label(words, x, middle, fmt::format("center rotate by 90 font ',{}'", points));
 }
 
-std::string Sheet::label(const std::string& words, double x, double y, const std::string& style) const {
-  return fmt::format("set label {} at screen {:.5f}, screen {} {}\n", gnuplot_text(words), x / width_, height_at(y),
-                     style);
+std::string Sheet::at(double x, double y) const {
+  return fmt::format("screen {:.5f}, screen {:.5f}", x / width_, 1.0 - y / height_);
 }
 
-std::string Sheet::height_at(double y) const {
-  return height_function_.empty() ? fmt::format("{:.5f}", 1.0 - y / height_)
-                                  : fmt::format("{}({:.2f})", height_function_, y);
+std::string Sheet::label(const std::string& words, double x, double y, const std::string& style) const {
+  return fmt::format("set label {} at {} {}\n", gnuplot_text(words), at(x, y), style);
 }
 
 std::string Sheet::place(const Box& box) const {
   return fmt::format(
-      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {}\nset bmargin at screen "
-      "{}\n",
-      box.left / width_, (box.left + box.width) / width_, height_at(box.top), height_at(box.top + box.height));
+      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset bmargin at "
+      "screen {:.5f}\n",
+      box.left / width_, (box.left + box.width) / width_, 1.0 - box.top / height_,
+      1.0 - (box.top + box.height) / height_);
 }
 
 void Sheet::plot(const Box& box, const std::string& settings, const std::string& clauses) {
@@ -321,8 +320,8 @@ std::string Sheet::script() const {
   std::string bar;
   for (int i = 0; i < kBarSteps; ++i) bar += fmt::format("{0} {0}\n", i);
   const bool has_bar = panels_.find("$bar ") != std::string::npos;
-  const std::string out = begin_ + (has_bar ? fmt::format("$bar << END\n{}END\n", bar) : "") + data_ +
-                          "set multiplot\n" + panels_ + "unset multiplot\nset output\n";
+  const std::string out = (has_bar ? fmt::format("$bar << END\n{}END\n", bar) : "") + data_ + "set multiplot\n" +
+                          panels_ + "unset multiplot\nset output\n";
   // Where the locale is C, gnuplot warns of an encoding that it was told, so it is told none in vain.
   const bool is_ascii =
       std::all_of(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });

@@ -89,13 +89,10 @@ class Sheet {
   /// Without terminal and output.
   std::string script() const;
 
-  /// Commands that stand before all data.
-  void begin(const std::string& commands) { begin_ += commands; }
-  /// From here on heights of panels are calls of gnuplot's function `name`, which is defined by begin(): of the
-  /// distance from the upper edge.
-  void place_by(const std::string& name) { height_function_ = name; }
-  /// A height at a distance of `y` from the upper edge, as a part of gnuplot's `screen`.
-  std::string height_at(double y) const;
+  /// gnuplot's `screen` for a point, pixels from the upper left corner.
+  std::string at(double x, double y) const;
+  /// gnuplot's label with its middle at a height of `y`; `style` is the rest of the command.
+  std::string label(const std::string& words, double x, double y, const std::string& style) const;
 
   /// A named block of lines; "" makes none.
   void data(const std::string& name, const std::string& lines);
@@ -120,23 +117,17 @@ class Sheet {
   /// What the marks mean, from `x` on, its middle at `y`.
   void legend(double x, double y, bool failed, bool next = true);
 
-  /// Commands behind the panels so far.
-  void then(const std::string& commands) { panels_ += commands; }
   /// A plot of any kind: lines of settings, then the clauses of one plot command.
   void plot(const Box& box, const std::string& settings, const std::string& clauses);
 
  private:
   std::string place(const Box& box) const;
-  /// gnuplot's label with its middle at a height of `y`; `style` is the rest of the command.
-  std::string label(const std::string& words, double x, double y, const std::string& style) const;
   /// Marks over a panel, as clauses; `columns` "1:2" or "1:2:3".
   std::string marks(const std::string& taps, const std::string& columns) const;
   bool has(const std::string& block) const;
 
   int width_;
   int height_;
-  std::string height_function_;
-  std::string begin_;
   std::string data_;
   std::string texts_;
   std::string panels_;

@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <numeric>
 
 namespace palpate {
 namespace {
@@ -133,7 +134,8 @@ static void to_json(Json& out, const CurvePanel& panel) {
 /// How a page calls an error, and in what unit it has it.
 static void to_json(Json& out, const RecordField& error) { out = {error.name, error.label, unit_symbol(error.unit)}; }
 
-std::vector<RecordField> page_errors() {
+/// The errors that pages show: those against the truth, and the one that is expected, which needs none.
+static std::vector<RecordField> page_errors() {
   std::vector<RecordField> out = error_fields();
   out.insert(out.begin() + 1, *find_summary_field(kExpectedError));
   return out;
@@ -165,52 +167,41 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
   return out;
 }
 
-PackedSurface pack_surface(const Crossings& surface) {
-  constexpr double kMost = 255.0;
-  PackedSurface out;
-  for (std::size_t i = 0; i < surface.inside.size(); ++i) {
-    if (i % 8 == 0) out.bytes += '\0';
-    out.bytes.back() = static_cast<char>(static_cast<unsigned char>(out.bytes.back()) | surface.inside[i] << i % 8);
-  }
-  const auto [low, high] = std::minmax_element(
-      surface.vertices.begin(), surface.vertices.end(),
-      [](const Crossings::Vertex& a, const Crossings::Vertex& b) { return a.deviation < b.deviation; });
-  if (low == surface.vertices.end()) return out;
-  out.least = low->deviation;
-  out.most = high->deviation;
-  const double scale = out.most > out.least ? kMost / (out.most - out.least) : 0.0;
-  std::string deviations;
-  unsigned before = 0;
-  for (const Crossings::Vertex& one : surface.vertices) {
-    // Along two axes it lies on nodes, along the third between them.
-    const Eigen::Array3d along = (one.at - surface.origin).array() / surface.side;
-    Eigen::Index axis = 0;
-    (along - along.round()).abs().maxCoeff(&axis);
-    out.bytes += static_cast<char>(std::lround(kMost * (along(axis) - std::floor(along(axis)))));
-    const auto level = static_cast<unsigned>(std::lround(scale * (one.deviation - out.least)));
-    deviations += static_cast<char>(level - before);
-    before = level;
-  }
-  out.bytes += deviations;
+/// What `get` has of each as whole numbers: the first in full, of the others what they differ by from the one before,
+/// because zlib makes least of small numbers.
+template <class List, class Get>
+static std::vector<long> steps_of(const List& list, const Get& get) {
+  std::vector<long> out;
+  for (const auto& one : list) out.push_back(std::lround(get(one)));
+  std::adjacent_difference(out.begin(), out.end(), out.begin());
   return out;
 }
 
-/// The lines on the true surface, of each x, y and z of its points, in tenths of a millimetre: the first point in full,
-/// of the others what they differ by from the one before.
-static std::vector<std::vector<int>> true_contours_of(const History& history) {
-  std::vector<std::vector<int>> out;
+/// The lines on the true surface, in tenths of a millimetre.
+static Json true_contours_of(const History& history) {
+  Json out = Json::array();
   for (const Ring& ring : history.true_contours) {
-    std::vector<int>& numbers = out.emplace_back();
-    std::array<int, 3> before{};
-    for (const Eigen::Vector3d& point : ring) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto now = static_cast<int>(std::lround(1e4 * point(static_cast<Eigen::Index>(i))));
-        numbers.push_back(now - before[i]);
-        before[i] = now;
-      }
-    }
+    const auto along = [&](Eigen::Index axis) {
+      return steps_of(ring, [axis](const Eigen::Vector3d& point) { return 1e4 * point(axis); });
+    };
+    out.push_back({{"x", along(0)}, {"y", along(1)}, {"z", along(2)}});
   }
   return out;
+}
+
+/// A mesh: its vertices in tenths of a millimetre, their standard deviations in hundredths of one, and the corners of
+/// its triangles.
+static Json json_of_surface(const Crossings& surface) {
+  const ClosedMesh mesh = close_mesh(surface);
+  const auto along = [&](Eigen::Index axis) {
+    return steps_of(mesh.vertices, [axis](const Crossings::Vertex& one) { return 1e4 * one.at(axis); });
+  };
+  const auto corners = [&](std::size_t corner) {
+    return steps_of(mesh.triangles, [corner](const std::array<int, 3>& one) { return one[corner]; });
+  };
+  const auto deviations = steps_of(mesh.vertices, [](const Crossings::Vertex& one) { return 1e5 * one.deviation; });
+  return {{"x", along(0)},   {"y", along(1)},   {"z", along(2)},          {"i", corners(0)},
+          {"j", corners(1)}, {"k", corners(2)}, {"deviation", deviations}};
 }
 
 /// Where the run stood when it was read: one that has ended since is shown as it was, like all else on the page.
@@ -232,8 +223,7 @@ static Json json_of_standing(const Recording& recording, const History& history)
           {"constants", curves.constants},     {"warnings", warnings_of(recording, history)}};
 }
 
-/// All that a page has of a run, but for its maps.
-static Json json_of_page(const Recording& recording, const History& history) {
+Json run_data(const Recording& recording, const History& history) {
   const Tree manifest = recording.manifest.value_or(Tree::map());
   Json data = json_of_run(recording, history);
   data.update(json_of_standing(recording, history));
@@ -250,36 +240,16 @@ static Json json_of_page(const Recording& recording, const History& history) {
   return data;
 }
 
-/// Every `stride`-th of the moments that are shown, counted from the last, with their surfaces.
-static std::string add_surfaces(Json& data, const History& history, std::size_t stride) {
+std::string add_maps(Json& data, const History& history, std::size_t stride) {
   std::vector<int> shown;
   std::string bytes;
-  Json described = Json::array();
-  for (std::size_t last = history.shown.size() - 1, i = last % stride; i <= last; i += stride) {
-    const Crossings& one = history.surfaces[i];
-    const PackedSurface packed = pack_surface(one);
-    described.push_back({{"origin", {one.origin.x(), one.origin.y(), one.origin.z()}},
-                         {"side", one.side},
-                         {"nodes", one.nodes},
-                         {"vertices", one.vertices.size()},
-                         {"least", packed.least},
-                         {"most", packed.most}});
-    shown.push_back(history.shown[i]);
-    bytes += packed.bytes;
-  }
-  data["surfaces"] = described;
-  data["shown"] = shown;
-  return bytes;
-}
-
-/// Packs the maps of every `stride`-th of the moments that are shown, counted from the last, and describes them.
-static std::string add_maps(Json& data, const History& history, std::size_t stride) {
-  if (!history.surfaces.empty()) return add_surfaces(data, history, stride);
-  std::vector<int> shown;
-  std::string bytes;
+  Json surfaces = Json::array();
   Json described = Json::array();
   const std::size_t last = history.shown.size() - 1;
-  for (std::size_t i = last % stride; i <= last; i += stride) shown.push_back(history.shown[i]);
+  for (std::size_t i = last % stride; i <= last; i += stride) {
+    shown.push_back(history.shown[i]);
+    if (!history.surfaces.empty()) surfaces.push_back(json_of_surface(history.surfaces[i]));
+  }
   for (const MapSeries& one : history.maps) {
     std::vector<Eigen::VectorXf> frames;
     if (one.name == "truth") frames = one.frames;  // of all moments
@@ -289,16 +259,17 @@ static std::string add_maps(Json& data, const History& history, std::size_t stri
         {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
     bytes += packed.bytes;
   }
+  data["surfaces"] = surfaces;
   data["maps"] = described;
   data["shown"] = shown;
   return bytes;
 }
 
 std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
-  Json data = json_of_page(recording, history);
+  Json data = run_data(recording, history);
   const int last = history.moments.back().taps;
   // Maps never pack to a tenth of their bytes: with more than these the page would surely be too large.
-  constexpr double kMostRaw = 8e6;
+  constexpr double kMostRaw = 19e6;
   double raw = 0.0;
   for (const MapSeries& one : history.maps)
     raw += 2.0 * static_cast<double>(one.frames.size()) * static_cast<double>(one.frames.front().size());
@@ -312,7 +283,7 @@ std::string run_page(const Recording& recording, const History& history, const O
 }
 
 std::string live_run_page(const Recording& recording, const History& history, const std::string& at) {
-  Json data = json_of_page(recording, history);
+  Json data = run_data(recording, history);
   const std::string bytes = add_maps(data, history, 1);
   data["live"] = at;
   return make_page(palpate_asset_run, data, bytes, PageOf::server);

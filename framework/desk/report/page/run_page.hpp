@@ -3,6 +3,7 @@
 #pragma once
 
 #include "report/history.hpp"
+#include "report/page/json.hpp"
 
 #include <string>
 
@@ -10,7 +11,7 @@ namespace palpate {
 
 /// A page is at most so large, so that it can be mailed. Where a run's maps would make it larger, only every second,
 /// third, fifth, ... moment has maps; its page says so.
-inline constexpr std::size_t kMostPageBytes = 2'900'000;
+inline constexpr std::size_t kMostPageBytes = 4'000'000;
 
 /// The page of a run: HTML, complete in itself. Packing the maps of a long run takes as long as computing them:
 /// `progress` hears of it, too.
@@ -27,9 +28,6 @@ std::string waiting_page(const std::string& name, const std::string& id, const s
 /// of those moments alone, and of what may change with every tap. The page is then at `at`.
 std::string run_news(const Recording& recording, const History& history, int moments, const std::string& at);
 
-/// The errors that pages show: those against the truth, and the one that is expected, which needs none.
-std::vector<RecordField> page_errors();
-
 /// Maps in a few bytes a cell. Smooth maps have small steps from cell to cell: steps of 16-bit numbers, their low and
 /// their high bytes apart, are what zlib makes least of.
 struct PackedMaps {
@@ -43,14 +41,11 @@ struct PackedMaps {
 /// from cell to cell modulo 65536, first all their low bytes and then all their high bytes.
 PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames);
 
-/// A surface in two bytes a vertex and what its nodes take: a bit for each node, 1 inside, the first in the lowest;
-/// then, vertex by vertex, where it lies between the two nodes, in 255ths; then the steps of the deviation, modulo 256,
-/// from 0 for the least to 255 for the most.
-struct PackedSurface {
-  double least = 0.0;
-  double most = 0.0;
-  std::string bytes;
-};
-PackedSurface pack_surface(const Crossings& surface);
+/// All that a page has of a run, but for its maps and surfaces.
+Json run_data(const Recording& recording, const History& history);
+
+/// Adds to `data` the maps, or surfaces, of every `stride`-th of the moments that are shown, counted from the last.
+/// Returns the bytes of the maps.
+std::string add_maps(Json& data, const History& history, std::size_t stride);
 
 }  // namespace palpate

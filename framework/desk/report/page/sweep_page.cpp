@@ -169,34 +169,6 @@ std::vector<std::string> first_looks(const std::vector<Row>& results) {
   return names;
 }
 
-/// The config of the sweep with the values that its jobs have at each swept key, in the place of what the config of
-/// which it was made says there.
-Tree swept_config(const Sweep& sweep) {
-  constexpr std::size_t kMostValues = 24;
-  Tree config = read_run_config(sweep.directory);
-  for (const std::string& key : sweep.keys) {
-    if (Tree* const groups = config.find("defaults"); groups != nullptr && groups->kind == Tree::Kind::list) {
-      const auto names_it = [&](const Tree& item) { return item.find(key) != nullptr; };
-      groups->items.erase(std::remove_if(groups->items.begin(), groups->items.end(), names_it), groups->items.end());
-      if (groups->items.empty()) config.erase("defaults");
-    }
-    Tree values = Tree::list();
-    for (const JobGroup& group : group_jobs(sweep, {}, {key})) {
-      if (values.items.size() == kMostValues) {
-        values.items.push_back(Tree::quote("..."));
-        break;
-      }
-      values.items.push_back(group.values.front().empty() ? Tree() : Tree::scalar(group.values.front()));
-    }
-    // Where there is no map to put it into, as below a group that is swept itself, it stands by its whole name.
-    const Tree* const around = config.find_path(key.substr(0, key.rfind('.')));
-    const bool by_path = key.find('.') != std::string::npos && around != nullptr && around->is_map();
-    (by_path ? config.at_path(key, config.place) : config.at(key)) =
-        values.items.size() == 1 ? values.items.front() : values;
-  }
-  return config;
-}
-
 }  // namespace
 
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs) {
@@ -238,7 +210,7 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"first_looks", first_looks(results)},
            {"factors", interval_factors(sweep.jobs.size())},
            {"scene_keys", scene_keys(sweep)},
-           {"config", to_yaml(swept_config(sweep))}};
+           {"config", to_yaml(read_run_config(sweep.directory))}};
   if (step > 1) out["sampled"] = tally.json(sweep, step);
   return out;
 }

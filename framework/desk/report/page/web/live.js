@@ -64,7 +64,8 @@ function tellTrouble(trouble) {
   document.getElementById("standing").append(element("p", { class: "trouble" }, foreign(trouble)));
 }
 
-/// A page keeps at most so many numbers in its maps; of a longer run every second moment then has none.
+/// A page keeps at most so many numbers in its maps. With more it is loaded again, with the maps of fewer moments, which
+/// are all that the server keeps of a long run.
 const kMostNumbers = 12e6;
 
 /// Puts further moments into the page of a run. Its slider goes along if it stood at the last tap.
@@ -82,18 +83,13 @@ async function growRun(slider, news) {
     const further = unpackMoments(data, news, new Uint8Array(await plain.arrayBuffer()));
     data.shown.push(...news.shown);
     slider.grow(further);
-    if (slider.numbers(news) > kMostNumbers) thin([data.shown, ...slider.frameLists()]);
+    if (slider.numbers(news) > kMostNumbers) return location.reload();
   }
   input.max = data.moments.length - 1;
   if (newest) input.value = input.max;
   document.getElementById("standing").replaceChildren(...standing(data));
   slider.stale = true;
   slider.show();  // in its turn, which comes after this
-}
-
-/// Drops every second element of each list, and never the last one.
-function thin(lists) {
-  for (const list of new Set(lists)) list.splice(0, list.length, ...list.filter((_, i) => i % 2 === (list.length - 1) % 2));
 }
 
 /// Puts what its jobs have come to into the page of a sweep, whose reader keeps what was chosen. With other columns it is

@@ -125,11 +125,6 @@ class Slider {
     }
   }
 
-  /// All lists that have an element for each moment that is shown.
-  frameLists() {
-    return [...this.surface.lists(), ...this.panels.map((panel) => panel.frames)];
-  }
-
   /// How many numbers the maps hold, or the surfaces, with as many maps as `news` tells of.
   numbers(news) {
     if (this.data.any_side) return 10 * this.surface.surfaces.reduce((sum, { x }) => sum + x.length, 0);
@@ -206,7 +201,7 @@ function mapSection(slider) {
 
 /// What is drawn of the moments that `described` tells of, out of their bytes.
 function unpackMoments(data, described, bytes) {
-  if (data.any_side) return unpackSurfaces(bytes, described.surfaces, data.desk);
+  if (data.any_side) return described.surfaces.map((one) => unpackSurface(one, data.desk));
   return unpackMaps(bytes, described.maps, data.x.length, data.y.length);
 }
 

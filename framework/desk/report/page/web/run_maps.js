@@ -178,11 +178,6 @@ class SurfaceView {
     this.lift = 0.06 * (this.range[1] - this.range[0]);
   }
 
-  /// Lists with an element for each moment that is shown.
-  lists() {
-    return [this.heights, this.deviations];
-  }
-
   caption() {
     if (this.flat) return "Reconstructed height.";
     return this.spatial

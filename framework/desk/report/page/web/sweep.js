@@ -182,9 +182,7 @@ class JobTable {
   howToReport() {
     const bare = this.sweep.jobs.find((job) => !job.reported && job.state !== "missing");
     if (!bare || this.sweep.live !== undefined) return [];
-    const folder = `${this.sweep.folder}/jobs/${bare.id}`;
-    const word = /^[\w./+:@=-]+$/.test(folder) ? folder : `'${folder.replace(/'/g, "'\\''")}'`;
-    const command = element("code", {}, foreign(`palpate report ${word}`));
+    const command = commandOn("report", `${this.sweep.folder}/jobs/${bare.id}`);
     return [element("p", { class: "sub", id: "how_to_report" }, `A job's number links to its own page, if it exists. Job ${bare.index} has no page yet: `, command, " makes it. Make this page again to link to it.")];
   }
 
@@ -274,6 +272,13 @@ function standingOfSweep(sweep) {
   return [factList([[sweep.sampled?.jobs ?? sweep.jobs.length, "jobs"], ...counts]), ...sampleNote(sweep), ...warningList(troubles(sweep))];
 }
 
+/// The swept keys and their values, which stand in the place of those of the config.
+function sweptValues({ keys }) {
+  const kMost = 24;
+  const words = ({ values }) => [...values.slice(0, kMost).map((value) => value || kNothing), ...(values.length > kMost ? ["…"] : [])].join(", ");
+  return table(["swept key", "values"], keys.map((key) => [foreign(key.name), foreign(words(key))]));
+}
+
 function drawSweep(data) {
   if (data.waiting !== undefined) return drawWaiting(data);
   const sweep = new SweepData(data);
@@ -283,7 +288,7 @@ function drawSweep(data) {
     element("div", { id: "standing" }, ...standingOfSweep(sweep)),
   );
   const redraw = sweep.columns.size > 0 ? drawPanels(sweep) : noPanels(sweep);
-  document.body.append(section("Config", element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)), footer(data));
+  document.body.append(section("Config", sweptValues(sweep), element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)), footer(data));
   follow(data, (news) => growSweep(sweep, news));
   return redraw;
 }

@@ -22,12 +22,16 @@ function placeCurves(sweep, chooser, choices) {
 
 const kOverTaps = "Over the taps";
 
+/// A command of palpate on a folder, as a shell takes it.
+function commandOn(name, folder) {
+  const word = /^[\w./+:@=-]+$/.test(folder) ? folder : `'${folder.replace(/'/g, "'\\''")}'`;
+  return element("code", {}, foreign(`palpate ${name} ${word}`));
+}
+
 /// How curves get onto the page; nothing where they cannot.
 function noCurves(sweep) {
   if (sweep.live !== undefined || sweep.sampled || sweep.done.length === 0) return [];
-  const word = /^[\w./+:@=-]+$/.test(sweep.folder) ? sweep.folder : `'${sweep.folder.replace(/'/g, "'\\''")}'`;
-  const command = element("code", {}, foreign(`palpate curves ${word}`));
-  return [section(kOverTaps, element("p", { class: "sub", id: "how_to_curves" }, command, " computes the errors after each tap from the record. Make this page again to show them."))];
+  return [section(kOverTaps, element("p", { class: "sub", id: "how_to_curves" }, commandOn("curves", sweep.folder), " computes the errors after each tap from the record. Make this page again to show them."))];
 }
 
 /// Band, then line, of a group; `place` is its number among the groups of all scenes.

@@ -183,11 +183,12 @@ function drawGroups(sweep, { group, then, metric }) {
 
 /// What is drawn across the keys and the main numbers: the jobs that have a value on each axis, and the axes, {title,
 /// values, least, most, ticks: [{at, text}]}.
-function parallelAxes(sweep, metric, mostJobs) {
+function parallelAxes(sweep, metric) {
+  const kMostJobs = 20000;
   const numbers = mainColumns(sweep).filter((name) => name !== metric && differs(sweep, name) && !sweep.key(name));
   const columns = [...numbers.slice(0, 5), metric];
   const valued = sweep.done.filter((job) => columns.every((name) => sweep.raw(name, job) !== null));
-  const step = Math.max(1, Math.ceil(valued.length / mostJobs));
+  const step = Math.max(1, Math.ceil(valued.length / kMostJobs));
   const jobs = valued.filter((_, i) => i % step === 0);
   const ofKeys = sweep.varying.slice(0, 7).map((key) => {
     const thin = Math.ceil(key.values.length / 25);
@@ -205,13 +206,13 @@ function parallelAxes(sweep, metric, mostJobs) {
 
 /// Lines across the keys and the main numbers, one a job.
 function drawParallel(sweep, { metric }) {
-  const spatial = hasWebGL();
-  const { axes, jobs, left, step } = parallelAxes(sweep, metric, spatial ? 20000 : 5000);
+  if (!hasWebGL()) return plotNothing("parallel", "This browser has no WebGL, which this plot needs.");
+  const { axes, jobs, left, step } = parallelAxes(sweep, metric);
   say(
     "parallel",
     "One line per finished job, coloured by ",
     foreign(withUnit(metric)),
-    spatial ? ". Drag along an axis to pick lines, drag a name to move an axis." : ".",
+    ". Drag along an axis to pick lines, drag a name to move an axis.",
     left > 0 ? ` ${left} jobs lack one of the values and are left out.` : "",
     step > 1 ? ` One of ${step} jobs is drawn.` : "",
   );
@@ -220,11 +221,6 @@ function drawParallel(sweep, { metric }) {
   if (axes.every((one) => one.least === one.most)) return plotNothing("parallel", "All finished jobs have equal values.");
   const { least, most, title } = axes[axes.length - 1];
   const scale = { colorscale: "Viridis", cmin: least, cmax: most, showscale: true, colorbar: colourBar(plain(brief(title))) };
-  return (spatial ? plotDimensions : plotLines)(axes, jobs, scale);
-}
-
-/// By WebGL.
-function plotDimensions(axes, jobs, scale) {
   const trace = {
     type: "parcoords",
     line: { ...scale, color: axes[axes.length - 1].values },
@@ -239,35 +235,4 @@ function plotDimensions(axes, jobs, scale) {
     labelangle: -16,  // names side by side would run into each other
   };
   return plotOfHeight("parallel", 460, [trace], { margin: { l: 90, r: 60, t: 80, b: 24 } });
-}
-
-const kViridis = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6dcd59", "#b4de2c", "#fde725"];
-
-/// As lines in the plane, those of a colour in one trace, so that very many stay quick.
-function plotLines(axes, jobs, scale) {
-  const share = ({ least, most }, value) => (most > least ? (value - least) / (most - least) : 0.5);
-  const traces = kViridis.map((color) => ({ type: "scatter", mode: "lines", x: [], y: [], line: { width: 1, color }, opacity: jobs.length > 200 ? 0.35 : 0.8, hoverinfo: "skip" }));
-  jobs.forEach((_, i) => {
-    const heights = axes.map((one) => share(one, one.values[i]));
-    const { x, y } = traces[Math.floor(heights[axes.length - 1] * (kViridis.length - 0.01))];
-    x.push(...axes.keys(), null);
-    y.push(...heights, null);
-  });
-  // A trace of its own for the scale of the colours.
-  traces.push({ type: "scatter", mode: "markers", x: [0], y: [0], marker: { ...scale, color: [scale.cmin], opacity: 0, size: 1 }, hoverinfo: "skip" });
-  const label = (x, y, text, more) => ({ x, y, text: plain(text), showarrow: false, font: { size: 11 }, ...more });
-  const annotations = axes.flatMap((one, at) => [
-    label(at, at % 2 === 0 ? 1.03 : 1.09, brief(one.title, 24), { yanchor: "bottom" }),
-    ...one.ticks.map((tick) => label(at, share(one, tick.at), tick.text, { xanchor: "right", xshift: -3, bgcolor: themed("card") })),
-  ]);
-  const hidden = { visible: false, fixedrange: true };
-  return plotOfHeight("parallel", 440, traces, {
-    annotations,
-    shapes: axes.map((_, at) => ({ type: "line", x0: at, x1: at, y0: 0, y1: 1, line: { color: themed("soft"), width: 1 } })),
-    showlegend: false,
-    hovermode: false,
-    xaxis: { ...hidden, range: [-0.5, axes.length - 0.8] },
-    yaxis: { ...hidden, range: [-0.04, 1.17] },
-    margin: { l: 20, r: 12, t: 8, b: 8 },
-  });
 }
