@@ -4,7 +4,6 @@
 #include "cli/completion.hpp"
 #include "cli/display.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/manual.hpp"
 #include "cli/needs.hpp"
 #include "cli/output.hpp"
 #include "cli/usage.hpp"
@@ -156,6 +155,12 @@ void add_run(CommandLine& line) {
   sub->add_option("--junit", line.run.junit, kJunitHelp)->type_name("FILE");
   show(sub, {"palpate run configs/paper/object_i.yaml",
              "palpate run configs/default.yaml scene=ring kernel.length_scale=3cm seed=7"});
+}
+
+/// A list of values, separated by commas.
+template <class Values>
+CLI::Option* add_values(CLI::App* sub, const char* name, Values& values, const char* of, const char* help) {
+  return sub->add_option(name, values, help)->type_name(of)->delimiter(',')->allow_extra_args(false);
 }
 
 /// What `sweep` and `resume` say alike.
@@ -330,13 +335,10 @@ void add_compare(CommandLine& line) {
       [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
       compare, line.compare);
   line.add_records(sub, line.compare.records);
-  const auto list = [&](const char* name, auto& values, const char* of, const char* help) {
-    return sub->add_option(name, values, help)->type_name(of)->delimiter(',')->allow_extra_args(false);
-  };
-  list("--by", line.compare.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel")
+  add_values(sub, "--by", line.compare.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel")
       ->required();
-  list("--metric", line.compare.metrics, "COLUMNS",
-       "columns of results.csv to compare, for example object_taps,footprint_iou")
+  add_values(sub, "--metric", line.compare.metrics, "COLUMNS",
+             "columns of results.csv to compare, for example object_taps,footprint_iou")
       ->required();
   sub->add_option("--where", line.compare.where,
                   "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"")
@@ -344,9 +346,9 @@ void add_compare(CommandLine& line) {
   sub->add_option("--baseline", line.compare.baseline,
                   "group with which every other group is compared, for example uncertainty")
       ->type_name("GROUP");
-  CLI::Option* at =
-      list("--at", line.compare.at, "NUMBERS", "numbers of taps after which the jobs are compared, for example 17,30")
-          ->check(from(1, kMany));
+  CLI::Option* at = add_values(sub, "--at", line.compare.at, "NUMBERS",
+                               "numbers of taps after which the jobs are compared, for example 17,30")
+                        ->check(from(1, kMany));
   sub->add_option("--until", line.compare.until,
                   "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
                   "value. A job that never reaches the value is compared at its end")
@@ -372,12 +374,9 @@ void add_curves(CommandLine& line) {
       "curves", "Draw curves of a sweep's results against taps, one per group with a band, and write them as CSV",
       &Needs::everything, curves, line.curves);
   line.add_records(sub, line.curves.records);
-  sub->add_option("--by", line.curves.by,
-                  "swept keys that define the groups, for example acquisition,kernel; default: all swept keys except "
-                  "the seed and the scene. Each scene has its own panel")
-      ->type_name("KEYS")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  add_values(sub, "--by", line.curves.by, "KEYS",
+             "swept keys that define the groups, for example acquisition,kernel; default: all swept keys except the "
+             "seed and the scene. Each scene has its own panel");
   sub->add_option("--metric", line.curves.metric,
                   "column of results.csv to draw, for example footprint_iou; default: rmse_m, or "
                   "rms_surface_distance_m if the tool taps from any side")
@@ -503,114 +502,43 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
   throw Error("", trouble.what(), fmt::format("see palpate {}--help", named.empty() ? "" : named[0]->get_name() + " "));
 }
 
-/// What is known of an option by itself.
-Argument argument_of(const CLI::Option& option) {
-  Argument out;
-  out.by_place = option.get_positional();
-  if (out.by_place) out.names.push_back(option.get_name());
-  for (const std::string& name : option.get_snames()) out.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) out.names.push_back("--" + name);
-  // "N:1 to 1024", "NAME:{local,slurm}": behind the colon, what a check takes.
-  const std::string type = option.get_type_size() == 0 ? "" : option.get_type_name();
-  const auto colon = std::min(type.find(':'), type.size());
-  out.value = type.substr(0, colon);
-  const std::string taken = type.substr(std::min(colon + 1, type.size()));
-  if (!taken.empty() && taken.front() == '{') {
-    std::istringstream choices(taken.substr(1, taken.size() - 2));
-    for (std::string one; std::getline(choices, one, ',');) out.choices.push_back(one);
-  } else {
-    out.limits = taken;
-  }
-  out.default_value = option.get_default_str();
-  out.meaning = option.get_description();
-  out.heading = out.by_place ? "Arguments" : option.get_group();
-  out.required = option.get_required();
-  out.repeated = option.get_items_expected_max() > 1;
-  for (const CLI::Option* other : option.get_needs()) out.only_with.push_back(other->get_name());
-  for (const CLI::Option* other : option.get_excludes()) out.never_with.push_back(other->get_name());
-  return out;
-}
-
-Command command_of(const CLI::App& app) {
-  Command out;
-  if (app.get_parent() != nullptr) out.name = app.get_name();
-  out.summary = app.get_description();
-  for (const CLI::Option* option : app.get_options()) out.arguments.push_back(argument_of(*option));
-  const auto rank = [](const Argument& one) { return one.by_place ? 0 : one.heading == "Options" ? 1 : 2; };
-  std::stable_sort(out.arguments.begin(), out.arguments.end(),
-                   [&](const Argument& a, const Argument& b) { return rank(a) < rank(b); });
-  std::istringstream lines(app.get_footer());
-  for (std::string line; std::getline(lines, line);) out.examples.push_back(line);
-  return out;
-}
-
-Usage usage_of(const CLI::App& app) {
-  Usage out{command_of(app), {}};
-  for (const CLI::App* command : app.get_subcommands({})) out.commands.push_back(command_of(*command));
-  return out;
-}
-
-/// Help in our words instead of those of CLI11.
-class Help final : public CLI::FormatterBase {
- public:
-  std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
-    return app->get_parent() == nullptr ? help_text(usage_of(*app)) : help_text(command_of(*app));
-  }
-};
-
-/// Has `act` do something with all that the program is made of.
-template <class Act>
-int with_program(int argc, char** argv, const Act& act) {
-  const Installation installation = find_installation();
-  PluginHost host(PluginHost::search_path(installation.plugins));
-  Composer composer(installation.configs, config_keys());
-  host.set_group_names([&](const std::string& kind) { return composer.names_of(kind); });
-  Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
-  return act(program);
-}
-
-int perform(const CommandLine& line, bool asked, int argc, char** argv) {
-  return with_program(argc, argv, [&](Program& program) {
-    if (!asked) return line.perform(program);
-    Needs needs(program);
-    line.need(needs);
-    needs.print();
-    return kDone;
-  });
-}
-
-/// `--complete SHELL WORD ...`. Whatever may be wrong, the user who types is not told of it here.
-int complete(const CLI::App& app, int argc, char** argv) {
-  if (argc < 3) return kDone;
-  return with_program(argc, argv, [&](Program& program) {
-    print_data(completion_lines(argv[2], usage_of(app), program, {argv + 3, argv + argc}));
-    return kDone;
-  });
-}
-
 int run_main(int argc, char** argv) {
+  const Installation installation = find_installation();
   CLI::App app{
       "palpate: experiments in active touch. A robot arm, real or simulated, taps an unknown object; Gaussian\n"
       "processes choose the next tap.",
       "palpate"};
   app.require_subcommand(1);
-  app.formatter(std::make_shared<Help>());  // before there are commands, which take it over
+  // Before there are commands, which take it over.
+  app.formatter_fn([](const CLI::App* command, const std::string&, CLI::AppFormatMode) { return help_text(*command); });
   app.set_help_flag("-h,--help", "print this help and stop");
   app.set_version_flag(
-      "--version", [] { return build_text(find_installation()); }, "print version, commit and build, and stop");
+      "--version", [&] { return build_text(installation); }, "print version, commit and build, and stop");
   show(&app, {"palpate run configs/default.yaml scene=ring", "palpate plugins kernel"});
-  // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
+  // Questions of the shells and of ./palpate, see completion.hpp and needs.hpp. No options of a command, and so of
+  // nobody's help.
+  const bool completes = argc > 1 && std::string_view(argv[1]) == "--complete";
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (asked) argv[1] = argv[0], ++argv, --argc;
   const std::string first = argc > 1 ? argv[1] : "";
-  CommandLine line(app, asked);
+  CommandLine line(app, asked || completes);
   add_commands(line, first);
-  // Questions of shells and of the build, as --needs is one of ./palpate.
-  if (first == "--complete") return complete(app, argc, argv);
-  if (first == "--manual" && argc == 3) return write_manual(usage_of(app), argv[2]), kDone;
+  if (first == "--manual" && argc == 3) return write_manual(app, argv[2]), kDone;
   if (argc == 1 && !asked) {
-    mention(help_text(usage_of(app)));
+    mention(help_text(app));
     return kUsage;
+  }
+  PluginHost host(PluginHost::search_path(installation.plugins));
+  Composer composer(installation.configs, config_keys());
+  host.set_group_names([&](const std::string& kind) { return composer.names_of(kind); });
+  Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
+  if (completes) {
+    std::vector<std::string> words(argv + 2, argv + argc);
+    if (words.empty()) words.emplace_back();
+    for (const Completion& one : completions(app, program, words)) {
+      print_data(fmt::format("{}\t{}\n", one.word, one.meaning));
+    }
+    return kDone;
   }
   try {
     app.parse(argc, argv);
@@ -621,7 +549,11 @@ int run_main(int argc, char** argv) {
   }
   if (!asked) math::choose_instructions();  // what is wrong with PALPATE_INSTRUCTIONS is said before anything begins
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
-  return perform(line, asked, argc, argv);
+  if (!asked) return line.perform(program);
+  Needs needs(program);
+  line.need(needs);
+  needs.print();
+  return kDone;
 }
 
 int exit_status(Error::Kind kind) {
