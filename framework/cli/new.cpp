@@ -68,9 +68,7 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   };
   if (python) {
     for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {
-      std::string to = file;
-      boost::replace_all(to, "starter", name);
-      write(starters / "python" / file, to);
+      write(starters / "python" / file, boost::replace_all_copy(std::string(file), "starter", name));
     }
     const std::string module = "palpate_acquisition.py";  // for the test, which palpate does not start
     write(program.installation.plugins / "python" / module, module);

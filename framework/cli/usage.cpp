@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/usage.hpp"
 
+#include "config/layout.hpp"
 #include "record/build_info.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace palpate::cli {
@@ -81,25 +81,10 @@ std::vector<Section> sections_of(const CLI::App& app) {
 
 /// A term and its meaning beside it, or below where the term is too long.
 std::string entry(const std::string& term, const std::string& meaning) {
-  std::string out;
-  std::string line = "  " + term;
-  if (line.size() + 2 > kColumn) {
-    out = line + "\n";
-    line.clear();
-  }
-  line.resize(kColumn, ' ');
-  bool empty = true;
-  std::istringstream words(meaning);
-  for (std::string word; words >> word; empty = false) {
-    if (!empty && line.size() + 1 + word.size() > kWidth) {
-      out += line + "\n";
-      line.assign(kColumn, ' ');
-    } else if (!empty) {
-      line += ' ';
-    }
-    line += word;
-  }
-  return out + line + "\n";
+  std::string out = "  " + term;
+  if (out.size() + 2 > kColumn) out += "\n" + std::string(kColumn, ' ');
+  out.resize(std::max(out.size(), kColumn), ' ');
+  return out + fmt::format("{}\n", fmt::join(wrapped(meaning, kWidth - kColumn), "\n" + std::string(kColumn, ' ')));
 }
 
 /// A text as roff prints it: hyphens can be searched for and pasted, and no line is a request.

@@ -62,13 +62,9 @@ class Declared final : public Belief {
   const std::string& name_;
 };
 
-/// As Eigen's allFinite(), in a fraction of the time: a sum is finite only if all are, or it overflows; 0 times what is
-/// finite is 0, times what is not it is NaN. Where the columns follow one another, one long sum takes the least.
 template <class Values>
 bool are_finite(const Values& values) {
-  const bool dense = values.outerStride() == values.rows();
-  const double sum = dense ? Eigen::Map<const Eigen::VectorXd>(values.data(), values.size()).sum() : values.sum();
-  return std::isfinite(sum) || (0.0 * values.array()).sum() == 0.0;
+  return values.allFinite();
 }
 bool are_finite(double value) { return std::isfinite(value); }
 bool are_finite(const std::optional<double>& value) { return !value || std::isfinite(*value); }

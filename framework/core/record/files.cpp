@@ -120,8 +120,8 @@ TemporaryFile::~TemporaryFile() {
   if (!path_.empty()) ::unlink(path_.c_str());
 }
 
-void TemporaryFile::write(std::string_view piece) const {
-  if (!write_all(descriptor_, piece)) fail(file_, "cannot be written");
+void TemporaryFile::write(std::string_view text) const {
+  if (!write_all(descriptor_, text)) fail(file_, "cannot be written");
 }
 
 void TemporaryFile::publish(bool sync) {
@@ -143,13 +143,8 @@ void TemporaryFile::publish(bool sync) {
 }
 
 void write_file(const fs::path& file, const std::string& text, bool sync) {
-  write_file(
-      file, [&](const TextOut& out) { out(text); }, sync);
-}
-
-void write_file(const fs::path& file, const Text& text, bool sync) {
   TemporaryFile temporary(file);
-  text([&](std::string_view piece) { temporary.write(piece); });
+  temporary.write(text);
   temporary.publish(sync);
 }
 

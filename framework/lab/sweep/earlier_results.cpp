@@ -73,7 +73,7 @@ void EarlierResults::compute(const Workshop& workshop, std::size_t job) const {
     Row row = rows[i].value_or(whole);
     if (!wanted[i].taps()) row.add(kReached, rows[i].has_value());
     row.add(kOfSummary, summary_hash(whole));
-    write_file(file_of(directory, wanted[i]), to_json_text(row));
+    write_file(file_of(directory, wanted[i]), to_json(row));
   }
 }
 
