@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // What may be typed next: commands and their options, configs, groups, keys with their meaning, values, plugins, runs.
-// The scripts in cli/shells ask for it, at every press of the tabulator.
+// The scripts in cli/shells ask for it, at every press of the tabulator, and offer files where there is nothing.
 #pragma once
 
 #include "cli/commands.hpp"
-#include "cli/usage.hpp"
 
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace palpate::cli {
 
@@ -17,14 +20,9 @@ struct Completion {
   std::string meaning;  ///< one line; may be ""
 };
 
-/// For the last of `words`, which stand behind `palpate` and of which the last may be empty or half typed. Nothing is
-/// written, run or built; a config or plugin that is broken is as if it were not there. Opens at most the plugins whose
-/// options are asked for.
-std::vector<Completion> completions(const Usage& usage, Program& program, const std::vector<std::string>& words);
-
-/// The same for `shell`: bash, zsh or fish, a line each, for those two with a tabulator and the meaning. Bash takes
-/// words apart at '=' and ':' and is answered likewise.
-std::string completion_lines(const std::string& shell, const Usage& usage, Program& program,
-                             std::vector<std::string> words);
+/// Returns the completions of the last of `words`, which stand behind `palpate` and of which the last may be empty or
+/// half typed. Nothing is written, run or built; a config or plugin that is broken is as if it were not there. Opens at
+/// most the plugins whose options are asked for.
+std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words);
 
 }  // namespace palpate::cli

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 namespace palpate::cli {
@@ -42,8 +43,7 @@ class Keys {
       if (field.is_group) out.push_back(describe_key(field));
     }
     for (const FieldDescription& field : Descriptions(out)) {
-      if (field.beside.empty()) continue;
-      out.push_back(describe_beside(field));
+      if (!field.beside.empty()) out.push_back(describe_beside(field));
     }
     return out;
   }
@@ -148,17 +148,14 @@ std::vector<Completion> values(const Program& program, const std::filesystem::pa
                                const FieldDescription& field, const std::string& path) {
   std::vector<Completion> out;
   if (field.type == Type::plugin && field.adopted) return plugin_names(program, field.kind);
+  std::map<std::string, std::string> names;
   if (config_keys().is_group(path)) {
-    for (const auto& [name, file] : program.composer.files_of(last_key(path), beside)) {
-      out.push_back({name, purpose_of(file)});
-    }
+    for (const auto& [name, file] : program.composer.files_of(last_key(path), beside)) names[name] = purpose_of(file);
   }
   if (field.type == Type::plugin) {
-    for (Completion& one : plugin_names(program, field.kind)) {
-      const auto same = [&](const Completion& other) { return other.word == one.word; };
-      if (std::none_of(out.begin(), out.end(), same)) out.push_back(std::move(one));
-    }
+    for (const Completion& one : plugin_names(program, field.kind)) names.emplace(one.word, one.meaning);
   }
+  for (const auto& [name, meaning] : names) out.push_back({name, meaning});
   for (const auto& one : field.cases) out.push_back({one.name, one.meaning});
   if (field.type == Type::flag) out.insert(out.end(), {{"true", ""}, {"false", ""}});
   if (field.type == Type::real || field.type == Type::integer) {

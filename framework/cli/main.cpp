@@ -4,7 +4,6 @@
 #include "cli/completion.hpp"
 #include "cli/display.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/manual.hpp"
 #include "cli/needs.hpp"
 #include "cli/output.hpp"
 #include "cli/usage.hpp"
@@ -45,6 +44,12 @@ Need all_about(const std::string& directory) {
 constexpr const char* kMeantBy =
     ". Give the directory, a folder that contains the directory, NAME in runs/, or NAME@latest";
 
+/// An option or positional argument; help calls its value `of`.
+template <class Value>
+CLI::Option* add_option(CLI::App* sub, const char* name, Value& value, const char* of, const std::string& help) {
+  return sub->add_option(name, value, help)->type_name(of);
+}
+
 /// The commands with what they are called with.
 struct CommandLine {
   CLI::App& app;
@@ -82,13 +87,12 @@ struct CommandLine {
       return {};
     };
     const char* of = wanted == Wanted::run ? "RUN" : wanted == Wanted::sweep ? "SWEEP" : "DIR";
-    sub->add_option(name, texts, help + kMeantBy)->type_name(of)->required()->transform(CLI::Validator(find, ""));
+    add_option(sub, name, texts, of, help + kMeantBy)->required()->transform(CLI::Validator(find, ""));
   }
 
   /// Arguments that say which sweeps and runs are taken as one sweep: see find_records().
   static void add_records(CLI::App* sub, std::vector<std::string>& words) {
-    sub->add_option("DIR", words, "one sweep, or several sweeps and runs to pool" + std::string(kMeantBy))
-        ->type_name("SWEEP")
+    add_option(sub, "DIR", words, "SWEEP", "one sweep, or several sweeps and runs to pool" + std::string(kMeantBy))
         ->required();
   }
 
@@ -133,12 +137,11 @@ void add_run(CommandLine& line) {
     needs.config(line.run.config, line.run.overrides, false);
   };
   CLI::App* sub = line.add("run", "Run one experiment", takes, run, line.run);
-  sub->add_option("CONFIG", line.run.config, "YAML file of the experiment")->type_name("CONFIG")->required();
-  sub->add_option("OVERRIDE", line.run.overrides,
-                  "value that replaces the value in the config, for example kernel.length_scale=2cm for a key, or "
-                  "kernel=matern52 for a config group")
-      ->type_name("KEY=VALUE");
-  sub->add_option("--runs", line.run.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
+  add_option(sub, "CONFIG", line.run.config, "CONFIG", "YAML file of the experiment")->required();
+  add_option(sub, "OVERRIDE", line.run.overrides, "KEY=VALUE",
+             "value that replaces the value in the config, for example kernel.length_scale=2cm for a key, or "
+             "kernel=matern52 for a config group");
+  add_option(sub, "--runs", line.run.runs, "FOLDER", kRunsHelp)->capture_default_str();
   sub->add_flag("--json", line.run.json, "print summary.json and nothing else");
   CLI::Option* quiet = sub->add_flag("--quiet", line.run.quiet, "print nothing");
   sub->add_flag("--dry-run", line.run.dry_run, "print the planned run and its directory; nothing moves");
@@ -153,48 +156,47 @@ void add_run(CommandLine& line) {
   sub->add_flag("--identity", line.run.identity, "print the text that is hashed to make the id of the run")
       ->needs(print)
       ->excludes(origins);
-  sub->add_option("--junit", line.run.junit, kJunitHelp)->type_name("FILE");
+  add_option(sub, "--junit", line.run.junit, "FILE", kJunitHelp);
   show(sub, {"palpate run configs/paper/object_i.yaml",
              "palpate run configs/default.yaml scene=ring kernel.length_scale=3cm seed=7"});
 }
 
+/// A list of values, separated by commas.
+template <class Values>
+CLI::Option* add_values(CLI::App* sub, const char* name, Values& values, const char* of, const char* help) {
+  return add_option(sub, name, values, of, help)->delimiter(',')->allow_extra_args(false);
+}
+
 /// What `sweep` and `resume` say alike.
 void add_launch(CLI::App* sub, LaunchArguments& launch) {
-  sub->add_option("-j", launch.workers,
-                  "number of jobs that a sweep runs in parallel; default: number of cores, or 1 in a Slurm task")
-      ->type_name("N")
+  add_option(sub, "-j", launch.workers, "N",
+             "number of jobs that a sweep runs in parallel; default: number of cores, or 1 in a Slurm task")
       ->check(from(1, kManyWorkers));
-  sub->add_option("--attempts", launch.attempts,
-                  "maximum number of starts per job. After this number, the job counts as failed")
-      ->type_name("N")
+  add_option(sub, "--attempts", launch.attempts, "N",
+             "maximum number of starts per job. After this number, the job counts as failed")
       ->check(from(1, kMany))
       ->capture_default_str();
   sub->add_flag("--quiet", launch.quiet, "show no progress");
   sub->add_flag("--watch", launch.watch, kWatchHelp);
-  sub->add_option("--junit", launch.junit, kJunitHelp)->type_name("FILE");
-  sub->add_option("--launcher", launch.launcher, "place where the jobs run: this machine, or a cluster under Slurm")
-      ->type_name("NAME")
+  add_option(sub, "--junit", launch.junit, "FILE", kJunitHelp);
+  add_option(sub, "--launcher", launch.launcher, "NAME",
+             "place where the jobs run: this machine, or a cluster under Slurm")
       ->check(CLI::IsMember(std::vector<std::string>(kLaunchers.begin(), kLaunchers.end())))
       ->capture_default_str();
   const char* group = "With --launcher slurm";
-  sub->add_option("--partition", launch.partition,
-                  "Slurm partition for the jobs; default: the cluster's default partition")
-      ->type_name("NAME")
+  add_option(sub, "--partition", launch.partition, "NAME",
+             "Slurm partition for the jobs; default: the cluster's default partition")
       ->group(group);
-  sub->add_option("--time", launch.time, "time limit of a Slurm task, in the format of sbatch, for example 1:30:00")
-      ->type_name("TIME")
+  add_option(sub, "--time", launch.time, "TIME",
+             "time limit of a Slurm task, in the format of sbatch, for example 1:30:00")
       ->group(group);
-  sub->add_option("--account", launch.account, "Slurm account that is charged for the jobs")
-      ->type_name("NAME")
-      ->group(group);
-  sub->add_option("--sbatch", launch.sbatch,
-                  "further option for sbatch, dashes included, for example --sbatch=--mem=4G")
-      ->type_name("OPTION")
+  add_option(sub, "--account", launch.account, "NAME", "Slurm account that is charged for the jobs")->group(group);
+  add_option(sub, "--sbatch", launch.sbatch, "OPTION",
+             "further option for sbatch, dashes included, for example --sbatch=--mem=4G")
       ->allow_extra_args(false)
       ->group(group);
-  sub->add_option("--jobs-per-task", launch.jobs_per_task,
-                  "number of jobs per Slurm task; default: 1. Option -j sets how many of these jobs run in parallel")
-      ->type_name("N")
+  add_option(sub, "--jobs-per-task", launch.jobs_per_task, "N",
+             "number of jobs per Slurm task; default: 1. Option -j sets how many of these jobs run in parallel")
       ->check(from(1, kMany))
       ->group(group);
   sub->add_flag("--wait", launch.wait, "wait until all jobs have ended; Ctrl-C cancels the jobs")->group(group);
@@ -203,14 +205,13 @@ void add_launch(CLI::App* sub, LaunchArguments& launch) {
 void add_sweep(CommandLine& line) {
   CLI::App* sub =
       line.add("sweep", "Run one experiment per combination of given values", &Needs::everything, sweep, line.sweep);
-  sub->add_option("CONFIG", line.sweep.config, "YAML file of the experiment, optionally with a 'sweep:' block")
-      ->type_name("CONFIG")
+  add_option(sub, "CONFIG", line.sweep.config, "CONFIG",
+             "YAML file of the experiment, optionally with a 'sweep:' block")
       ->required();
-  sub->add_option("AXIS", line.sweep.axes,
-                  "key and the values that the sweep uses for the key, for example seed=range(0,10) or "
-                  "acquisition=weighted,random or kernel.length_scale=logspace(1cm,5cm,8)")
-      ->type_name("KEY=VALUES");
-  sub->add_option("--runs", line.sweep.runs, kRunsHelp)->type_name("FOLDER")->capture_default_str();
+  add_option(sub, "AXIS", line.sweep.axes, "KEY=VALUES",
+             "key and the values that the sweep uses for the key, for example seed=range(0,10) or "
+             "acquisition=weighted,random or kernel.length_scale=logspace(1cm,5cm,8)");
+  add_option(sub, "--runs", line.sweep.runs, "FOLDER", kRunsHelp)->capture_default_str();
   sub->add_flag("--list", line.sweep.list, "list the jobs and stop");
   add_launch(sub, line.sweep.launch);
   show(sub, {"palpate sweep configs/paper/object_i.yaml acquisition=weighted,uncertainty \"seed=range(0,10)\"",
@@ -227,10 +228,8 @@ void add_resume(CommandLine& line) {
   sub->add_flag("--retry-failed", line.resume.options.retry_failed, "also resume failed runs");
   sub->add_flag("--force", line.resume.options.force,
                 "resume even if another build of palpate or its plugins started the run");
-  sub->add_option(
-         "--jobs", line.resume.jobs,
-         "numbers of the sweep's jobs to resume, for example 0-7,12. Jobs that another process runs are skipped")
-      ->type_name("NUMBERS");
+  add_option(sub, "--jobs", line.resume.jobs, "NUMBERS",
+             "numbers of the sweep's jobs to resume, for example 0-7,12. Jobs that another process runs are skipped");
   add_launch(sub, line.resume.launch);
   sub->add_flag("--step", line.resume.step, kStepHelp)->excludes(sub->get_option("--quiet"));
   show(sub, {"palpate resume runs/object_i/422cd70eb5f7", "palpate resume runs/many/5b0c4e1d77aa --retry-failed -j 2"});
@@ -239,14 +238,12 @@ void add_resume(CommandLine& line) {
 void add_list(CommandLine& line) {
   CLI::App* sub = line.add("list", "List the runs and sweeps in a folder, sorted by start time", &Needs::whole,
                            list_runs, line.list);
-  sub->add_option("FOLDER", line.list.folder,
-                  "folder to search, three levels deep, for example runs, runs/NAME, or a parent folder")
-      ->type_name("FOLDER")
+  add_option(sub, "FOLDER", line.list.folder, "FOLDER",
+             "folder to search, three levels deep, for example runs, runs/NAME, or a parent folder")
       ->capture_default_str();
-  sub->add_option("--where", line.list.where,
-                  "list only runs that satisfy a condition on columns, summary fields and config keys, for example "
-                  "\"rmse_m < 8 mm and kernel.type == rbf\"")
-      ->type_name("CONDITION");
+  add_option(sub, "--where", line.list.where, "CONDITION",
+             "list only runs that satisfy a condition on columns, summary fields and config keys, for example "
+             "\"rmse_m < 8 mm and kernel.type == rbf\"");
   sub->add_flag("--json", line.list.json, "print the list as JSON");
   show(sub, {"palpate list", "palpate list runs/first --where \"rmse_m < 8 mm and seed > 3\""});
 }
@@ -273,26 +270,24 @@ void add_rest(CommandLine& line) {
         for (const std::string& config : line.configs) needs.config(config, {}, true);
       },
       validate, line.configs);
-  sub->add_option("CONFIG", line.configs, "YAML files of experiments")->type_name("CONFIG")->required();
+  add_option(sub, "CONFIG", line.configs, "CONFIG", "YAML files of experiments")->required();
   show(sub, {"palpate validate configs/default.yaml", "palpate validate configs/paper/*.yaml"});
 
   sub = line.add(
       "plugins", "List all plugins, or show the options of one plugin",
       [&line](Needs& needs) { needs.listing(line.plugin); }, plugins, line.plugin, line.json);
-  sub->add_option("PLUGIN", line.plugin, "plugin kind, for example kernel, or plugin, for example kernel/rbf")
-      ->type_name("KIND[/NAME]");
+  add_option(sub, "PLUGIN", line.plugin, "KIND[/NAME]",
+             "plugin kind, for example kernel, or plugin, for example kernel/rbf");
   sub->add_flag("--json", line.json, "print the list as JSON");
   show(sub, {"palpate plugins", "palpate plugins kernel/rbf"});
 
   sub = line.add(
       "new", "Create a starter plugin and an experiment that uses it", [](Needs&) {}, new_plugin, line.kind, line.to,
       line.python);
-  sub->add_option("KIND", line.kind, fmt::format("kind of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
-      ->type_name("KIND")
+  add_option(sub, "KIND", line.kind, "KIND",
+             fmt::format("kind of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")))
       ->required();
-  sub->add_option("NAME", line.to, "name of the plugin; the new folder has the same name")
-      ->type_name("NAME")
-      ->required();
+  add_option(sub, "NAME", line.to, "NAME", "name of the plugin; the new folder has the same name")->required();
   sub->add_flag("--python", line.python,
                 "create the acquisition as a Python function with a test; no compilation is needed");
   show(sub,
@@ -301,21 +296,17 @@ void add_rest(CommandLine& line) {
   sub = line.add("pareto", "Show which settings of a sweep are Pareto-optimal in cost and error", &Needs::whole, pareto,
                  line.pareto);
   line.add_records(sub, line.pareto.records);
-  sub->add_option("--cost", line.pareto.cost,
-                  "column of results.csv to use as the cost, for example robot_seconds, compute_seconds or taps")
-      ->type_name("COLUMN")
+  add_option(sub, "--cost", line.pareto.cost, "COLUMN",
+             "column of results.csv to use as the cost, for example robot_seconds, compute_seconds or taps")
       ->required();
-  sub->add_option("--error", line.pareto.error,
-                  "column of results.csv to use as the error or the quality, for example rmse_m or footprint_iou")
-      ->type_name("COLUMN")
+  add_option(sub, "--error", line.pareto.error, "COLUMN",
+             "column of results.csv to use as the error or the quality, for example rmse_m or footprint_iou")
       ->required();
-  sub->add_option("--within", line.pareto.within,
-                  "bound on the error, for example 5mm. Print the config of the cheapest setting with a 95 % interval "
-                  "of the error within the bound")
-      ->type_name("VALUE");
-  sub->add_option("--where", line.pareto.where,
-                  "use only jobs that satisfy this condition, for example \"scene == ring\"")
-      ->type_name("CONDITION");
+  add_option(sub, "--within", line.pareto.within, "VALUE",
+             "bound on the error, for example 5mm. Print the config of the cheapest setting with a 95 % interval "
+             "of the error within the bound");
+  add_option(sub, "--where", line.pareto.where, "CONDITION",
+             "use only jobs that satisfy this condition, for example \"scene == ring\"");
   show(sub, {"palpate pareto runs/many/* --cost robot_seconds --error rmse_m",
              "palpate pareto runs/many/* --cost taps --error rmse_m --within 5mm"});
 
@@ -330,38 +321,30 @@ void add_compare(CommandLine& line) {
       [&line](Needs& needs) { line.compare.at.empty() && !line.compare.until ? needs.whole() : needs.everything(); },
       compare, line.compare);
   line.add_records(sub, line.compare.records);
-  const auto list = [&](const char* name, auto& values, const char* of, const char* help) {
-    return sub->add_option(name, values, help)->type_name(of)->delimiter(',')->allow_extra_args(false);
-  };
-  list("--by", line.compare.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel")
+  add_values(sub, "--by", line.compare.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel")
       ->required();
-  list("--metric", line.compare.metrics, "COLUMNS",
-       "columns of results.csv to compare, for example object_taps,footprint_iou")
+  add_values(sub, "--metric", line.compare.metrics, "COLUMNS",
+             "columns of results.csv to compare, for example object_taps,footprint_iou")
       ->required();
-  sub->add_option("--where", line.compare.where,
-                  "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"")
-      ->type_name("CONDITION");
-  sub->add_option("--baseline", line.compare.baseline,
-                  "group with which every other group is compared, for example uncertainty")
-      ->type_name("GROUP");
-  CLI::Option* at =
-      list("--at", line.compare.at, "NUMBERS", "numbers of taps after which the jobs are compared, for example 17,30")
-          ->check(from(1, kMany));
-  sub->add_option("--until", line.compare.until,
-                  "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
-                  "value. A job that never reaches the value is compared at its end")
-      ->type_name("COLUMN=VALUE")
+  add_option(sub, "--where", line.compare.where, "CONDITION",
+             "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"");
+  add_option(sub, "--baseline", line.compare.baseline, "GROUP",
+             "group with which every other group is compared, for example uncertainty");
+  CLI::Option* at = add_values(sub, "--at", line.compare.at, "NUMBERS",
+                               "numbers of taps after which the jobs are compared, for example 17,30")
+                        ->check(from(1, kMany));
+  add_option(sub, "--until", line.compare.until, "COLUMN=VALUE",
+             "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
+             "value. A job that never reaches the value is compared at its end")
       ->excludes(at);
   sub->add_flag("--ratio", line.compare.ratio, "also print the ratio of the means of each pair");
-  sub->add_option("--format", line.compare.format,
-                  "output format. text also writes CSV files next to results.csv. csv and json contain groups and "
-                  "pairs. latex is a booktabs table of means, intervals and n. markdown is a table of means")
-      ->type_name("NAME")
+  add_option(sub, "--format", line.compare.format, "NAME",
+             "output format. text also writes CSV files next to results.csv. csv and json contain groups and "
+             "pairs. latex is a booktabs table of means, intervals and n. markdown is a table of means")
       ->check(CLI::IsMember({"text", "markdown", "csv", "json", "latex"}))
       ->capture_default_str();
-  sub->add_option("-j", line.compare.workers,
-                  "number of jobs that --at or --until computes in parallel; default: number of cores")
-      ->type_name("N")
+  add_option(sub, "-j", line.compare.workers, "N",
+             "number of jobs that --at or --until computes in parallel; default: number of cores")
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate compare runs/many/* --by acquisition --metric object_taps",
              "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --format latex"});
@@ -372,35 +355,25 @@ void add_curves(CommandLine& line) {
       "curves", "Draw curves of a sweep's results against taps, one per group with a band, and write them as CSV",
       &Needs::everything, curves, line.curves);
   line.add_records(sub, line.curves.records);
-  sub->add_option("--by", line.curves.by,
-                  "swept keys that define the groups, for example acquisition,kernel; default: all swept keys except "
-                  "the seed and the scene. Each scene has its own panel")
-      ->type_name("KEYS")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  sub->add_option("--metric", line.curves.metric,
-                  "column of results.csv to draw, for example footprint_iou; default: rmse_m, or "
-                  "rms_surface_distance_m if the tool taps from any side")
-      ->type_name("COLUMN");
-  sub->add_option("--against", line.curves.against,
-                  "quantity on the horizontal axis: taps is the number of taps, robot_seconds is the robot time")
-      ->type_name("COLUMN")
+  add_values(sub, "--by", line.curves.by, "KEYS",
+             "swept keys that define the groups, for example acquisition,kernel; default: all swept keys except the "
+             "seed and the scene. Each scene has its own panel");
+  add_option(sub, "--metric", line.curves.metric, "COLUMN",
+             "column of results.csv to draw, for example footprint_iou; default: rmse_m, or "
+             "rms_surface_distance_m if the tool taps from any side");
+  add_option(sub, "--against", line.curves.against, "COLUMN",
+             "quantity on the horizontal axis: taps is the number of taps, robot_seconds is the robot time")
       ->check(CLI::IsMember({"taps", "robot_seconds"}))
       ->capture_default_str();
-  sub->add_option("--where", line.curves.where,
-                  "draw only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"")
-      ->type_name("CONDITION");
-  sub->add_option(
-         "-o", line.curves.outputs,
-         "output file that ends in .png, .pdf, .svg or .csv; default: one PNG and one CSV file next to results.csv")
-      ->type_name("FILE")
+  add_option(sub, "--where", line.curves.where, "CONDITION",
+             "draw only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"");
+  add_option(sub, "-o", line.curves.outputs, "FILE",
+             "output file that ends in .png, .pdf, .svg or .csv; default: one PNG and one CSV file next to results.csv")
       ->allow_extra_args(false);
-  sub->add_option("--width", line.curves.width,
-                  "printed width of the figure, with unit, for example 8.8cm for one column; default: 17.8 cm, which "
-                  "is two columns. Panels that do not fit side by side continue in a further row")
-      ->type_name("LENGTH");
-  sub->add_option("-j", line.curves.workers, "number of jobs replayed in parallel; default: number of cores")
-      ->type_name("N")
+  add_option(sub, "--width", line.curves.width, "LENGTH",
+             "printed width of the figure, with unit, for example 8.8cm for one column; default: 17.8 cm, which "
+             "is two columns. Panels that do not fit side by side continue in a further row");
+  add_option(sub, "-j", line.curves.workers, "N", "number of jobs replayed in parallel; default: number of cores")
       ->check(from(1, kManyWorkers));
   show(sub, {"palpate curves runs/many/*",
              "palpate curves runs/many/* --by acquisition --width 8.8cm -o curves.pdf -o curves.csv",
@@ -412,13 +385,11 @@ void add_watch(CommandLine& line) {
                            all_about(line.watch.directory), watch, line.watch);
   line.add_record(sub, "DIR", line.watch.directory, Wanted::any, "run or sweep");
   constexpr int kMostPort = 65535;
-  sub->add_option("--port", line.watch.port, "port of the web page; default: any free port")
-      ->type_name("N")
+  add_option(sub, "--port", line.watch.port, "N", "port of the web page; default: any free port")
       ->check(from(1, kMostPort));
-  sub->add_option(
-         "--bind", line.watch.bind,
-         "numeric IP address of the web page's server. Other machines can open the page if they can reach this address")
-      ->type_name("ADDRESS")
+  add_option(
+      sub, "--bind", line.watch.bind, "ADDRESS",
+      "numeric IP address of the web page's server. Other machines can open the page if they can reach this address")
       ->capture_default_str();
   sub->add_flag("--until-left", line.watch.until_left,
                 "end the server two minutes after the run has ended and the last page was closed. Without this option, "
@@ -437,16 +408,15 @@ void add_about_one(CommandLine& line) {
   line.add_record(sub, "DIR", line.report.directories, Wanted::any, "run or sweep, or several runs");
   sub->add_flag("--figures", line.report.figures, "also draw the panels as PNG files, with gnuplot");
   sub->add_flag("--paper", line.report.paper, "draw figures in the layout of the figures in the paper");
-  sub->add_option("--to", line.report.to,
-                  "output folder; default: the folder of the run or sweep. For several runs, the default is the folder "
-                  "that contains all of them")
-      ->type_name("FOLDER");
+  add_option(sub, "--to", line.report.to, "FOLDER",
+             "output folder; default: the folder of the run or sweep. For several runs, the default is the folder "
+             "that contains all of them");
   show(sub, {"palpate report runs/object_i/422cd70eb5f7 --figures", "palpate report runs/first/* runs/second/*"});
 
   sub = line.add("explain", "Explain in words why a run chose the position of a tap", all_about(line.directory),
                  explain, line.directory, line.tap);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "run");
-  sub->add_option("TAP", line.tap, "number of the tap, counted from 1")->type_name("N")->required();
+  add_option(sub, "TAP", line.tap, "N", "number of the tap, counted from 1")->required();
   show(sub, {"palpate explain runs/object_i/422cd70eb5f7 9", "palpate explain runs/first/* 9"});
 
   sub = line.add("calibrate",
@@ -459,24 +429,13 @@ void add_about_one(CommandLine& line) {
   sub = line.add("export", "Export the surface and the taps of a run for other programs", all_about(line.directory),
                  export_run, line.directory, line.format, line.to);
   line.add_record(sub, "RUN", line.directory, Wanted::run, "run");
-  sub->add_option("--format", line.format,
-                  "file format: ply is for mesh viewers, csv writes tables of the taps, timings, objects and attempts")
-      ->type_name("NAME")
+  add_option(sub, "--format", line.format, "NAME",
+             "file format: ply is for mesh viewers, csv writes tables of the taps, timings, objects and attempts")
       ->check(CLI::IsMember({"ply", "csv"}))
       ->capture_default_str();
-  sub->add_option("--to", line.to, "output folder; default: export/ in the run directory")->type_name("FOLDER");
+  add_option(sub, "--to", line.to, "FOLDER", "output folder; default: export/ in the run directory");
   show(sub, {"palpate export runs/first/*", "palpate export runs/first/* --to surfaces",
              "palpate export runs/first/* --format csv"});
-}
-
-/// All commands, or of those that scripts give by the thousand only the one that is named.
-void add_commands(CommandLine& line, const std::string& named) {
-  if (named == "run") return add_run(line);
-  if (named == "sweep") return add_sweep(line);
-  if (named == "resume") return add_resume(line);
-  for (const auto add :
-       {add_run, add_sweep, add_resume, add_watch, add_list, add_rest, add_compare, add_curves, add_about_one})
-    add(line);
 }
 
 /// CLI11's own words, on one line, but of a command that there is not, and of many directories where one belongs, which
@@ -503,114 +462,45 @@ int usage_error(const CLI::App& app, const CLI::Error& trouble, const std::strin
   throw Error("", trouble.what(), fmt::format("see palpate {}--help", named.empty() ? "" : named[0]->get_name() + " "));
 }
 
-/// What is known of an option by itself.
-Argument argument_of(const CLI::Option& option) {
-  Argument out;
-  out.by_place = option.get_positional();
-  if (out.by_place) out.names.push_back(option.get_name());
-  for (const std::string& name : option.get_snames()) out.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) out.names.push_back("--" + name);
-  // "N:1 to 1024", "NAME:{local,slurm}": behind the colon, what a check takes.
-  const std::string type = option.get_type_size() == 0 ? "" : option.get_type_name();
-  const auto colon = std::min(type.find(':'), type.size());
-  out.value = type.substr(0, colon);
-  const std::string taken = type.substr(std::min(colon + 1, type.size()));
-  if (!taken.empty() && taken.front() == '{') {
-    std::istringstream choices(taken.substr(1, taken.size() - 2));
-    for (std::string one; std::getline(choices, one, ',');) out.choices.push_back(one);
-  } else {
-    out.limits = taken;
-  }
-  out.default_value = option.get_default_str();
-  out.meaning = option.get_description();
-  out.heading = out.by_place ? "Arguments" : option.get_group();
-  out.required = option.get_required();
-  out.repeated = option.get_items_expected_max() > 1;
-  for (const CLI::Option* other : option.get_needs()) out.only_with.push_back(other->get_name());
-  for (const CLI::Option* other : option.get_excludes()) out.never_with.push_back(other->get_name());
-  return out;
-}
-
-Command command_of(const CLI::App& app) {
-  Command out;
-  if (app.get_parent() != nullptr) out.name = app.get_name();
-  out.summary = app.get_description();
-  for (const CLI::Option* option : app.get_options()) out.arguments.push_back(argument_of(*option));
-  const auto rank = [](const Argument& one) { return one.by_place ? 0 : one.heading == "Options" ? 1 : 2; };
-  std::stable_sort(out.arguments.begin(), out.arguments.end(),
-                   [&](const Argument& a, const Argument& b) { return rank(a) < rank(b); });
-  std::istringstream lines(app.get_footer());
-  for (std::string line; std::getline(lines, line);) out.examples.push_back(line);
-  return out;
-}
-
-Usage usage_of(const CLI::App& app) {
-  Usage out{command_of(app), {}};
-  for (const CLI::App* command : app.get_subcommands({})) out.commands.push_back(command_of(*command));
-  return out;
-}
-
-/// Help in our words instead of those of CLI11.
-class Help final : public CLI::FormatterBase {
- public:
-  std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
-    return app->get_parent() == nullptr ? help_text(usage_of(*app)) : help_text(command_of(*app));
-  }
-};
-
-/// Has `act` do something with all that the program is made of.
-template <class Act>
-int with_program(int argc, char** argv, const Act& act) {
-  const Installation installation = find_installation();
-  PluginHost host(PluginHost::search_path(installation.plugins));
-  Composer composer(installation.configs, config_keys());
-  host.set_group_names([&](const std::string& kind) { return composer.names_of(kind); });
-  Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
-  return act(program);
-}
-
-int perform(const CommandLine& line, bool asked, int argc, char** argv) {
-  return with_program(argc, argv, [&](Program& program) {
-    if (!asked) return line.perform(program);
-    Needs needs(program);
-    line.need(needs);
-    needs.print();
-    return kDone;
-  });
-}
-
-/// `--complete SHELL WORD ...`. Whatever may be wrong, the user who types is not told of it here.
-int complete(const CLI::App& app, int argc, char** argv) {
-  if (argc < 3) return kDone;
-  return with_program(argc, argv, [&](Program& program) {
-    print_data(completion_lines(argv[2], usage_of(app), program, {argv + 3, argv + argc}));
-    return kDone;
-  });
-}
-
 int run_main(int argc, char** argv) {
+  const Installation installation = find_installation();
   CLI::App app{
       "palpate: experiments in active touch. A robot arm, real or simulated, taps an unknown object; Gaussian\n"
       "processes choose the next tap.",
       "palpate"};
   app.require_subcommand(1);
-  app.formatter(std::make_shared<Help>());  // before there are commands, which take it over
+  // Before there are commands, which take it over.
+  app.formatter_fn([](const CLI::App* command, const std::string&, CLI::AppFormatMode) { return help_text(*command); });
   app.set_help_flag("-h,--help", "print this help and stop");
   app.set_version_flag(
-      "--version", [] { return build_text(find_installation()); }, "print version, commit and build, and stop");
+      "--version", [&] { return build_text(installation); }, "print version, commit and build, and stop");
   show(&app, {"palpate run configs/default.yaml scene=ring", "palpate plugins kernel"});
-  // Asked what the words behind it take: see needs.hpp. No option of a command, and so of nobody's help.
+  // Questions of the shells and of ./palpate, see completion.hpp and needs.hpp. No options of a command, and so of
+  // nobody's help.
+  const bool completes = argc > 1 && std::string_view(argv[1]) == "--complete";
   const bool asked = argc > 1 && std::string_view(argv[1]) == "--needs";
   if (asked) argv[1] = argv[0], ++argv, --argc;
   const std::string first = argc > 1 ? argv[1] : "";
-  CommandLine line(app, asked);
-  add_commands(line, first);
-  // Questions of shells and of the build, as --needs is one of ./palpate.
-  if (first == "--complete") return complete(app, argc, argv);
-  if (first == "--manual" && argc == 3) return write_manual(usage_of(app), argv[2]), kDone;
+  CommandLine line(app, asked || completes);
+  for (const auto add :
+       {add_run, add_sweep, add_resume, add_watch, add_list, add_rest, add_compare, add_curves, add_about_one})
+    add(line);
+  if (first == "--manual" && argc == 3) return write_manual(app, argv[2]), kDone;
   if (argc == 1 && !asked) {
-    mention(help_text(usage_of(app)));
+    mention(help_text(app));
     return kUsage;
+  }
+  PluginHost host(PluginHost::search_path(installation.plugins));
+  Composer composer(installation.configs, config_keys());
+  host.set_group_names([&](const std::string& kind) { return composer.names_of(kind); });
+  Program program{{host, installation, {argv, argv + argc}, &interrupted}, composer};
+  if (completes) {
+    std::vector<std::string> words(argv + 2, argv + argc);
+    if (words.empty()) words.emplace_back();
+    for (const Completion& one : completions(app, program, words)) {
+      print_data(fmt::format("{}\t{}\n", one.word, one.meaning));
+    }
+    return kDone;
   }
   try {
     app.parse(argc, argv);
@@ -621,7 +511,11 @@ int run_main(int argc, char** argv) {
   }
   if (!asked) math::choose_instructions();  // what is wrong with PALPATE_INSTRUCTIONS is said before anything begins
   std::signal(SIGCHLD, SIG_DFL);  // whoever started this may ignore it, and then no end of a child can be told
-  return perform(line, asked, argc, argv);
+  if (!asked) return line.perform(program);
+  Needs needs(program);
+  line.need(needs);
+  needs.print();
+  return kDone;
 }
 
 int exit_status(Error::Kind kind) {

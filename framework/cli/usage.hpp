@@ -1,52 +1,36 @@
 // SPDX-License-Identifier: MIT
-// What the command line says of itself: one list, behind `--help`, the manual and what a shell completes.
+// `--help` and the manual pages, from what CLI11 knows of the commands.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace palpate::cli {
 
-/// What stands behind a command: by its place, or an option by its name.
-struct Argument {
-  std::vector<std::string> names;  ///< "--runs"; "-j"; of what stands by its place the one name, "CONFIG"
-  bool by_place = false;
-  std::string value;                 ///< what its value is, in a word: FOLDER, N, KEY=VALUE; "" for a flag
-  std::vector<std::string> choices;  ///< the values that there are; none where there are more than a few
-  std::string limits;                ///< of a number, in words; or ""
-  std::string default_value;         ///< or ""
-  std::string meaning;
-  std::string heading;  ///< under which it is shown
-  bool required = false;
-  bool repeated = false;                ///< may be given several times
-  std::vector<std::string> only_with;   ///< options without which it means nothing
-  std::vector<std::string> never_with;  ///< options that contradict it
-};
+/// Returns the options and positional arguments of `command` in the order of `--help`: positional ones, those without a
+/// heading of their own, the others.
+std::vector<const CLI::Option*> arguments_of(const CLI::App& command);
 
-struct Command {
-  std::string name;  ///< "" for the program itself
-  std::string summary;
-  std::vector<Argument> arguments;    ///< in the order in which they are shown, those of a heading together
-  std::vector<std::string> examples;  ///< whole lines, as typed
-};
+/// Returns the word that help has for the value of `option`: FOLDER, N, KEY=VALUE; "" for a flag.
+std::string value_of(const CLI::Option& option);
 
-struct Usage {
-  Command program;
-  std::vector<Command> commands;
-};
+/// Returns the values that `option` accepts; none where there are more than a few.
+std::vector<std::string> choices_of(const CLI::Option& option);
 
-/// The line behind "Usage:".
-std::string synopsis(const Command& command);
+/// Returns the description of `option` with its limits, default and relations to other options.
+std::string meaning_of(const CLI::Option& option);
 
-/// "--launcher NAME", "CONFIG", "OVERRIDE KEY=VALUE ...".
-std::string head_of(const Argument& argument);
+/// Returns the text of `--help` of a command or, for the app without a parent, of the program. Lines have at most 100
+/// letters, but for words that have more.
+std::string help_text(const CLI::App& app);
 
-/// All that is said of an argument, in words.
-std::string words_of(const Argument& argument);
-
-/// What `--help` prints, of the program or of one command. Lines have at most 100 letters, but for words that have
-/// more.
-std::string help_text(const Usage& usage);
-std::string help_text(const Command& command);
+/// Writes palpate.1 and palpate-COMMAND.1 into `folder`, which is made. Throws std::runtime_error where it cannot.
+void write_manual(const CLI::App& app, const std::filesystem::path& folder);
 
 }  // namespace palpate::cli
