@@ -183,7 +183,7 @@ RunReport Course::finish(std::string failure) {
   }
   if (config_.options.log.surface && failure.empty()) {
     const auto [name, text] = surface_file(experiment_);
-    directory_.write_made(name, whole_of(text));
+    directory_.write_made(name, text);
   }
   directory_.write_objects(object_rows(summary));
   directory_.end(failure.empty() ? Ending::How::done : Ending::How::failed,

@@ -143,13 +143,8 @@ void TemporaryFile::publish(bool sync) {
 }
 
 void write_file(const fs::path& file, const std::string& text, bool sync) {
-  write_file(
-      file, [&](const TextOut& out) { out(text); }, sync);
-}
-
-void write_file(const fs::path& file, const Text& text, bool sync) {
   TemporaryFile temporary(file);
-  text([&](std::string_view piece) { temporary.write(piece); });
+  temporary.write(text);
   temporary.publish(sync);
 }
 

@@ -11,7 +11,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -24,11 +23,6 @@ namespace palpate {
 /// never a part, and a link is replaced. With `sync` content and name are on the disk when it returns. Throws Error:
 /// then `file` is as it was, unless only the sync of its folder failed.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
-
-/// A text that is handed to `out` piece by piece, so that nobody needs all of it at once.
-using TextOut = std::function<void(std::string_view piece)>;
-using Text = std::function<void(const TextOut& out)>;
-void write_file(const std::filesystem::path& file, const Text& text, bool sync = false);
 
 /// A file on its way to its name: made empty beside it, as NAME.<16 random hex digits>.tmp, and locked until it has its
 /// name. Removed where it does not get there, and after a kill by whoever next writes in that folder.

@@ -3,13 +3,11 @@
 
 #include "config/quantity.hpp"
 #include "config/utf8.hpp"
-#include "record/number.hpp"
 
 #include <fmt/format.h>
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <list>
@@ -22,8 +20,7 @@ namespace {
 /// Nothing for what is not a finite number.
 void append_number(std::string& out, double value) {
   if (!std::isfinite(value)) return;
-  std::array<char, kLongestNumber> text;
-  out.append(text.data(), static_cast<std::size_t>(write_number(text.data(), value) - text.data()));
+  fmt::format_to(std::back_inserter(out), "{}", value);
   // Readers of JSON take -0 for the integer 0.
   if (value == 0.0 && std::signbit(value)) out += ".0";
 }

@@ -118,8 +118,7 @@ class RunDirectory final : public Journal {
   /// Seconds by phase of all taps, those of earlier processes included.
   std::array<double, kPhases> total_seconds() const { return total_; }
 
-  template <class T>  // a text, or a Text
-  void write(const std::string& name, const T& text) const {
+  void write(const std::string& name, const std::string& text) const {
     record_.check_in_place();
     write_file(path_ / name, text, sync_);
   }

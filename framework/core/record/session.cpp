@@ -141,7 +141,7 @@ Restored restore_files(const Workshop& workshop, RunDirectory& held) {
     playback.advance_to(static_cast<int>(recording.taps.size()));
     playback.experiment().result();  // reads what the run read at its end
     const auto [name, text] = surface_file(playback.experiment());
-    restore(one, name == one.name ? whole_of(text) : "");
+    restore(one, name == one.name ? text : "");
     const bool is_made = out.lost.empty() || out.lost.back() != one.name;
     if (!is_made && playback.truth_lost()) throw Error(*playback.truth_lost());
   }

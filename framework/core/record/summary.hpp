@@ -29,10 +29,7 @@ std::int64_t peak_rss_bytes();
 
 /// What the surface came to, as a file and its content: surface.csv (the candidate grid: x, y, height mean and standard
 /// deviation, on-surface probability, reconstruction, truth), or, of a run from any side, surface.ply.
-std::pair<std::string, Text> surface_file(Experiment& experiment);
-
-/// All pieces of a text.
-std::string whole_of(const Text& text);
+std::pair<std::string, std::string> surface_file(Experiment& experiment);
 
 /// The maps of the models that are recorded, as CSV; "" if there are none.
 std::string maps_csv(const FromAbove& experiment);
