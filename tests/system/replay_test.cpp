@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `palpate replay`: recorded taps through the same models, every number compared.
+#include "record/json.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
