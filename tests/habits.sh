@@ -11,7 +11,7 @@ found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
 
 # A folder uses those above it in this list, which is that of framework/README.md, never those below.
-folders="math answers children reading regular config plugin scene view gp experiment space record sweep launch analysis calibrate report watch cli"
+folders="math children reading answers regular config plugin scene view gp experiment space record sweep launch analysis calibrate report watch cli"
 for file in $(git ls-files 'framework/core/*.[ch]pp' 'framework/lab/*.[ch]pp' 'framework/desk/*.[ch]pp' 'framework/cli/*.[ch]pp'); do
   [ ! -f "$file" ] || sed -n "s|^#include \"\([a-z_]*\)/.*|$file \1|p" "$file"
 done | awk -v folders="$folders" '

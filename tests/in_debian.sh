@@ -64,7 +64,6 @@ trap 'exit 130' INT TERM
 share=$scratch/share
 mkdir "$share"
 git clone -q --no-hardlinks "$root" "$share/palpate"
-cp -r "$root/tests/consumer" "$share/my_plugins"
 echo "$capture" >"$share/capture"
 {
   echo 'set -eux'
@@ -76,7 +75,7 @@ echo "$capture" >"$share/capture"
     ;;
   esac
   case $what in *run*)
-    echo 'cd ~/my_plugins'
+    echo 'cd ~'
     echo "$tutorial"
     echo 'cd ~/palpate'
     ;;

@@ -40,7 +40,7 @@ bench=$build/tests/palpate_bench
 paper="$root/configs/paper/object_i.yaml log.sync=none"
 default="$root/configs/default.yaml log.sync=none"
 # Only these variables are set: every program reads through its environment when it starts.
-variables="PATH=$PATH HOME=$work PALPATE_PLUGIN_PATH= PALPATE_INSTRUCTIONS=baseline
+variables="PATH=$PATH HOME=$work PALPATE_PLUGIN_PATH= PALPATE_INSTRUCTIONS=AVX2
   GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX512VL,-AVX512BW,-AVX2,-AVX,-FMA,-FMA4,-BMI1,-BMI2,-MOVBE,-LZCNT,-ERMS,-FSRM,-RTM,-SSE4_1,-SSE4_2,-SSSE3"
 
 # made NAME: makes a run of the paper, and prints its directory.

@@ -32,13 +32,12 @@ needs() {
 # shellcheck disable=SC2016 # backquotes of the READMEs
 capture=$(sed -n '/^ tap  source/,/^```/{/^```/d;p}' "$root/README.md")
 # shellcheck disable=SC2016
-tutorial=$(sed -n '/^cmake -B build -G Ninja/,/^```/{/^```/d;s/ -DCMAKE_PREFIX_PATH=[^ ]*//;s|^~/opt/palpate/bin/||;p}' "$root/plugins/README.md")
+tutorial=$(sed -n '/bin\/palpate new kernel/,/^```/{/^```/d;s/ -DCMAKE_PREFIX_PATH=[^ ]*//;s|^~/opt/palpate/bin/||;p}' "$root/plugins/README.md")
 { [ -n "$capture" ] && [ -n "$tutorial" ]; } || fail "the READMEs show no commands"
 share=$work/share
 mkdir "$share" "$share/debs"
 echo "$capture" >"$share/capture"
 cp "$root/tests/shown.awk" "$share"
-cp -r "$root/tests/consumer" "$share/my_plugins"
 cat >"$share/run" <<END
 set -eux
 palpate --version
@@ -49,8 +48,6 @@ grep -q 'EIGEN_MAX_ALIGN_BYTES=16;' runs/object_i/*/record.jsonl # no instructio
 END
 cat >"$share/plugin" <<END
 set -eux
-cp -r $share/my_plugins my_plugins
-cd my_plugins
 $tutorial
 END
 cat >"$share/python" <<END

@@ -6,6 +6,7 @@
 #include "cli/sweep_display.hpp"
 #include "config/trouble.hpp"
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/resolved.hpp"
 #include "sweep/earlier_results.hpp"
 

@@ -7,6 +7,7 @@
 #include "reading/reading.hpp"
 #include "record/catalogue.hpp"
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "report/words/words.hpp"
 

@@ -4,9 +4,9 @@
 #include "record/build_info.hpp"
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <stdexcept>
 
@@ -30,21 +30,16 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
-  return text;
-}
-
 std::string title(const std::string& name, const std::string& summary) {
-  return fmt::format(".TH {} 1 \"\" \"palpate {}\" \"palpate\"\n.SH NAME\n{} \\- {}\n", roff(upper(name)), kVersion,
-                     roff(name), roff(summary));
+  return fmt::format(".TH {} 1 \"\" \"palpate {}\" \"palpate\"\n.SH NAME\n{} \\- {}\n",
+                     roff(boost::to_upper_copy(name)), kVersion, roff(name), roff(summary));
 }
 
 std::string arguments_part(const Command& command) {
   std::string out;
   std::string heading;
   for (const Argument& one : command.arguments) {
-    if (one.heading != heading) out += fmt::format(".SH {}\n", roff(upper(heading = one.heading)));
+    if (one.heading != heading) out += fmt::format(".SH {}\n", roff(boost::to_upper_copy(heading = one.heading)));
     out += fmt::format(".TP\n.B {}\n{}\n", roff(head_of(one)), roff(words_of(one)));
   }
   return out;

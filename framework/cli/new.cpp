@@ -8,6 +8,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -17,12 +18,6 @@ namespace palpate::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-void replace_all(std::string& text, const std::string& what, const std::string& with) {
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size())) {
-    text.replace(at, what.size(), with);
-  }
-}
 
 /// How it is built against this program, which a build folder has to install first.
 std::string next_steps(const Installation& installation, const std::string& name) {
@@ -66,16 +61,14 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   const auto write = [&](const fs::path& from, const std::string& to) {
     std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;
     if (text.empty()) throw Error(from.string(), "cannot be read", "install palpate again");
-    replace_all(text, "KIND", kind);
-    replace_all(text, "starter", name);
+    boost::replace_all(text, "KIND", kind);
+    boost::replace_all(text, "starter", name);
     std::ofstream out(fs::path(name) / to);
     if (!(out << text).flush()) throw Error(name + "/" + to, "cannot be written", "check the free disk space");
   };
   if (python) {
     for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {
-      std::string to = file;
-      replace_all(to, "starter", name);
-      write(starters / "python" / file, to);
+      write(starters / "python" / file, boost::replace_all_copy(std::string(file), "starter", name));
     }
     const std::string module = "palpate_acquisition.py";  // for the test, which palpate does not start
     write(program.installation.plugins / "python" / module, module);

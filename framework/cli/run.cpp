@@ -10,6 +10,7 @@
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "scene/sizes.hpp"
 
@@ -157,7 +158,7 @@ int conduct_run(const Program& program, const ResolvedConfig& config, const RunO
   if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
   name_record(record_line(report));
-  if (output.json) print_data(to_json_text(report.summary));
+  if (output.json) print_data(to_json(report.summary));
   if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;
   runs.front().summary = report.summary;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/usage.hpp"
 
+#include "config/layout.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sstream>
+#include <algorithm>
 
 namespace palpate::cli {
 namespace {
@@ -14,25 +16,10 @@ constexpr std::size_t kColumn = 28;  ///< where meanings begin
 
 /// A term and its meaning beside it, or below where the term is too long.
 std::string entry(const std::string& term, const std::string& meaning) {
-  std::string out;
-  std::string line = "  " + term;
-  if (line.size() + 2 > kColumn) {
-    out = line + "\n";
-    line.clear();
-  }
-  line.resize(kColumn, ' ');
-  bool empty = true;
-  std::istringstream words(meaning);
-  for (std::string word; words >> word; empty = false) {
-    if (!empty && line.size() + 1 + word.size() > kWidth) {
-      out += line + "\n";
-      line.assign(kColumn, ' ');
-    } else if (!empty) {
-      line += ' ';
-    }
-    line += word;
-  }
-  return out + line + "\n";
+  std::string out = "  " + term;
+  if (out.size() + 2 > kColumn) out += "\n" + std::string(kColumn, ' ');
+  out.resize(std::max(out.size(), kColumn), ' ');
+  return out + fmt::format("{}\n", fmt::join(wrapped(meaning, kWidth - kColumn), "\n" + std::string(kColumn, ' ')));
 }
 
 std::string examples_text(const Command& command) {

@@ -5,6 +5,7 @@
 #include "answers/answer.hpp"
 #include "experiment/from_above.hpp"
 #include "record/callers_run.hpp"
+#include "record/json.hpp"
 #include "record/tap_row.hpp"
 #include "shop.hpp"
 #include "threads.hpp"
@@ -53,7 +54,7 @@ class Asked {
 
   std::string finish() {
     const Turn turn(owned_);
-    return to_json_text(open().finish().summary);
+    return to_json(open().finish().summary);
   }
   /// Lets go of the directory, whatever is thrown. What is not finished can be carried on. With `finish` it is, unless
   /// a tap is still to be told. In the child of a fork there is nothing to let go of.

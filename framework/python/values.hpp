@@ -10,10 +10,8 @@
 #include <pybind11/pybind11.h>
 #include <Eigen/Core>
 
-#include <cstdint>
-#include <limits>
-#include <map>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -65,67 +63,34 @@ inline py::object python_of(const Tree& tree) {
   return py::float_(py::str(text));
 }
 
-/// A column of a table by its name: numbers with NaN for null, or what Python has for it.
-using Column = std::pair<std::string, py::object>;
+inline py::object python_of(const Scalar& scalar) {
+  return std::visit(
+      [](const auto& value) -> py::object {
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, std::monostate>)
+          return py::none();
+        else if constexpr (std::is_same_v<Value, JsonList>)
+          return py::module_::import("json").attr("loads")(value.text);
+        else
+          return py::cast(value);
+      },
+      scalar);
+}
+
+/// A column of a table: its name and its values, None where a row has none.
+using Column = std::pair<std::string, py::list>;
 
 /// Rows as columns.
 inline std::vector<Column> columns_of(const std::vector<Row>& rows) {
-  const std::vector<std::string> names = names_of(rows);
-  std::map<std::string, std::size_t> known;
-  for (std::size_t k = 0; k < names.size(); ++k) known.emplace(names[k], k);
-  std::vector<std::vector<const Scalar*>> cells(names.size(), std::vector<const Scalar*>(rows.size(), nullptr));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (const auto& [name, value] : rows[i].fields) cells[known.at(name)][i] = &value;
-  }
   std::vector<Column> out;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    bool numbers = true;
-    bool whole = true;
-    bool flags = true;
-    for (const Scalar* cell : cells[k]) {
-      const bool null = cell == nullptr || std::holds_alternative<std::monostate>(*cell);
-      const bool is_whole = !null && std::holds_alternative<std::int64_t>(*cell);
-      whole = whole && is_whole;
-      numbers = numbers && (null || is_whole || std::holds_alternative<double>(*cell));
-      flags = flags && !null && std::holds_alternative<bool>(*cell);
+  for (const std::string& name : names_of(rows)) {
+    py::list values;
+    std::size_t near = 0;
+    for (const Row& row : rows) {
+      const Scalar* const cell = row.find(name, near);
+      values.append(cell != nullptr ? python_of(*cell) : py::none());
     }
-    const auto fill = [&](auto array, const auto& value_of) {
-      auto* to = array.mutable_data();
-      for (const Scalar* cell : cells[k]) *to++ = value_of(cell);
-      out.emplace_back(names[k], std::move(array));
-    };
-    const auto n = static_cast<py::ssize_t>(rows.size());
-    if (flags) {
-      fill(py::array_t<bool>(n), [](const Scalar* cell) { return std::get<bool>(*cell); });
-    } else if (whole) {
-      fill(py::array_t<std::int64_t>(n), [](const Scalar* cell) { return std::get<std::int64_t>(*cell); });
-    } else if (numbers) {
-      fill(Array(n), [](const Scalar* cell) {
-        if (cell == nullptr || std::holds_alternative<std::monostate>(*cell))
-          return std::numeric_limits<double>::quiet_NaN();
-        const auto* integer = std::get_if<std::int64_t>(cell);
-        return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(*cell);
-      });
-    } else {
-      py::list all;
-      for (const Scalar* cell : cells[k]) {
-        if (cell == nullptr || std::holds_alternative<std::monostate>(*cell)) {
-          all.append(py::none());
-        } else {
-          std::visit(
-              [&](const auto& value) {
-                using Value = std::decay_t<decltype(value)>;
-                if constexpr (std::is_same_v<Value, JsonList>) {
-                  all.append(py::module_::import("json").attr("loads")(value.text));
-                } else if constexpr (!std::is_same_v<Value, std::monostate>) {
-                  all.append(value);
-                }
-              },
-              *cell);
-        }
-      }
-      out.emplace_back(names[k], std::move(all));
-    }
+    out.emplace_back(name, std::move(values));
   }
   return out;
 }

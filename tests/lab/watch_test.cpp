@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is watched, without a browser and without another process: the log as it grows, a history that is looked at in
 // between, and a server that is left alone.
+#include "record/json.hpp"
 #include "record/session.hpp"
 #include "report/history.hpp"
 #include "support/parts.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/resolved.hpp"
 #include "sweep/sweep.hpp"
 

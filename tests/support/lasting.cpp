@@ -21,7 +21,7 @@ namespace {
 std::string without_clocks(const Row& row) {
   std::string out;
   for (const auto& [field, value] : row.fields) {
-    if (!depends_on_machine(field)) out += to_json_text(Row{{{field, value}}});
+    if (!depends_on_machine(field)) out += to_json(Row{{{field, value}}});
   }
   return out;
 }

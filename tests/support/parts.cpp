@@ -81,7 +81,7 @@ void set_end(const fs::path& run, const std::string& summary) {
   std::string line = to_json_line(end);
   line.pop_back();
   std::ofstream(run / "record.jsonl", std::ios::app) << line << ", \"summary\": " << to_json_line(row) << "}\n";
-  std::ofstream(run / "summary.json") << to_json_text(row);
+  std::ofstream(run / "summary.json") << to_json(row);
 }
 
 void write_part(const fs::path& run, const std::string& kind, const std::string& text) {

@@ -104,7 +104,7 @@ TEST_F(Compare, PrintsTheRowsOfItsTableAsCsvAndJsonAndLeavesNothingThen) {
   const std::vector<Cells> rows = csv_rows(csv.out);
   ASSERT_EQ(rows.size(), 6U) << "two groups and a pair of each metric";
   const std::string object = "{\"rows\": " + list.out + "}";
-  const Tree tree = *parse_json(object, 0, object.size(), "stdout").find("rows");
+  const Tree tree = *parse_json(object, "stdout").find("rows");
   ASSERT_EQ(tree.items.size(), rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (const char* name : {"kind", "metric", "group", "n", "mean", "low_95", "high_95"})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Models are built and recorded for those who said that they read them, and for nobody else.
-#include "record/row.hpp"
+#include "record/json.hpp"
 #include "record/tap_row.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/from_above.hpp"
 
+#include "record/json.hpp"
 #include "record/recording.hpp"
-#include "record/row.hpp"
 #include "record/tap_row.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"

@@ -358,7 +358,7 @@ TEST_F(Record, ThatIsCutAnywhereIsReadAndCarriedOnToTheSameTaps) {
       if (!announces) {
         EXPECT_EQ(text_of(run() / "taps.csv"), table) << cut;
       }
-      EXPECT_EQ(text_of(run() / "summary.json"), to_json_text(after.end->summary)) << cut;
+      EXPECT_EQ(text_of(run() / "summary.json"), to_json(after.end->summary)) << cut;
       const bool half = cut > 0 && cut < whole.size() && whole[cut - 1] != '\n';
       EXPECT_EQ(after.attempts.back().find("cut") != nullptr, half) << cut;
     }

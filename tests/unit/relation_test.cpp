@@ -2,8 +2,8 @@
 // What satisfies a condition: the one rule, and that everything in core asks it.
 #include "config/relation.hpp"
 
+#include "record/json.hpp"
 #include "record/occasion.hpp"
-#include "record/row.hpp"
 #include "support/testing.hpp"
 
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "config/describe.hpp"
 
 #include "config/expand.hpp"
+#include "config/layout.hpp"
 #include "config/quantity.hpp"
 
 #include <fmt/format.h>
@@ -142,7 +143,7 @@ class Describer final : public Fields {
   }
 };
 
-void append_text(std::vector<std::array<std::string, 4>>& lines, const std::vector<FieldDescription>& fields,
+void append_text(std::vector<std::vector<std::string>>& lines, const std::vector<FieldDescription>& fields,
                  const std::string& prefix) {
   for (const FieldDescription& field : fields) {
     const std::string meaning =
@@ -351,18 +352,9 @@ std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>
 }
 
 std::string describe_text(const std::vector<FieldDescription>& fields) {
-  std::vector<std::array<std::string, 4>> lines{{"option", "type and range", "default", "meaning"}};
-  append_text(lines, fields, "");
-  std::array<std::size_t, 4> width{};
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < width.size(); ++i) width[i] = std::max(width[i], line[i].size());
-  }
-  std::string out;
-  for (const auto& line : lines) {
-    out +=
-        fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", line[0], width[0], line[1], width[1], line[2], width[2], line[3]);
-  }
-  return out;
+  std::vector<std::vector<std::string>> lines{{"  option", "type and range", "default", "meaning"}};
+  append_text(lines, fields, "  ");
+  return aligned(lines, "llll");
 }
 
 Tree describe_tree(const std::vector<FieldDescription>& fields) {

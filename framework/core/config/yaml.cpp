@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "config/yaml.hpp"
 
-#include "config/utf8.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
 
@@ -329,6 +329,17 @@ std::string similar_file(const std::filesystem::path& missing) {
   }
   const std::string near = nearest(missing.filename().string(), names);
   return near.empty() ? "name a YAML file" : fmt::format("did you mean '{}'?", near);
+}
+
+/// How many of the first bytes are UTF-8.
+std::size_t utf8_prefix(std::string_view text) {
+  std::size_t valid = 0;
+  while (valid < text.size()) {
+    const std::size_t length = utf8_length(text.substr(valid));
+    if (length == 0) break;
+    valid += length;
+  }
+  return valid;
 }
 
 }  // namespace

@@ -212,35 +212,42 @@ void absorb_dense(const DenseRow& row, const Update& update) {
 
 /// Cells are padded to lines, places are not. What does not fill a vector at the end of a row is read with the cells
 /// before it once more.
-void read(const Cells& cells, const Reading& reading) {
+template <bool kMirrored>
+HWY_INLINE void read_rows(const Cells& cells, const Reading& reading) {
   const Vector least = all(reading.least);
   const Vector most = all(reading.most);
-  const auto read_at = [&](const double* from) {
+  const Vector scale = all(reading.scale);
+  const Vector offset = all(reading.offset);
+  const auto read_at = [=](const double* from) {
     Vector cell = hn::LoadU(kReals, from);
     cell = hn::IfThenElse(hn::Lt(cell, least), least, cell);
     cell = hn::IfThenElse(hn::Lt(most, cell), most, cell);
-    return hn::Add(hn::Mul(cell, all(reading.scale)), all(reading.offset));
+    return hn::Add(hn::Mul(cell, scale), offset);
   };
+  const int count = cells.count;
   const double* from = cells.from;
   double* to = cells.to;
   for (int row = 0; row < cells.rows; ++row, from += cells.width, to += cells.columns) {
-    if (cells.count < kLanes) {
+    if (count < kLanes) {
       HWY_ALIGN double few[kLanes];
       put(read_at(from), few);
-      for (int i = 0; i < cells.count; ++i) to[cells.mirrored ? -i : i] = few[i];
+      for (int i = 0; i < count; ++i) to[kMirrored ? -i : i] = few[i];
       continue;
     }
     const auto move = [&](int i) {
-      if (cells.mirrored) {
+      if (kMirrored) {
         hn::StoreU(hn::Reverse(kReals, read_at(from + i)), kReals, to - i - (kLanes - 1));
       } else {
         hn::StoreU(read_at(from + i), kReals, to + i);
       }
     };
-    const int last = cells.count - kLanes;
-    for (int i = 0; i < last; i += kLanes) move(i);
-    move(last);
+    for (int i = 0; i < count - kLanes; i += kLanes) move(i);
+    move(count - kLanes);
   }
+}
+
+void read(const Cells& cells, const Reading& reading) {
+  cells.mirrored ? read_rows<true>(cells, reading) : read_rows<false>(cells, reading);
 }
 
 // A triangle by blocks of one line of rows, all of the same padded length: where a block begins its rows have `before`

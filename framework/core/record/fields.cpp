@@ -2,6 +2,7 @@
 #include "record/fields.hpp"
 
 #include "record/files.hpp"
+#include "record/json.hpp"
 #include "record/sample.hpp"
 #include "record/tap_row.hpp"
 

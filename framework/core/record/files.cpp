@@ -120,8 +120,8 @@ TemporaryFile::~TemporaryFile() {
   if (!path_.empty()) ::unlink(path_.c_str());
 }
 
-void TemporaryFile::write(std::string_view piece) const {
-  if (!write_all(descriptor_, piece)) fail(file_, "cannot be written");
+void TemporaryFile::write(std::string_view text) const {
+  if (!write_all(descriptor_, text)) fail(file_, "cannot be written");
 }
 
 void TemporaryFile::publish(bool sync) {

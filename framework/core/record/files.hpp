@@ -33,7 +33,7 @@ class TemporaryFile {
   ~TemporaryFile();
 
   const std::filesystem::path& path() const { return path_; }
-  void write(std::string_view piece) const;
+  void write(std::string_view text) const;
   /// Takes the place of `file`, once the file system has taken all that was written. Throws Error.
   void publish(bool sync = false);
 

@@ -3,7 +3,7 @@
 
 #include "config/quantity.hpp"
 #include "config/scale.hpp"
-#include "config/utf8.hpp"
+#include "reading/reading.hpp"
 #include "record/fields.hpp"
 #include "record/sample.hpp"
 

@@ -87,17 +87,15 @@ void HeldRecord::add_setup(bool announces, const Tree& models, bool sync) {
 void HeldRecord::add_tap(const Row& tap, bool sync) { append(to_json_line(tap) + "\n", sync); }
 
 void HeldRecord::add_timing(const TapTimes& times) {
-  std::string line = fmt::format("{{\"timing\": {}", times.tap);
-  for (std::size_t i = 0; i < kPhases; ++i) line += fmt::format(", \"{}\": {:.9f}", kPhaseNames[i], times.seconds[i]);
-  if (times.expected_rmse) line += fmt::format(", \"expected_rmse_m\": {}", *times.expected_rmse);
-  append(line + "}\n", false);
+  Tree line = Tree::map({{"timing", Tree::scalar(std::to_string(times.tap))}});
+  for (std::size_t i = 0; i < kPhases; ++i)
+    line.at(kPhaseNames[i]) = Tree::scalar(fmt::format("{:.9f}", times.seconds[i]));
+  if (times.expected_rmse) line.at("expected_rmse_m") = Tree::scalar(csv_cell(*times.expected_rmse));
+  append(to_json_line(line) + "\n", false);
 }
 
 void HeldRecord::add_objects(const std::vector<Row>& objects, bool sync) {
-  if (objects.empty()) return;
-  std::string line = "{\"objects\": [";
-  for (std::size_t i = 0; i < objects.size(); ++i) line += (i == 0 ? "" : ", ") + to_json_line(objects[i]);
-  append(line + "]}\n", sync);
+  if (!objects.empty()) append(to_json_line(Row{{{"objects", list_of(objects)}}}) + "\n", sync);
 }
 
 void HeldRecord::add_note(const std::string& kind, const Row& note, bool sync) {
@@ -113,17 +111,16 @@ void HeldRecord::add_end(const Ending& ending, bool sync) {
   row.add("attempt", attempts_);
   row.add("at", now_text());
   row.add("reason", ending.reason);
-  std::string line = to_json_line(row);
-  line.pop_back();
-  if (!ending.summary.fields.empty()) line += ", \"summary\": " + to_json_line(ending.summary);
-  std::string files;
+  Tree line = tree_of(row);
+  if (!ending.summary.fields.empty()) line.at("summary") = tree_of(ending.summary);
+  Tree& files = line.at("files") = Tree::map();
   for (const Ending::File& one : ending.files) {
-    files += fmt::format("{}{}: {{\"bytes\": {}, \"hash\": {}}}", files.empty() ? "" : ", ", json_quoted(one.name),
-                         one.bytes, json_quoted(one.hash));
+    files.at(one.name) =
+        Tree::map({{"bytes", Tree::scalar(std::to_string(one.bytes))}, {"hash", Tree::quote(one.hash)}});
   }
   check_held();
   log().flush();
-  append(line + ", \"files\": {" + files + "}}\n", sync);
+  append(to_json_line(line) + "\n", sync);
   ended_ = true;
   log().flush();
 }

@@ -23,6 +23,10 @@ std::optional<Row> parse_json_row(const std::string& text, std::string* reason =
 
 /// Returns the objects of a list; none of them for what is not a list of objects.
 std::vector<Row> rows_of(const JsonList& list);
+std::vector<Row> rows_of(const Tree& list);
+
+/// Rows as a list of objects.
+JsonList list_of(const std::vector<Row>& rows);
 
 /// Reads the lines of a file one by one, an object each, and bounds what they hold together.
 class RowLines {
@@ -57,16 +61,19 @@ JsonLines read_json_lines(const std::filesystem::path& file);
 /// comes back as it was. Throws Error.
 Tree read_json(const std::filesystem::path& file, Origin origin = Origin::record);
 
-/// The same of what lies from `begin` to `end` in the text of a file. Throws Error.
-Tree parse_json(const std::string& text, std::size_t begin, std::size_t end, const std::filesystem::path& file);
+/// The same of the text of a file. Throws Error.
+Tree parse_json(const std::string& text, const std::filesystem::path& file);
 
-/// A tree as indented JSON: unquoted scalars stand as they are (numbers, true, false), quoted ones become strings.
+/// A row as a map, nested by the dots of its names. Numbers as in csv_cell; what is not finite is null.
+Tree tree_of(const Row& row);
+
+/// A tree as indented JSON: unquoted scalars stand as they are (numbers, true, false), quoted ones become strings, in
+/// which bytes that are not UTF-8 become U+FFFD.
 std::string to_json(const Tree& tree);
+inline std::string to_json(const Row& row) { return to_json(tree_of(row)); }
 
 /// The same as one line without its end.
 std::string to_json_line(const Tree& tree);
-
-/// Whether `text` is valid JSON.
-bool is_json(const std::string& text);
+inline std::string to_json_line(const Row& row) { return to_json_line(tree_of(row)); }
 
 }  // namespace palpate

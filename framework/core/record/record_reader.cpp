@@ -85,14 +85,6 @@ void for_lines(std::string_view text, const Use& use) {
     use(text.substr(begin, end - begin));
 }
 
-std::vector<Row> objects_of(const Tree& line) {
-  std::vector<Row> out;
-  for (const Tree& one : line.find("objects")->items) {
-    if (std::optional<Row> row = parse_json_row(to_json_line(one))) out.push_back(std::move(*row));
-  }
-  return out;
-}
-
 }  // namespace
 
 const char* ending_name(Ending::How how) { return kHows[static_cast<std::size_t>(how)]; }
@@ -125,7 +117,7 @@ RecordLine RecordReader::read(std::string_view line) {
     if (line.size() > kMostManifestBytes) refuse("is too long: a line has at most 64 MiB");
     const std::string text(line);
     // Its own words would name a line within this one.
-    const auto trouble = trouble_in([&] { out.tree = parse_json(text, 0, text.size(), file()); });
+    const auto trouble = trouble_in([&] { out.tree = parse_json(text, file()); });
     if (trouble)
       throw Error(lines_.place(), trouble->where() == file().string() ? trouble->reason() : "is not a JSON object",
                   trouble->where() == file().string() ? kPutBack : "the file is damaged");
@@ -269,7 +261,7 @@ RunRecord read_run_record(const fs::path& directory) {
         out.timings.push_back(times_of(line.row));
         break;
       case LineKind::objects:
-        out.objects = objects_of(line.tree);
+        out.objects = rows_of(*line.tree.find("objects"));
         break;
       case LineKind::note:
         out.notes.push_back(std::move(line.row));

@@ -2,12 +2,12 @@
 #include "record/row.hpp"
 
 #include "config/quantity.hpp"
-#include "config/utf8.hpp"
 
-#include <fmt/format.h>
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <list>
@@ -17,42 +17,6 @@
 namespace palpate {
 namespace {
 
-/// Nothing for what is not a finite number.
-void append_number(std::string& out, double value) {
-  if (!std::isfinite(value)) return;
-  fmt::format_to(std::back_inserter(out), "{}", value);
-  // Readers of JSON take -0 for the integer 0.
-  if (value == 0.0 && std::signbit(value)) out += ".0";
-}
-
-/// Whether JSON holds this character as it is, alone.
-bool is_plain(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte >= 0x20 && byte < 0x80 && c != '"' && c != '\\';
-}
-
-void append_quoted(std::string& out, std::string_view text) {
-  out += '"';
-  if (std::all_of(text.begin(), text.end(), is_plain)) {
-    out.append(text) += '"';
-    return;
-  }
-  constexpr std::string_view kShort = "\"\\\n\t";  // these have a letter of their own
-  for (std::string_view rest = text; !rest.empty();) {
-    const char c = rest.front();
-    const std::size_t length = utf8_length(rest);
-    if (const std::size_t known = kShort.find(c); known != std::string_view::npos) {
-      out += {'\\', "\"\\nt"[known]};
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    } else {
-      out += length > 0 ? rest.substr(0, length) : "\\ufffd";
-    }
-    rest.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  out += '"';
-}
-
 /// Nothing for null and for what is not a finite number; `append_text` appends what is a text.
 template <class AppendText>
 void append_scalar(std::string& out, const Scalar& value, const AppendText& append_text) {
@@ -61,50 +25,15 @@ void append_scalar(std::string& out, const Scalar& value, const AppendText& appe
   } else if (const auto* whole = std::get_if<std::int64_t>(&value)) {
     out += std::to_string(*whole);
   } else if (const auto* real = std::get_if<double>(&value)) {
+    if (!std::isfinite(*real)) return;
     append_number(out, *real);
+    // Readers of JSON take -0 for the integer 0.
+    if (*real == 0.0 && std::signbit(*real)) out += ".0";
   } else if (const auto* text = std::get_if<std::string>(&value)) {
     append_text(*text);
   } else if (const auto* list = std::get_if<JsonList>(&value)) {
     append_text(list->text);
   }
-}
-
-/// As csv_cell(), but as a value of JSON: null for null and for what is not a finite number.
-void append_json(std::string& out, const Scalar& value) {
-  if (const auto* list = std::get_if<JsonList>(&value)) {
-    out += list->text;
-    return;
-  }
-  const std::size_t before = out.size();
-  append_scalar(out, value, [&](const std::string& text) { append_quoted(out, text); });
-  if (out.size() == before) out += "null";
-}
-
-/// Writes the fields from `next` on that share the prefix `prefix`; returns behind the last of them.
-std::size_t write_object(std::string& out, const Row& row, std::size_t next, std::string_view prefix,
-                         const std::string& indent) {
-  const std::string line_end = indent.empty() ? "" : "\n" + indent;
-  bool first = true;
-  out += "{";
-  while (next < row.fields.size()) {
-    const std::string_view name = row.fields[next].first;
-    if (name.compare(0, prefix.size(), prefix) != 0) break;
-    if (!first) out += indent.empty() ? ", " : ",";
-    out += line_end;
-    first = false;
-    const auto dot = name.find('.', prefix.size());
-    append_quoted(out, name.substr(prefix.size(), dot == std::string::npos ? dot : dot - prefix.size()));
-    out += ": ";
-    if (dot == std::string::npos) {
-      append_json(out, row.fields[next].second);
-      ++next;
-    } else {
-      next = write_object(out, row, next, name.substr(0, dot + 1), indent.empty() ? indent : indent + "  ");
-    }
-  }
-  if (!indent.empty()) out += "\n" + indent.substr(2);
-  out += "}";
-  return next;
 }
 
 /// The value at `name`, null where there is something else.
@@ -128,6 +57,11 @@ void append_cell(std::string& out, const Scalar& value) {
 }
 
 }  // namespace
+
+void append_number(std::string& out, double value) {
+  std::array<char, 32> text;  // the longest has 24 characters: -2.2250738585072014e-308
+  out.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
+}
 
 const Scalar* Row::find(std::string_view name, std::size_t& near) const {
   if (near < fields.size() && fields[near].first == name) return &fields[near].second;
@@ -183,36 +117,6 @@ std::string csv_cell(const Scalar& value) {
   std::string out;
   append_scalar(out, value, [&](const std::string& text) { out += csv_text(text); });
   return out;
-}
-
-std::string json_value(const Scalar& value) {
-  std::string out;
-  append_json(out, value);
-  return out;
-}
-
-JsonList list_of(const std::vector<Row>& rows) {
-  std::string out;
-  for (const Row& row : rows) out += (out.empty() ? "" : ", ") + to_json_line(row);
-  return {"[" + out + "]"};
-}
-
-std::string json_quoted(const std::string& text) {
-  std::string out;
-  append_quoted(out, text);
-  return out;
-}
-
-std::string to_json_line(const Row& row) {
-  std::string out;
-  write_object(out, row, 0, "", "");
-  return out;
-}
-
-std::string to_json_text(const Row& row) {
-  std::string out;
-  write_object(out, row, 0, "", "  ");
-  return out + "\n";
 }
 
 std::vector<std::string> names_of(const std::vector<Row>& rows) {

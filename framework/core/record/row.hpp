@@ -48,24 +48,15 @@ struct Row {
   std::string cell(std::string_view name) const;
 };
 
+/// Appends the shortest digits that read back as the same bits, with an exponent where that is shorter.
+void append_number(std::string& out, double value);
+
 /// Text of one scalar as it stands in a CSV cell: shortest digits that read back as the same bits, empty for null and
 /// for what is not a finite number, quoted where commas, quotes or line ends need it.
 std::string csv_cell(const Scalar& value);
 
-/// One scalar as a value of JSON: null for null and for what is not a finite number.
-std::string json_value(const Scalar& value);
-
-/// Rows as a list of objects.
-JsonList list_of(const std::vector<Row>& rows);
-
 /// Text quoted for CSV where it needs to be.
 std::string csv_text(const std::string& text);
-
-/// One line of JSON without line end. Numbers as in csv_cell; what is not finite is null.
-std::string to_json_line(const Row& row);
-
-/// The same, one field a line.
-std::string to_json_text(const Row& row);
 
 /// The names of all fields of all rows, each behind the one that it follows in its row.
 std::vector<std::string> names_of(const std::vector<Row>& rows);
@@ -73,8 +64,5 @@ std::vector<std::string> names_of(const std::vector<Row>& rows);
 /// A table of rows that may differ in their fields: the header is names_of() them; cells are found by name. A text that
 /// a spreadsheet would compute ("=1+1") has an apostrophe before it.
 std::string to_csv(const std::vector<Row>& rows);
-
-/// Text in quotes with JSON escapes; bytes that are not UTF-8 become U+FFFD, for no reader would take them.
-std::string json_quoted(const std::string& text);
 
 }  // namespace palpate

@@ -187,7 +187,7 @@ void RunDirectory::end(Ending::How how, const std::string& reason, const Row& su
 
 void RunDirectory::end(const Ending& ending) {
   record_.add_end(ending, sync_);
-  if (!ending.summary.fields.empty()) write(kSummaryFile, to_json_text(ending.summary));
+  if (!ending.summary.fields.empty()) write(kSummaryFile, to_json(ending.summary));
 }
 
 void RunDirectory::fail(const std::string& reason) {

@@ -7,6 +7,7 @@
 #include "config/yaml.hpp"
 #include "reading/reading.hpp"
 #include "record/course.hpp"
+#include "record/json.hpp"
 #include "record/recording.hpp"
 #include "record/summary.hpp"
 #include "space/from_any_side.hpp"
@@ -139,7 +140,7 @@ Restored restore_files(const Workshop& workshop, RunDirectory& held) {
     if (!is_made && playback.truth_lost()) throw Error(*playback.truth_lost());
   }
   // Last, as a run does.
-  const std::string summary = to_json_text(record.end->summary);
+  const std::string summary = to_json(record.end->summary);
   if (read_if_there(directory / kSummaryFile) != summary) {
     held.write(kSummaryFile, summary);
     out.made.emplace_back(kSummaryFile);

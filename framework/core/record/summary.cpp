@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
-#include <array>
-#include <charconv>
+#include "record/row.hpp"
+
+#include <algorithm>
+#include <cstdint>
 #include <ctime>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,27 +23,44 @@ double thread_cpu_seconds() {
 
 using Column = std::pair<const char*, const Eigen::VectorXd*>;
 
-/// x, y and one column a map; a null map leaves its cells empty.
+/// x, y and one column per map; a null map leaves its cells empty.
 std::string grid_csv(const Candidates& candidates, const std::vector<Column>& columns) {
   std::string out = "x,y";
   for (const Column& column : columns) out.append(",").append(column.first);
-  const auto add = [&](char separator, double value) {
-    std::array<char, 32> text;
-    out += separator;
-    out.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
+  out += '\n';
+  // Half of the time of a short run would go into numbers that were written before: those of the axes, and of columns
+  // with the same map as an earlier one.
+  const auto text_of = [](double value) {
+    std::string text;
+    append_number(text, value);
+    return text;
   };
-  for (Eigen::Index cell = 0; cell < candidates.points.rows(); ++cell) {
-    add('\n', candidates.points(cell, 0));
-    add(',', candidates.points(cell, 1));
-    for (const Column& column : columns) {
-      if (column.second != nullptr) {
-        add(',', (*column.second)(cell));
-      } else {
-        out += ',';
+  std::vector<std::string> xs;
+  for (int column = 0; column < candidates.columns; ++column) xs.push_back(text_of(candidates.points(column, 0)));
+  std::vector<std::size_t> first;  // of the columns with the same map
+  for (const Column& column : columns) {
+    const auto same = [&](const Column& other) { return other.second == column.second; };
+    first.push_back(static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), same) - columns.begin()));
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> cells(columns.size());  // places in `out`, and lengths
+  for (int row = 0, cell = 0; row < candidates.rows; ++row) {
+    const std::string y = text_of(candidates.points(cell, 1));
+    for (int column = 0; column < candidates.columns; ++column, ++cell) {
+      out.append(xs[static_cast<std::size_t>(column)]).append(",").append(y);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const auto [place, length] = cells[first[i]];
+        const std::size_t begin = (out += ',').size();
+        if (first[i] < i) {
+          out.append(out, place, length);
+        } else if (columns[i].second != nullptr) {
+          append_number(out, (*columns[i].second)(cell));
+        }
+        cells[i] = {begin, out.size() - begin};
       }
+      out += '\n';
     }
   }
-  return out + "\n";
+  return out;
 }
 
 std::string surface_csv(FromAbove& experiment) {
@@ -89,7 +109,7 @@ std::string maps_csv(const FromAbove& experiment) {
   if (known.has(Quantity::probability) && !belief.footprint_is_weight()) {
     columns.emplace_back("p", &belief.probability());
   }
-  return columns.empty() ? std::string() : grid_csv(experiment.candidates(), columns);
+  return columns.empty() ? "" : grid_csv(experiment.candidates(), columns);
 }
 
 }  // namespace palpate

@@ -2,7 +2,6 @@
 // What is measured for the summary of a run, and its surface; the fields of the summary are in fields.cpp.
 #pragma once
 
-#include "record/files.hpp"
 #include "space/from_any_side.hpp"
 
 #include <chrono>

@@ -32,34 +32,6 @@ std::string few_words(std::size_t units, bool seeds, std::size_t least) {
       units_words(units, seeds), kEnoughUnits);
 }
 
-std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides) {
-  std::vector<std::size_t> widths(sides.size(), 0);
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  }
-  std::string out;
-  for (const auto& line : lines) {
-    std::string text;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      if (widths[i] == 0) continue;
-      const char* const cell = sides[i] == 'l' ? "{:<{}}  " : "{:>{}}  ";
-      text += fmt::format(fmt::runtime(cell), line[i], widths[i]);
-    }
-    out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
-  }
-  return out;
-}
-
-std::vector<std::string> wrapped(const std::string& text, std::size_t longest) {
-  std::vector<std::string> lines;
-  for (std::size_t begin = 0; begin < text.size(); begin += lines.back().size()) {
-    const std::string line = text.substr(begin, longest);
-    const auto comma = begin + longest < text.size() ? line.rfind(", ") : std::string::npos;
-    lines.push_back(comma != std::string::npos && comma > 0 ? line.substr(0, comma + 2) : line);
-  }
-  return lines;
-}
-
 void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate) {
   row.add(prefix + "mean", estimate.count > 0 ? std::optional(estimate.mean) : std::nullopt);
   add_interval(row, prefix, estimate.interval);
@@ -76,13 +48,6 @@ void add_counts(Row& row, const FateCounts& counts, bool left_out) {
   row.add("failed", counts.of(Fate::failed));
   row.add("unfinished", counts.of(Fate::unfinished));
   row.add("without_value", counts.of(Fate::without_value));
-}
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return text;
 }
 
 }  // namespace palpate

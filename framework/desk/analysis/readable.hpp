@@ -5,7 +5,9 @@
 
 #include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
+#include "config/layout.hpp"
 #include "config/scale.hpp"
+#include "reading/reading.hpp"
 
 #include <palpate/options.hpp>
 
@@ -39,21 +41,11 @@ std::string few_words(std::size_t units, bool seeds, std::size_t least);
 /// A line that tells how many of a group's jobs are copies of a run, where jobs are the units.
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units);
 
-/// Lines of as many cells each, under each other and two blanks apart; `sides` has an l or r for each column. A
-/// column that is empty in all lines takes no room.
-std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides);
-
-/// The text in lines of at most `longest` letters, broken behind commas where that can be.
-std::vector<std::string> wrapped(const std::string& text, std::size_t longest);
-
 /// Adds `prefix`mean and the ends of its interval, null where there are none.
 void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate);
 /// The same of the ends alone.
 void add_interval(Row& row, const std::string& prefix, const std::optional<MeanInterval>& ends);
 /// Adds how many jobs there are and what became of them, on request with those that a condition leaves out.
 void add_counts(Row& row, const FateCounts& counts, bool left_out = false);
-
-/// The text with blanks for control characters: one line, whatever stood in a config.
-std::string one_line(std::string text);
 
 }  // namespace palpate

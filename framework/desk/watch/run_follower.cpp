@@ -2,6 +2,7 @@
 #include "watch/run_follower.hpp"
 
 #include "config/trouble.hpp"
+#include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/session.hpp"
 #include "record/tap_row.hpp"
@@ -82,7 +83,7 @@ void RunFollower::read_record() {
   // How it stands is looked at first: who ends in between has recorded all taps by then.
   const bool held = is_running(directory_);
   const std::optional<Row> summary = read_outcome(directory_);
-  const std::string standing = (held ? "held " : "") + (summary ? to_json_text(*summary) : "");
+  const std::string standing = (held ? "held " : "") + (summary ? to_json(*summary) : "");
   bool anew = false;
   std::vector<RecordLine> lines = log_.read(anew);
   if (!lines.empty() && !trouble_.empty()) {  // what could not be lived through may be another record by now

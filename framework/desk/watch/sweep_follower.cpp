@@ -16,9 +16,9 @@ bool SweepFollower::look(double /*seconds*/) {
   constexpr int kShare = 20;
   const Clock::time_point begin = Clock::now();
   if (begin < next_) return false;
-  std::string data;
-  const auto trouble = trouble_in([&] { data = line_of(sweep_data(sweep_, [](int, int) {})); });
-  if (trouble) data = line_of({{"trouble", trouble->what()}});
+  Json data;
+  const auto trouble = trouble_in([&] { data = sweep_data(sweep_, [](int, int) {}); });
+  if (trouble) data = {{"trouble", trouble->what()}};
   if (data != data_) ++revision_;
   data_ = std::move(data);
   const Clock::time_point end = Clock::now();
@@ -27,7 +27,7 @@ bool SweepFollower::look(double /*seconds*/) {
 }
 
 std::string SweepFollower::page() {
-  Json data = Json::parse(data_);
+  Json data = data_;
   if (data.contains("trouble"))
     data = {{"name", "sweep"}, {"id", sweep_.directory.filename().string()}, {"waiting", data["trouble"]}};
   data["live"] = std::to_string(revision_);
@@ -37,8 +37,7 @@ std::string SweepFollower::page() {
 std::optional<std::string> SweepFollower::news(const std::string& at) {
   const std::string now = std::to_string(revision_);
   if (at == now) return std::nullopt;
-  // As text: a sweep of thousands of jobs has megabytes of it.
-  return "{\"at\":\"" + now + "\",\"sweep\":" + data_ + "}";
+  return line_of({{"at", now}, {"sweep", data_}});
 }
 
 bool SweepFollower::goes_on() const {

@@ -2,6 +2,7 @@
 // A sweep that goes on, and the runs in it.
 #pragma once
 
+#include "report/page/json.hpp"
 #include "sweep/sweep.hpp"
 #include "watch/watched.hpp"
 
@@ -23,7 +24,7 @@ class SweepFollower final : public Watched {
 
  private:
   Sweep sweep_;
-  std::string data_;  ///< of the page, JSON on one line
+  Json data_;  ///< of the page
   int revision_ = 0;
   std::chrono::steady_clock::time_point next_{};  ///< when it is looked at again
 };

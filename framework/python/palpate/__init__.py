@@ -50,10 +50,17 @@ def _overrides(overrides, settings):
     return [*overrides, *(f"{key}={_program.value_text(value)}" for key, value in settings.items())]
 
 
+def _array(values):
+    """An array of truth values, of whole numbers, of numbers with NaN for None, or of objects."""
+    kinds = {type(value) for value in values}
+    if kinds in ({bool}, {int}):
+        return _np.array(values)
+    return _np.array(values, dtype=float if kinds <= {int, float, type(None)} else object)
+
+
 def _table(columns):
     """A structured array of columns: (name, array or list)."""
-    columns = [(name, _np.asarray(values, dtype=object) if isinstance(values, list) else values)
-               for name, values in columns]
+    columns = [(name, _array(values) if isinstance(values, list) else values) for name, values in columns]
     out = _np.empty(len(columns[0][1]), dtype=[(name, values.dtype) for name, values in columns])
     for name, values in columns:
         out[name] = values
@@ -261,7 +268,7 @@ class Sweep:
         the summary by their dotted names. A job that has not ended has the status None and no numbers (NaN)."""
         columns = self._record.table()
         if "status" not in dict(columns):  # before the first job has ended
-            columns.append(("status", [None] * len(self)))
+            columns.append(("status", _np.array([None] * len(self), dtype=object)))
         return _table((name, _numbers(values) if name in self.keys else values) for name, values in columns)
 
     def curves(self, metric=None, *, by=None, against="taps", where=None, workers=None, progress=None) -> _np.ndarray:

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "answers/answer.hpp"
 
+#include "reading/reading.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
 
 namespace palpate {
@@ -20,29 +21,6 @@ constexpr const char* kOutcomes[] = {"contact", "no_contact", "unreachable", "ti
 
 /// Not a number lies within nothing.
 bool is_within(double value, double least, double most) { return value >= least && value <= most; }
-
-/// One character of UTF-8, and how many bytes it takes. A byte that begins no character stands for itself.
-struct Character {
-  std::uint32_t code;
-  std::size_t bytes;
-};
-Character character_at(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(at);
-  const std::size_t bytes = first < 0xc0 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-  std::uint32_t code = bytes == 1 ? first : first & (0x7fU >> bytes);
-  for (std::size_t i = 1; i < bytes; ++i) {
-    if (at + i >= text.size() || (byte(at + i) & 0xc0) != 0x80) return {first, 1};
-    code = code << 6 | (byte(at + i) & 0x3fU);
-  }
-  return {code, bytes};
-}
-
-/// Controls (C0, DEL, C1), line and paragraph separators, and Unicode's Bidi_Control (UAX 9).
-bool is_unprintable(std::uint32_t code) {
-  return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
-         (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-}
 
 }  // namespace
 
@@ -77,15 +55,6 @@ std::optional<Outcome> answered_outcome(const std::string& name) {
   return static_cast<Outcome>(known - std::begin(kOutcomes));
 }
 
-std::string plain_line(const std::string& text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const Character one = character_at(text, i);
-    if (out.size() >= kLongestLine) return out + "...";
-    out += is_unprintable(one.code) ? " " : text.substr(i, one.bytes);
-    i += one.bytes;
-  }
-  return out;
-}
+std::string plain_line(const std::string& text) { return one_line(text, kLongestLine); }
 
 }  // namespace palpate

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reading/reading.hpp"
 
+#include <boost/locale/utf.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -158,21 +160,14 @@ namespace {
 
 /// The code point that `text` begins with, and how many bytes it has (RFC 3629); no bytes where it is not UTF-8.
 std::pair<std::uint32_t, std::size_t> first_code_point(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) return {lead, 1};
-  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return {0, 0};
-  std::uint32_t point = lead & (0xffU >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return {0, 0};
-    point = (point << 6) | (byte(i) & 0x3fU);
-  }
-  constexpr std::array<std::uint32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = point >= 0xd800 && point <= 0xdfff;
-  if (point < kLeast[length] || point > 0x10ffff || surrogate) return {0, 0};
-  return {point, length};
+  const char* end = text.data();
+  const std::uint32_t point = boost::locale::utf::utf_traits<char>::decode(end, text.data() + text.size());
+  if (!boost::locale::utf::is_valid_codepoint(point)) return {0, 0};
+  return {point, static_cast<std::size_t>(end - text.data())};
 }
+
+/// C0, DEL and C1.
+bool is_control(std::uint32_t point) { return point < 0x20 || (point >= 0x7f && point < 0xa0); }
 
 /// Unicode's Bidi_Control, and the separators that end a line.
 bool turns_text(std::uint32_t point) {
@@ -182,14 +177,27 @@ bool turns_text(std::uint32_t point) {
 
 }  // namespace
 
+std::string one_line(std::string_view text, std::size_t most) {
+  std::string out;
+  while (!text.empty()) {
+    if (out.size() >= most) return out + "...";
+    const auto [point, length] = first_code_point(text);
+    const std::size_t bytes = std::max<std::size_t>(length, 1);
+    out += length == 0 || is_control(point) || turns_text(point) ? " " : text.substr(0, bytes);
+    text.remove_prefix(bytes);
+  }
+  return out;
+}
+
+std::size_t utf8_length(std::string_view text) { return first_code_point(text).second; }
+
 std::string printable(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   std::array<char, 16> escape{};
   for (std::size_t at = 0; at < text.size();) {
     const auto [point, length] = first_code_point(text.substr(at));
-    const bool control = (point < 0x20 && point != '\n' && point != '\t') || (point >= 0x7f && point < 0xa0);
-    if (length == 0 || control) {
+    if (length == 0 || (is_control(point) && point != '\n' && point != '\t')) {
       const unsigned number = length == 0 ? static_cast<unsigned char>(text[at]) : point;
       std::snprintf(escape.data(), escape.size(), "\\x%02x", number);
       out += escape.data();

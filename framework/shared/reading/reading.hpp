@@ -80,4 +80,11 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
 /// is there. Line ends and tabs stay.
 std::string printable(std::string_view text);
 
+/// Returns `text` as one line, cut between characters after about `most` bytes: what printable() would replace, line
+/// ends and tabs become blanks.
+std::string one_line(std::string_view text, std::size_t most = std::string::npos);
+
+/// The length of the UTF-8 sequence that `text` begins with; 0 if it is not valid (RFC 3629). `text` is not empty.
+std::size_t utf8_length(std::string_view text);
+
 }  // namespace palpate

@@ -20,22 +20,13 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// A pivot d^2 = diagonal - l.l carries a rounding error of up to about (n + 1) eps diagonal (Higham, Accuracy and
 /// Stability of Numerical Algorithms, 2002, section 10.1): one that is not above it has no correct digit.
-#ifdef PALPATE_SABOTAGE_NO_PIVOT_GUARD
-constexpr double kPivotGuard = -std::numeric_limits<double>::infinity();
-#else
 constexpr double kPivotGuard = 1.0;
-#endif
 
 /// Jitter, in units of n eps and of the largest diagonal entry: the first amount is above what rounding can take away,
 /// the last is below what anybody would see, 100 n eps = 4e-13 for 17 rows. A matrix that is not positive definite even
 /// then is none that rounding made so.
-#ifdef PALPATE_SABOTAGE_LARGE_JITTER
-constexpr double kFirstJitter = 1e-4 / kEpsilon;
-constexpr double kLastJitter = 1e-4 / kEpsilon;
-#else
 constexpr double kFirstJitter = 10.0;
 constexpr double kLastJitter = 100.0;
-#endif
 
 /// The least noise, in the same units, with which a quadratic form may be taken from the entries of an explicit
 /// inverse. These reach 1 / noise, and the form is the small difference of their products: it is off by up to n eps /

@@ -1,6 +1,7 @@
 // Hyperparameters from the taps so far: mean and standard deviation of the targets become the prior's. The kernel and
 // the ratio of noise to signal stay as they are.
 #include <palpate/fitting.hpp>
+#include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 
 #include <cmath>
@@ -30,7 +31,7 @@ class MyFitting final : public Fitting {
       const double mean = output.targets.mean();
       const double signal = std::sqrt((output.targets.array() - mean).square().mean());
       if (!std::isnormal(signal) || !std::isfinite(mean)) return {false, true, 0.0, 1, "the targets do not vary"};
-      objective -= std::log(signal);
+      objective -= math::log(signal);
       found.emplace_back(mean, signal);
     }
     for (std::size_t i = 0; i < found.size(); ++i) {

@@ -1,9 +1,9 @@
 // Where objects are, as a probability: the labels of the touches near a place, the nearer the weightier, beside a prior
 // that counts as much as one touch right there.
 #include <palpate/footprint.hpp>
+#include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 
-#include <cmath>
 
 using namespace palpate;
 
@@ -31,8 +31,8 @@ class MyFootprint final : public Footprint {
       double on = options_.prior;
       double all = 1.0;
       for (const Touch& touch : touches_) {
-        const double r = std::hypot(places(i, 0) - touch.place.x, places(i, 1) - touch.place.y) / options_.reach;
-        const double weight = std::exp(-0.5 * r * r);
+        const double r = math::hypot(places(i, 0) - touch.place.x, places(i, 1) - touch.place.y) / options_.reach;
+        const double weight = math::exp(-0.5 * r * r);
         all += weight;
         if (touch.on) on += weight;
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/gnuplot.hpp"
 #include "analysis/readable.hpp"
+#include "config/layout.hpp"
 #include "record/fields.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figures.hpp"

@@ -4,6 +4,7 @@
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
+#include "config/layout.hpp"
 #include "report/figures/figures.hpp"
 #include "report/figures/sheet.hpp"
 

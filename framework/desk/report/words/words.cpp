@@ -5,8 +5,7 @@
 #include "config/scale.hpp"
 
 #include <fmt/format.h>
-
-#include <sstream>
+#include <fmt/ranges.h>
 
 namespace palpate {
 
@@ -48,18 +47,8 @@ void Page::heading(const std::string& text) {
 }
 
 void Page::say(const std::string& text) {
-  constexpr std::size_t kWidth = 100;
-  constexpr std::size_t kIndent = 3;
-  std::string line = "  -";
-  std::istringstream words(one_line(text));
-  for (std::string word; words >> word;) {
-    if (line.size() > kIndent && line.size() + 1 + word.size() > kWidth) {
-      text_ += line + "\n";
-      line = "   ";
-    }
-    line += " " + word;
-  }
-  text_ += line + "\n";
+  constexpr std::size_t kWidth = 96;  // beside the dash
+  text_ += fmt::format("  - {}\n", fmt::join(wrapped(one_line(text), kWidth), "\n    "));
 }
 
 }  // namespace palpate
