@@ -33,21 +33,6 @@ fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std:
   return sweep.directory / (name + where_suffix(where) + ".csv");
 }
 
-/// At each of the occasions the rows of results.csv as they would be, had all jobs stopped there. What is missing is
-/// computed by `workers` processes, or as many as there are cores, with a line of progress on stderr. None if that was
-/// interrupted: what is done then is kept. Throws Error.
-std::optional<std::vector<std::vector<Row>>> results_at(const Program& program, const Sweep& sweep,
-                                                        const std::vector<Occasion>& occasions,
-                                                        std::optional<int> workers) {
-  const EarlierResults earlier(sweep, occasions);
-  const bool all =
-      compute_jobs(program, earlier.missing(), workers, [&](std::size_t job) { earlier.compute(program, job); });
-  if (!all) return std::nullopt;
-  std::vector<std::vector<Row>> out;
-  for (const Occasion& one : occasions) out.push_back(earlier.write(one));
-  return out;
-}
-
 /// Those that are asked for, each once, in the order given.
 std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
   std::vector<Occasion> out;
@@ -111,7 +96,10 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
     palpate::compare(sweep, sweep_results(sweep),
                      {arguments.by, metric, nullptr, arguments.baseline, false, CompareExtent::means});
   }
-  const auto results = results_at(program, sweep, occasions, arguments.workers);
+  const auto results = results_at(sweep, occasions, [&](const TapSummaries& summaries) {
+    return compute_jobs(program, summaries.missing(), arguments.workers,
+                        [&](std::size_t job) { summaries.compute(program, job); });
+  });
   if (!results) return std::nullopt;
   for (std::size_t i = 0; i < results->size(); ++i) add((*results)[i], occasions[i]);
   return comparisons;

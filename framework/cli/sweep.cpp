@@ -9,6 +9,7 @@
 #include "cli/sweep_display.hpp"
 #include "cli/watcher.hpp"
 #include "config/trouble.hpp"
+#include "config/yaml.hpp"
 #include "launch/children.hpp"
 #include "launch/job.hpp"
 #include "launch/mounts.hpp"
@@ -18,7 +19,6 @@
 #include "record/files.hpp"
 #include "report/words/words.hpp"
 #include "scene/sizes.hpp"
-#include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
 #include <fmt/format.h>
@@ -277,12 +277,13 @@ int sweep(Program& program, const SweepArguments& arguments) {
   if (arguments.launch.launcher != kLocal && !arguments.list) slurm::check_installed();
   bool one_at_a_time = false;
   std::optional<ResolvedConfig> first;
-  std::optional<SweepDraft> draft;
-  if (!arguments.list) draft.emplace(arguments.runs);
+  std::vector<std::string> configs;
   const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
                                     [&](const Job& job, const ResolvedConfig& config) {
-                                      if (draft) check_who_taps(config, "backend");
-                                      if (draft) draft->add(job, config);
+                                      if (!arguments.list) {
+                                        check_who_taps(config, "backend");
+                                        configs.push_back(to_yaml_with_places(config.tree));
+                                      }
                                       if (job.index == 0) first = config;
                                       one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
                                     });
@@ -295,8 +296,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
     if (!arguments.launch.quiet) mention(jobs + "\n");
     return kDone;
   }
-  const bool is_new = draft->publish(plan);
-  draft.reset();
+  const bool is_new = write_sweep(plan, configs);
   if (!is_new) check_builds(campaign, jobs_of(campaign));
   if (!arguments.launch.quiet) {
     for (const std::string& line : half_said_sizes(campaign.first->tree, campaign.first->notes)) mention(line + "\n");

@@ -2,6 +2,7 @@
 // Many jobs are read at once, and handed over as if they had been read one after the other.
 #include "sweep/read_jobs.hpp"
 #include "support/support.hpp"
+#include "support/testing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `palpate replay`: recorded taps through the same models, every number compared.
+#include "record/json.hpp"
 #include "system/shell.hpp"
 
 #include <gmock/gmock.h>
@@ -110,7 +111,8 @@ TEST_F(Earlier, SummariesHaveTheModelsThatABackendReadsWhereNoTruthIsKnown) {
       swept("motion.adaptive_hover={} name=early acquisition=random,grid taps=8", config("process.yaml"));
   EXPECT_EQ(palpate(Words{"compare", directory} + "--by acquisition --at 5 --metric robot_seconds").status, 0);
   for (int job : {0, 1})
-    EXPECT_THAT(text_of(job_of(directory, job) / "summary_at_5.json"), ContainsRegex("\"signal\": [0-9]"));
+    EXPECT_THAT(to_json_line(read_json_lines(job_of(directory, job) / "summaries.jsonl").rows.at(4)),
+                ContainsRegex("\"signal\": [0-9]"));
 }
 
 }  // namespace

@@ -195,7 +195,8 @@ TEST_F(SeveralSweeps, MergeByCopyingTheFoldersOfTheirJobs) {
   // The whole plan, broken off at once.
   const Words plan = set_by(Words{"sweep", paper(), "name=whole"} + kPlan, "acquisition=random,grid,uncertainty");
   const auto begun = begin(plan + "-j 1");
-  EXPECT_TRUE(test::eventually([&] { return !test::run_in(here() / "runs/whole").empty(); }));
+  EXPECT_TRUE(
+      test::eventually([&] { return fs::exists(fs::path(test::run_in(here() / "runs/whole")) / "manifest.jsonl"); }));
   begun->signal(SIGINT);
   begun->wait();
   const fs::path whole = fs::directory_iterator(here() / "runs/whole")->path();

@@ -136,18 +136,5 @@ TEST(InitialDesign, SobolSpreadsFourTapsOverTheFourQuarters) {
   }
 }
 
-TEST(LargestValue, IsNaNWhereverOneIs) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Eigen::Index count : {1, 2, 3, 5, 8, 33, 2209}) {
-    Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(count, -1.0, 2.0);
-    EXPECT_EQ(largest_value(values), values(count - 1));
-    for (const Eigen::Index at : {Eigen::Index{0}, count / 2, count - 1}) {
-      Eigen::VectorXd with = values;
-      with(at) = nan;
-      EXPECT_TRUE(std::isnan(largest_value(with))) << at << " of " << count;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace palpate::test

@@ -3,6 +3,8 @@
 // what they do not say, and which a strategy sets.
 #pragma once
 
+#include "config/describe.hpp"
+
 #include <palpate/options.hpp>
 
 #include <functional>
@@ -47,7 +49,7 @@ class ConfigKeys {
   std::vector<std::string> heirs_of(const std::string& path) const;
 
  private:
-  class Reader;
+  void note_fields(const std::vector<FieldDescription>& fields, const std::string& path);
 
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< groups that are plugins: their names

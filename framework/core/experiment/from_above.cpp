@@ -69,7 +69,7 @@ std::optional<std::string> FromAbove::stop_rule(Source source) {
   if (chooser_.starting(belief_)) return std::nullopt;
   belief_.ask(reads_for(source));
   const StopOptions& stop = options_.stop;
-  const auto deviation = [&] { return std::sqrt(largest_value(belief_.all_taps_variance())); };
+  const auto deviation = [&] { return std::sqrt(belief_.all_taps_variance().maxCoeff<Eigen::PropagateNaN>()); };
   if (stop.max_standard_deviation && satisfies(deviation(), Relation::at_most, *stop.max_standard_deviation))
     return "max_standard_deviation";
   if (stop.expected_rmse && good_enough(*watch_.forecast(belief_), *stop.expected_rmse)) return "expected_rmse";

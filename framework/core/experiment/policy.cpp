@@ -170,22 +170,12 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
   return out;
 }
 
-bool all_finite(const Eigen::VectorXd& values) {
-  // A sum is finite only if all are, or it overflows: 0 times what is finite is 0, times what is not it is NaN.
-  return std::isfinite(values.sum()) || (0.0 * values).sum() == 0.0;
-}
-
 void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {
-  if (all_finite(map)) return;
+  if (map.allFinite()) return;
   throw Error(
       "maps", fmt::format("{} is not a finite number everywhere after tap {}", name, taps),
       "choose a larger height.noise or a shorter kernel.length_scale, or check for heights that no arm can report",
       Error::Kind::run);
-}
-
-double largest_value(const Eigen::VectorXd& values) {
-  // In a fraction of the time of maxCoeff<Eigen::PropagateNaN>(): a sum is NaN wherever a value is.
-  return std::isnan(values.sum()) ? values.maxCoeff<Eigen::PropagateNaN>() : values.maxCoeff();
 }
 
 }  // namespace palpate

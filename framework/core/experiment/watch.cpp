@@ -95,7 +95,7 @@ void Watch::describe(TapRecord& tap, TapBelief& belief) {
   if (known.has(Quantity::uncertainty)) {
     tap.uncertainty = belief.uncertainty()(tap.candidate);
     const Eigen::VectorXd& variance = belief.all_taps_variance();
-    tap.max_standard_deviation = std::sqrt(largest_value(variance));
+    tap.max_standard_deviation = std::sqrt(variance.maxCoeff<Eigen::PropagateNaN>());
     tap.mean_standard_deviation = variance.cwiseSqrt().mean();
     tap.height_gp = state_of(belief.height_gp());
   }

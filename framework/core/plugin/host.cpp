@@ -320,14 +320,14 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
 std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, const Scene& scene) const {
   const std::shared_ptr<const Library> holder = library(choice.kind, choice.type);
   if (holder->manifest->motions == nullptr) return nullptr;
-  const Motions* made = nullptr;
+  Motions* made = nullptr;
   guarded(choice.options.get(), choice.kind + "/" + choice.type, "has no motions", [&] {
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { made = holder->manifest->motions(fields, scene); });
   });
   if (made == nullptr) return nullptr;
   // As above: what comes of a library goes before it.
   return named(choice.kind + "/" + choice.type,
-               std::shared_ptr<const Motions>(made, [holder](const Motions* gone) { delete gone; }));
+               std::shared_ptr<Motions>(made, [holder](const Motions* gone) { delete gone; }));
 }
 
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {

@@ -10,6 +10,7 @@
 #include <palpate/motions.hpp>
 #include <palpate/shape.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -62,12 +63,20 @@ class Declared final : public Belief {
   const std::string& name_;
 };
 
-template <class Values>
-bool are_finite(const Values& values) {
+template <class Derived>
+bool are_finite(const Eigen::DenseBase<Derived>& values) {
   return values.allFinite();
 }
 bool are_finite(double value) { return std::isfinite(value); }
 bool are_finite(const std::optional<double>& value) { return !value || std::isfinite(*value); }
+bool are_finite(const KernelParameter& parameter) { return std::isfinite(parameter.value); }
+bool are_finite(const FootprintNumber& number) { return std::isfinite(number.value); }
+bool are_finite(const FitOutput& output) { return std::isfinite(output.signal) && std::isfinite(output.mean); }
+bool are_finite(const Stretch& stretch) { return std::isfinite(stretch.begin) && std::isfinite(stretch.end); }
+template <class Value>
+bool are_finite(const std::vector<Value>& values) {
+  return std::all_of(values.begin(), values.end(), [](const Value& one) { return are_finite(one); });
+}
 
 /// An object of a plugin, behind the interface that it implements: every call goes through here.
 template <class Interface>
@@ -101,6 +110,13 @@ class Named : public Interface {
                 Error::Kind::run);
   }
 
+  /// Returns the value if it is finite.
+  template <class Values>
+  Values finite(const char* function, Values values) const {
+    require_finite(function, values);
+    return values;
+  }
+
   /// `belief` as far as the plugin may read it.
   Declared declared(const Belief& belief) const { return Declared(belief, call(&Interface::reads), name_); }
 
@@ -127,7 +143,7 @@ class NamedKernel final : public Named<Kernel> {
   }
   std::vector<KernelParameter> parameters() const override {
     std::vector<KernelParameter> out = call(&Kernel::parameters);
-    for (const KernelParameter& one : out) require("parameters()", one.value);
+    require("parameters()", out);
     return out;
   }
   bool differentiable() const override { return call(&Kernel::differentiable); }
@@ -175,11 +191,7 @@ class NamedAcquisition final : public Named<Acquisition> {
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
     call(&Acquisition::score_approaches, belief, out);
   }
-  double prior_scale() const override {
-    const double out = call(&Acquisition::prior_scale);
-    require_finite("prior_scale()", out);
-    return out;
-  }
+  double prior_scale() const override { return finite("prior_scale()", call(&Acquisition::prior_scale)); }
 };
 
 class NamedFitting final : public Named<Fitting> {
@@ -191,11 +203,8 @@ class NamedFitting final : public Named<Fitting> {
     FitSummary out = call(&Fitting::fit, problem, random);
     require_finite("fit()", out.objective);
     require_finite("fit()", problem.noise_ratio);
-    for (const FitOutput& one : problem.outputs) {
-      require_finite("fit()", one.signal);
-      require_finite("fit()", one.mean);
-    }
-    for (const KernelParameter& one : problem.kernel.parameters()) require_finite("fit()", one.value);
+    require_finite("fit()", problem.outputs);
+    require_finite("fit()", problem.kernel.parameters());
     if (auto* const kernel = dynamic_cast<NamedKernel*>(&problem.kernel)) kernel->settle();
     return out;
   }
@@ -223,15 +232,9 @@ class NamedFootprint final : public Named<Footprint> {
     require_finite("current_positions()", places);
   }
   std::optional<double> undiscovered_probability() const override {
-    const std::optional<double> out = call(&Footprint::undiscovered_probability);
-    require_finite("undiscovered_probability()", out);
-    return out;
+    return finite("undiscovered_probability()", call(&Footprint::undiscovered_probability));
   }
-  std::vector<FootprintNumber> numbers() const override {
-    std::vector<FootprintNumber> out = call(&Footprint::numbers);
-    for (const FootprintNumber& one : out) require_finite("numbers()", one.value);
-    return out;
-  }
+  std::vector<FootprintNumber> numbers() const override { return finite("numbers()", call(&Footprint::numbers)); }
   std::string remark() const override { return call(&Footprint::remark); }
 };
 
@@ -259,17 +262,10 @@ class NamedShape final : public Named<Shape> {
     return out;
   }
   std::vector<Stretch> intervals(const Line& line) const override {
-    std::vector<Stretch> out = call(&Shape::intervals, line);
-    for (const Stretch& one : out) {
-      require_finite("intervals()", one.begin);
-      require_finite("intervals()", one.end);
-    }
-    return out;
+    return finite("intervals()", call(&Shape::intervals, line));
   }
   double support(const Eigen::Vector3d& direction) const override {
-    const double out = call(&Shape::support, direction);
-    require_finite("support()", out);
-    return out;
+    return finite("support()", call(&Shape::support, direction));
   }
   double top(double s, double t) const override {
     const double out = call(&Shape::top, s, t);
@@ -281,25 +277,16 @@ class NamedShape final : public Named<Shape> {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 };
 
-class NamedMotions final : public Motions {
+class NamedMotions final : public Named<Motions> {
  public:
-  NamedMotions(std::string name, std::shared_ptr<const Motions> inner)
-      : name_(std::move(name)), inner_(std::move(inner)) {}
-  int count() const override { return inner_->count(); }
+  using Named::Named;
+  int count() const override { return call(&Motions::count); }
   double seconds(const TapRequest& request, double surface) const override {
-    return finite("seconds()", inner_->seconds(request, surface));
+    return finite("its motions' seconds()", call(&Motions::seconds, request, surface));
   }
-  double deviation(int motion) const override { return finite("deviation()", inner_->deviation(motion)); }
-
- private:
-  double finite(const char* function, double value) const {
-    if (std::isfinite(value)) return value;
-    throw Error(name_, std::string("its motions' ") + function + " returned a number that is not finite",
-                "correct the plugin", Error::Kind::run);
+  double deviation(int motion) const override {
+    return finite("its motions' deviation()", call(&Motions::deviation, motion));
   }
-
-  std::string name_;
-  std::shared_ptr<const Motions> inner_;
 };
 
 /// A pointer to the interface, as it was: what becomes of it is cast back to that.
@@ -310,8 +297,8 @@ std::shared_ptr<void> wrapped(const std::string& name, const std::shared_ptr<voi
 
 }  // namespace
 
-std::shared_ptr<const Motions> named(const std::string& name, std::shared_ptr<const Motions> motions) {
-  return motions ? std::make_shared<NamedMotions>(name, std::move(motions)) : nullptr;
+std::shared_ptr<const Motions> named(const std::string& name, const std::shared_ptr<Motions>& motions) {
+  return std::make_shared<NamedMotions>(name, motions);
 }
 
 std::shared_ptr<void> named(const std::string& kind, const std::string& type, const std::shared_ptr<void>& object) {

@@ -15,7 +15,7 @@ class Motions;
 /// likewise. Two are checked where their numbers are used: scores, and contacts, which become failed taps.
 std::shared_ptr<void> named(const std::string& kind, const std::string& type, const std::shared_ptr<void>& object);
 
-/// The same of the motions of a backend, `name` <kind>/<type>; null of none.
-std::shared_ptr<const Motions> named(const std::string& name, std::shared_ptr<const Motions> motions);
+/// The same of the motions of a backend, `name` <kind>/<type>.
+std::shared_ptr<const Motions> named(const std::string& name, const std::shared_ptr<Motions>& motions);
 
 }  // namespace palpate

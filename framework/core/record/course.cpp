@@ -109,34 +109,34 @@ RecordedRun recorded_run(const fs::path& directory) {
   return out;
 }
 
-bool Relay::permits(const TapRecord& tap) {
-  return company_.supervisor == nullptr || company_.supervisor->permits(tap, experiment_.preview(tap));
+bool Course::permits(const TapRecord& tap) {
+  return supervisor_ == nullptr || supervisor_->permits(tap, experiment_.preview(tap));
 }
 
-void Relay::announce(const TapRecord& tap) {
-  if (company_.observer != nullptr && company_.observer->wants_errors()) look_at_surface();
+void Course::announce(const TapRecord& tap) {
+  if (observer_ != nullptr && observer_->wants_errors()) look_at_surface();
   {
     const PhaseClock::Scope log(experiment_.clock(), Phase::log);
-    if (maps_) write_maps(tap.number);
+    if (config_.options.log.maps) write_maps(tap.number);
     directory_.announce(tap);
   }
-  if (company_.observer != nullptr) company_.observer->announce(tap);
+  if (observer_ != nullptr) observer_->announce(tap);
 }
 
-void Relay::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
+void Course::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
   TapRecord told = tap;
   told.expected_rmse = expected_rmse_;  // stands with the times, not with the tap
   {
     const PhaseClock::Scope log(experiment_.clock(), Phase::log);
     directory_.record(told, seconds);
   }
-  if (company_.observer == nullptr) return;
+  if (observer_ == nullptr) return;
   told.errors = errors_;
-  company_.observer->record(told, seconds);
+  observer_->record(told, seconds);
 }
 
 /// Before the tap is announced, and without a say in the run: a model that fails here fails nobody who reads it.
-void Relay::look_at_surface() {
+void Course::look_at_surface() {
   errors_ = {};
   expected_rmse_.reset();
   try {
@@ -146,21 +146,13 @@ void Relay::look_at_surface() {
   }
 }
 
-void Relay::write_maps(int number) const {
+void Course::write_maps(int number) const {
   const auto* const above = dynamic_cast<const FromAbove*>(&experiment_);
   const std::string text = above != nullptr ? maps_csv(*above) : std::string();
   if (text.empty()) return;
   make_inner_folder(directory_.path() / "maps");
   directory_.write(fmt::format("maps/tap_{:03}.csv", number), text);
 }
-
-Course::Course(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, const Company& company,
-               const Stopwatch& watch)
-    : config_(config),
-      directory_(directory),
-      experiment_(experiment),
-      watch_(watch),
-      relay_(config.options, experiment, directory, company) {}
 
 RunReport Course::finish(std::string failure) {
   RunResult result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How a run begins, goes on and ends in its directory, whoever makes its taps: what session.hpp and callers_run.hpp
-// have in common, and nobody else uses.
+// How a run begins, goes on and ends in its directory, whoever makes its taps: what session.cpp and callers_run.hpp have
+// in common, and nobody else uses.
 #pragma once
 
 #include "record/run_directory.hpp"
@@ -17,42 +17,29 @@
 
 namespace palpate {
 
-/// Who follows a run while it goes on; each may be null.
-struct Company {
-  Journal* observer;
-  Supervisor* supervisor;
-};
-
-/// Asks the supervisor, passes taps to the record first and to the observer after it, and writes maps where the config
-/// asks for them.
-class Relay final : public Journal {
+/// A run in a directory that this process holds, from its first tap here to what ends it. As the journal of its
+/// experiment it asks the supervisor, passes taps to the record first and to the observer after it, and writes maps
+/// where the config asks for them.
+class Course final : public Journal {
  public:
-  Relay(const ExperimentOptions& options, Experiment& experiment, RunDirectory& directory, const Company& company)
-      : maps_(options.log.maps), experiment_(experiment), directory_(directory), company_(company) {}
+  /// All must outlive it; the directory is set up. Observer and supervisor may be null.
+  Course(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, const Stopwatch& watch,
+         Journal* observer = nullptr, Supervisor* supervisor = nullptr)
+      : config_(config),
+        directory_(directory),
+        experiment_(experiment),
+        watch_(watch),
+        observer_(observer),
+        supervisor_(supervisor) {}
 
   bool permits(const TapRecord& tap) override;
   void announce(const TapRecord& tap) override;
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
 
- private:
-  void look_at_surface();
-  void write_maps(int number) const;
-
-  bool maps_;
-  Experiment& experiment_;
-  RunDirectory& directory_;
-  Company company_;
-  // Of the state that the tap under way was chosen from, for the observer.
-  Errors errors_;
-  std::optional<double> expected_rmse_;
-};
-
-/// A run in a directory that this process holds, from its first tap here to what ends it.
-class Course {
- public:
-  /// All but `company` must outlive it; the directory is set up.
-  Course(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment, const Company& company,
-         const Stopwatch& watch);
+  /// Makes all taps that are left, and finishes.
+  RunReport run() {
+    return finish(failure_in([&] { experiment_.run(*this); }));
+  }
 
   /// Goes on with the run by `part`, and says of an exception why the run ends with it; "" if there was none.
   template <class Part>
@@ -70,15 +57,19 @@ class Course {
   /// Writes what ends a run. `failure`: why it did not end well, else ""; then it is thrown, once all is written.
   RunReport finish(std::string failure);
 
-  /// Who hears of its taps.
-  Journal& journal() { return relay_; }
-
  private:
+  void look_at_surface();
+  void write_maps(int number) const;
+
   const ResolvedConfig& config_;
   RunDirectory& directory_;
   Experiment& experiment_;
   const Stopwatch& watch_;
-  Relay relay_;
+  Journal* observer_;
+  Supervisor* supervisor_;
+  // Of the state that the tap under way was chosen from, for the observer.
+  Errors errors_;
+  std::optional<double> expected_rmse_;
 };
 
 /// What a run was when it began, as its manifest says; "" where that is not known.

@@ -267,47 +267,26 @@ ReplayReport replay_run(const Workshop& workshop, const fs::path& directory) {
   return report;
 }
 
-std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Recording& recording,
-                                             const std::vector<Occasion>& occasions) {
-  const auto made = static_cast<int>(recording.rows.size());
-  for (const Occasion& one : occasions) {
-    if (one.taps().value_or(0) <= made) continue;
-    throw Error(recording.directory.string(), "its record has fewer taps than its summary",
-                "the file is damaged, run the job again");
-  }
+std::vector<Row> earlier_summaries(const Workshop& workshop, const Recording& recording) {
   const std::vector<Seconds> seconds = seconds_until(recording);
   // A kill may have lost lines of the times, which no run depends on.
   const bool timed = seconds.size() == recording.taps.size() + 1;
   const double all = total(seconds.back());
   Playback playback(workshop, recording);
   if (playback.truth_lost()) throw Error(*playback.truth_lost());
-  const auto summary_after = [&](int count) {
-    playback.advance_to(count);
-    playback.experiment().ask(asked_after(recording, static_cast<std::size_t>(count)));
+  std::vector<Row> out;
+  for (std::size_t count = 1; count < recording.rows.size(); ++count) {
+    playback.advance_to(static_cast<int>(count));
+    playback.experiment().ask(asked_after(recording, count));
     RunResult result = playback.experiment().result();
     result.stop_reason = "tap budget";
-    const Seconds until = timed ? seconds[static_cast<std::size_t>(count)] : Seconds{};
-    const std::optional<double> share = timed && all > 0.0 ? std::optional(total(until) / all) : std::nullopt;
+    const std::optional<Seconds> until = timed ? std::optional(seconds[count]) : std::nullopt;
     const auto part = [&](const char* whole) {
       const auto of_run = recording.summary ? recording.summary->number(whole) : std::nullopt;
-      return of_run && share ? std::optional(*of_run * *share) : std::nullopt;
+      return of_run && until && all > 0.0 ? std::optional(*of_run * total(*until) / all) : std::nullopt;
     };
-    return summary_list().row({result,
-                               recording.config,
-                               "",
-                               part("wall_seconds"),
-                               part("compute_seconds"),
-                               timed ? std::optional(until) : std::nullopt,
-                               {}});
-  };
-  std::vector<std::optional<Row>> out(occasions.size());
-  for (int count = 1; count <= made; ++count) {
-    std::optional<Row> now;
-    for (std::size_t i = 0; i < occasions.size(); ++i) {
-      if (out[i] || count < occasions[i].taps().value_or(count)) continue;
-      if (!now) now = summary_after(count);
-      if (occasions[i].has_come(count, *now)) out[i] = now;
-    }
+    out.push_back(
+        summary_list().row({result, recording.config, "", part("wall_seconds"), part("compute_seconds"), until, {}}));
   }
   return out;
 }

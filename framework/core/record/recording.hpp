@@ -4,7 +4,6 @@
 #pragma once
 
 #include "record/fields.hpp"
-#include "record/occasion.hpp"
 #include "record/resolved.hpp"
 #include "record/row.hpp"
 #include "record/session.hpp"
@@ -99,16 +98,15 @@ struct ReplayReport {
 /// Writes nothing, moves nothing: see Playback.
 ReplayReport replay_run(const Workshop& workshop, const std::filesystem::path& directory);
 
-/// What a finished run had come to earlier: the summary of `recording`, which ended well, at each of these occasions;
-/// none of one that has not come. Equal to that of a run whose budget ends there, in all that depends on the config
-/// alone: choosing a tap looks at no budget, and reading a model changes none. Only the engines are those that
-/// `engine: {type: auto}` took for the run's own budget; where it would take another for less, numbers may differ as
-/// far as `engine.accuracy` lets them. Throws Error where the run knew the truth and that is lost, see Playback.
+/// Returns the summaries that a run, which ended well, would have had after each of its taps but the last. Each equals
+/// that of a run whose budget ends there, in all that depends on the config alone: choosing a tap looks at no budget,
+/// and reading a model changes none. Only the engines are those that `engine: {type: auto}` took for the run's own
+/// budget; where it would take another for less, numbers may differ as far as `engine.accuracy` lets them. Throws Error
+/// where the run knew the truth and that is lost, see Playback.
 ///
 /// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and
 /// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody
-/// measured then, is null. The id is that of the run. Throws Error for a damaged record, and for more taps than it has.
-std::vector<std::optional<Row>> summaries_at(const Workshop& workshop, const Recording& recording,
-                                             const std::vector<Occasion>& occasions);
+/// measured then, is null. The id is that of the run.
+std::vector<Row> earlier_summaries(const Workshop& workshop, const Recording& recording);
 
 }  // namespace palpate

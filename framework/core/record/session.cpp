@@ -22,13 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs the experiment in an open directory and writes what ends a run.
-RunReport carry_out(const ResolvedConfig& config, RunDirectory& directory, Experiment& experiment,
-                    const Company& company, const Stopwatch& watch) {
-  Course course(config, directory, experiment, company, watch);
-  return course.finish(Course::failure_in([&] { experiment.run(course.journal()); }));
-}
-
 RunReport report_done(const Workshop& workshop, RunDirectory& held) {
   return {held.path(), true, false, held.before().end->summary, restore_files(workshop, held)};
 }
@@ -56,7 +49,7 @@ RunReport start_run(const Workshop& workshop, const ResolvedConfig& config, cons
     RunDirectory held(directory);
     return report_done(workshop, held);
   }
-  return carry_out(config, *run.directory, *run.experiment, {observer, supervisor}, watch);
+  return Course(config, *run.directory, *run.experiment, watch, observer, supervisor).run();
 }
 
 Tree read_run_config(const fs::path& directory) {
@@ -169,7 +162,7 @@ RunReport resume_held(const Workshop& workshop, const ResolvedConfig& config, Ru
   const std::unique_ptr<Experiment> experiment =
       go_on(workshop, config, held, options, Taps::by_backend, supervisor != nullptr);
   if (!experiment) return report_done(workshop, held);
-  return carry_out(config, held, *experiment, {observer, supervisor}, watch);
+  return Course(config, held, *experiment, watch, observer, supervisor).run();
 }
 
 }  // namespace palpate

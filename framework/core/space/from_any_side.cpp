@@ -64,7 +64,7 @@ Eigen::VectorXd FromAnySide::scores() {
   if (!has_scores()) return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(belief_.approaches().size()));
   Eigen::VectorXd out(static_cast<Eigen::Index>(belief_.approaches().size()));
   acquisition_->score_approaches(belief_, out);
-  if (!all_finite(out)) {
+  if (!out.allFinite()) {
     throw Error("acquisition/" + options_.acquisition.type, "returned a score that is not a finite number", {},
                 Error::Kind::run);
   }

@@ -1,94 +1,56 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/earlier_results.hpp"
 
-#include "config/hash.hpp"
 #include "record/files.hpp"
-#include "record/json.hpp"
-#include "record/recording.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::int64_t taps_of(const Row& summary) { return static_cast<std::int64_t>(summary.number("taps").value_or(0.0)); }
-
-fs::path file_of(const fs::path& job, const Occasion& occasion) {
-  return job / fmt::format("summary_{}.json", occasion.key());
+/// The row of a job, of which `rows` has one per tap, at an occasion.
+Row row_at(const Occasion& occasion, const std::vector<Row>& rows) {
+  std::size_t taps = 1;
+  while (taps < rows.size() && !occasion.has_come(static_cast<int>(taps), rows[taps - 1])) ++taps;
+  Row row = rows[taps - 1];
+  if (!occasion.taps()) row.add(kReached, occasion.has_come(static_cast<int>(taps), row));
+  return row;
 }
 
 }  // namespace
 
-std::string summary_hash(const Row& summary) { return hash_of(to_json_line(summary)); }
-
-EarlierResults::EarlierResults(const Sweep& sweep, std::vector<Occasion> occasions)
-    : sweep_(sweep), occasions_(std::move(occasions)), summaries_(sweep_summaries(sweep)) {
-  std::int64_t most = 0;
-  for (const std::optional<Row>& summary : summaries_) most = std::max(most, summary ? taps_of(*summary) : 0);
-  for (const Occasion& one : occasions_) {
-    if (most == 0 || one.taps().value_or(0) <= most) continue;
+std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, const std::vector<Occasion>& occasions,
+                                                        const std::function<bool(const TapSummaries&)>& complete) {
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const Occasion& one : occasions) fewest = std::min(fewest, static_cast<std::size_t>(one.taps().value_or(0)));
+  std::vector<std::vector<std::optional<Row>>> at(occasions.size(), sweep_summaries(sweep));
+  std::size_t most = 0;
+  for (const std::optional<Row>& summary : at.front()) most = std::max(most, summary ? taps_made(*summary) : 0);
+  for (const Occasion& one : occasions) {
+    if (most == 0 || static_cast<std::size_t>(one.taps().value_or(0)) <= most) continue;
     throw Error("command line", fmt::format("--at: no job made {} taps", *one.taps()),
                 fmt::format("the most are {}", most));
   }
-  for (std::size_t job = 0; job < sweep_.jobs.size(); ++job) {
-    const bool lacks = std::any_of(occasions_.begin(), occasions_.end(),
-                                   [&](const Occasion& one) { return is_longer(job, one) && !kept(job, one); });
-    if (lacks) missing_.push_back(job);
+  const TapSummaries summaries(
+      sweep,
+      [&](std::size_t job, const std::vector<Row>& rows) {
+        for (std::size_t i = 0; i < occasions.size(); ++i) at[i][job] = row_at(occasions[i], rows);
+      },
+      fewest);
+  if (!complete(summaries)) return std::nullopt;
+  summaries.read_missing();
+  std::vector<std::vector<Row>> out;
+  for (std::size_t i = 0; i < occasions.size(); ++i) {
+    out.push_back(sweep_results(sweep, std::move(at[i])));
+    write_file(sweep.directory / fmt::format("results_{}.csv", occasions[i].key()), to_csv(out.back()));
   }
-}
-
-bool EarlierResults::is_longer(std::size_t job, const Occasion& occasion) const {
-  const std::optional<Row>& summary = summaries_[job];
-  return summary && summary->text("status") == "done" && taps_of(*summary) > occasion.taps().value_or(0);
-}
-
-std::optional<Row> EarlierResults::kept(std::size_t job, const Occasion& occasion) const {
-  const fs::path file = file_of(job_directory(sweep_, sweep_.jobs[job]), occasion);
-  if (!is_there(file)) return std::nullopt;
-  std::optional<Row> row = parse_json_row(read_file(file));
-  if (!row) return std::nullopt;
-  const Scalar* of = row->find(kOfSummary);
-  if (of == nullptr || *of != Scalar(summary_hash(*summaries_[job]))) return std::nullopt;
-  row->erase(kOfSummary);
-  return row;
-}
-
-void EarlierResults::compute(const Workshop& workshop, std::size_t job) const {
-  const fs::path directory = job_directory(sweep_, sweep_.jobs[job]);
-  refuse_link(directory.parent_path());
-  refuse_link(directory);
-  const Row& whole = *summaries_[job];
-  std::vector<Occasion> wanted;
-  std::copy_if(occasions_.begin(), occasions_.end(), std::back_inserter(wanted),
-               [&](const Occasion& one) { return is_longer(job, one); });
-  const std::vector<std::optional<Row>> rows = summaries_at(workshop, read_recording(workshop, directory), wanted);
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    Row row = rows[i].value_or(whole);
-    if (!wanted[i].taps()) row.add(kReached, rows[i].has_value());
-    row.add(kOfSummary, summary_hash(whole));
-    write_file(file_of(directory, wanted[i]), to_json(row));
-  }
-}
-
-std::vector<Row> EarlierResults::write(const Occasion& occasion) const {
-  std::vector<std::optional<Row>> summaries = summaries_;
-  for (std::size_t job = 0; job < summaries.size(); ++job) {
-    if (!is_longer(job, occasion)) continue;
-    summaries[job] = kept(job, occasion);
-    if (summaries[job]) continue;
-    throw Error(job_directory(sweep_, sweep_.jobs[job]).string(), fmt::format("has no summary {}", occasion.words()),
-                "it was removed during the command: repeat the command", Error::Kind::run);
-  }
-  std::vector<Row> rows = sweep_results(sweep_, std::move(summaries));
-  write_file(sweep_.directory / fmt::format("results_{}.csv", occasion.key()), to_csv(rows));
-  return rows;
+  return out;
 }
 
 }  // namespace palpate

@@ -183,14 +183,7 @@ const Scalar* result_of(const Row& row, const std::string& name) {
   return of_run != nullptr ? of_run : found;
 }
 
-std::vector<Row> sweep_results(const Sweep& sweep) {
-  std::vector<Row> rows;
-  rows.reserve(sweep.jobs.size());
-  read_jobs(sweep, all_jobs(sweep), read_outcome, [&](std::size_t job, std::optional<Row> summary) {
-    if (summary) rows.push_back(result_row(sweep, sweep.jobs[job], std::move(*summary)));
-  });
-  return rows;
-}
+std::vector<Row> sweep_results(const Sweep& sweep) { return sweep_results(sweep, sweep_summaries(sweep)); }
 
 std::vector<Row> sweep_results(const Sweep& sweep, std::vector<std::optional<Row>> summaries) {
   std::vector<Row> rows;

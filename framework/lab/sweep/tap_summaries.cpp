@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/tap_summaries.hpp"
 
+#include "config/hash.hpp"
 #include "config/trouble.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"
-#include "sweep/earlier_results.hpp"
 
 #include <palpate/error.hpp>
 
 #include <algorithm>
-#include <cstdint>
 #include <utility>
 
 namespace palpate {
@@ -20,33 +19,25 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSummariesFile = "summaries.jsonl";
 
-/// 0 where the summary has no number that can be one of taps: who reads the record says what is wrong with it.
+/// What names in a kept row the hash of the summary of the whole run.
+constexpr const char* kOfSummary = "of_summary";
+
+std::string summary_hash(const Row& summary) { return hash_of(to_json_line(summary)); }
+
+}  // namespace
+
 std::size_t taps_made(const Row& summary) {
   constexpr double kMost = 1e9;
   const double taps = summary.number("taps").value_or(0.0);
   return taps >= 1.0 && taps <= kMost ? static_cast<std::size_t>(taps) : 0;
 }
 
-bool has_ended_well(const std::optional<Row>& summary) {
-  return summary && summary->text("status") == "done" && taps_made(*summary) > 0;
-}
-
-/// Numbers and flags alone: texts are in the summary, and what is null has no line.
-Row numbers_of(const Row& summary) {
-  Row out;
-  for (const auto& [name, value] : summary.fields) {
-    if (!std::holds_alternative<std::monostate>(value) && !std::holds_alternative<std::string>(value))
-      out.add(name, value);
-  }
-  return out;
-}
-
-}  // namespace
-
-TapSummaries::TapSummaries(const Sweep& sweep, Use use)
+TapSummaries::TapSummaries(const Sweep& sweep, Use use, std::size_t fewest)
     : sweep_(sweep), use_(std::move(use)), summaries_(sweep_summaries(sweep)) {
   for (std::size_t job = 0; job < sweep_.jobs.size(); ++job) {
-    if (has_ended_well(summaries_[job]) && !hand_over(job)) missing_.push_back(job);
+    const std::optional<Row>& summary = summaries_[job];
+    const bool asked = summary && summary->text("status") == "done" && taps_made(*summary) > fewest;
+    if (asked && !hand_over(job)) missing_.push_back(job);
   }
 }
 
@@ -80,15 +71,14 @@ void TapSummaries::compute(const Workshop& workshop, std::size_t job) const {
   refuse_link(directory.parent_path());
   refuse_link(directory);
   const Row& whole = *summaries_[job];
-  // Read first: as many taps as the summary says are in the record, or it is refused.
   const Recording recording = read_recording(workshop, directory);
-  std::vector<Occasion> all;
-  for (std::size_t taps = 1; taps < taps_made(whole); ++taps) all.push_back(Occasion::after(static_cast<int>(taps)));
-  const std::string hash = summary_hash(whole);
+  if (recording.rows.size() < taps_made(whole)) {
+    throw Error(directory.string(), "its record has fewer taps than its summary",
+                "the file is damaged, run the job again");
+  }
   std::string lines;
-  for (const std::optional<Row>& summary : summaries_at(workshop, recording, all)) {
-    Row row = numbers_of(*summary);
-    row.add(kOfSummary, hash);
+  for (Row& row : earlier_summaries(workshop, recording)) {
+    row.add(kOfSummary, summary_hash(whole));
     lines += to_json_line(row) + "\n";
   }
   write_file(directory / kSummariesFile, lines);
@@ -103,7 +93,11 @@ bool TapSummaries::hand_over(std::size_t job) const {
 }
 
 void TapSummaries::read_missing() const {
-  for (const std::size_t job : missing_) hand_over(job);
+  for (const std::size_t job : missing_) {
+    if (hand_over(job)) continue;
+    throw Error(job_directory(sweep_, sweep_.jobs[job]).string(), "has no summaries after its taps",
+                "they were removed during the command: repeat the command", Error::Kind::run);
+  }
 }
 
 }  // namespace palpate
