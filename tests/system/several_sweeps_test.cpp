@@ -195,8 +195,10 @@ TEST_F(SeveralSweeps, MergeByCopyingTheFoldersOfTheirJobs) {
   // The whole plan, broken off at once.
   const Words plan = set_by(Words{"sweep", paper(), "name=whole"} + kPlan, "acquisition=random,grid,uncertainty");
   const auto begun = begin(plan + "-j 1");
-  EXPECT_TRUE(
-      test::eventually([&] { return fs::exists(fs::path(test::run_in(here() / "runs/whole")) / "manifest.jsonl"); }));
+  EXPECT_TRUE(test::eventually([&] {
+    const fs::path part = test::run_in(here() / "runs/whole");  // of the sweep
+    return !part.empty() && fs::exists(part.parent_path() / "manifest.jsonl");
+  }));
   begun->signal(SIGINT);
   begun->wait();
   const fs::path whole = fs::directory_iterator(here() / "runs/whole")->path();
