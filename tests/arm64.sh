@@ -43,11 +43,12 @@ unpack() {
   [ ! -e "$system/usr/include/hwy" ] || return 0
   rm -rf "$system"
   packages=$(sed -n '/^\[core\]/,/^\[ros\]/s/^\(lib[^ ]*-dev\|nlohmann-json3-dev\)  *#.*/\1/p' "$root/packages.txt" | tr '\n' ',')
-  mmdebstrap --quiet --arch=arm64 --variant=extract --include="libc6-dev,libstdc++-12-dev,$packages" bookworm "$system" http://deb.debian.org/debian
-  # No package was configured, so that the links of alternatives are not there.
+  mmdebstrap --quiet --arch=arm64 --variant=extract --include="libc6-dev,libstdc++-12-dev,libblas-dev,liblapack-dev,$packages" bookworm "$system" http://deb.debian.org/debian
+  # No package was configured, so that the links of alternatives are not there, and Ceres names its libraries by whole paths.
   for name in blas lapack; do
     for end in so so.3; do ln -sf "$name/lib$name.$end" "$system/usr/lib/aarch64-linux-gnu/lib$name.$end"; done
   done
+  sed -i "s|\([;\"]\)\(/usr/lib/aarch64-linux-gnu/\)|\1$system\2|g" "$system/usr/lib/aarch64-linux-gnu/cmake/Ceres/CeresTargets.cmake"
 }
 
 configure() {

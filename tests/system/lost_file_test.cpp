@@ -204,13 +204,12 @@ TEST_F(LostMesh, ASweepIsReadAndWhatItsRecordsLackIsRefusedByTheNameOfTheFile) {
   fs::remove(here() / "a.stl");
   for (const Words& words : {curves, Words{"report", sweep}, Words{"resume", sweep, "--quiet"}, Words{"status", sweep},
                              Words{"compare", sweep} + "--by acquisition --metric rmse_m",
+                             Words{"compare", sweep} + "--by acquisition --metric rmse_m --at 2",
                              Words{"pareto", sweep} + "--cost robot_seconds --error rmse_m"}) {
     const Ended ended = palpate(words);
     EXPECT_EQ(ended.status, 0) << words.front() << ": " << ended.err;
   }
   EXPECT_EQ(text_of(here() / "curves.csv"), whole);
-  EXPECT_THAT(refused(Words{"compare", sweep} + "--by acquisition --metric rmse_m --at 2", 1),
-              HasSubstr("a.stl: no such file"));
 }
 
 }  // namespace
