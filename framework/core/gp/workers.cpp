@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gp/workers.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <utility>
 
 namespace palpate {
@@ -58,7 +60,7 @@ void Workers::take_pieces(int worker) {
 void Workers::help(int worker) {
   unsigned seen = 0;
   for (;;) {
-    for (int look = 0; look < kPatience && jobs_ == seen; ++look) __builtin_ia32_pause();
+    for (int look = 0; look < kPatience && jobs_ == seen; ++look) hwy::Pause();
     if (jobs_ == seen) {
       std::unique_lock<std::mutex> lock(mutex_);
       ++asleep_;
