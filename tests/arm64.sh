@@ -72,7 +72,7 @@ toolchain
 runs() {
   rm -rf "$2"
   for config in paper/object_i default; do
-    "$1" sweep "$root/configs/$config.yaml" "seed=1..$seeds" $([ $config = paper/object_i ] || echo scene.effects=standard) \
+    "$1" sweep "$root/configs/$config.yaml" "seed=range(1,$((seeds + 1)))" $([ $config = paper/object_i ] || echo scene.effects=standard) \
       --runs "$2" --quiet >/dev/null
   done
 }
