@@ -4,8 +4,6 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 
-#include <fmt/format.h>
-
 namespace palpate::cli {
 
 int calibrate(Program& program, const std::vector<std::string>& directories) {

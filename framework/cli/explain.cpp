@@ -4,8 +4,6 @@
 
 #include "cli/commands.hpp"
 
-#include <fmt/format.h>
-
 namespace palpate::cli {
 
 int explain(Program& program, const std::string& directory, int tap) {

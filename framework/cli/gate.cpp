@@ -8,10 +8,7 @@
 
 #include <palpate/error.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstdio>
 
 #include <unistd.h>
 

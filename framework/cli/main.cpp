@@ -20,12 +20,9 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <sstream>
 #include <string_view>
-#include <utility>
 
 namespace palpate::cli {
 namespace {

@@ -5,8 +5,6 @@
 #include "config/scale.hpp"
 #include "record/run_directory.hpp"
 
-#include <fmt/format.h>
-
 namespace palpate::cli {
 
 int status(Program& program, const std::string& directory) {

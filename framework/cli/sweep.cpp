@@ -27,7 +27,6 @@
 
 #include <charconv>
 #include <csignal>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>

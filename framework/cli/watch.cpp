@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include <sys/resource.h>
 
 namespace palpate::cli {

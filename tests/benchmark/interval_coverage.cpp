@@ -9,6 +9,7 @@
 //     interval_coverage SAMPLES [--seeds N] RESULTS_CSV=METRIC ...
 // SAMPLES is 1000 or more: with 1000, the 99 % interval of a cell at 95 % reaches 1.8 percent to each side, at 89 %
 // 2.6 percent. --seeds gives the table of 5, 10, 20 or 60 seeds alone. Exit code 1: a cell misses.
+#include "support/clusters.hpp"
 #include "support/populations.hpp"
 
 #include <algorithm>
@@ -102,7 +103,7 @@ void print_drawn(const std::string& name, double truth, int samples, const std::
       Random random(static_cast<std::uint64_t>(sample), fmt::format("{} {}", name, seeds));
       std::vector<double> values(seeds);
       for (double& one : values) one = value(random);
-      found.add(mean_of_sample(each_alone(values)).interval, truth);
+      found.add(mean_of_sample(test::each_alone(values)).interval, truth);
     }
     fmt::print("{:<18} {:>5}  {:>17} {:>6}\n", name, seeds, cell(found), found.none);
   }

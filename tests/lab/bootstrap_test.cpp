@@ -2,6 +2,8 @@
 // Intervals of the bootstrap against scipy's, against Student's where that is right, and against what they promise.
 #include "analysis/bootstrap.hpp"
 
+#include "support/clusters.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +11,8 @@
 
 namespace palpate {
 namespace {
+
+using test::each_alone;
 
 double width(const MeanInterval& interval) { return interval.high - interval.low; }
 
@@ -65,17 +69,6 @@ TEST(BootstrapMean, OfClustersIsTheSameInAnyOrderAndItsNegativesTheNegative) {
   }
   EXPECT_NEAR(bootstrap_mean(turned).interval->low, -before.high, 1e-12);
   EXPECT_NEAR(bootstrap_mean(turned).interval->high, -before.low, 1e-12);
-}
-
-TEST(BootstrapMean, OfClustersThatRepeatTheirValuesIsThatOfTheValues) {
-  const std::vector<double> values{0.1, 0.3, 0.4, 0.9, 1.1, 1.3, 2.0, 2.2, 3.7, 5.1, 7.9, 16.0};
-  const MeanInterval once = *bootstrap_mean(each_alone(values)).interval;
-  Clusters thrice;
-  for (const double value : values) thrice.push_back({value, value, value});
-  const MeanEstimate mean = bootstrap_mean(thrice);
-  EXPECT_EQ(mean.count, 36U);
-  EXPECT_NEAR(mean.interval->low, once.low, 1e-12);
-  EXPECT_NEAR(mean.interval->high, once.high, 1e-12);
 }
 
 TEST(BootstrapMean, OfClustersWithEqualMeansHasNoInterval) {

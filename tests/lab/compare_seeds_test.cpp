@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Seeds are the units of a comparison: their jobs are drawn together, copies count once, and what is missing satisfies
 // no condition.
+#include "support/clusters.hpp"
 #include "support/made_sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace palpate {
 namespace {
 
+using test::each_alone;
 using test::MadeJob;
 using test::MadeSweep;
 using ::testing::HasSubstr;
@@ -119,16 +119,6 @@ TEST(CompareSeeds, EqualValuesHaveNoIntervalAndItSaysWhy) {
   EXPECT_THAT(compare_tables(made),
               HasSubstr("\na has no interval: its values are equal in all 12 seeds and show no spread\n"));
   EXPECT_THAT(compare_tables(made), HasSubstr("\nc - b has no interval: its differences are equal in all 12 seeds"));
-}
-
-TEST(CompareWhere, LeavesOutAResultThatIsMissingOrNotFiniteNegatedOrNot) {
-  const MadeSweep made({{"a", "k", 1, 0.1}, {"a", "k", 2, std::nan("")}, {"a", "k", 3, {}}, {"b", "k", 1, 0.4}});
-  for (const char* where : {"rmse_m <= 30 cm", "not rmse_m > 30 cm", "rmse_m != 30 cm and not footprint_iou > 0.95",
-                            "not (rmse_m > 30 cm or rmse_m == 1 m)"}) {
-    const Comparison found = made.by({"acquisition"}, "rmse_m", {}, where);
-    EXPECT_EQ(found.groups[0].mean.count, 1U) << where;
-    EXPECT_EQ(found.groups[0].counts.of(Fate::left_out), 2) << where;
-  }
 }
 
 }  // namespace

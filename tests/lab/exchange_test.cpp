@@ -33,10 +33,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 TEST(SurfacePly, DeclaresWhatItHoldsAndHoldsWhatItDeclares) {
-  const std::vector<std::string> lines = lines_of(surface_ply(two_by_two(true), "run of a test"));
+  const std::vector<std::string> lines = lines_of(surface_ply(two_by_two(true), "run of\na test"));
   ASSERT_EQ(lines.size(), 17U + 4U + 2U);
   EXPECT_THAT(std::vector<std::string>(lines.begin(), lines.begin() + 17),
-              ElementsAre("ply", "format ascii 1.0", "comment palpate, run of a test",
+              ElementsAre("ply", "format ascii 1.0", "comment palpate, run of?a test",
                           "comment lengths in metres; quality: standard deviation of the height", "element vertex 4",
                           "property double x", "property double y", "property double z", "property double nx",
                           "property double ny", "property double nz", "property float quality",

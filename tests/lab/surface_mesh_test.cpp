@@ -40,15 +40,6 @@ Eigen::Vector3d area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& t
   return (corner(mesh, t[1]) - corner(mesh, t[0])).cross(corner(mesh, t[2]) - corner(mesh, t[0]));
 }
 
-TEST(SurfaceMesh, HasTheCandidatesAsVerticesInTheirOrder) {
-  const Candidates candidates = oblong();
-  const Eigen::VectorXd z = heights(candidates, [](double x, double y) { return std::sin(40 * x) * y; });
-  const SurfaceMesh mesh = surface_mesh(candidates, z);
-  ASSERT_EQ(mesh.points.rows(), 28);
-  EXPECT_EQ(mesh.points.leftCols<2>(), candidates.points);
-  EXPECT_EQ(mesh.points.col(2), z);
-}
-
 TEST(SurfaceMesh, OfAPlaneHasThePlanesNormalAtEveryVertexTheEdgesIncluded) {
   const double along_x = 0.7;
   const double along_y = -1.9;

@@ -51,13 +51,5 @@ TEST_F(CalibrateCommand, RefusesInOneLineWhatSaysTooLittle) {
   EXPECT_THAT(refused({"calibrate", again}), HasSubstr("its backend, replay, has no motion to simulate"));
 }
 
-TEST_F(CalibrateCommand, RefusesTapsOfADomeThatTheConfigDoesNotHave) {
-  const std::string example = (test::source_folder() / "plugins/backends/process/example.py").string();
-  const fs::path run =
-      ran(Words{"acquisition=random", "taps=30", "backend.command=python3 '" + example + "'"}, config("process.yaml"));
-  EXPECT_THAT(refused({"calibrate", run}), HasSubstr("contacts are far from its scene, but only one in 5 may be, use "
-                                                     "taps on a scene that stands as in its config"));
-}
-
 }  // namespace
 }  // namespace palpate

@@ -9,7 +9,6 @@
 
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -253,12 +252,6 @@ TEST_F(Explain, TellsTheLastCandidate) {
   EXPECT_THAT(last, HasSubstr("Its score there is 1; no other candidate is left."));
   EXPECT_THAT(last, HasSubstr("There is no runner-up."));
   expect_whole_words(last);
-}
-
-TEST_F(Explain, PrintsWhatItsPageShows) {
-  const std::string text = palpate({"explain", ran("name=first"), "9"}).out;
-  const std::string shown = "```\n" + text.substr(0, text.find("\nThe models"));
-  EXPECT_THAT(text_of(test::source_folder() / "framework/docs/runs.md"), HasSubstr(shown));
 }
 
 TEST_F(Explain, SaysWhatJitterAndAWeightBeyondItsBoundsMean) {

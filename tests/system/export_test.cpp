@@ -8,7 +8,6 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -86,8 +85,6 @@ TEST_F(Export, WritesASurfaceThatAssimpReadsVertexByVertex) {
   }
 }
 
-TEST_F(Export, WritesTheNumbersOfTheRecordToTheLastBit) { expect_numbers_of_record(ran("surface=two_part")); }
-
 TEST_F(Export, WritesTheProbabilityOfTheFootprint) {
   const fs::path directory = ran({"surface=two_part", "footprint=primitives"});
   expect_numbers_of_record(directory);
@@ -119,23 +116,6 @@ TEST_F(Export, WritesContactsAsPointsAndNoFailedTaps) {
     EXPECT_FLOAT_EQ(mesh.mVertices[i].x, single(contacts[i].at("x")));
     EXPECT_NEAR(mesh.mVertices[i].z, single(contacts[i].at("height")), 1e-9);
   }
-}
-
-TEST_F(Export, OfARunWithAnyNameIsReadByPythonAndByAssimp) {
-  const fs::path directory =
-      ran({"name=\"a \\\"quoted\\\" name, with commas\\nelement vertex 3\\nend_header\\n1 2 3\\ttail \\u00f6\""});
-  ASSERT_EQ(exported(directory).status, 0);
-  const char* const reader = R"(
-import json, sys
-name = json.load(open(sys.argv[1] + '/summary.json', encoding='utf-8'))['name']
-assert len(name.splitlines()) == 4
-header = open(sys.argv[1] + '/export/surface.ply', 'rb').read().split(b'end_header')[0].decode('ascii').splitlines()
-print([line for line in header if line.startswith('element')])
-)";
-  const Ended ended = test::run_program({"python3", "-SEc", reader, directory.string()}, here());
-  EXPECT_EQ(ended.out, "['element vertex 2209', 'element face 4232']\n") << ended.err;
-  Assimp::Importer importer;
-  EXPECT_EQ(only_mesh(importer, directory / "export" / "surface.ply").mNumVertices, 2209U);
 }
 
 TEST_F(Export, OfARunThatIsNotDoneSaysWhatItStandsOn) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // `palpate list` as a user calls it, and names of runs as every command takes them.
-#include "record/json.hpp"
 #include "system/shell.hpp"
 
 #include <nlohmann/json.hpp>
@@ -92,20 +91,6 @@ TEST_F(List, NamesStandForARunOrASweepInEveryCommandThatTakesOne) {
                               "resume many --quiet", "status many@latest", "report many"}) {
     EXPECT_EQ(palpate(command).status, 0) << command;
   }
-}
-
-TEST_F(List, ANameThatSeveralRunsHaveIsRefusedWithWhatSetsThemApart) {
-  ran("taps=3");
-  ran("taps=4 seed=2");
-  for (const char* command : {"status", "resume", "replay", "report", "export", "calibrate"}) {
-    EXPECT_THAT(refused({command, "object_i"}),
-                MatchesRegex("object_i: matches 2 runs: runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 2, taps 4\\); "
-                             "runs/object_i/[0-9a-f]+ \\([-0-9T:]+, seed 1, taps 3\\), give the directory of one, or "
-                             "object_i@latest for the latest\n"));
-  }
-  EXPECT_EQ(palpate("status object_i@latest").out, "object_i: done after 4 of 4 taps: tap budget\n");
-  EXPECT_EQ(refused("status object_j"),
-            "object_j: is not a folder, and runs contains no run or sweep of that name, did you mean 'object_i'?\n");
 }
 
 TEST_F(List, AFolderWithARecordWinsOverANameAndOneWithoutDoesNot) {

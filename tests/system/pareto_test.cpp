@@ -103,13 +103,8 @@ TEST_F(Pareto, RefusesWhatCannotBeComparedInOneLine) {
   const fs::path sweep = settings();
   EXPECT_EQ(refused(words(sweep, "robot_second", "rmse_m")),
             "command line: --cost: results.csv has no column 'robot_second', did you mean 'robot_seconds'?\n");
-  EXPECT_EQ(
-      refused(words(sweep, "robot_seconds", "stop_reason")),
-      "command line: --error: the column 'stop_reason' holds tap budget, not numbers, name a column of numbers\n");
   EXPECT_THAT(refused(words(sweep, "robot_seconds", "rmse_m") + Words{"--within", ""}), HasSubstr("--within"))
       << "a variable that is not set";
-  EXPECT_EQ(refused(words(sweep, "robot_seconds", "rmse_m") + "--within 5"),
-            "command line: --within: '5' has no unit, write a length like '1.7 cm'\n");
   fs::create_directory(here() / "empty");
   EXPECT_THAT(refused(words(here() / "empty", "robot_seconds", "rmse_m")),
               EndsWith("is neither a run nor a sweep, it has no record of one\n"));

@@ -144,17 +144,6 @@ TEST_F(ARun, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
   EXPECT_THAT(ended.out, ContainsRegex("# dropped: acquisition.count from .*configs/acquisition/grid.yaml:4:10"));
 }
 
-TEST_F(ARun, SwapsEveryStrategyFromTheCommandLine) {
-  for (const char* choice :
-       {"kernel=rbf", "kernel=matern32", "kernel=matern52", "acquisition=uncertainty", "acquisition=weighted",
-        "acquisition=random", "acquisition=grid", "fitting=fixed", "scene=object_ii", "label.clip=true",
-        "height.kernel=matern32", "initial.design=sobol", "candidates={spacing: 1 cm}"}) {
-    const Ended ended = run({choice, "--json", "--force"});
-    EXPECT_EQ(ended.status, 0) << choice << ": " << ended.err;
-    EXPECT_EQ(value(ended.out, "taps"), Scalar{std::int64_t{17}}) << choice;
-  }
-}
-
 TEST_F(ARun, WritesTheMapsOfEachChoiceWhereTheConfigAsksForThem) {
   const fs::path maps = ran("log.maps=true") / "maps";
   EXPECT_FALSE(fs::exists(maps / "tap_003.csv")) << "the initial taps are made without a model";

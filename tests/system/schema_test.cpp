@@ -76,6 +76,8 @@ TEST_F(Schema, RefusesWhatTheProgramRefuses) {
   };
   EXPECT_TRUE(refused("/tapps", 17)) << "unknown key";
   EXPECT_TRUE(refused("/taps", "many")) << "wrong type";
+  EXPECT_TRUE(refused("/label/clip", "yes")) << "wrong type";
+  EXPECT_TRUE(refused("/scene/objects/0/at", Json::array({"9 cm"}))) << "one length for two";
   EXPECT_TRUE(refused("/kernel/length_scale", 0.017)) << "a length without unit";
   EXPECT_TRUE(refused("/kernel/length_scale", "1.7 s")) << "a time for a length";
   EXPECT_TRUE(refused("/kernel/length_scal", "1.7 cm")) << "unknown option of a plugin";

@@ -55,23 +55,6 @@ TEST_F(SweepDescription, RunsEveryBlockOfAConfigAndLeavesCellsEmptyWhereAnOption
                                  "seed,name"));
 }
 
-TEST_F(SweepDescription, LeavesAConfigThatIsTheSameSweep) {
-  for (const Words& words :
-       {Words{"sweep.zip={taps: [6, 8], candidates.count: [12, 24]}", "seed=1,2"},
-        Words{"sweep.list=[{acquisition: random}, {acquisition: grid, acquisition.count: [3, 4]}]", "taps=6"},
-        Words{"sweep.sobol={samples: 3, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)'}}", "taps=6"},
-        Words{"kernel=rbf,rational_quadratic", "kernel.alpha=1,2", "taps=6", "sweep.where=not kernel.alpha == 2"}}) {
-    const fs::path directory = swept(words);
-    const fs::path other = swept("--runs again", directory / "config.yaml");
-    EXPECT_EQ(other.filename(), directory.filename());
-    const std::vector<fs::path> jobs = jobs_of(directory);
-    EXPECT_EQ(jobs_of(other).size(), jobs.size());
-    for (const fs::path& job : jobs) EXPECT_TRUE(fs::exists(other / "jobs" / job.filename())) << words.front();
-    EXPECT_EQ(text_of(other / "config.yaml"), text_of(directory / "config.yaml"));
-    EXPECT_EQ(text_of(other / "manifest.jsonl"), text_of(directory / "manifest.jsonl"));
-  }
-}
-
 TEST_F(SweepDescription, NarrowsTheSweepOfAConfigFromTheCommandLine) {
   Words expected;
   for (const char* taps : {"taps=17", "taps=19"}) {

@@ -228,16 +228,6 @@ TEST_F(WatchedRun, GoesOnWhereItWasKilledAndCarriedOn) {
   EXPECT_EQ(at.at("summary").at("stop_reason"), "tap budget");
 }
 
-TEST_F(WatchedRun, BeginsAnewWhereTheRecordIsAnotherOne) {
-  const fs::path directory = under_way(5);
-  const Address address = watch({directory});
-  const std::string at = data(address, 6).at("live");
-  write(directory / "record.jsonl", begun_);
-  record(directory, 0, 2);
-  EXPECT_EQ(news(address, at).at("anew"), true);
-  data(address, 3);
-}
-
 TEST_F(WatchedRun, SaysWhatIsWrongWithARecordAndGoesOnOnceItIsPutRight) {
   const fs::path directory = under_way(5);
   const Address address = watch({directory});

@@ -106,34 +106,6 @@ TEST(Describe, GivesATreeThatIsValidJson) {
   EXPECT_EQ(tree.find_path("10.required")->text, "true");
 }
 
-TEST(Schema, AllowsExactlyTheFieldsAndThoseOfTheCases) {
-  const Tree schema = schema_of(described());
-  EXPECT_TRUE(nlohmann::json::accept(to_json(schema)));
-  EXPECT_EQ(schema.find("additionalProperties")->text, "false");
-  std::string names;
-  for (const Tree::Entry& entry : schema.find("properties")->entries) names += entry.key + " ";
-  EXPECT_EQ(names, "length limit at count clip name design side part parts kernel kernels ");
-}
-
-TEST(Schema, KnowsTheJsonTypeOfEveryFieldAndTakesAQuantityForATextWithAUnit) {
-  const Tree schema = schema_of(described());
-  const auto at = [&](const char* path) { return schema.find_path(path)->text; };
-  EXPECT_EQ(at("properties.length.type"), "string");
-  EXPECT_EQ(at("properties.length.pattern"), "^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *(m|dm|cm|mm|um)$");
-  EXPECT_EQ(at("properties.count.type"), "integer");
-  EXPECT_EQ(at("properties.clip.type"), "boolean");
-  EXPECT_EQ(at("properties.name.type"), "string");
-  EXPECT_EQ(at("properties.at.minItems"), "2");
-  EXPECT_EQ(at("properties.at.maxItems"), "2");
-  EXPECT_EQ(at("properties.design.enum.1"), "grid");
-  EXPECT_EQ(at("properties.part.properties.width.type"), "string");
-  EXPECT_EQ(at("properties.parts.items.additionalProperties"), "false");
-  EXPECT_EQ(at("properties.kernel.$ref"), "#/definitions/kernel");
-  EXPECT_EQ(at("properties.kernels.type"), "array");
-  EXPECT_EQ(at("properties.kernels.items.allOf.0.$ref"), "#/definitions/kernel");
-  EXPECT_EQ(at("properties.kernels.items.allOf.1.required.0"), "type");
-}
-
 struct PointCount : Options {
   std::vector<std::array<double, 2>> places{{0.1, 0.2}, {0.3, 0.4}};
   PluginChoice shape{"shape", {}, nullptr};

@@ -20,17 +20,6 @@ std::string failure_of(Prepared& prepared) {
   return error_of([&] { prepared.run(); }, Error::Kind::run);
 }
 
-TEST(LastTap, IsRecordedBeforeTheRunFailsWithItsReason) {
-  const auto backend = scripted({contact_at(0.0), contact_at(0.09), stopped("the e-stop is pressed")});
-  Prepared prepared("paper/object_i.yaml", {}, backend);
-  EXPECT_EQ(failure_of(prepared), "backend/simulator: the e-stop is pressed");
-  ASSERT_EQ(prepared.taps.size(), 3U);
-  EXPECT_EQ(prepared.taps[2].contact.outcome, Outcome::aborted);
-  EXPECT_EQ(prepared.taps[2].contact.reason, "the e-stop is pressed");
-  EXPECT_EQ(prepared.experiment.counts().failed_taps, 1);
-  EXPECT_EQ(backend->requests.size(), 3U) << "nothing is asked of it any more";
-}
-
 TEST(LastTap, ThatTouchedSomethingCountsAsAContact) {
   const std::string reason = "the arm stands in a collision";
   Prepared prepared("paper/object_i.yaml", {}, scripted({contact_at(0.0), last_contact(0.09, reason)}));
@@ -44,18 +33,6 @@ TEST(LastTap, WithoutAReasonOrAHeightIsTheLastAllTheSame) {
   EXPECT_EQ(failure_of(silent), "backend/simulator: cannot continue and gives no reason");
   Prepared wild("paper/object_i.yaml", {}, scripted({last_contact(std::nan(""))}));
   EXPECT_EQ(failure_of(wild), "backend/simulator: the backend reported a height that is not a finite number");
-}
-
-TEST(LastTap, IsAPastTapLikeAnyOtherForARunThatIsCarriedOn) {
-  Prepared first("paper/object_i.yaml", {}, scripted({contact_at(0.0), stopped("no messages")}));
-  failure_of(first);
-  const auto backend = scripted();
-  Prepared second("paper/object_i.yaml", {}, backend);
-  second.experiment.resume(first.past(2));
-  second.run();
-  EXPECT_EQ(backend->requests.front().number, 3);
-  EXPECT_EQ(second.taps.size(), 15U);
-  EXPECT_EQ(second.experiment.result().stop_reason, "tap budget");
 }
 
 /// Four taps that meet the desk once.

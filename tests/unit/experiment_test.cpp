@@ -38,14 +38,6 @@ TEST(Experiment, ADeadStartFallsBackToUncertaintyAndSaysSo) {
   EXPECT_EQ(run.experiment.result().diagnostics.at("fallback"), 14);
 }
 
-TEST(Experiment, WithoutFallbackADeadStartStallsAtTheFirstCandidateAsThePapersRuleDoes) {
-  Finished run("paper/object_i.yaml", {"fallback=none", "repeat=allow"}, scripted());
-  for (std::size_t i = 3; i < run.taps.size(); ++i) EXPECT_EQ(run.taps[i].candidate, 0);
-  const RunResult result = run.experiment.result();
-  EXPECT_EQ(result.taps, 17);
-  EXPECT_EQ(result.diagnostics.at("jitter"), 0) << "repeated taps are legal data with independent noise";
-}
-
 TEST(Experiment, ForbiddenRepeatsTapEveryCandidateAtMostOnceAndStopWhenNoneIsLeft) {
   Finished run("paper/object_i.yaml", {"candidates.count=3", "taps=17"});
   std::set<int> tapped;

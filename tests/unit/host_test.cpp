@@ -120,18 +120,6 @@ TEST_F(PluginFolder, KeepsALibraryWhenItsObjectsAreGone) {
   EXPECT_TRUE(mapped(file));
 }
 
-TEST(PluginHost, DescribesOptions) {
-  const std::vector<FieldDescription> options = options_of(shared_host(), "kernel", "rbf");
-  ASSERT_EQ(options.size(), 2U);
-  EXPECT_EQ(options[1].name, "length_scale_y");
-  EXPECT_EQ(options[1].default_value, "none");
-  EXPECT_EQ(options[0].name, "length_scale");
-  EXPECT_EQ(options[0].type_name(), "length");
-  EXPECT_EQ(options[0].range, "> 0 m");
-  EXPECT_EQ(options[0].default_value, "0.017 m");
-  EXPECT_FALSE(options[0].meaning.empty());
-}
-
 TEST(PluginHost, OffersTheNearestNameOrListsWhatThereIs) {
   EXPECT_EQ(refusal_of("kernel", "mattern52"), "no plugin kernel/mattern52, did you mean 'matern52'?");
   EXPECT_THAT(refusal_of("fitting", "zzzzzzzzzzzz"), HasSubstr("no plugin fitting/zzzzzzzzzzzz, known: ceres, fixed"));
@@ -155,11 +143,6 @@ TEST(PluginHost, RefusesNamesWithAPath) {
   for (const char* name : {"../kernel/rbf", "/etc/passwd", "rbf.so", ".", "", "a b"}) {
     EXPECT_THAT(refusal_of("kernel", name), HasSubstr("is not a valid name of a plugin")) << name;
   }
-}
-
-TEST(PluginHost, RefusalOfOptionsNamesTheirPlace) {
-  EXPECT_THAT(error_of([] { choose(shared_host(), "kernel", "rbf", "{length_scal: 2 cm}"); }),
-              testing::StartsWith("options.yaml:1:2: unknown option 'length_scal', did you mean 'length_scale'?"));
 }
 
 TEST(PluginHost, SearchPathIsTheVariableWithoutEmptyPartsThenTheShippedFolder) {

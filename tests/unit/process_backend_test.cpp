@@ -177,14 +177,6 @@ TEST_F(ProcessBackend, AnEndBetweenTapsFailsTheNextTap) {
   }
 }
 
-TEST_F(ProcessBackend, AProgramThatEndsAtEveryTapEndsInFailedTaps) {
-  const auto backend = open("sys.exit('broken')");
-  for (int number = 1; number <= 5; ++number) {
-    expect_failure(tap(*backend, number), Outcome::aborted,
-                   "the program ended with exit status 1, its last output: 'broken'");
-  }
-}
-
 TEST_F(ProcessBackend, AClosedStdinFailsTheTapAndRaisesNoSigpipe) {
   const auto backend = open("ask = json.loads(sys.stdin.readline())\nos.close(0)\ncontact(ask)\ntime.sleep(60)");
   expect_contact(tap(*backend, 1));

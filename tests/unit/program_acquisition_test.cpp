@@ -225,17 +225,6 @@ TEST_F(ProgramAcquisition, SaysWhatIsWrongWithItsOptionsBeforeAnythingStarts) {
   EXPECT_THAT(refusal(command(""), ", checksum: other"), HasSubstr("restore the program that the run started with"));
 }
 
-TEST_F(ProgramAcquisition, BeginsInTheFolderThatTheConfigNames) {
-  fs::create_directory(folder_.path() / "elsewhere");
-  const fs::path program = folder_.path() / "elsewhere" / "here.sh";
-  folder_.write("elsewhere/here.sh",
-                "# reads=[\"uncertainty\"]\npwd >&2\nread -r ask\nb=${ask##*\\\"bytes\\\":}\nhead -c \"${b%\\}}\"\n");
-  const auto acquisition = open("sh here.sh", ", folder: " + yaml_quoted(program.parent_path().string()));
-  const WrittenBelief belief = written();
-  EXPECT_EQ(scores(*acquisition), std::vector<double>(belief.u.data(), belief.u.data() + 6));
-  EXPECT_EQ(diary(), fs::canonical(program.parent_path()).string() + "\n");
-}
-
 TEST_F(ProgramAcquisition, AWaitForItsScoresIsBrokenOff) {
   const auto acquisition = open(command("for ask in asks(): time.sleep(600)\n"));
   interrupted_ = true;

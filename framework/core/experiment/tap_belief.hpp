@@ -61,7 +61,6 @@ class TapBelief final : public Belief {
   std::vector<Relabelled> relabelled() const;
 
   /// What was seen before the first tap, which all models know before any contact; and whether an object was.
-  const std::vector<Sight>& sights() const { return sights_; }
   bool sees_object() const { return !hits_seen_.empty(); }
 
   /// From now on these quantities are kept and belong to the record: builds the models that they lack, with all taps so

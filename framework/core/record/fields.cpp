@@ -10,11 +10,9 @@
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <sstream>
-#include <string_view>
 
 namespace palpate {
 namespace {

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <string_view>
-#include <utility>
 
 namespace palpate {
 

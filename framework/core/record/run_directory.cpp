@@ -9,8 +9,6 @@
 
 #include <palpate/error.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include <unistd.h>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
-#include <string_view>
 #include <utility>
 #include <vector>
 

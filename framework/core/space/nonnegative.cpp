@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "space/nonnegative.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace palpate {

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace palpate {
 
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,

@@ -23,12 +23,6 @@ double student_factor(std::size_t degrees) {
   return boost::math::quantile(boost::math::complement(distribution, kTail));
 }
 
-Clusters each_alone(const std::vector<double>& values) {
-  Clusters out;
-  for (const double value : values) out.push_back({value});
-  return out;
-}
-
 std::vector<double> cluster_means(const Clusters& clusters) {
   std::vector<double> out;
   for (const std::vector<double>& one : clusters) out.push_back(mean_of(one));

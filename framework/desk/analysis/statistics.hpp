@@ -20,9 +20,6 @@ struct MeanInterval {
 /// not (jobs with the same seed are a cluster). No cluster is empty.
 using Clusters = std::vector<std::vector<double>>;
 
-/// Each value as a cluster of its own.
-Clusters each_alone(const std::vector<double>& values);
-
 /// The means of the clusters, in their order. Equal values are their own mean, to the bit.
 std::vector<double> cluster_means(const Clusters& clusters);
 

@@ -2,7 +2,6 @@
 #include <palpate/math.hpp>
 
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
 namespace palpate::math {

@@ -5,11 +5,8 @@
 #include "reading/npy.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
-#include <type_traits>
 
 #include <fmt/format.h>
 

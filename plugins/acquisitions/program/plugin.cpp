@@ -21,7 +21,6 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>

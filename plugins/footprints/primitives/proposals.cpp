@@ -5,11 +5,9 @@
 
 #include <palpate/math.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 
 namespace palpate::footprints {
 namespace {

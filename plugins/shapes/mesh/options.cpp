@@ -5,7 +5,6 @@
 
 #include <palpate/error.hpp>
 
-#include <cstdint>
 #include <filesystem>
 #include <utility>
 
