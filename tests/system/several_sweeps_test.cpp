@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `palpate compare`, `curves` and `pareto` over several sweeps and runs of different plans.
+#include "support/lasting.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 
