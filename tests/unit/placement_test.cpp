@@ -74,8 +74,8 @@ TEST(RandomPlacement, DrawsForAnObjectAloneWhatItAlwaysDrew) {
       const double rotation = 2.0 * kPi * random.uniform();
       x = kSide * random.uniform();
       y = kSide * random.uniform();
-      cosine = std::cos(rotation);
-      sine = std::sin(rotation);
+      cosine = math::cos(rotation);
+      sine = math::sin(rotation);
       const double reach_x = std::abs(cosine) * 0.08 + std::abs(sine) * 0.03;
       const double reach_y = std::abs(sine) * 0.08 + std::abs(cosine) * 0.03;
       if (x >= reach_x && x <= kSide - reach_x && y >= reach_y && y <= kSide - reach_y) break;
