@@ -13,28 +13,64 @@ bool is_at_or_below(const std::string& path, const std::string& top) {
   return path.compare(0, top.size(), top) == 0 && (path.size() == top.size() || path[top.size()] == '.');
 }
 
-ConfigKeys::ConfigKeys(const std::function<void(Fields&)>& list) {
-  const std::vector<FieldDescription> fields = describe_fields(list);
-  note_fields(fields, "");
-  for (const FieldDescription& field : fields) {
-    if (field.owner == Owner::unsaid) {
-      throw std::logic_error("the key '" + field.name + "' does not say whether it is of a strategy or of the run");
-    }
-    if (field.owner == Owner::run) of_run_.insert(field.name);
-  }
-}
+/// Visits keys for what they are, not for what they hold: every command begins with this, and descriptions are not made
+/// in a moment.
+class ConfigKeys::Reader final : public Fields {
+ public:
+  explicit Reader(ConfigKeys& keys) : keys_(keys) {}
 
-void ConfigKeys::note_fields(const std::vector<FieldDescription>& fields, const std::string& path) {
-  for (const FieldDescription& field : fields) {
-    if (field.group) groups_.push_back(path + field.name);
-    if (field.group && !field.kind.empty()) plugins_.insert(field.kind);
-    if (!field.beside.empty()) {
-      groups_.push_back(field.beside);
-      beside_.emplace(path + field.name, field.beside);
-    }
-    if (!field.heir_of.empty()) heirs_.emplace_back(path + field.name, field.heir_of);
-    if (field.type == FieldDescription::Type::section) note_fields(field.fields, path + field.name + ".");
+  void real(double&, const Field& field) override { note(field); }
+  void real(std::optional<double>&, const Field& field) override { note(field); }
+  void reals(double*, std::size_t, const Field& field) override { note(field); }
+  void table(std::vector<double>&, std::size_t, const Field& field) override { note(field); }
+  void integer(std::int64_t&, const Field& field) override { note(field); }
+  void integer(std::optional<std::int64_t>&, const Field& field) override { note(field); }
+  void flag(bool&, const Field& field) override { note(field); }
+  void text(std::string&, const Field& field) override { note(field); }
+  void choice(std::size_t&, const Field& field, const std::vector<Case>&) override { note(field); }
+  void sections(const ListAccess&, const Field& field) override { note(field); }
+  void plugin(PluginChoice& choice, const Field& field) override { note_plugin(choice.kind, field); }
+  void plugin(std::optional<PluginChoice>&, const char* kind, const Field& field) override { note_plugin(kind, field); }
+  void plugins(std::vector<PluginChoice>&, const char* kind, const Field& field) override { note_plugin(kind, field); }
+  void adopt(PluginChoice& choice, const Field& field) override { note_plugin(choice.kind, field); }
+  void section(bool&, Options& options, const Field& field) override { section(options, field); }
+  void section(Options& options, const Field& field) override {
+    note(field);
+    const std::size_t above = path_.size();
+    path_.append(field.name).push_back('.');
+    options.list(*this);
+    path_.resize(above);
   }
+  void require(bool, const char*, const std::string&) override {}
+
+ private:
+  ConfigKeys& keys_;
+  std::string path_;  ///< of the section at hand: empty at the top, else it ends with a dot
+
+  void note(const Field& field) {
+    if (field.is_group) keys_.groups_.push_back(path_ + field.name);
+    if (path_.empty()) note_owner(field);
+    if (*field.heir_of != '\0') keys_.heirs_.emplace_back(path_ + field.name, field.heir_of);
+  }
+  void note_plugin(const std::string& kind, const Field& field) {
+    note(field);
+    if (field.is_group) keys_.plugins_.insert(kind);
+  }
+  void note_owner(const Field& field) {
+    const std::string name = field.name;
+    if (field.owner == Owner::unsaid) {
+      throw std::logic_error("the key '" + name + "' does not say whether it is of a strategy or of the run");
+    }
+    if (field.owner == Owner::run) keys_.of_run_.insert(name);
+    if (*field.beside == '\0') return;
+    keys_.groups_.emplace_back(field.beside);
+    keys_.beside_.emplace(name, field.beside);
+  }
+};
+
+ConfigKeys::ConfigKeys(const std::function<void(Fields&)>& list) {
+  Reader reader(*this);
+  list(reader);
 }
 
 bool ConfigKeys::is_group(const std::string& path) const {

@@ -3,8 +3,6 @@
 // what they do not say, and which a strategy sets.
 #pragma once
 
-#include "config/describe.hpp"
-
 #include <palpate/options.hpp>
 
 #include <functional>
@@ -49,7 +47,7 @@ class ConfigKeys {
   std::vector<std::string> heirs_of(const std::string& path) const;
 
  private:
-  void note_fields(const std::vector<FieldDescription>& fields, const std::string& path);
+  class Reader;
 
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< groups that are plugins: their names
