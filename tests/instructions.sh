@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Counts the instructions of fixed computations with callgrind and compares them with tests/benchmark/instructions.csv. A
-# computation fails that takes over 10 % more; its largest functions are printed. Load and processor do not count: loops and
+# computation fails that takes over 10 % more; its largest functions are printed. Load and processor do not count: loops
 # the C library use the baseline instruction set. Compilers from g++ 12 to 14 differ by less than 10 %; with others, or
 # without valgrind, the status is 77.
 #   sh tests/instructions.sh BUILD [--short] [PIECE...]     all pieces, those that are short, or some
@@ -62,8 +62,8 @@ killed() {
 command_of() {
   case $1 in
     w1_dense | w1_grid | w1_lowrank)
-      echo "$bench --taps $root/tests/data/taps_w1.csv --grid 47 --baseline --engine ${1#w1_}" ;;
-    w2_lowrank) echo "$bench --taps $root/tests/data/taps_w2.csv --grid 231 --baseline --engine lowrank" ;;
+      echo "$bench --taps $root/tests/data/taps_w1.csv --grid 47 --engine ${1#w1_}" ;;
+    w2_lowrank) echo "$bench --taps $root/tests/data/taps_w2.csv --grid 231 --engine lowrank" ;;
     fit_50 | fit_200) echo "$build/tests/fit_benchmark ${1#fit_} 1" ;;
     perfect_taps) echo "$build/tests/tap_cost --perfect 200000" ;;
     compose) echo "$program run $default --print-config" ;;

@@ -28,7 +28,19 @@ Pair sum(double a, double b) {
   return {high, b - (high - a)};
 }
 
-Pair product(double a, double b) { return {a * b, std::fma(a, b, -(a * b))}; }
+/// Without a fused multiplication, which some processors lack (Dekker 1971). Of numbers below 1e150.
+Pair product(double a, double b) {
+  const auto half = [](double x) {
+    const double scaled = 134217729.0 * x;  // 2^27 + 1
+    return scaled - (scaled - x);
+  };
+  const double high = a * b;
+  const double a_high = half(a);
+  const double b_high = half(b);
+  const double a_low = a - a_high;
+  const double b_low = b - b_high;
+  return {high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low};
+}
 
 /// sum of c_i x^i.
 template <std::size_t kCount>
@@ -74,7 +86,8 @@ Pair log_of(double x) {
   const auto [exponent, f] = split(x);
   const Pair below = sum(2.0, f);
   const double s = f / below.high;
-  const double s_low = (std::fma(-s, below.high, f) - s * below.low) / below.high;
+  const Pair back = product(s, below.high);
+  const double s_low = ((f - back.high) - back.low - s * below.low) / below.high;
   Pair square = product(s, s);
   square.low += 2.0 * s * s_low;
   // 2 s + s (2 / 3 s^2) carry both parts; what follows is small.
@@ -165,8 +178,8 @@ double pow(double x, double y) {
   if (y == 0.0 || x == 1.0) return 1.0;
   if (x == 0.0 || std::isinf(x)) return (x == 0.0) == (y > 0.0) ? 0.0 : kInfinity;
   const Pair logarithm = log_of(x);
+  if (!(std::abs(y * logarithm.high) < 800.0)) return y * logarithm.high > 0.0 ? kInfinity : 0.0;
   const Pair exponent = product(y, logarithm.high);
-  if (!(std::abs(exponent.high) < 800.0)) return exponent.high > 0.0 ? kInfinity : 0.0;
   return exp_of(exponent.high, exponent.low + y * logarithm.low);
 }
 
