@@ -51,7 +51,11 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   bool boolean(bool value) override { return put(Tree::scalar(value ? "true" : "false")) != nullptr; }
   bool number_integer(number_integer_t value) override { return put(Tree::scalar(std::to_string(value))) != nullptr; }
   bool number_unsigned(number_unsigned_t value) override { return put(Tree::scalar(std::to_string(value))) != nullptr; }
-  bool number_float(number_float_t, const string_t& text) override { return put(Tree::scalar(text)) != nullptr; }
+  bool number_float(number_float_t, const string_t& text) override {
+    std::string own = text;  // with the decimal point of the locale
+    for (char& c : own) c = std::string_view("+-0123456789eE").find(c) == std::string_view::npos ? '.' : c;
+    return put(Tree::scalar(std::move(own))) != nullptr;
+  }
   bool string(string_t& value) override { return put(Tree::quote(std::move(value))) != nullptr; }
   bool binary(binary_t&) override { return false; }
   bool start_object(std::size_t) override { return open(Tree::map()); }
