@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How a run begins, goes on and ends in its directory, whoever makes its taps: what session.cpp and callers_run.hpp have
-// in common, and nobody else uses.
+// How a run begins, goes on and ends in its directory, whoever makes its taps: what session.cpp and callers_run.hpp
+// have in common, and nobody else uses.
 #pragma once
 
 #include "record/run_directory.hpp"

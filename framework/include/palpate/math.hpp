@@ -38,8 +38,8 @@ inline double log2(double x) { return log(x) * 1.44269504088896340736; }
 inline double hypot(double x, double y) { return std::sqrt(x * x + y * y); }
 
 /// out_i = e^(x_i) for `count` numbers by the widest vectors that the processor has and PALPATE_INSTRUCTIONS allows.
-/// 1.2 ulp up to 709, 40 ulp beyond. Never below e^-708 = 3.3e-308; infinity above 709.8. `out` may be `x`. The bytes are the same on every
-/// processor with a fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
+/// 1.2 ulp up to 709, 40 ulp beyond. Never below e^-708 = 3.3e-308; infinity above 709.8. `out` may be `x`. The bytes
+/// are the same on every processor with a fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
 void exp(const double* x, std::ptrdiff_t count, double* out);
 
 }  // namespace palpate::math

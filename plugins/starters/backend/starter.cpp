@@ -24,7 +24,8 @@ class MyBackend final : public Backend {
   MyBackend(const Options& options, const Context& context) : options_(options), scene_(context.scene) {}
 
   Contact tap(const TapRequest& request) override {
-    const double r = math::hypot(request.target.x - scene_.area().width / 2, request.target.y - scene_.area().depth / 2);
+    const double r =
+        math::hypot(request.target.x - scene_.area().width / 2, request.target.y - scene_.area().depth / 2);
     const double rise = std::sqrt(std::max(0.0, 1 - r * r / (options_.radius * options_.radius)));
     Contact contact;
     contact.outcome = Outcome::contact;

@@ -4,7 +4,6 @@
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
 
-
 using namespace palpate;
 
 struct MyFootprintOptions : Options {
