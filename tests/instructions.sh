@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Counts the instructions of fixed computations with callgrind and compares them with tests/benchmark/instructions.csv. A
 # computation fails that takes over 10 % more; its largest functions are printed. Load and processor do not count: loops
-# the C library use the baseline instruction set. Compilers from g++ 12 to 14 differ by less than 10 %; with others, or
+# use AVX2, and the C library the baseline instruction set. Compilers from g++ 12 to 14 differ by less than 10 %; with others, or
 # without valgrind, the status is 77.
 #   sh tests/instructions.sh BUILD [--short] [PIECE...]     all pieces, those that are short, or some
 #   sh tests/instructions.sh BUILD --write [PIECE...]       records the counts

@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace palpate::kernels::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
+namespace hn = math::HWY_NAMESPACE::hn;
 
 /// As many pairs at a time as `reals` has lanes, with the place number `other` of the others.
 template <class Reals>
@@ -38,7 +38,7 @@ void squared_distances(const Pairs& pairs, std::ptrdiff_t first, std::ptrdiff_t 
   std::ptrdiff_t other = first / pairs.n;
   for (std::ptrdiff_t begin = first % pairs.n; count > 0; begin = 0, ++other) {
     const std::ptrdiff_t end = std::min(pairs.n, begin + count);
-    const std::ptrdiff_t rest = take(hn::ScalableTag<double>(), pairs, other, begin, end, most, scale, out);
+    const std::ptrdiff_t rest = take(math::HWY_NAMESPACE::kReals, pairs, other, begin, end, most, scale, out);
     take(hn::CappedTag<double, 1>(), pairs, other, rest, end, most, scale, out + (rest - begin));
     out += end - begin;
     count -= end - begin;

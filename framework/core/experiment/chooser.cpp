@@ -4,7 +4,6 @@
 #include <palpate/error.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace palpate {
 
@@ -102,7 +101,7 @@ bool Chooser::choose_place(TapBelief& belief, TapRecord& tap, const Wish* wish) 
 const Eigen::VectorXd& Chooser::scores(const TapBelief& belief) {
   scores_.resize(candidates_.size());
   acquisition_->score(belief, scores_);
-  if (std::isfinite(scores_.sum()) || scores_.allFinite()) return scores_;  // a finite sum has finite terms
+  if (all_finite(scores_)) return scores_;
   throw Error("acquisition/" + options_.acquisition.type, "returned a score that is not a finite number", {},
               Error::Kind::run);
 }

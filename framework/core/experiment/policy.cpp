@@ -170,8 +170,12 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
   return out;
 }
 
+bool all_finite(const Eigen::VectorXd& values) {
+  return std::isfinite(values.sum()) || values.allFinite();  // a finite sum has finite terms
+}
+
 void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {
-  if (std::isfinite(map.sum()) || map.allFinite()) return;  // a finite sum has finite terms
+  if (all_finite(map)) return;
   throw Error(
       "maps", fmt::format("{} is not a finite number everywhere after tap {}", name, taps),
       "choose a larger height.noise or a shorter kernel.length_scale, or check for heights that no arm can report",

@@ -41,6 +41,9 @@ using Allowed = Eigen::Array<bool, Eigen::Dynamic, 1>;
 /// it stays below that bound. All scores are finite.
 Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double scale, double tolerance);
 
+/// As Eigen's allFinite(), in a fraction of the time.
+bool all_finite(const Eigen::VectorXd& values);
+
 /// Throws Error (the run fails) unless all values of a map, which `name` names, are finite; `taps` have been made.
 void require_finite(const Eigen::VectorXd& map, const char* name, int taps);
 

@@ -11,10 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace palpate::loops::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-constexpr hn::ScalableTag<double> kReals;
-using Vector = hn::Vec<hn::ScalableTag<double>>;
-constexpr int kLanes = hn::MaxLanes(kReals);
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 constexpr int kLineVectors = kLine / kLanes;
 
 // A tile of registers: its sums, a row of B and a number of A fill the register file of 16, or of 32.
@@ -28,10 +25,6 @@ constexpr int kTileVectors = 3;
 constexpr int kTileRows = 4;
 constexpr int kTileVectors = 2;
 #endif
-
-HWY_INLINE Vector at(const double* from) { return hn::Load(kReals, from); }
-HWY_INLINE void put(const Vector& values, double* to) { hn::Store(values, kReals, to); }
-HWY_INLINE Vector all(double value) { return hn::Set(kReals, value); }
 
 /// kRows x kVectors registers of a product, summed over the depth. Rows of B are b_stride apart.
 template <int kRows, int kVectors>

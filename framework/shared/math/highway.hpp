@@ -20,3 +20,20 @@
 #include <hwy/foreach_target.h>
 // After the above, as Highway asks for.
 #include <hwy/highway.h>
+
+// Real numbers of each set, for the functions in its HWY_NAMESPACE.
+HWY_BEFORE_NAMESPACE();
+namespace palpate::math::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+constexpr hn::ScalableTag<double> kReals;
+using Vector = hn::Vec<hn::ScalableTag<double>>;
+constexpr int kLanes = hn::MaxLanes(kReals);
+
+/// `from` and `to` are aligned to a vector.
+HWY_INLINE Vector at(const double* from) { return hn::Load(kReals, from); }
+HWY_INLINE void put(const Vector& values, double* to) { hn::Store(values, kReals, to); }
+HWY_INLINE Vector all(double value) { return hn::Set(kReals, value); }
+
+}  // namespace palpate::math::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

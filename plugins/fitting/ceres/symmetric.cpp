@@ -13,14 +13,7 @@ namespace palpate::fitting::HWY_NAMESPACE {
 namespace {
 
 using Eigen::Index;
-namespace hn = hwy::HWY_NAMESPACE;
-constexpr hn::ScalableTag<double> kReals;
-using Vector = hn::Vec<hn::ScalableTag<double>>;
-constexpr Index kLanes = hn::MaxLanes(kReals);
-
-HWY_INLINE Vector at(const double* from) { return hn::Load(kReals, from); }
-HWY_INLINE void put(const Vector& values, double* to) { hn::Store(values, kReals, to); }
-HWY_INLINE Vector all(double value) { return hn::Set(kReals, value); }
+using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 
 /// Columns that are taken into the rest of a matrix together, in strips: so much of a few strips stays in the first
 /// cache.
