@@ -33,6 +33,10 @@ def lasting(path):
         return str([without_clocks(row) for row in rows])
     if name.endswith(".json"):
         return str(without_clocks(json.loads(text)))
+    if name == "summaries.jsonl":
+        if not text.endswith("\n"):
+            raise ValueError("half a line")
+        return str([without_clocks(json.loads(line)) for line in text.splitlines()])
     if name.endswith(".csv"):
         rows = list(csv.reader(io.StringIO(text)))
         if text and not text.endswith("\n") or any(len(row) != len(rows[0]) for row in rows):
