@@ -9,7 +9,6 @@
 #include "cli/sweep_display.hpp"
 #include "cli/watcher.hpp"
 #include "config/trouble.hpp"
-#include "config/yaml.hpp"
 #include "launch/children.hpp"
 #include "launch/job.hpp"
 #include "launch/mounts.hpp"
@@ -19,6 +18,7 @@
 #include "record/files.hpp"
 #include "report/words/words.hpp"
 #include "scene/sizes.hpp"
+#include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
 #include <fmt/format.h>
@@ -276,13 +276,12 @@ int sweep(Program& program, const SweepArguments& arguments) {
   if (arguments.launch.launcher != kLocal && !arguments.list) slurm::check_installed();
   bool one_at_a_time = false;
   std::optional<ResolvedConfig> first;
-  std::vector<std::string> configs;
+  std::optional<SweepDraft> draft;
+  if (!arguments.list) draft.emplace(arguments.runs);
   const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
                                     [&](const Job& job, const ResolvedConfig& config) {
-                                      if (!arguments.list) {
-                                        check_who_taps(config, "backend");
-                                        configs.push_back(to_yaml_with_places(config.tree));
-                                      }
+                                      if (draft) check_who_taps(config, "backend");
+                                      if (draft) draft->add(job, config);
                                       if (job.index == 0) first = config;
                                       one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
                                     });
@@ -295,7 +294,8 @@ int sweep(Program& program, const SweepArguments& arguments) {
     if (!arguments.launch.quiet) mention(jobs + "\n");
     return kDone;
   }
-  const bool is_new = write_sweep(plan, configs);
+  const bool is_new = draft->publish(plan);
+  draft.reset();
   if (!is_new) check_builds(campaign, jobs_of(campaign));
   if (!arguments.launch.quiet) {
     for (const std::string& line : half_said_sizes(campaign.first->tree, campaign.first->notes)) mention(line + "\n");

@@ -3,13 +3,13 @@
 // for people are in palpate/__init__.py, which is all that sees this module.
 #include "asked.hpp"
 #include "config/quantity.hpp"
-#include "config/yaml.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
 #include "records.hpp"
 #include "shop.hpp"
+#include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 #include "threads.hpp"
 #include "values.hpp"
@@ -80,12 +80,12 @@ std::string run(const std::string& config, const std::vector<std::string>& overr
 std::string begin_sweep(const std::string& config, const std::vector<std::string>& words, const std::string& runs) {
   const Unlocked others_go_on;
   Composer fresh = composer();
-  std::vector<std::string> configs;
+  SweepDraft draft(runs);
   const SweepPlan plan = plan_sweep(fresh, home().host, config, words, runs, [&](const Job& job, const auto& resolved) {
-    configs.push_back(to_yaml_with_places(resolved.tree));
+    draft.add(job, resolved);
     if (job.index % 64 == 0) check_signals();
   });
-  write_sweep(plan, configs);
+  draft.publish(plan);
   return plan.sweep.directory.string();
 }
 

@@ -87,10 +87,11 @@ class Bench:
             return [Call(line) for line in lines]
 
     def directory(self):
-        """The run or sweep; None if there is none. Without a manifest a sweep has not begun."""
+        """The run or sweep; None if there is none that was published."""
         for root, folders, files in os.walk(self.runs):
             if os.path.relpath(root, self.runs).count("/") == 1:
-                return None if "jobs" in folders and "manifest.jsonl" not in files else root
+                return root
+            folders[:] = [one for one in folders if not one.startswith(".")]
         return None
 
     def noted_taps(self):
@@ -221,6 +222,7 @@ class Point:
         self.command, self.mode, self.number = command, mode, call.number
         name = os.path.relpath(call.to or call.path, bench.runs)
         name = re.sub(r"\.[0-9a-f]{16}\.tmp$", ".tmp", name)
+        name = re.sub(r"\.sweep-\w{6}", "DRAFT", name)
         name = "/".join(re.sub(r"^[0-9a-f]{12}$", "ID", part) for part in name.split("/")[1:]) or "."
         # A child that was killed is told of; a place that keeps no locks is wrong usage.
         self.statuses = {137, 1 if command.children else 137} if mode in KILLS else {1, 2 if call.name == "lock" else 1}

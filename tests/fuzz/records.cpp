@@ -3,9 +3,9 @@
 #include "fuzz/ground.hpp"
 #include "fuzz/harness.hpp"
 
-#include "config/yaml.hpp"
 #include "record/recording.hpp"
 #include "record/session.hpp"
+#include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
 #include <palpate/error.hpp>
@@ -48,11 +48,10 @@ fs::path sound_sweep() {
   std::vector<std::string> words = kSmall;
   words.insert(words.end(), {"seed=range(0,3)", "kernel=rbf,matern52"});
   const fs::path runs = ground().path() / "sweeps";
-  std::vector<std::string> configs;
-  const SweepPlan plan = plan_sweep(
-      composer, host(), shipped_configs() / "paper" / "object_i.yaml", words, runs,
-      [&](const Job&, const ResolvedConfig& config) { configs.push_back(to_yaml_with_places(config.tree)); });
-  write_sweep(plan, configs);
+  SweepDraft draft(runs);
+  const SweepPlan plan = plan_sweep(composer, host(), shipped_configs() / "paper" / "object_i.yaml", words, runs,
+                                    [&](const Job& job, const ResolvedConfig& config) { draft.add(job, config); });
+  draft.publish(plan);
   return plan.sweep.directory;
 }
 

@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// What lies in a folder of runs, three folders deep: runs/NAME/ID and one above. Links and hidden folders
-/// are not entered; neither are runs and sweeps, so that a sweep's jobs are no runs of their own.
+/// What lies in a folder of runs, three folders deep: runs/NAME/ID and one above. Links and hidden folders, where a
+/// sweep is drafted, are not entered; neither are runs and sweeps, so that a sweep's jobs are no runs of their own.
 struct Catalogue {
   std::vector<std::filesystem::path>
       records;          ///< directories of runs and sweeps, in the order in which they were begun

@@ -3,7 +3,6 @@
 
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
-#include "record/files.hpp"
 #include "sweep/description.hpp"
 
 #include <palpate/error.hpp>
@@ -289,21 +288,6 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   check_readable(plan.config, file.string());
   plan.sweep.directory = runs / slug(first->options.name) / sweep_id(plan.config, plan.sweep);
   return plan;
-}
-
-bool write_sweep(const SweepPlan& plan, const std::vector<std::string>& configs) {
-  const fs::path& directory = plan.sweep.directory;
-  const bool is_new = !is_sweep(directory);
-  make_inner_folder(directory / "jobs");
-  for (const Job& job : plan.sweep.jobs) {
-    const fs::path folder = make_inner_folder(job_directory(plan.sweep, job));
-    if (is_there(folder / "config.yaml")) continue;
-    write_file(folder / "config.yaml", configs[static_cast<std::size_t>(job.index)]);
-  }
-  if (!is_new) return false;
-  write_file(directory / "config.yaml", to_yaml(plan.config));
-  write_file(directory / "manifest.jsonl", manifest_text(plan.sweep, directory.filename().string()));
-  return true;
 }
 
 }  // namespace palpate

@@ -32,9 +32,4 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const std::file
                      const std::vector<std::string>& words, const std::filesystem::path& runs,
                      const JobSink& sink = nullptr);
 
-/// Writes the directory of a plan, `configs` being the config.yaml of each job. What is there already is left alone, so
-/// of a sweep that exists only those configs are written that were deleted. The manifest, which makes it a sweep, comes
-/// last: after a kill the next call completes it. Returns whether the sweep is new. Throws Error.
-bool write_sweep(const SweepPlan& plan, const std::vector<std::string>& configs);
-
 }  // namespace palpate

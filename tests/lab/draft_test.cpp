@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sweep/plan.hpp"
+#include "sweep/draft.hpp"
 
 #include "config/yaml.hpp"
 #include "record/session.hpp"
@@ -11,6 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 namespace palpate {
 namespace {
 
@@ -20,13 +22,20 @@ using test::text_of;
 
 namespace fs = std::filesystem;
 
-class SweepDirectory : public testing::Test {
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> out;
+  for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path().filename().string());
+  return out;
+}
+
+class Draft : public testing::Test {
  protected:
-  /// Plans three seeds of the paper's experiment with two kernels.
-  SweepPlan plan() {
-    texts_.clear();
+  /// Plans three seeds of the paper's experiment into `draft`.
+  SweepPlan plan(SweepDraft& draft) {
     return plan_sweep(composer_, test::shared_host(), source_folder() / "configs/paper/object_i.yaml",
-                      {"seed=range(0,3)", "kernel=rbf,matern52"}, runs_, [&](const Job&, const ResolvedConfig& config) {
+                      {"seed=range(0,3)", "kernel=rbf,matern52"}, runs_,
+                      [&](const Job& job, const ResolvedConfig& config) {
+                        draft.add(job, config);
                         texts_.push_back(to_yaml_with_places(config.tree));
                       });
   }
@@ -41,10 +50,13 @@ TEST(JobFields, AreWhatTheTableOfTheFormatSays) {
   EXPECT_THAT(text_of(source_folder() / "runs/README.md"), testing::HasSubstr(test::table_of(job_list())));
 }
 
-TEST_F(SweepDirectory, HasTheConfigOfEachJobBeforeAnyOfThemRuns) {
-  const SweepPlan planned = plan();
-  EXPECT_FALSE(fs::exists(runs_)) << "planning leaves nothing";
-  EXPECT_TRUE(write_sweep(planned, texts_));
+TEST_F(Draft, AppearsUnderItsNameAtOnceAndWhole) {
+  std::optional<SweepDraft> draft(runs_);
+  const SweepPlan planned = plan(*draft);
+  EXPECT_FALSE(fs::exists(planned.sweep.directory));
+  EXPECT_TRUE(draft->publish(planned));
+  draft.reset();
+  EXPECT_THAT(names_in(runs_), testing::ElementsAre("object_i"));
   const Sweep sweep = read_sweep(planned.sweep.directory);
   ASSERT_EQ(sweep.jobs.size(), 6U);
   EXPECT_EQ(sweep.keys, planned.sweep.keys);
@@ -62,11 +74,12 @@ std::string refusal(const fs::path& directory) {
   return test::error_of([&] { read_sweep(directory); });
 }
 
-class WrittenSweep : public SweepDirectory {
+class PublishedDraft : public Draft {
  protected:
-  WrittenSweep() {
-    const SweepPlan planned = plan();
-    write_sweep(planned, texts_);
+  PublishedDraft() {
+    SweepDraft draft(runs_);
+    const SweepPlan planned = plan(draft);
+    draft.publish(planned);
     directory_ = planned.sweep.directory;
     manifest_ = text_of(directory_ / "manifest.jsonl");
   }
@@ -76,7 +89,7 @@ class WrittenSweep : public SweepDirectory {
   std::string manifest_;
 };
 
-TEST_F(WrittenSweep, IsRefusedOnceAnyBitOfItsManifestHasChanged) {
+TEST_F(PublishedDraft, IsRefusedOnceAnyBitOfItsManifestHasChanged) {
   ASSERT_EQ(refusal(directory_), "accepted");
   for (std::size_t at = 0; at < manifest_.size(); ++at) {
     std::string changed = manifest_;
@@ -86,7 +99,7 @@ TEST_F(WrittenSweep, IsRefusedOnceAnyBitOfItsManifestHasChanged) {
   }
 }
 
-TEST_F(WrittenSweep, IsRefusedWithoutOneOfItsLinesOrInAnotherOrder) {
+TEST_F(PublishedDraft, IsRefusedWithoutOneOfItsLinesOrInAnotherOrder) {
   const std::size_t first = manifest_.find('\n') + 1;
   const std::size_t second = manifest_.find('\n', first) + 1;
   write(manifest_.substr(0, manifest_.rfind('\n', manifest_.size() - 2) + 1));
@@ -99,7 +112,7 @@ TEST_F(WrittenSweep, IsRefusedWithoutOneOfItsLinesOrInAnotherOrder) {
               testing::HasSubstr("manifest.jsonl:1: is not a job of this sweep, the file is damaged"));
 }
 
-TEST_F(WrittenSweep, HasNoJobWhoseFolderIsElsewhereThoughTheIdsAreMadeToFit) {
+TEST_F(PublishedDraft, HasNoJobWhoseFolderIsElsewhereThoughTheIdsAreMadeToFit) {
   for (const char* id : {"../../victim", "..", "", "0123456789a", "0123456789abc", "0123456789AB"}) {
     Sweep sweep{directory_, {"seed"}, {{0, id, {"0"}}}};
     write(manifest_text(sweep, sweep_id(read_run_config(directory_), sweep)));
@@ -107,32 +120,35 @@ TEST_F(WrittenSweep, HasNoJobWhoseFolderIsElsewhereThoughTheIdsAreMadeToFit) {
   }
 }
 
-TEST_F(WrittenSweep, IsLeftAloneByTheNextButForLostConfigs) {
-  folder_.write(fs::relative(directory_ / "mine.txt", folder_.path()).string(), "kept");
-  const SweepPlan planned = plan();
-  const fs::path config = job_directory(planned.sweep, planned.sweep.jobs[2]) / "config.yaml";
-  fs::remove(config);
-  const auto stamp = fs::last_write_time(directory_ / "manifest.jsonl");
-  EXPECT_FALSE(write_sweep(planned, texts_));
-  EXPECT_EQ(text_of(directory_ / "mine.txt"), "kept");
-  EXPECT_EQ(text_of(config), texts_[2]);
-  EXPECT_EQ(fs::last_write_time(directory_ / "manifest.jsonl"), stamp);
+TEST_F(Draft, ASweepThatExistsIsLeftAlone) {
+  for (const bool is_new : {true, false}) {
+    SweepDraft draft(runs_);
+    const SweepPlan planned = plan(draft);
+    EXPECT_EQ(draft.publish(planned), is_new);
+    if (is_new) folder_.write(fs::relative(planned.sweep.directory / "mine.txt", folder_.path()).string(), "kept");
+    EXPECT_EQ(text_of(planned.sweep.directory / "mine.txt"), "kept");
+  }
+  EXPECT_THAT(names_in(runs_), testing::ElementsAre("object_i"));
 }
 
-TEST_F(WrittenSweep, IsCompletedAfterAKillBeforeItsManifest) {
-  fs::remove(directory_ / "manifest.jsonl");
-  fs::remove(directory_ / "config.yaml");
-  EXPECT_THAT(refusal(directory_), testing::HasSubstr("is not the directory of a sweep"));
-  EXPECT_TRUE(write_sweep(plan(), texts_));
-  EXPECT_EQ(refusal(directory_), "accepted");
+TEST_F(Draft, WhatIsNotPublishedVanishesWithTheFolderThatWasMadeForIt) {
+  { const SweepDraft draft(runs_); }
+  EXPECT_FALSE(fs::exists(runs_));
+  fs::create_directory(runs_);
+  { const SweepDraft draft(runs_); }
+  EXPECT_TRUE(fs::is_empty(runs_));
 }
 
-TEST_F(WrittenSweep, IsNotWrittenThroughALink) {
-  fs::remove_all(directory_ / "jobs");
-  fs::create_directory(folder_.path() / "elsewhere");
-  fs::create_directory_symlink(folder_.path() / "elsewhere", directory_ / "jobs");
-  EXPECT_THAT(test::error_of([&] { write_sweep(plan(), texts_); }), testing::HasSubstr("is a symbolic link"));
-  EXPECT_TRUE(fs::is_empty(folder_.path() / "elsewhere"));
+TEST_F(Draft, ThoseOfKilledProcessesAreRemovedAndThoseOfLivingOnesAreNot) {
+  const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  const SweepDraft living(runs_);
+  const std::string of_living = names_in(runs_).front();
+  fs::last_write_time(runs_ / of_living / "lock", old);
+  fs::last_write_time(folder_.write("runs/.sweep-killed/lock", ""), old);
+  folder_.write("runs/.sweep-young/lock", "");
+  folder_.write("runs/sweep-mine/lock", "");
+  { const SweepDraft other(runs_); }
+  EXPECT_THAT(names_in(runs_), testing::UnorderedElementsAre(of_living, ".sweep-young", "sweep-mine"));
 }
 
 }  // namespace
