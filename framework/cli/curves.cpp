@@ -78,7 +78,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
   if (arguments.where) where = Condition::of_command_line(*arguments.where);
   // What cannot be asked is found out before anything is computed.
   check_group_keys(sweep, by);
-  if (!results.empty()) find_metric(sweep, asked, columns_of(results));
+  if (!results.empty()) find_metric(sweep, asked, names_of(results));
   const std::string metric = field_name(asked);
   std::vector<TapValues> values(sweep.jobs.size());
   const TapSummaries summaries(sweep, keep_values(values, {metric, arguments.against}));

@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
-#include <string_view>
 
 namespace palpate {
 namespace {
@@ -26,34 +24,6 @@ std::string range_text(const Field& field) {
   if (low) return fmt::format("{} {}", field.open_below ? ">" : ">=", write_quantity(field.least, field.unit));
   if (high) return fmt::format("<= {}", write_quantity(field.most, field.unit));
   return {};
-}
-
-/// Throws std::logic_error for a neutral value (Field::neutral) that a config could not have.
-void check_neutral(Type type, const Field& field, const std::vector<Case>& cases) {
-  using Kind = FixedValue::Kind;
-  const FixedValue& value = field.neutral_value;
-  const auto is_case = [&](const Case& one) { return std::string_view(one.name) == value.text; };
-  const auto is_of_type = [&] {
-    switch (value.kind) {
-      case Kind::none:
-        return true;
-      case Kind::absent:
-        return type != Type::reals && type != Type::flag && type != Type::text && type != Type::choice;
-      case Kind::real:
-        return type == Type::real;
-      case Kind::integer:
-        return type == Type::integer;
-      case Kind::flag:
-        return type == Type::flag;
-      case Kind::text:
-        return type == Type::text || (type == Type::choice && std::any_of(cases.begin(), cases.end(), is_case));
-    }
-    return false;
-  };
-  const bool is_low = field.open_below ? !(value.real > field.least) : value.real < field.least;
-  const bool is_number = value.kind == Kind::real || value.kind == Kind::integer;
-  if (is_of_type() && !(is_number && (is_low || value.real > field.most))) return;
-  throw std::logic_error(fmt::format("the neutral value of '{}' is outside its range", field.name));
 }
 
 class Describer final : public Fields {
@@ -135,8 +105,7 @@ class Describer final : public Fields {
  private:
   const PluginCases& plugins_;
 
-  FieldDescription& add(Type type, const Field& field, const std::vector<Case>& cases = {}) {
-    check_neutral(type, field, cases);
+  FieldDescription& add(Type type, const Field& field) {
     rows.push_back(describe_key(field));
     rows.back().type = type;
     return rows.back();

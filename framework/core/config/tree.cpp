@@ -66,6 +66,12 @@ void Tree::erase(std::string_view key) {
                 entries.end());
 }
 
+void Tree::erase_path(std::string_view path) {
+  const auto dot = path.rfind('.');
+  if (dot == std::string_view::npos) return erase(path);
+  if (const Tree* const inner = find_path(path.substr(0, dot))) const_cast<Tree*>(inner)->erase(path.substr(dot + 1));
+}
+
 namespace {
 
 /// Splits "a.b.c" into "a" and "b.c".

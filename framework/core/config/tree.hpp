@@ -64,6 +64,8 @@ struct Tree {
   /// The entry at `key`, appended if missing; turns a null into a map.
   Tree& at(std::string_view key);
   void erase(std::string_view key);
+  /// Erases what `path`, "kernel.length_scale", leads to.
+  void erase_path(std::string_view path);
   /// The value at a dotted path, or null; list items are named by their number from 0. A key may have dots itself
   /// (those of `expect` do): what is left of the path is tried as one key first.
   const Tree* find_path(std::string_view path) const;

@@ -152,6 +152,13 @@ Meant find_meant(const std::string& words, Wanted wanted, const fs::path& runs) 
   return out;
 }
 
+/// The only one, or the last where that is wanted. Throws Error for several.
+fs::path only_one(const std::string& words, const Meant& meant) {
+  if (meant.records.empty()) return meant.base;
+  if (meant.records.size() > 1 && !meant.latest) throw several(words, meant.base, meant.records);
+  return meant.records.back();
+}
+
 }  // namespace
 
 std::vector<std::string> differing_keys(const std::vector<Row>& configs) {
@@ -200,17 +207,6 @@ Row settings_of(const Tree& config) {
 }
 
 Row read_settings(const fs::path& directory) { return settings_of(read_run_config(directory)); }
-
-namespace {
-
-/// The only one, or the last where that is wanted. Throws Error for several.
-fs::path only_one(const std::string& words, const Meant& meant) {
-  if (meant.records.empty()) return meant.base;
-  if (meant.records.size() > 1 && !meant.latest) throw several(words, meant.base, meant.records);
-  return meant.records.back();
-}
-
-}  // namespace
 
 fs::path find_record(const std::string& words, Wanted wanted, const fs::path& runs) {
   return only_one(words, find_meant(words, wanted, runs));

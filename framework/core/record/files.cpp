@@ -92,6 +92,23 @@ bool shows_nothing(int reason) {
   return reason == ENOENT || reason == ENOTDIR || reason == EACCES || reason == ELOOP || reason == ENAMETOOLONG;
 }
 
+std::optional<std::string> text_in(Reading reading, const fs::path& file, std::uintmax_t most_bytes) {
+  if (reading) return std::move(reading.text);
+  const int reason = reading.reason.value();
+  if (reading.kind == Reading::Kind::absent && reason == ENOENT) return std::nullopt;
+  // Too few descriptors or too little memory tell nothing of the file, either.
+  const bool fails = reason != 0 && !shows_nothing(reason);
+  if (reason != 0 && !fails && !is_there(file)) return std::nullopt;
+  const auto [words, remedy] = words_of(reading, most_bytes);
+  throw Error(file.string(), words, remedy, fails ? Error::Kind::run : Error::Kind::usage);
+}
+
+/// Where the last line of `text` ends.
+std::size_t last_line_end(std::string_view text) {
+  const void* const found = ::memrchr(text.data(), '\n', text.size());
+  return found == nullptr ? std::string_view::npos : static_cast<const char*>(found) - text.data();
+}
+
 }  // namespace
 
 TemporaryFile::TemporaryFile(const fs::path& file) : file_(file) {
@@ -195,21 +212,6 @@ std::string read_file(const fs::path& file, std::uintmax_t most_bytes) {
   return std::move(*text);
 }
 
-namespace {
-
-std::optional<std::string> text_in(Reading reading, const fs::path& file, std::uintmax_t most_bytes) {
-  if (reading) return std::move(reading.text);
-  const int reason = reading.reason.value();
-  if (reading.kind == Reading::Kind::absent && reason == ENOENT) return std::nullopt;
-  // Too few descriptors or too little memory tell nothing of the file, either.
-  const bool fails = reason != 0 && !shows_nothing(reason);
-  if (reason != 0 && !fails && !is_there(file)) return std::nullopt;
-  const auto [words, remedy] = words_of(reading, most_bytes);
-  throw Error(file.string(), words, remedy, fails ? Error::Kind::run : Error::Kind::usage);
-}
-
-}  // namespace
-
 std::optional<std::string> read_if_there(const fs::path& file, std::uintmax_t most_bytes, Origin origin) {
   return text_in(read_bounded(file, most_bytes, origin), file, most_bytes);
 }
@@ -224,16 +226,6 @@ std::optional<std::string> first_line_if_there(const fs::path& file) {
     if (begin->size() < bytes) return std::nullopt;
   }
 }
-
-namespace {
-
-/// Where the last line of `text` ends.
-std::size_t last_line_end(std::string_view text) {
-  const void* const found = ::memrchr(text.data(), '\n', text.size());
-  return found == nullptr ? std::string_view::npos : static_cast<const char*>(found) - text.data();
-}
-
-}  // namespace
 
 std::optional<LastLine> last_line_if_there(const fs::path& file) {
   // Holds the last line of nearly every record.

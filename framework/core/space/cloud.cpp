@@ -31,6 +31,11 @@ std::array<std::int64_t, 3> cube_of(const Vector3d& point, double side) {
   return out;
 }
 
+constexpr double kFar = 0.1;  // what lies further off, or has nothing to be near to, counts so much
+
+constexpr double kNear = 0.005;
+constexpr double kSide = 0.003;  // so that where many lines meet a surface counts no more than elsewhere
+
 }  // namespace
 
 Bundle::Bundle(const Vector3d& centre, double radius, int directions, double pitch) {
@@ -65,12 +70,6 @@ Cloud thinned(const Cloud& points, double side) {
   return out;
 }
 
-namespace {
-
-constexpr double kFar = 0.1;  // what lies further off, or has nothing to be near to, counts so much
-
-}  // namespace
-
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
   // Points within kFar of each other lie in cubes no farther apart than that.
   constexpr std::int64_t kMost = 10;
@@ -101,13 +100,6 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
   }
   return out;
 }
-
-namespace {
-
-constexpr double kNear = 0.005;
-constexpr double kSide = 0.003;  // so that where many lines meet a surface counts no more than elsewhere
-
-}  // namespace
 
 CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth) {
   struct Sums {

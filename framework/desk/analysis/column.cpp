@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 
 namespace palpate {
 
@@ -27,24 +26,6 @@ std::string Column::words() const {
 std::string Column::better_words() const {
   if (better == RecordField::Better::neither) return {};
   return better == RecordField::Better::more ? "more is better" : "less is better";
-}
-
-std::vector<std::string> columns_of(const std::vector<Row>& results) {
-  std::vector<std::string> names;
-  std::map<std::string, std::size_t> places;
-  for (const Row& row : results) {
-    std::size_t next = 0;  // the place of the next field, where this row is like those before it
-    for (const auto& [name, value] : row.fields) {
-      if (next < names.size() && names[next] == name) {
-        ++next;
-        continue;
-      }
-      const auto [place, is_new] = places.emplace(name, names.size());
-      if (is_new) names.push_back(name);
-      next = place->second + 1;
-    }
-  }
-  return names;
 }
 
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option) {

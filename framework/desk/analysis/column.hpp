@@ -25,9 +25,6 @@ struct Column {
   std::string better_words() const;  ///< "less is better", "more is better" or ""
 };
 
-/// The names of all columns that `results` have.
-std::vector<std::string> columns_of(const std::vector<Row>& results);
-
 /// The column that `option` ("--cost") names; that of a result is also `summary.NAME`: see result_of(). Throws Error,
 /// of the command line, if there is none.
 Column find_column(const std::string& name, const std::vector<std::string>& columns, const std::string& option);

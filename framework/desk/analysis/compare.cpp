@@ -292,7 +292,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
   }
   check_group_keys(sweep, query.by);
-  const Values columns = columns_of(results);
+  const Values columns = names_of(results);
   Comparison out;
   out.metric = find_metric(sweep, query.metric, columns);
   out.by = query.by;

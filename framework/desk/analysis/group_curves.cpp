@@ -97,6 +97,14 @@ void check_points(const GroupCurves& made, const Sweep& sweep) {
 
 }  // namespace
 
+bool any_has(const std::vector<TapValues>& jobs, const std::string& column) {
+  return std::any_of(jobs.begin(), jobs.end(), [&](const TapValues& job) {
+    const auto found = job.find(column);
+    return found != job.end() &&
+           std::any_of(found->second.begin(), found->second.end(), [](double one) { return std::isfinite(one); });
+  });
+}
+
 TapSummaries::Use keep_values(std::vector<TapValues>& values, std::vector<std::string> columns) {
   return [&values, columns = std::move(columns)](std::size_t job, const std::vector<Row>& rows) {
     for (const std::string& column : columns) {
@@ -139,7 +147,7 @@ GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& result
   if (results.empty())
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
   check_group_keys(sweep, query.by);
-  const std::vector<std::string> columns = columns_of(results);
+  const std::vector<std::string> columns = names_of(results);
   GroupCurves out;
   out.metric = find_metric(sweep, query.metric, columns);
   // `taps` may be swept: then it is a key, and still what was made.

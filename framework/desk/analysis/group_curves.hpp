@@ -23,6 +23,9 @@ inline constexpr const char* kAgainstTime = "robot_seconds";
 /// The values of some columns in one job after 1, 2, ... taps; NaN where there is none.
 using TapValues = std::map<std::string, std::vector<double>>;
 
+/// Whether a job has a value in that column after some tap.
+bool any_has(const std::vector<TapValues>& jobs, const std::string& column);
+
 /// Returns what puts them into `values`, which has a place for each job: empty for a job without kept summaries.
 /// `values` must outlive it.
 TapSummaries::Use keep_values(std::vector<TapValues>& values, std::vector<std::string> columns);

@@ -65,8 +65,7 @@ Scale metric_scale(const GroupCurves& curves) {
 
 std::string curve_units_words(const GroupCurves& curves) {
   const auto [least, most] = units_at_points(curves);
-  const std::string words = units_words(most, curves.by_seed);
-  return least < most ? fmt::format("{} to {}", least, words) : words;
+  return units_words(least, most, curves.by_seed);
 }
 
 std::string curve_remarks(const GroupCurves& curves) {

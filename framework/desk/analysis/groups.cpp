@@ -128,7 +128,7 @@ bool JobCondition::keeps(const JobResult& job) const {
 JobUnits::JobUnits(const Sweep& sweep, const std::vector<Row>& results)
     : sweep_(sweep), are_seeds_(!varying_keys(sweep, {"seed"}).empty()) {
   if (are_seeds_) return;
-  for (const std::string& name : columns_of(results)) {
+  for (const std::string& name : names_of(results)) {
     if (!is_among(sweep.keys, name) && name != "job" && name != "id" && !depends_on_machine(name))
       compared_.insert(name);
   }

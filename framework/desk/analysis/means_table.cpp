@@ -211,10 +211,9 @@ std::string latex_table(const std::vector<Comparison>& comparisons) {
     }
     lines += latex_line(cells);
   });
-  const std::string units = units_words(most, first.by_seed);
   std::string out = "% \\usepackage{booktabs}\n";
   out += fmt::format("% mean [95 % interval of the mean] and number of jobs; units of the intervals: {}\n",
-                     least < most ? fmt::format("{} to {}", least, units) : units);
+                     units_words(least, most, first.by_seed));
   std::string notes = remarks(comparisons, layout.metrics);
   for (std::size_t begin = 0, end; (end = notes.find('\n', begin)) != std::string::npos; begin = end + 1)
     out += "% " + notes.substr(begin, end - begin) + "\n";

@@ -83,7 +83,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
     throw Error(sweep.directory.string(), "no job of this sweep has ended", "run it with 'palpate resume'");
   }
   Pareto pareto;
-  const std::vector<std::string> columns = columns_of(results);
+  const std::vector<std::string> columns = names_of(results);
   pareto.cost = make_key(cost, columns, "--cost");
   pareto.error = make_key(error, columns, "--error");
   if (pareto.cost.better == RecordField::Better::more) {

@@ -42,12 +42,94 @@ std::string cost_text(const Setting& setting, const Scale& scale) {
   return fmt::format("{} +- {}", scale.number(cost.mean), half);
 }
 
+/// An axis with its ends in its unit, and whether it is logarithmic.
+struct PlotAxis {
+  Scale scale;
+  double low = 0.0;
+  double high = 1.0;
+  bool logarithmic = false;
+
+  /// "mean low high". A bar may begin at or below 0, which a logarithmic axis has not.
+  std::string columns(const MeanEstimate& estimate) const {
+    const MeanInterval ends = interval_or_mean(estimate);
+    const auto clipped = [&](double value) { return logarithmic ? std::max(value, low) : value; };
+    return fmt::format("{} {} {}", estimate.mean / scale.factor, clipped(ends.low / scale.factor),
+                       clipped(ends.high / scale.factor));
+  }
+
+  static MeanInterval interval_or_mean(const MeanEstimate& estimate) {
+    return estimate.interval.value_or(MeanInterval{estimate.mean, estimate.mean});
+  }
+};
+
+PlotAxis plot_axis(const Pareto& pareto, const Column& key, Field field, const std::optional<double>& line) {
+  constexpr double kLogarithmicFrom = 20.0;
+  PlotAxis axis;
+  axis.scale = scale_of(pareto, key, field);
+  std::vector<double> means;
+  std::vector<double> ends;
+  for (const Setting& one : pareto.settings) {
+    const MeanEstimate& estimate = one.*field;
+    if (estimate.count == 0) continue;
+    means.push_back(estimate.mean / axis.scale.factor);
+    for (const double end : {PlotAxis::interval_or_mean(estimate).low, PlotAxis::interval_or_mean(estimate).high})
+      ends.push_back(end / axis.scale.factor);
+  }
+  if (line) ends.push_back(*line / axis.scale.factor);
+  const auto [least, most] = std::minmax_element(means.begin(), means.end());
+  const auto [low, high] = std::minmax_element(ends.begin(), ends.end());
+  axis.logarithmic = *least > 0.0 && *most / *least > kLogarithmicFrom && (!line || *line > 0.0);
+  if (axis.logarithmic) {
+    const double bottom = std::max(*low, *least / 4);
+    const double margin = std::pow(*high / bottom, 0.06);
+    axis.low = bottom / margin;
+    axis.high = *high * margin;
+  } else {
+    const double margin = *high > *low ? 0.06 * (*high - *low) : std::max(0.1 * std::abs(*high), 1e-12);
+    axis.low = *low - margin;
+    axis.high = *high + margin;
+  }
+  return axis;
+}
+
+constexpr double kKeyLeft = 0.635;  // of the picture's width
+
+/// Of the fronts, one a scene.
+constexpr std::array<const char*, 5> kFrontColours{"#0b5394", "#00795a", "#7a3e9d", "#8c6d46", "#404040"};
+constexpr const char* kChosenColour = "#c1440e";
+
+const char* front_colour(const Setting& setting) { return kFrontColours[setting.scene % kFrontColours.size()]; }
+
+/// Clauses for entries of the key: the numbered settings, and the chosen one, each with its colour and name.
+std::vector<std::string> named_settings(const Pareto& pareto, const Setting* chosen) {
+  constexpr std::size_t kLongest = 48;  // letters that fit beside the plot
+  constexpr std::size_t kMostLines = 26;
+  std::vector<std::string> out;
+  int left_out = 0;
+  for (const Setting& one : pareto.settings) {
+    if (one.front == 0 && &one != chosen) continue;
+    const std::string number = one.front > 0 ? fmt::format("{}: ", one.front) : "";
+    std::vector<std::string> lines = wrapped(number + one.name, kLongest);
+    if (out.size() + lines.size() > kMostLines && &one != chosen) {
+      ++left_out;
+      continue;
+    }
+    for (const std::string& line : lines) {
+      const char* const mark = &line == &lines.front() ? "pt 7 ps 2" : "pt 7 ps 0";
+      out.push_back(fmt::format("keyentry with points {} lc rgb '{}' title {}", mark,
+                                &one == chosen ? kChosenColour : front_colour(one), gnuplot_text(line)));
+    }
+  }
+  if (left_out > 0)
+    out.push_back(fmt::format("keyentry with points ps 0 title 'and {} more, see the table'", left_out));
+  return out;
+}
+
 }  // namespace
 
 std::string seeds_words(const Pareto& pareto) {
   const auto [fewest, most] = seeds_of(pareto);
-  const std::string words = units_words(most, pareto.by_seed);
-  return fewest == most ? words : fmt::format("{} to {}", fewest, words);
+  return units_words(fewest, most, pareto.by_seed);
 }
 
 std::string pareto_table(const Pareto& pareto) {
@@ -115,108 +197,6 @@ std::string bound_words(const Pareto& pareto, double bound) {
   return scale.with_unit(fmt::format("{:.6g}", bound / scale.factor));
 }
 
-namespace {
-
-/// An axis with its ends in its unit, and whether it is logarithmic.
-struct PlotAxis {
-  Scale scale;
-  double low = 0.0;
-  double high = 1.0;
-  bool logarithmic = false;
-
-  /// "mean low high". A bar may begin at or below 0, which a logarithmic axis has not.
-  std::string columns(const MeanEstimate& estimate) const {
-    const MeanInterval ends = interval_or_mean(estimate);
-    const auto clipped = [&](double value) { return logarithmic ? std::max(value, low) : value; };
-    return fmt::format("{} {} {}", estimate.mean / scale.factor, clipped(ends.low / scale.factor),
-                       clipped(ends.high / scale.factor));
-  }
-
-  static MeanInterval interval_or_mean(const MeanEstimate& estimate) {
-    return estimate.interval.value_or(MeanInterval{estimate.mean, estimate.mean});
-  }
-};
-
-PlotAxis plot_axis(const Pareto& pareto, const Column& key, Field field, const std::optional<double>& line) {
-  constexpr double kLogarithmicFrom = 20.0;
-  PlotAxis axis;
-  axis.scale = scale_of(pareto, key, field);
-  std::vector<double> means;
-  std::vector<double> ends;
-  for (const Setting& one : pareto.settings) {
-    const MeanEstimate& estimate = one.*field;
-    if (estimate.count == 0) continue;
-    means.push_back(estimate.mean / axis.scale.factor);
-    for (const double end : {PlotAxis::interval_or_mean(estimate).low, PlotAxis::interval_or_mean(estimate).high})
-      ends.push_back(end / axis.scale.factor);
-  }
-  if (line) ends.push_back(*line / axis.scale.factor);
-  const auto [least, most] = std::minmax_element(means.begin(), means.end());
-  const auto [low, high] = std::minmax_element(ends.begin(), ends.end());
-  axis.logarithmic = *least > 0.0 && *most / *least > kLogarithmicFrom && (!line || *line > 0.0);
-  if (axis.logarithmic) {
-    const double bottom = std::max(*low, *least / 4);
-    const double margin = std::pow(*high / bottom, 0.06);
-    axis.low = bottom / margin;
-    axis.high = *high * margin;
-  } else {
-    const double margin = *high > *low ? 0.06 * (*high - *low) : std::max(0.1 * std::abs(*high), 1e-12);
-    axis.low = *low - margin;
-    axis.high = *high + margin;
-  }
-  return axis;
-}
-
-constexpr double kListLeft = 0.635;  // of the picture's width: where the list of names begins
-
-/// Of the fronts, one a scene.
-constexpr std::array<const char*, 5> kFrontColours{"#0b5394", "#00795a", "#7a3e9d", "#8c6d46", "#404040"};
-constexpr const char* kChosenColour = "#c1440e";
-
-const char* front_colour(const Setting& setting) { return kFrontColours[setting.scene % kFrontColours.size()]; }
-
-/// An entry of the list at height `y`, which it lowers: the mark that the setting has in the picture, and its name.
-std::string list_entry(const Setting& one, const char* colour, double& y) {
-  constexpr std::size_t kLongest = 48;  // letters that fit beside the plot
-  std::string out = fmt::format("set label '' at screen {}, screen {} point pt 7 ps 2.4 lc rgb '{}' front\n",
-                                kListLeft + 0.012, y, colour);
-  if (one.front > 0) {
-    out += fmt::format("set label '{}' at screen {}, screen {} center tc rgb 'white' font ',10' front\n", one.front,
-                       kListLeft + 0.012, y);
-  }
-  for (const std::string& line : wrapped(one.name, kLongest)) {
-    out +=
-        fmt::format("set label {} at screen {}, screen {} left font ',11'\n", gnuplot_text(line), kListLeft + 0.03, y);
-    y -= 0.026;
-  }
-  y -= 0.01;
-  return out;
-}
-
-/// The names of the numbered settings, and of the chosen one, from the top of the right side down.
-std::string front_list(const Pareto& pareto, const Setting* chosen) {
-  constexpr double kTop = 0.9;
-  constexpr double kBottom = 0.27;  // the key is below
-  std::string out;
-  double y = kTop;
-  int left_out = 0;
-  for (const Setting& one : pareto.settings) {
-    if (one.front == 0 && &one != chosen) continue;
-    if (y > kBottom || &one == chosen) {
-      out += list_entry(one, &one == chosen ? kChosenColour : front_colour(one), y);
-    } else {
-      ++left_out;
-    }
-  }
-  if (left_out > 0) {
-    out += fmt::format("set label 'and {} more, see the table' at screen {}, screen {} left font ',11'\n", left_out,
-                       kListLeft + 0.03, y);
-  }
-  return out;
-}
-
-}  // namespace
-
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen) {
   const PlotAxis x = plot_axis(pareto, pareto.cost, &Setting::cost, {});
@@ -247,11 +227,10 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
   if (x.logarithmic) out += "set logscale x\n";
   if (y.logarithmic) out += "set logscale y\n";
   out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
-  out += fmt::format("set lmargin at screen 0.075\nset rmargin at screen {}\n", kListLeft - 0.02);
+  out += fmt::format("set lmargin at screen 0.075\nset rmargin at screen {}\n", kKeyLeft - 0.02);
   out += "set border 3 lc rgb '#555555'\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1\n";
-  out +=
-      fmt::format("set key at screen {}, screen 0.21 left Left reverse samplen 2 spacing 1.4 font ',11'\n", kListLeft);
-  out += front_list(pareto, chosen);
+  out += fmt::format("set key at screen {}, screen 0.93 left top Left reverse samplen 1 spacing 1.3 font ',11'\n",
+                     kKeyLeft);
   draw("incomplete", incomplete,
        {"1:4:2:3:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' title 'not compared: jobs failed or missing'"});
   draw("others", others, {"1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'"});
@@ -275,6 +254,7 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
     plot(fmt::format("$front_{} using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle",
                      scene + 1));
   }
+  for (const std::string& clause : named_settings(pareto, chosen)) plot(clause);
   return out + plots + "\n";
 }
 

@@ -14,6 +14,10 @@ std::string units_words(std::size_t units, bool seeds) {
   return fmt::format("{} {}{}", units, seeds ? "seed" : "job", units == 1 ? "" : "s");
 }
 
+std::string units_words(std::size_t least, std::size_t most, bool seeds) {
+  return (least < most ? fmt::format("{} to ", least) : "") + units_words(most, seeds);
+}
+
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units) {
   return fmt::format("{}: {} of {} jobs are copies of another run; copies count once in intervals and p\n", name,
                      jobs - units, jobs);

@@ -30,6 +30,8 @@ std::string Scale::estimate(const Mean& mean) const {
 
 /// "5 seeds", "1 job": units of statistics.
 std::string units_words(std::size_t units, bool seeds);
+/// "3 to 5 seeds" where not all means have as many.
+std::string units_words(std::size_t least, std::size_t most, bool seeds);
 
 /// Fewer seeds, or jobs, are called few: their intervals miss the true mean clearly more often than 5 times in 100.
 inline constexpr std::size_t kEnoughUnits = 10;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/runs_table.hpp"
 
+#include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "launch/conduct.hpp"
 #include "record/catalogue.hpp"
@@ -75,11 +76,8 @@ std::string scene_of(const Origins& origins, const Row& config) {
 /// "seed (30), acquisition (2)": the swept keys, each with how many values it has.
 std::string swept_words(const Sweep& sweep) {
   std::vector<std::string> out;
-  for (std::size_t key = 0; key < sweep.keys.size(); ++key) {
-    std::set<std::string> values;
-    for (const Job& job : sweep.jobs) values.insert(job.values[key]);
-    if (values.size() > 1) out.push_back(fmt::format("{} ({})", sweep.keys[key], values.size()));
-  }
+  for (const std::string& key : varying_keys(sweep, sweep.keys))
+    out.push_back(fmt::format("{} ({})", key, group_jobs(sweep, {}, {key}).size()));
   return fmt::format("{}", fmt::join(out, ", "));
 }
 

@@ -15,22 +15,6 @@ namespace {
 /// In double precision: long doubles make no interval better, and not every machine has them.
 using Doubles = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
-}  // namespace
-
-double student_factor(std::size_t degrees) {
-  constexpr double kTail = 0.025;
-  const boost::math::students_t_distribution<double, Doubles> distribution(static_cast<double>(degrees));
-  return boost::math::quantile(boost::math::complement(distribution, kTail));
-}
-
-std::vector<double> cluster_means(const Clusters& clusters) {
-  std::vector<double> out;
-  for (const std::vector<double>& one : clusters) out.push_back(mean_of(one));
-  return out;
-}
-
-namespace {
-
 std::size_t count_of(const Clusters& clusters) {
   return std::accumulate(clusters.begin(), clusters.end(), std::size_t{0},
                          [](std::size_t sum, const std::vector<double>& one) { return sum + one.size(); });
@@ -51,6 +35,18 @@ double mean_of_clusters(const Clusters& clusters) {
 }
 
 }  // namespace
+
+double student_factor(std::size_t degrees) {
+  constexpr double kTail = 0.025;
+  const boost::math::students_t_distribution<double, Doubles> distribution(static_cast<double>(degrees));
+  return boost::math::quantile(boost::math::complement(distribution, kTail));
+}
+
+std::vector<double> cluster_means(const Clusters& clusters) {
+  std::vector<double> out;
+  for (const std::vector<double>& one : clusters) out.push_back(mean_of(one));
+  return out;
+}
 
 std::vector<double> cluster_influences(const Clusters& clusters, double mean) {
   const double average = static_cast<double>(count_of(clusters)) / static_cast<double>(clusters.size());

@@ -195,12 +195,6 @@ bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
   });
 }
 
-void erase_path(Tree& tree, const std::string& path) {
-  const auto dot = path.rfind('.');
-  Tree* parent = dot == std::string::npos ? &tree : const_cast<Tree*>(tree.find_path(path.substr(0, dot)));
-  if (parent != nullptr) parent->erase(path.substr(dot == std::string::npos ? 0 : dot + 1));
-}
-
 /// A config from which `palpate sweep` makes the same jobs again. What the sweep leaves alone stands there in full,
 /// groups included; where it chooses groups or types, there stands what `file` itself says, because what a group brings
 /// must not outlive another choice. `base` is `file` composed without any combination, `alone` the same
@@ -211,7 +205,7 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
   // Without the options that its own plugins leave out.
   Tree settled = base;
   if (alone) {
-    for (const ResolveNotes::Origin& one : alone->notes.dropped) erase_path(settled, one.path);
+    for (const ResolveNotes::Origin& one : alone->notes.dropped) settled.erase_path(one.path);
   }
   const auto is_own = [&](const std::string& top) {
     return top != "expect" && (!alone || is_touched(top, description.keys()));

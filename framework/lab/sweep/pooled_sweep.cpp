@@ -100,14 +100,7 @@ std::string identity_at(const Tree& config, const std::string& key, const PoolTe
   if (found == nullptr) return {};
   Tree part = *found;
   for (const std::string& other : keys) {
-    if (other == key || !is_at_or_below(other, key)) continue;
-    std::string rest = other.substr(key.size() + 1);
-    Tree* parent = &part;
-    for (auto dot = rest.find('.'); parent != nullptr && dot != std::string::npos; dot = rest.find('.')) {
-      parent = parent->find(rest.substr(0, dot));
-      rest.erase(0, dot + 1);
-    }
-    if (parent != nullptr) parent->erase(rest);
+    if (other != key && is_at_or_below(other, key)) part.erase_path(other.substr(key.size() + 1));
   }
   return part.canonical();
 }

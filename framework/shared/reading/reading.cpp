@@ -73,10 +73,6 @@ Reading read_part(int number, std::uintmax_t begin, std::uintmax_t end) {
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 /// Opens a regular file and hands `use` its descriptor and its size.
 template <class Use>
 Reading with_file(const fs::path& file, Origin origin, const Use& use) {
@@ -94,6 +90,23 @@ Reading with_file(const fs::path& file, Origin origin, const Use& use) {
                                               : use(number, static_cast<std::uintmax_t>(opened.st_size));
   ::close(number);
   return out;
+}
+
+/// The code point that `text` begins with, and how many bytes it has (RFC 3629); no bytes where it is not UTF-8.
+std::pair<std::uint32_t, std::size_t> first_code_point(std::string_view text) {
+  const char* end = text.data();
+  const std::uint32_t point = boost::locale::utf::utf_traits<char>::decode(end, text.data() + text.size());
+  if (!boost::locale::utf::is_valid_codepoint(point)) return {0, 0};
+  return {point, static_cast<std::size_t>(end - text.data())};
+}
+
+/// C0, DEL and C1.
+bool is_control(std::uint32_t point) { return point < 0x20 || (point >= 0x7f && point < 0xa0); }
+
+/// Unicode's Bidi_Control, and the separators that end a line.
+bool turns_text(std::uint32_t point) {
+  return point == 0x61c || point == 0x200e || point == 0x200f || (point >= 0x2028 && point <= 0x202e) ||
+         (point >= 0x2066 && point <= 0x2069);
 }
 
 }  // namespace
@@ -154,27 +167,6 @@ std::vector<fs::path> list_folder(const fs::path& folder) {
   std::error_code none;
   return list_folder(folder, none);
 }
-
-namespace {
-
-/// The code point that `text` begins with, and how many bytes it has (RFC 3629); no bytes where it is not UTF-8.
-std::pair<std::uint32_t, std::size_t> first_code_point(std::string_view text) {
-  const char* end = text.data();
-  const std::uint32_t point = boost::locale::utf::utf_traits<char>::decode(end, text.data() + text.size());
-  if (!boost::locale::utf::is_valid_codepoint(point)) return {0, 0};
-  return {point, static_cast<std::size_t>(end - text.data())};
-}
-
-/// C0, DEL and C1.
-bool is_control(std::uint32_t point) { return point < 0x20 || (point >= 0x7f && point < 0xa0); }
-
-/// Unicode's Bidi_Control, and the separators that end a line.
-bool turns_text(std::uint32_t point) {
-  return point == 0x61c || point == 0x200e || point == 0x200f || (point >= 0x2028 && point <= 0x202e) ||
-         (point >= 0x2066 && point <= 0x2069);
-}
-
-}  // namespace
 
 std::string one_line(std::string_view text, std::size_t most) {
   std::string out;

@@ -58,6 +58,34 @@ double search(Height height, double radius, double least, Rise rise) {
   return best;
 }
 
+/// Where the foremost point of the tool is when any of it touches, given the height of what is at (dx, dy) from its
+/// axis, of which none is more than `highest`.
+template <class Height>
+double touched(const Effects& effects, double highest, const Height& height_at) {
+  double height = height_at(0.0, 0.0);
+  if (effects.tip_radius) {
+    const double radius = effects.tip_radius->radius;
+    height = search(height_at, radius, height, [radius](double distance) {
+      return radius - std::sqrt(std::max(0.0, radius * radius - distance * distance));
+    });
+  }
+  // The look at the highest is cheaper than a search, and nearly always enough: nothing is that tall.
+  if (effects.shaft && highest - effects.shaft->length > height)
+    height = search(height_at, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
+  return height;
+}
+
+/// Where any of a tool touches that comes along a line, given how far lines beside it are free.
+template <class Free>
+double along(const Effects& effects, const Line& line, const Free& free) {
+  const Eigen::Vector3d one = line.direction.unitOrthogonal();
+  const Eigen::Vector3d other = line.direction.cross(one);
+  // Against its way, what it meets is high.
+  return -touched(effects, 0.0, [&](double dx, double dy) {
+    return -free({line.origin + dx * one + dy * other, line.direction});
+  });
+}
+
 }  // namespace
 
 // With deviation d = position - set-point: d'' + 2 zeta omega d' + omega^2 d = 0. On a ramp of speed v the arm trails
@@ -89,45 +117,9 @@ void Arm::follow(double set_point) {
   velocity_ = from_deviation_[1] * deviation + from_velocity_[1] * velocity_;
 }
 
-namespace {
-
-/// Where the foremost point of the tool is when any of it touches, given the height of what is at (dx, dy) from its
-/// axis, of which none is more than `highest`.
-template <class Height>
-double touched(const Effects& effects, double highest, const Height& height_at) {
-  double height = height_at(0.0, 0.0);
-  if (effects.tip_radius) {
-    const double radius = effects.tip_radius->radius;
-    height = search(height_at, radius, height, [radius](double distance) {
-      return radius - std::sqrt(std::max(0.0, radius * radius - distance * distance));
-    });
-  }
-  // The look at the highest is cheaper than a search, and nearly always enough: nothing is that tall.
-  if (effects.shaft && highest - effects.shaft->length > height)
-    height = search(height_at, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
-  return height;
-}
-
-}  // namespace
-
 double contact_height(const Scene& scene, const Effects& effects, double x, double y) {
   return touched(effects, scene.highest(), [&](double dx, double dy) { return scene.height(x + dx, y + dy); });
 }
-
-namespace {
-
-/// Where any of a tool touches that comes along a line, given how far lines beside it are free.
-template <class Free>
-double along(const Effects& effects, const Line& line, const Free& free) {
-  const Eigen::Vector3d one = line.direction.unitOrthogonal();
-  const Eigen::Vector3d other = line.direction.cross(one);
-  // Against its way, what it meets is high.
-  return -touched(effects, 0.0, [&](double dx, double dy) {
-    return -free({line.origin + dx * one + dy * other, line.direction});
-  });
-}
-
-}  // namespace
 
 double contact_along(const Scene& scene, const Effects& effects, const Line& line) {
   return along(effects, line, [&](const Line& beside) {

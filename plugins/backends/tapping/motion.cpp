@@ -38,6 +38,39 @@ std::string touch(const MotionOptions& motion) {
                      per_second(motion.fine_speed), newtons(motion.fine_threshold));
 }
 
+/// The moment at which a force is noticed errs by about so much, seconds; an arm that moves errs by as much as it goes
+/// then. An estimate, of an arm of Baxter's class: `latency` in configs/effects/standard.yaml.
+constexpr double kMoment = 0.015;
+/// Metres by which the height of an arm at rest errs: `pose_noise` there.
+constexpr double kPlace = 0.001;
+
+class Several final : public Motions {
+ public:
+  Several(std::vector<MotionOptions> motions, double desk) : motions_(std::move(motions)), desk_(desk) {}
+
+  int count() const override { return static_cast<int>(motions_.size()); }
+
+  double seconds(const TapRequest& request, double surface) const override {
+    const MotionOptions& motion = at(request.motion);
+    const Descent descent = plan_descent(motion, desk_, request.predicted);
+    const double met = std::min(surface, descent.hover);
+    return travel_seconds(motion, request) + ideal_seconds(motion, descent, met) +
+           retreat_seconds(motion, descent, met);
+  }
+
+  double deviation(int number) const override {
+    const MotionOptions& motion = at(number);
+    return math::hypot(kPlace,
+                       kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed));
+  }
+
+ private:
+  const MotionOptions& at(int number) const { return motions_[static_cast<std::size_t>(number)]; }
+
+  std::vector<MotionOptions> motions_;
+  double desk_;
+};
+
 }  // namespace
 
 void AdaptiveHover::list(Fields& fields) {
@@ -233,43 +266,6 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
   }
   return seconds;
 }
-
-namespace {
-
-/// The moment at which a force is noticed errs by about so much, seconds; an arm that moves errs by as much as it goes
-/// then. An estimate, of an arm of Baxter's class: `latency` in configs/effects/standard.yaml.
-constexpr double kMoment = 0.015;
-/// Metres by which the height of an arm at rest errs: `pose_noise` there.
-constexpr double kPlace = 0.001;
-
-class Several final : public Motions {
- public:
-  Several(std::vector<MotionOptions> motions, double desk) : motions_(std::move(motions)), desk_(desk) {}
-
-  int count() const override { return static_cast<int>(motions_.size()); }
-
-  double seconds(const TapRequest& request, double surface) const override {
-    const MotionOptions& motion = at(request.motion);
-    const Descent descent = plan_descent(motion, desk_, request.predicted);
-    const double met = std::min(surface, descent.hover);
-    return travel_seconds(motion, request) + ideal_seconds(motion, descent, met) +
-           retreat_seconds(motion, descent, met);
-  }
-
-  double deviation(int number) const override {
-    const MotionOptions& motion = at(number);
-    return math::hypot(kPlace,
-                       kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed));
-  }
-
- private:
-  const MotionOptions& at(int number) const { return motions_[static_cast<std::size_t>(number)]; }
-
-  std::vector<MotionOptions> motions_;
-  double desk_;
-};
-
-}  // namespace
 
 std::unique_ptr<Motions> motions(const BackendMotion& motion, double desk) {
   return motion.of.empty() ? nullptr : std::make_unique<Several>(motion.of, desk);

@@ -252,13 +252,7 @@ std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row
   std::vector<TapValues> values(sweep.jobs.size());
   const std::string metric = main_error(results);
   const TapSummaries summaries(sweep, keep_values(values, {metric, kAgainstTaps}));
-  const auto has_error = [&](const TapValues& job) {
-    const auto error = job.find(metric);
-    return error != job.end() &&
-           std::any_of(error->second.begin(), error->second.end(), [](double one) { return std::isfinite(one); });
-  };
-  const bool drawn = summaries.missing().empty() && std::any_of(values.begin(), values.end(), has_error);
-  if (!drawn) return std::nullopt;
+  if (!summaries.missing().empty() || !any_has(values, metric)) return std::nullopt;
   return make_group_curves(sweep, results, values, {curve_keys(sweep), metric, kAgainstTaps, nullptr});
 }
 

@@ -32,19 +32,6 @@ std::vector<std::vector<std::string>> choices_of_keys(const Sweep& sweep) {
   return out;
 }
 
-/// The fields that are worth a first look and have a number after some tap, the main error first.
-std::vector<std::string> metrics_of(const std::vector<TapValues>& values, const std::vector<std::string>& names) {
-  std::vector<std::string> out;
-  std::copy_if(names.begin(), names.end(), std::back_inserter(out), [&](const std::string& name) {
-    return std::any_of(values.begin(), values.end(), [&](const TapValues& job) {
-      const auto found = job.find(name);
-      return found != job.end() &&
-             std::any_of(found->second.begin(), found->second.end(), [](double one) { return std::isfinite(one); });
-    });
-  });
-  return out;
-}
-
 Json json_of_curve(const GroupCurve& curve) {
   std::vector<double> at;
   std::vector<std::optional<double>> mean, low, high;
@@ -84,7 +71,9 @@ Json json_of_curves(const Sweep& sweep) {
   std::vector<TapValues> values(sweep.jobs.size());
   const TapSummaries summaries(sweep, keep_values(values, read));
   if (!summaries.missing().empty()) return {};
-  const std::vector<std::string> metrics = metrics_of(values, columns);
+  std::vector<std::string> metrics;
+  std::copy_if(columns.begin(), columns.end(), std::back_inserter(metrics),
+               [&](const std::string& column) { return any_has(values, column); });
   if (metrics.empty()) return {};
   const bool takes_time = std::any_of(values.begin(), values.end(), [](const TapValues& job) {
     const auto found = job.find(kAgainstTime);

@@ -59,7 +59,7 @@ Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const s
 /// the name of a key holds what came out.
 Json json_of_columns(const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
   Json columns = Json::array();
-  const std::vector<std::string> names = columns_of(results);
+  const std::vector<std::string> names = names_of(results);
   for (const std::string& name : names) {
     if (name == "job" || name == "id" || name == "seed" || name != field_name(name)) continue;
     const bool hidden = std::find(names.begin(), names.end(), kOfRun + name) != names.end();

@@ -180,7 +180,7 @@ class FromAboveExplained final : public Explanation {
                           : "because a tap failed there; others may be tapped again (repeat: allow)";
     page_.say(out == 0 ? std::string("No candidate is left out.")
                        : fmt::format("{} {} left out, {}.", counted(out, "candidate"), out == 1 ? "is" : "are", why));
-    explain_runner_up(*score);
+    explain_second(*score);
   }
 
   /// Of scores that tell candidates hardly apart: why the rule had its way all the same.
@@ -196,16 +196,12 @@ class FromAboveExplained final : public Explanation {
     }
   }
 
-  void explain_runner_up(double score) {
+  void explain_second(double score) {
     const auto x = row_.number("runner_up.x");
     const auto y = row_.number("runner_up.y");
     const auto second = row_.number("runner_up.score");
     if (!x || !y || !second) return page_.say("There is no runner-up.");
-    const double less = score - *second;
-    const std::string by =
-        score == 0.0 ? fmt::format("{:.3g}", std::abs(less)) : fmt::format("{:.3g} %", 100.0 * std::abs(less / score));
-    page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", place_words(*x, *y), plain_words(*second),
-                          less == 0.0 ? "the same" : by + (less > 0.0 ? " less" : " more, which is a tie")));
+    explain_runner_up(place_words(*x, *y), score, *second);
   }
 
   void explain_repeats() {

@@ -108,12 +108,8 @@ class ApproachExplained final : public Explanation {
     Eigen::Index second = now->candidate == 0 ? 1 : 0;
     for (Eigen::Index i = 0; i < scores.size(); ++i)
       if (i != now->candidate && scores(i) > scores(second)) second = i;
-    const double less = score - scores(second);
-    const std::string by = score == 0.0 ? "" : fmt::format("{:.3g} % ", 100.0 * std::abs(less / score));
-    page_.say(fmt::format("Runner-up: {}, with a score of {}, {}.",
-                          line_words(experiment_.belief().approaches()[static_cast<std::size_t>(second)].line),
-                          plain_words(scores(second)),
-                          less == 0.0 ? "the same" : by + (less > 0.0 ? "less" : "more, which is a tie")));
+    const Line& line = experiment_.belief().approaches()[static_cast<std::size_t>(second)].line;
+    explain_runner_up(line_words(line), score, scores(second));
   }
 
   /// What the record has of a score, where a program gave it.

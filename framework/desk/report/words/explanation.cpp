@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <vector>
 
 namespace palpate {
@@ -27,6 +28,14 @@ std::string Explanation::acquisition_words() const {
   if (const Tree* command = options_.acquisition.options->find("command"))
     return fmt::format("{}, command {}", type, command->text);
   return found.empty() || found.front().summary.empty() ? type : fmt::format("{} ({})", type, found.front().summary);
+}
+
+void Explanation::explain_runner_up(const std::string& where, double score, double second) {
+  const double less = score - second;
+  const std::string by =
+      score == 0.0 ? fmt::format("{:.3g}", std::abs(less)) : fmt::format("{:.3g} %", 100.0 * std::abs(less / score));
+  page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", where, plain_words(second),
+                        less == 0.0 ? "the same" : by + (less > 0.0 ? " less" : " more, which is a tie")));
 }
 
 void Explanation::explain_label() {

@@ -26,6 +26,8 @@ class Explanation {
 
   std::string heading(const std::string& where) const;
   std::string acquisition_words() const;
+  /// The second best choice, at `where`, whose score is `second`.
+  void explain_runner_up(const std::string& where, double score, double second);
   /// If the contact has another label by all taps than it had when it was made.
   void explain_label();
   /// If the run failed at this tap.
