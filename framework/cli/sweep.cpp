@@ -159,6 +159,8 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
   const auto print_array = [](const TaskArray& array) {
     print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
               array.logs.string());
+    if (!array.doubt.empty())
+      mention(fmt::format("no node can run array {} now: {}; 'sinfo' shows the nodes\n", array.id, array.doubt));
     flush_output();
   };
   const Program& program = campaign.program;

@@ -120,7 +120,10 @@ std::string manual_page(const CLI::App& app, const std::string& name) {
     }
   }
   out += fmt::format(".SH EXAMPLES\n.EX\n{}\n.EE\n", roff(app.get_footer()));
-  return out + kCommon + fmt::format(".SH SEE ALSO\n.BR {} (1)\n", whole ? "palpate\\-COMMAND" : "palpate");
+  std::vector<std::string> others;
+  for (const CLI::App* one : app.get_subcommands({})) others.push_back("palpate\\-" + one->get_name() + " (1)");
+  if (others.empty()) others.emplace_back("palpate (1)");
+  return out + kCommon + fmt::format(".SH SEE ALSO\n.BR {}\n", fmt::join(others, ",\n.BR "));
 }
 
 void write_page(const CLI::App& app, const std::filesystem::path& folder) {

@@ -266,13 +266,19 @@ TEST_F(Slurm, WhatCannotBeSubmittedIsSaidInOneLineAndNothingIsLeftInTheQueue) {
     return ended.err;
   };
   EXPECT_THAT(refused({"--partition", "nope"}), StartsWith("sbatch: invalid partition specified: nope; "));
-  EXPECT_THAT(refused({"-j", "9"}),
-              StartsWith("sbatch: allocation failure: Requested node configuration is not available"));
   EXPECT_THAT(refused({"--time", "soon"}), StartsWith("sbatch: "));
   EXPECT_THAT(refused({"--sbatch=--no-such-option"}), HasSubstr("--no-such-option"));
   EXPECT_THAT(refused({"--sbatch=--mem"}), StartsWith("sbatch: "));
   EXPECT_TRUE(lab.tasks().empty());
   EXPECT_EQ(attempts_in(sweep_in(lab.folder())), std::vector<int>(2, 0));
+}
+
+TEST_F(Slurm, WhatNoNodeCanRunNowIsSubmittedWithAWarning) {
+  const SlurmLab lab;
+  const Ended ended = lab.palpate(on_slurm({"sweep", paper(), "seed=range(0,2)", "--quiet"}, {"-j", "9"}));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr(" now: allocation failure: Requested node configuration is not available; 'sinfo'"));
+  EXPECT_FALSE(lab.tasks().empty());
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include "experiment/search.hpp"
 #include "experiment/tap_belief.hpp"
 #include "experiment/tap_record.hpp"
-#include "gp/loops.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>

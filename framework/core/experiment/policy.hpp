@@ -5,7 +5,6 @@
 
 #include "experiment/experiment_options.hpp"
 #include "gp/candidates.hpp"
-#include "gp/loops.hpp"
 
 #include <palpate/random.hpp>
 #include <palpate/types.hpp>

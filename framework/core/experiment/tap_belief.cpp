@@ -3,7 +3,6 @@
 
 #include "config/tree.hpp"
 #include "experiment/policy.hpp"
-#include "gp/loops.hpp"
 
 #include <palpate/error.hpp>
 

@@ -90,7 +90,8 @@ void HeldRecord::add_timing(const TapTimes& times) {
   Tree line = Tree::map({{"timing", Tree::scalar(std::to_string(times.tap))}});
   for (std::size_t i = 0; i < kPhases; ++i)
     line.at(kPhaseNames[i]) = Tree::scalar(fmt::format("{:.9f}", times.seconds[i]));
-  if (times.expected_rmse) line.at("expected_rmse_m") = Tree::scalar(csv_cell(*times.expected_rmse));
+  if (times.expected_rmse && std::isfinite(*times.expected_rmse))
+    line.at("expected_rmse_m") = Tree::scalar(csv_cell(*times.expected_rmse));
   append(to_json_line(line) + "\n", false);
 }
 

@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostValues = 1'000'000;  ///< of a tree
 constexpr std::size_t kMostLevels = 100;
 constexpr std::size_t kMostRowValues = 4096;
+constexpr std::size_t kMostListedValues = 100'000;  ///< of a row, with those of its lists
 constexpr std::size_t kMostNameBytes = 1024;  ///< of a name in a row, which repeats those of all that is around it
 constexpr std::size_t kMostLines = 1'100'000;
 constexpr std::size_t kMostLineValues = 20'000'000;  ///< of all lines of a file
@@ -37,6 +38,7 @@ constexpr const char* kDamagedFile = "the file is damaged: put it back as it was
 class TreeReader final : public nlohmann::json_sax<Json> {
  public:
   Tree tree;
+  std::size_t most = kMostValues;
   const char* reason = nullptr;  ///< for which it was refused
   std::size_t bytes = 0;         ///< read when it was found to be no JSON, else 0
 
@@ -81,7 +83,7 @@ class TreeReader final : public nlohmann::json_sax<Json> {
   }
   Tree* put(Tree value) {
     if (open_.size() > kMostLevels) reason = kTooDeep;
-    if (++values_ > kMostValues) reason = "contains too many values";
+    if (++values_ > most) reason = "contains too many values";
     if (reason != nullptr) return nullptr;
     return &(place() = std::move(value));
   }
@@ -106,8 +108,8 @@ Scalar scalar_of(const Tree& value) {
   if (value.quoted) return text;
   if (text == "true" || text == "false") return text == "true";
   const auto read = [&](auto number) {
-    const bool whole = std::from_chars(text.data(), text.data() + text.size(), number).ptr == text.data() + text.size();
-    return whole ? std::optional(number) : std::nullopt;
+    const auto [end, trouble] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return trouble == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
   };
   if (const auto integer = read(std::int64_t{0})) return *integer;
   return read(0.0).value_or(0.0);
@@ -209,6 +211,7 @@ void append(std::string& out, const Row& row, std::size_t& field, std::string_vi
 
 std::optional<Row> parse_json_row(const std::string& text, std::string* reason) {
   TreeReader reader;
+  reader.most = kMostListedValues;
   Row row;
   const char* refused = reader.read(text) ? add_fields(row, reader.tree, "") : reader.reason;
   if (refused == nullptr) return row;

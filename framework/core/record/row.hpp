@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// A list, as JSON: `[{"tap": 8, "probability": 0.93}]`.
+/// A list or a map, as JSON: `[{"tap": 8, "probability": 0.93}]`.
 struct JsonList {
   std::string text;
   bool operator==(const JsonList& other) const { return text == other.text; }

@@ -114,7 +114,8 @@ std::vector<std::string> named_settings(const Pareto& pareto, const Setting* cho
       ++left_out;
       continue;
     }
-    for (const std::string& line : lines) {
+    for (std::string& line : lines) {
+      if (line.size() > kLongest) line.replace(kLongest - 3, std::string::npos, "...");
       const char* const mark = &line == &lines.front() ? "pt 7 ps 2" : "pt 7 ps 0";
       out.push_back(fmt::format("keyentry with points {} lc rgb '{}' title {}", mark,
                                 &one == chosen ? kChosenColour : front_colour(one), gnuplot_text(line)));

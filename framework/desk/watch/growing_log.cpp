@@ -6,10 +6,17 @@
 
 #include <utility>
 
+#include <sys/stat.h>
+
 namespace palpate {
 
 std::vector<RecordLine> GrowingLog::read(bool& anew) {
-  std::string text = is_there(file()) ? read_file(file()) : "";
+  struct stat now {};
+  const bool there = ::stat(file().c_str(), &now) == 0;
+  const Stamp stamp = there ? Stamp{now.st_ino, now.st_size, now.st_mtim.tv_sec, now.st_mtim.tv_nsec} : Stamp{};
+  if (stamp == stamp_) return {};
+  stamp_ = stamp;
+  std::string text = there ? read_file(file()) : "";
   text.resize(text.rfind('\n') + 1);
   anew = text.compare(0, known_.size(), known_) != 0;
   if (anew || known_.empty()) reader_ = RecordReader(file());

@@ -4,8 +4,10 @@
 
 #include "record/record_reader.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace palpate {
@@ -19,15 +21,18 @@ class GrowingLog {
   const std::filesystem::path& file() const { return reader_.file(); }
 
   /// The lines that were recorded since the last call. `anew` becomes true where the file no longer begins with what
-  /// was read before, or is gone: then the lines are all that it has now. Throws Error as RecordReader does; the next
-  /// call then begins at the beginning.
+  /// was read before, or is gone: then the lines are all that it has now. Throws Error as RecordReader does; once the
+  /// file has changed, the next call begins at the beginning.
   std::vector<RecordLine> read(bool& anew);
 
   /// Has the next read() begin at the beginning.
-  void forget() { known_.clear(); }
+  void forget() { stamp_ = {}, known_.clear(); }
 
  private:
+  using Stamp = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;  ///< file, size, time
+
   RecordReader reader_;
+  Stamp stamp_{};
   std::string known_;  ///< all lines so far: what was rewritten must be noticed, however it was
 };
 

@@ -54,8 +54,12 @@ constexpr std::uint32_t kMostHeader = 16 * 1024;
 
 /// 128 bits that nobody can guess.
 std::string random_token() {
-  std::random_device random("/dev/urandom");
-  return fmt::format("{:08x}{:08x}{:08x}{:08x}", random(), random(), random(), random());
+  try {
+    std::random_device random("/dev/urandom");
+    return fmt::format("{:08x}{:08x}{:08x}{:08x}", random(), random(), random(), random());
+  } catch (const std::exception& trouble) {
+    throw Error("watch", std::string("no random numbers: ") + trouble.what());
+  }
 }
 
 /// Takes as long wherever they differ, so that nobody finds a token digit by digit.

@@ -30,9 +30,9 @@ enum class JobEnd {
 inline constexpr const char* kBlocked = "blocked";
 
 /// Runs the job in `directory`, whose name is its id, unless it is done, or has failed and is not to be tried again.
-/// What goes wrong becomes the reason of its failure; but a config that was deleted is
-/// none, as `palpate sweep` puts it back. Throws Error where nothing is recorded, and where a file of a job that is
-/// done cannot be written; of kind `busy` where another process has the arm in hand, or the program is not as it was.
+/// What goes wrong becomes the reason of its failure; but a config that was deleted is none, as `palpate sweep` puts it
+/// back. Throws Error where nothing is recorded, and where a file of a job that is done cannot be written; of kind
+/// `busy` where another process has the arm in hand, or the program is not as it was.
 JobEnd run_job(const Workshop& workshop, const std::filesystem::path& directory, const ResumeOptions& options);
 
 /// Whether the job is done or has failed.

@@ -65,6 +65,7 @@ struct TaskArray {
   int tasks = 0;
   int jobs = 0;  ///< that are missing
   std::filesystem::path logs;
+  std::string doubt;  ///< why nothing can run it now, in the scheduler's words; "" if something can
 };
 
 /// What a launcher is made from. Workshop and sweep must outlive it.

@@ -2,6 +2,7 @@
 #include "launch/slurm.hpp"
 
 #include "children/child_process.hpp"
+#include "config/trouble.hpp"
 
 #include <palpate/error.hpp>
 
@@ -37,7 +38,7 @@ std::optional<int> setting(const std::string& text, const std::string& name) {
   return last_number(text, name + "[ \t]*=[ \t]*([0-9]{1,9})\\b");
 }
 
-/// Runs a program to its end and returns what it said. One that may be cut off has a `patience`.
+/// Runs a program to its end, which may take `patience` seconds, and returns what it said.
 std::string ask(const std::vector<std::string>& words, const std::string& hint = kAskedElsewhere,
                 double patience = kPatience) {
   Program program{words};
@@ -99,17 +100,17 @@ void check_installed() { ask({"sbatch", "--version"}); }
 
 int most_tasks() { return parse_most_tasks(ask({"scontrol", "show", "config"})); }
 
-int submit(const std::vector<std::string>& words) {
+Submission submit(const std::vector<std::string>& words) {
   std::vector<std::string> all{"sbatch", "--test-only"};
   all.insert(all.end(), words.begin(), words.end());
   const char* const hint = "no job of this array was submitted; 'sinfo' lists the partitions";
-  ask(all, hint);  // sbatch itself takes what no node can ever run
+  const auto doubt = trouble_in([&] { ask(all, hint); });
   all[1] = "--parsable";
   // However long it takes: cut off, it could have submitted or not.
   const std::string said = ask(all, hint, std::numeric_limits<double>::infinity());
   const std::optional<int> id = parse_array_id(said);
   if (!id) throw Error("sbatch", words_of(said), hint);
-  return *id;
+  return {*id, doubt ? doubt->reason() : ""};
 }
 
 std::vector<Task> queue() {

@@ -33,9 +33,13 @@ void check_installed();
 /// Asks the controller. Throws Error when Slurm is not installed or does not answer.
 int most_tasks();
 
-/// Submits by `sbatch` with `words` behind it and returns the array's id. Throws Error in sbatch's words, also for what
-/// no node can ever run.
-int submit(const std::vector<std::string>& words);
+struct Submission {
+  int array = 0;
+  std::string doubt;  ///< why no node can run it now, in sbatch's words; "" if one can
+};
+/// Submits by `sbatch` with `words` behind it. Throws Error in sbatch's words. What no node can ever run and what waits
+/// for nodes that are drained look the same, so both are submitted, with a doubt.
+Submission submit(const std::vector<std::string>& words);
 
 /// This user's tasks. Throws Error when squeue does not answer.
 std::vector<Task> queue();

@@ -31,7 +31,8 @@ namespace {
 constexpr const char* kScript = "task.sh";
 constexpr const char* kJobs = "jobs";
 constexpr std::chrono::minutes kMostSilence{10};
-constexpr std::chrono::seconds kPause{1};  ///< between two looks
+constexpr std::chrono::seconds kPause{1};  ///< between two looks, at least
+constexpr std::chrono::seconds kMostPause{60};
 
 /// What palpate says to sbatch, and how a user has a say in it.
 struct OwnWord {
@@ -77,10 +78,11 @@ class SlurmLauncher final : public Launcher {
       const std::size_t count = std::min(most, tasks - first);
       const auto own = static_cast<std::ptrdiff_t>(begin_of(first));
       const auto end = static_cast<std::ptrdiff_t>(begin_of(first + count));
-      arrays_.push_back(slurm::submit(words_for(first, count, folder)));
+      const slurm::Submission made = slurm::submit(words_for(first, count, folder));
+      arrays_.push_back(made.array);
       queued_.insert(arrays_.back());
       open_.insert(open_.end(), jobs.begin() + own, jobs.begin() + end);
-      order_.submitted({arrays_.back(), static_cast<int>(count), static_cast<int>(end - own), folder});
+      order_.submitted({arrays_.back(), static_cast<int>(count), static_cast<int>(end - own), folder, made.doubt});
     }
   }
 
@@ -112,6 +114,9 @@ class SlurmLauncher final : public Launcher {
 
   fs::path make_folder() const {
     const fs::path all = directory_ / "slurm";
+    if (all.string().find_first_of("\\\n") != std::string::npos)
+      throw Error(all.string(), "Slurm cannot write logs below a folder with a backslash or a line end in its name",
+                  "rename it");
     make_inner_folder(all);
     std::error_code trouble;
     // Another submission may be looking for its number, too: who makes the folder has it.
@@ -151,9 +156,9 @@ class SlurmLauncher final : public Launcher {
         queued_.insert(task.array);
         running_ += task.waiting ? 0 : 1;
       }
-      answered_ = Clock::now();
     });
-    if (trouble && begun - answered_ > kMostSilence) {
+    silent_since_ = !trouble ? std::nullopt : silent_since_ ? silent_since_ : std::optional(begun);
+    if (trouble && Clock::now() - *silent_since_ > kMostSilence) {
       throw Error("squeue", fmt::format("has not answered for ten minutes: {}", trouble->reason()),
                   "the jobs continue; follow them with 'palpate status'", Error::Kind::run);
     }
@@ -165,7 +170,7 @@ class SlurmLauncher final : public Launcher {
     returned.assign(ended, open_.end());
     open_.erase(ended, open_.end());
     // Over many jobs on a slow file system a look takes long: most of the time is left to others.
-    next_ = Clock::now() + std::max<Clock::duration>(kPause, 10 * (Clock::now() - begun));
+    next_ = Clock::now() + std::clamp<Clock::duration>(10 * (Clock::now() - begun), kPause, kMostPause);
   }
 
   LaunchOrder order_;
@@ -175,7 +180,7 @@ class SlurmLauncher final : public Launcher {
   std::set<int> queued_;                       ///< arrays that have tasks in the queue, as last seen
   int running_ = 0;                            ///< their tasks that run
   Clock::time_point next_ = Clock::now();      ///< look
-  Clock::time_point answered_ = Clock::now();  ///< last
+  std::optional<Clock::time_point> silent_since_;
 };
 
 }  // namespace

@@ -77,8 +77,9 @@ void TapSummaries::compute(const Workshop& workshop, std::size_t job) const {
                 "the file is damaged, run the job again");
   }
   std::string lines;
+  const std::string hash = summary_hash(whole);
   for (Row& row : earlier_summaries(workshop, recording)) {
-    row.add(kOfSummary, summary_hash(whole));
+    row.add(kOfSummary, hash);
     lines += to_json_line(row) + "\n";
   }
   write_file(directory / kSummariesFile, lines);

@@ -32,6 +32,9 @@ class TapSummaries {
   /// Returns whether some job of the sweep has something kept; much cheaper than an object.
   static bool any_kept(const Sweep& sweep);
 
+  /// Returns the summary of each job; none of a job that has not ended.
+  const std::vector<std::optional<Row>>& whole() const { return summaries_; }
+
   /// Returns those of these jobs that have nothing kept that still holds.
   const std::vector<std::size_t>& missing() const { return missing_; }
 

@@ -239,7 +239,7 @@ Json run_data(const Recording& recording, const History& history) {
   return data;
 }
 
-std::string add_maps(Json& data, const History& history, std::size_t stride) {
+std::string add_maps(Json& data, const History& history, std::size_t stride, std::string_view only) {
   std::vector<int> shown;
   std::string bytes;
   Json surfaces = Json::array();
@@ -250,6 +250,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride) {
     if (!history.surfaces.empty()) surfaces.push_back(json_of_surface(history.surfaces[i]));
   }
   for (const MapSeries& one : history.maps) {
+    if (!only.empty() && one.name != only) continue;
     std::vector<Eigen::VectorXf> frames;
     if (one.name == "truth") frames = one.frames;  // of all moments
     for (std::size_t i = last % stride; i <= last && one.name != "truth"; i += stride) frames.push_back(one.frames[i]);
@@ -258,7 +259,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride) {
         {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
     bytes += packed.bytes;
   }
-  data["surfaces"] = surfaces;
+  data["surfaces"] = std::move(surfaces);
   data["maps"] = described;
   data["shown"] = shown;
   return bytes;

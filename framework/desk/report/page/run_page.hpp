@@ -45,7 +45,7 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames);
 Json run_data(const Recording& recording, const History& history);
 
 /// Adds to `data` the maps, or surfaces, of every `stride`-th of the moments that are shown, counted from the last.
-/// Returns the bytes of the maps.
-std::string add_maps(Json& data, const History& history, std::size_t stride);
+/// Returns the bytes of the maps. With `only`, the map of that name alone.
+std::string add_maps(Json& data, const History& history, std::size_t stride, std::string_view only = "");
 
 }  // namespace palpate

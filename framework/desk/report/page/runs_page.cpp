@@ -45,7 +45,7 @@ std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& prog
   for (std::size_t stride = 1;; stride += 1 + stride / 4) {
     progress(most_taps, most_taps);
     std::string bytes;
-    for (std::size_t i = 0; i < runs.size(); ++i) bytes += add_maps(described[i], runs[i].history, stride);
+    for (std::size_t i = 0; i < runs.size(); ++i) bytes += add_maps(described[i], runs[i].history, stride, "height");
     data["runs"] = described;
     std::string page = make_page(palpate_asset_runs, data, bytes);
     if (page.size() <= kMostPageBytes || stride > static_cast<std::size_t>(most_taps)) return page;
