@@ -21,7 +21,7 @@ done | awk -v folders="$folders" '
     else if (rank[$2] > rank[from]) print $1 ": " from " knows nothing of " $2 ", which stands below it" }' >"$found/arrows"
 # What a tap may depend on has the same bytes on every machine: palpate/math.hpp. Baxter's driver runs on one, and texts
 # of numbers (config/scale.cpp) decide nothing.
-git grep -nE '(std|Eigen)::(exp2?|expm1|log|log1p|log2|log10|hypot|sin|cos|tan|a?sinh?|a?cosh?|atan2?|a?tanh|pow|cbrt|erfc?|l?tgamma)\(|(\)|array)\.(exp|log|log1p|pow|sin|cos|tan|atan|tanh|erf)\(\)' -- \
+git grep -nE '(std|Eigen)::(exp2?|expm1|log|log1p|log2|log10|hypot|sin|cos|tan|a?sinh?|a?cosh?|atan2?|a?tanh|pow|cbrt|erfc?|l?tgamma)\(|Eigen::(AngleAxis|Rotation2D)|(\)|array)\.(exp|log|log1p|pow|sin|cos|tan|atan|tanh|erf)\(\)' -- \
   'framework/core/*.[ch]pp' 'framework/include/*.hpp' 'framework/shared/*.[ch]pp' 'plugins/*.[ch]pp' \
   ':!framework/shared/math' ':!framework/core/config/scale.cpp' ':!plugins/backends/baxter' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: an elementary function of the platform, palpate/math.hpp has its own|' >"$found/elementary" || true

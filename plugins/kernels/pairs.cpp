@@ -13,10 +13,12 @@ namespace {
 
 namespace hn = math::HWY_NAMESPACE::hn;
 
-/// As many pairs at a time as `reals` has lanes, with the place number `other` of the others.
+/// The pairs of the places from number `from` to `to` with one of the others, as many at a time as `reals` has lanes.
+/// Returns the number of the first place that is left.
 template <class Reals>
-HWY_INLINE std::ptrdiff_t take(Reals reals, const Pairs& pairs, std::ptrdiff_t other, std::ptrdiff_t from,
-                               std::ptrdiff_t to, double most, double scale, double* out) {
+HWY_INLINE std::ptrdiff_t squared_distances_by_lanes(Reals reals, const Pairs& pairs, std::ptrdiff_t other,
+                                                     std::ptrdiff_t from, std::ptrdiff_t to, double most, double scale,
+                                                     double* out) {
   constexpr auto lanes = static_cast<std::ptrdiff_t>(hn::MaxLanes(reals));
   const auto farthest = hn::Set(reals, most);
   for (; from + lanes <= to; from += lanes, out += lanes) {
@@ -38,8 +40,9 @@ void squared_distances(const Pairs& pairs, std::ptrdiff_t first, std::ptrdiff_t 
   std::ptrdiff_t other = first / pairs.n;
   for (std::ptrdiff_t begin = first % pairs.n; count > 0; begin = 0, ++other) {
     const std::ptrdiff_t end = std::min(pairs.n, begin + count);
-    const std::ptrdiff_t rest = take(math::HWY_NAMESPACE::kReals, pairs, other, begin, end, most, scale, out);
-    take(hn::CappedTag<double, 1>(), pairs, other, rest, end, most, scale, out + (rest - begin));
+    const std::ptrdiff_t rest =
+        squared_distances_by_lanes(math::HWY_NAMESPACE::kReals, pairs, other, begin, end, most, scale, out);
+    squared_distances_by_lanes(hn::CappedTag<double, 1>(), pairs, other, rest, end, most, scale, out + (rest - begin));
     out += end - begin;
     count -= end - begin;
   }

@@ -94,8 +94,9 @@ void read(const Cells& cells, const Reading& reading);
 /// out_i = the highest of the kScores numbers from `from` + i kScores on, of which none is NaN; not aligned either.
 void highest(const double* from, int count, double* out);
 
-// L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, as far as the
-// matrix goes. Both work in place on n numbers, with room up to a line.
+// L is a lower triangle by rows: row i at packed_row(i), i + 1 numbers and then padding up to a line, with room for as
+// many rows as whole lines have: what stands beyond row n is read and not used. Both work in place on n numbers, with
+// room up to a line.
 void solve_lower(const double* lower, int n, double* x);             ///< x = L^-1 x
 void solve_lower_transposed(const double* lower, int n, double* x);  ///< x = L^-T x
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Memory for the loops of table.hpp: numbers aligned to cache lines, and matrices in panels that grow by rows.
+// Memory for the loops of loops.hpp: numbers aligned to cache lines, and matrices in panels that grow by rows.
 #pragma once
 
 #include "gp/loops.hpp"

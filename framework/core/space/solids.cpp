@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "space/solids.hpp"
 
+#include "scene/rotation.hpp"
+
 #include <Eigen/Geometry>
 
 #include <palpate/math.hpp>
@@ -28,8 +30,6 @@ Vector3d normal3(Random& random) {
 
 double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
 
-Matrix3d about(const Vector3d& axis, double angle) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
-
 /// By how much the way of a tool, which came from far outside, contradicts a piece in it: how far its surface would
 /// have to be moved back, or the way aside, so that it is met no earlier than the touch ended; 0 where it is not.
 double depth_of(const Piece& piece, const SurfaceTouch& touch) {
@@ -43,11 +43,11 @@ double depth_of(const Piece& piece, const SurfaceTouch& touch) {
 
 /// Upright, lying or in between.
 Matrix3d stance(Random& random) {
-  Matrix3d turned = about(Vector3d::UnitZ(), between(0.0, 2.0 * kHalfTurn, random));
+  Matrix3d turned = rotation_about(Vector3d::UnitZ(), between(0.0, 2.0 * kHalfTurn, random));
   const double how = random.uniform();
   if (how < 0.65) return turned;
-  if (how < 0.85) return turned * about(Vector3d::UnitY(), kHalfTurn / 2);
-  return turned * about(Vector3d::UnitY(), between(0.0, kHalfTurn / 2, random));
+  if (how < 0.85) return turned * rotation_about(Vector3d::UnitY(), kHalfTurn / 2);
+  return turned * rotation_about(Vector3d::UnitY(), between(0.0, kHalfTurn / 2, random));
 }
 
 /// A piece of any size whose surface or inside is near a point.
@@ -417,9 +417,9 @@ bool Solids::change(Piece& piece) {
     if (tilt < 1.0 - 1e-9 && tilt > 1e-9 && random_.uniform() < 0.7) {
       Vector3d level = normal3(random_);
       level.z() = 0.0;
-      piece.turn = about(level.normalized(), 0.3 * angle) * piece.turn;
+      piece.turn = rotation_about(level.normalized(), 0.3 * angle) * piece.turn;
     }
-    piece.turn = about(Vector3d::UnitZ(), angle) * piece.turn;
+    piece.turn = rotation_about(Vector3d::UnitZ(), angle) * piece.turn;
   } else if (kind < 0.88) {
     const auto form = static_cast<Piece::Form>(random_.index(3));
     if (form == piece.form) return false;
@@ -433,8 +433,8 @@ bool Solids::change(Piece& piece) {
     }
   } else {
     const Vector3d lowest = piece.centre;
-    piece.turn =
-        random_.uniform() < 0.5 ? stance(random_) : Matrix3d(piece.turn * about(Vector3d::Unit(axis), kHalfTurn / 2));
+    piece.turn = random_.uniform() < 0.5 ? stance(random_)
+                                         : Matrix3d(piece.turn * rotation_about(Vector3d::Unit(axis), kHalfTurn / 2));
     if (random_.uniform() < 0.5) piece.centre.z() = piece.half.dot(piece.turn.row(2).cwiseAbs().transpose());
     if (random_.uniform() < 0.3) piece.centre = lowest;
   }

@@ -113,10 +113,9 @@ PointCloud placed(const PointCloud& points, const PriorOptions& options) {
   PointCloud out = options.unit * points;
   if (!options.pose) return out;
   const ViewPose& pose = *options.pose;
-  const Eigen::Matrix3d turn =
-      (Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pose.pitch, Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(pose.roll, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  const Eigen::Matrix3d turn = rotation_about(Eigen::Vector3d::UnitZ(), pose.yaw) *
+                               rotation_about(Eigen::Vector3d::UnitY(), pose.pitch) *
+                               rotation_about(Eigen::Vector3d::UnitX(), pose.roll);
   return (turn * out).colwise() + Eigen::Vector3d(pose.x, pose.y, pose.z);
 }
 

@@ -21,10 +21,10 @@ double log(double x);
 double log1p(double x);
 /// x^y for x >= 0, 1 ulp. NaN for x < 0.
 double pow(double x, double y);
-/// x in radians, 0.8 ulp up to 10^6. The error grows in proportion to x beyond.
+/// x in radians, 0.8 ulp up to 10^6. The error grows in proportion to x beyond; NaN above 10^9.
 double sin(double x);
 double cos(double x);
-/// The angle of (x, y) from the x axis in (-pi, pi], 1.8 ulp; 0 of (0, 0). Both have to be finite.
+/// The angle of (x, y) from the x axis in [-pi, pi], with the sign of y, 1.8 ulp; 0 of (0, 0). x has to be finite.
 double atan2(double y, double x);
 /// In [-pi / 2, pi / 2] and [0, pi], 2.6 ulp; NaN outside of [-1, 1].
 double asin(double x);

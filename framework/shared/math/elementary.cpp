@@ -10,6 +10,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+constexpr double kMostAngle = 1e9;
 constexpr double kPi = 0x1.921fb54442d18p1;
 constexpr double kPiLow = 0x1.1a62633145c07p-53;  // pi is the sum of both
 // ln 2 in two parts, the first of 32 bits: a product with an exponent is exact.
@@ -53,7 +54,7 @@ double polynomial(const double (&coefficients)[kCount], double x) {
 /// e^(x + low) for a low that is small beside the last place of 1.
 double exp_of(double x, double low) {
   if (x > 709.8) return kInfinity;
-  if (x < -745.2) return 0.0;
+  if (!(x >= -745.2)) return std::isnan(x) ? x : 0.0;
   const double n = std::nearbyint(x * 1.44269504088896340736);
   const double r = (x - n * kLog2) - (n * kLog2Low - low);
   static constexpr double kOf[] = {1.0 / 2,       1.0 / 6,        1.0 / 24,        1.0 / 120,
@@ -108,9 +109,10 @@ Pair log_of(double x) {
 /// x = n pi / 2 + r with |r| <= pi / 4.
 struct Reduced {
   int quarter;  ///< n modulo 4
-  Pair r;
+  Pair r;       ///< NaN where x has too few digits left
 };
 Reduced reduce(double x) {
+  if (!(std::abs(x) <= kMostAngle)) return {0, {kNaN, kNaN}};
   // pi / 2 in three parts, the first two of 33 bits: products with n < 2^20 are exact.
   constexpr double kHalf[] = {0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
   const double n = std::nearbyint(x * 0x1.45f306dc9c883p-1);  // 2 / pi

@@ -6,10 +6,14 @@
 // Highway is used by its headers alone. Its library would choose, too, but measures clocks when it is loaded, which
 // takes as long as a fifth of a short run.
 //
-// The sets are AVX2 and AVX-512 (which Highway calls AVX3) on x86, NEON on ARM, and what every processor has. Vectors
-// of SVE have no size that a compiler knows, so that arrays of them do not compile.
-#ifndef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+// The sets are AVX2 and AVX-512 (which Highway calls AVX3) on x86, and what every processor of the architecture has: on
+// 64-bit ARM that is NEON. Vectors of SVE have no size that a compiler knows, so that arrays of them do not compile.
+#ifndef PALPATE_DISPATCH
+#ifdef __aarch64__
+#define HWY_COMPILE_ONLY_STATIC
+#else
+#define HWY_DISABLED_TARGETS (~(HWY_SCALAR | HWY_EMU128 | HWY_SSE2 | HWY_AVX2 | HWY_AVX3))
+#endif
 #define PALPATE_DISPATCH(function)                                                          \
   (*::palpate::math::version_of<decltype(&HWY_STATIC_DISPATCH(function))>(                  \
       {HWY_CHOOSE_FALLBACK(function), HWY_CHOOSE_NEON(function), HWY_CHOOSE_AVX2(function), \
@@ -26,9 +30,9 @@ HWY_BEFORE_NAMESPACE();
 namespace palpate::math::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-constexpr hn::ScalableTag<double> kReals;
+inline constexpr hn::ScalableTag<double> kReals;
 using Vector = hn::Vec<hn::ScalableTag<double>>;
-constexpr int kLanes = hn::MaxLanes(kReals);
+inline constexpr int kLanes = hn::MaxLanes(kReals);
 
 /// `from` and `to` are aligned to a vector.
 HWY_INLINE Vector at(const double* from) { return hn::Load(kReals, from); }

@@ -15,9 +15,11 @@ Instructions widest() {
 #if defined(__x86_64__)
   const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
                     __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0 &&
-                    __builtin_cpu_supports("aes") != 0 && __builtin_cpu_supports("pclmul") != 0;
+                    __builtin_cpu_supports("aes") != 0 && __builtin_cpu_supports("pclmul") != 0 &&
+                    __builtin_cpu_supports("f16c") != 0;
   const bool avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
-                      __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0;
+                      __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+                      __builtin_cpu_supports("avx512cd") != 0;
   return !avx2 ? Instructions::baseline : avx512 ? Instructions::avx512 : Instructions::avx2;
 #elif defined(__aarch64__)
   return Instructions::neon;
@@ -48,10 +50,10 @@ std::vector<Instructions> instruction_sets() {
   switch (widest()) {
     case Instructions::avx512:
       return {Instructions::avx512, Instructions::avx2, Instructions::baseline};
-    case Instructions::baseline:
-      return {Instructions::baseline};
+    case Instructions::avx2:
+      return {Instructions::avx2, Instructions::baseline};
     default:
-      return {widest(), Instructions::baseline};
+      return {widest()};
   }
 }
 

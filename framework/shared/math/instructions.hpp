@@ -15,9 +15,9 @@ const char* name_of(Instructions set);
 /// The sets that this processor has and loops are compiled for, the widest first.
 std::vector<Instructions> instruction_sets();
 
-/// Follows the environment variable PALPATE_INSTRUCTIONS: the set that it names, such as `baseline`, so that runs on
-/// different machines give the same bytes; the widest if it is unset or empty. Throws Error if the processor has no set
-/// of that name.
+/// Follows the environment variable PALPATE_INSTRUCTIONS: the set that it names; the widest if it is unset or empty.
+/// Loops give the same bytes with AVX2, AVX-512 and NEON, and other last digits with `baseline`, which has no fused
+/// multiplication and addition. Throws Error if the processor has no set of that name.
 Instructions choose_instructions();
 
 /// Of a function that is compiled for several sets, in their order and null for those that are not, the one to call.
