@@ -27,7 +27,6 @@
 
 #include <charconv>
 #include <csignal>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -84,26 +83,11 @@ std::optional<int> initial_taps_of(const ExperimentOptions& options) {
 
 int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted, Launched launched) {
   const Sweep& sweep = campaign.sweep;
-  std::vector<Row> results = write_results(sweep);
-  // How many taps are initial ones: jobs with the same strategy, design, view and budget have as many, and the first of
-  // their configs that can be read tells it for all of them.
-  const auto deciding = [&](const Job& job) {
-    std::vector<std::string> values;
-    for (std::size_t i = 0; i < sweep.keys.size(); ++i) {
-      const std::string first = first_key(sweep.keys[i]);
-      if (first == kStrategy || first == "initial" || first == "taps" || first == "space" || first == "surface")
-        values.push_back(job.values[i]);
-    }
-    return values;
+  const auto initial_taps = [&](std::size_t job) {
+    const auto config = readable_config(campaign, job);
+    return config ? initial_taps_of(config->options) : std::nullopt;
   };
-  std::map<std::vector<std::string>, std::optional<int>> known;
-  for (std::size_t job = 0; job < sweep.jobs.size(); ++job) {
-    const std::vector<std::string> values = deciding(sweep.jobs[job]);
-    if (known.count(values) > 0) continue;
-    if (const auto config = readable_config(campaign, job)) known[values] = initial_taps_of(config->options);
-  }
-  const auto initial_taps = [&](std::size_t job) { return known[deciding(sweep.jobs[job])]; };
-  print_text(sweep_table(sweep, std::exchange(results, {}), initial_taps));
+  print_text(sweep_table(sweep, write_results(sweep), initial_taps));
   print_failures(sweep, end.failures);
   const std::string directory = sweep.directory.string();
   if (!end.failures.empty()) print_out("try them again: palpate resume --retry-failed {}\n", directory);

@@ -63,7 +63,7 @@ class Describer final : public Fields {
   void text(std::string& value, const Field& field) override { add(Type::text, field).default_value = value; }
 
   void choice(std::size_t& index, const Field& field, const std::vector<Case>& cases) override {
-    FieldDescription& row = add(Type::choice, field, cases);
+    FieldDescription& row = add(Type::choice, field);
     row.default_value = cases[index].name;
     for (const Case& one : cases) {
       row.cases.push_back({one.name, one.meaning, {}});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/policy.hpp"
 
+#include "gp/loops.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <ctime>
 #include <utility>
 #include <vector>
@@ -27,8 +28,8 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   std::string out = "x,y";
   for (const Column& column : columns) out.append(",").append(column.first);
   out += '\n';
-  // Half of the time of a short run would go into numbers that were written before: those of the axes, and of columns
-  // with the same map as an earlier one.
+  // Half of the time of a short run would go into numbers that were written before: those of the axes, of columns with
+  // the same map as an earlier one, and of places with the same value as the one before.
   const auto text_of = [](double value) {
     std::string text;
     append_number(text, value);
@@ -48,13 +49,16 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
       out.append(xs[static_cast<std::size_t>(column)]).append(y);
       for (std::size_t i = 0; i < columns.size(); ++i) {
         out += ',';
-        if (first[i] < i) {
+        const Eigen::VectorXd* const map = columns[i].second;
+        const bool again =
+            map != nullptr && cell > 0 && std::memcmp(&(*map)(cell), &(*map)(cell - 1), sizeof(double)) == 0;
+        if (first[i] < i || again) {
           const auto [place, length] = cells[first[i]];
           out.append(out, place, length);
           continue;
         }
         cells[i].first = out.size();
-        if (columns[i].second != nullptr) append_number(out, (*columns[i].second)(cell));
+        if (map != nullptr) append_number(out, (*map)(cell));
         cells[i].second = out.size() - cells[i].first;
       }
       out += '\n';

@@ -4,6 +4,7 @@
 #include "config/hash.hpp"
 #include "config/trouble.hpp"
 #include "reading/reading.hpp"
+#include "scene/rotation.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>

@@ -44,7 +44,8 @@ std::string spread(const std::vector<double>& values, const Scale& scale) {
 SweepTableRow row_of(const JobGroup& group, const std::string& error,
                      const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
   SweepTableRow out;
-  std::optional<int> initial;  // taps of those that are done
+  std::optional<int> initial;  // taps: the jobs of a group have as many
+  bool asked = false;
   for (const auto& [job, row] : group.jobs) {
     if (row == nullptr) continue;
     ++out.runs;
@@ -52,7 +53,7 @@ SweepTableRow row_of(const JobGroup& group, const std::string& error,
       ++out.failed;
       continue;
     }
-    if (!initial) initial = initial_taps(static_cast<std::size_t>(job->index));
+    if (!std::exchange(asked, true)) initial = initial_taps(static_cast<std::size_t>(job->index));
     const std::optional<double> hit = row->number("first_hit_tap");
     const bool is_without_contact = !hit || !initial || *hit > *initial;
     out.without_contact += is_without_contact ? 1 : 0;

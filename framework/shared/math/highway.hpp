@@ -14,6 +14,10 @@
 #else
 #define HWY_DISABLED_TARGETS (~(HWY_SCALAR | HWY_EMU128 | HWY_SSE2 | HWY_AVX2 | HWY_AVX3))
 #endif
+#include <hwy/detect_targets.h>
+#ifndef HWY_SSE2
+#define HWY_SSE2 0LL  // Highway has it from 1.1 on
+#endif
 #define PALPATE_DISPATCH(function)                                                          \
   (*::palpate::math::version_of<decltype(&HWY_STATIC_DISPATCH(function))>(                  \
       {HWY_CHOOSE_FALLBACK(function), HWY_CHOOSE_NEON(function), HWY_CHOOSE_AVX2(function), \
