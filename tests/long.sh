@@ -2,64 +2,86 @@
 # SPDX-License-Identifier: MIT
 # The campaigns, one after the other, each in its long form; `./check` and `./check --all` run short forms. Takes hours, and
 # needs build/release with all of its programs: `./check --long` builds it. Output goes to build/long/NAME.log. Ends with
-# status 1 and the names of those that failed; a campaign whose tools are missing is skipped.
+# status 1 if a campaign failed or was skipped, and names these campaigns.
 #   sh tests/long.sh [NAME...]
 set -u
 cd "$(dirname "$(readlink -f "$0")")/.." || exit 1
-mkdir -p build/long
-wanted=" $* "
-failed=
-skipped=
+tests=build/release/tests
+names="stress fuzz accuracy same_taps stability robots chaos clang tsan threads arm64"
+names="$names debian_12 pages_12 packages_12 debian_13 pages_13 packages_13 benchmarks"
+for name in "$@"; do
+  case " $names " in *" $name "*) continue ;; esac
+  echo "long: there is no campaign '$name', the campaigns are $names" >&2
+  exit 2
+done
 
-# campaign NAME TOOL COMMAND...: TOOL is a command without which it is skipped; status 77 skips it, too.
-campaign() {
-  name=$1 tool=$2
-  shift 2
-  case $wanted in *" $name "* | "  ") ;; *) return ;; esac
-  echo "long: $name" >&2
-  status=77
-  command -v "$tool" >/dev/null && { "$@" >"build/long/$name.log" 2>&1; status=$?; }
-  case $status in
-    0) ;;
-    77) skipped="$skipped $name" ;;
-    *) failed="$failed $name" ;;
-  esac
+# needs TOOL...: status 77 and the reason if a command is missing. The tool `root` is a user who is root.
+needs() {
+  for tool in "$@"; do
+    if [ "$tool" = root ]; then
+      [ "$(id -u)" = 0 ] || { echo "needs root"; return 77; }
+    else
+      command -v "$tool" >/dev/null || { echo "$tool is missing"; return 77; }
+    fi
+  done
 }
 
-# smoke PRESET FOLDER SETTING...: builds the tests of core and its laws there, and runs their short forms.
+# gtest SUITE FILTER: tests of the release build in their long form.
+gtest() { env PALPATE_LONG=1 "$tests/$1_tests" --gtest_brief=1 --gtest_filter="$2"; }
+
+# smoke PRESET FOLDER SETTING...: builds the unit and contract tests there, and runs their short forms.
 smoke() {
   preset=$1 folder=$2
   shift 2
   cmake --preset "$preset" -B "build/$folder" "$@" &&
     ninja -C "build/$folder" palpate_complete unit_tests contract_tests &&
-    ctest --test-dir "build/$folder" --output-on-failure -R '^everyday/(unit|contract)/'
+    ctest --test-dir "build/$folder" --output-on-failure --no-tests=error -R '^everyday/(unit|contract)/'
 }
 
 # threads: eight threads of Python over one run, for a minute, under both sanitizers.
 threads() {
+  [ -d build/release/python ] || { echo "the Python module is missing"; return 77; }
   for preset in tsan asan; do
     cmake --preset $preset && cmake --build build/$preset --target palpate_complete &&
-      PALPATE_SECONDS=60 ctest --test-dir build/$preset --output-on-failure -R eight_threads || return 1
+      PALPATE_SECONDS=60 ctest --test-dir build/$preset --output-on-failure --no-tests=error -R eight_threads || return 1
   done
 }
 
-tests=build/release/tests
-campaign stress sh sh tests/stress.sh
-campaign fuzz clang++ sh tests/fuzz.sh
-campaign accuracy sh sh tests/accuracy.sh build/release --long
-campaign same_taps sh env PALPATE_LONG=1 $tests/system_tests --gtest_brief=1 --gtest_filter='Of/SameTaps.*'
-campaign stability sh env PALPATE_LONG=1 $tests/stability_tests --gtest_brief=1
-campaign robots $tests/baxter_tests sh tests/robot_campaign.sh
-campaign chaos $tests/baxter_tests env PALPATE_CHAOS=1000:5000 $tests/baxter_tests --gtest_brief=1 --gtest_filter='Chaos.*'
-campaign clang clang++ smoke debug clang -DCMAKE_CXX_COMPILER=clang++
-campaign tsan sh smoke tsan tsan
-campaign threads sh threads
-[ ! -f tests/arm64.sh ] || campaign arm64 sh sh tests/arm64.sh
-for suite in 12 13; do
-  campaign "debian_$suite" mmdebstrap sh tests/in_debian.sh $suite ci
-  campaign "pages_$suite" mmdebstrap sh tests/in_debian.sh $suite pages
-  campaign "packages_$suite" mmdebstrap sh tests/packages.sh $suite
+# campaign NAME: status 77 if something is missing, with the reason as the last line of its output.
+campaign() {
+  case $1 in
+    stress) sh tests/stress.sh ;;
+    fuzz) needs clang++ && sh tests/fuzz.sh ;;
+    accuracy) sh tests/accuracy.sh build/release --long ;;
+    same_taps) gtest system 'Of/SameTaps.*' ;;
+    stability) gtest stability '*' ;;
+    robots) needs $tests/baxter_tests && sh tests/robot_campaign.sh ;;
+    chaos) needs $tests/baxter_tests && PALPATE_CHAOS=1000:5000 $tests/baxter_tests --gtest_brief=1 --gtest_filter='Chaos.*' ;;
+    clang) needs clang++ && smoke debug clang -DCMAKE_CXX_COMPILER=clang++ ;;
+    tsan) smoke tsan tsan ;;
+    threads) threads ;;
+    arm64) needs root && sh tests/arm64.sh ;;
+    debian_*) needs root mmdebstrap && sh tests/in_debian.sh "${1#*_}" ci ;;
+    pages_*) needs root mmdebstrap && sh tests/in_debian.sh "${1#*_}" pages ;;
+    packages_*) needs root mmdebstrap && sh tests/packages.sh "${1#*_}" ;;
+    benchmarks) gtest system 'Every/Pages.*' ;;
+  esac
+}
+
+mkdir -p build/long
+failed=
+skipped=
+[ $# -gt 0 ] || set -- $names
+for name in "$@"; do
+  echo "long: $name" >&2
+  (campaign "$name") >"build/long/$name.log" 2>&1
+  case $? in
+    0) ;;
+    77) skipped="$skipped
+  $name: $(tail -n 1 "build/long/$name.log")" ;;
+    *) failed="$failed $name" ;;
+  esac
 done
-campaign benchmarks sh env PALPATE_LONG=1 $tests/system_tests --gtest_brief=1 --gtest_filter='Every/Pages.*'
-[ -z "$skipped" ] || echo "long: skipped, because tools are missing:$skipped" >&2
-[ -z "$failed" ] || { echo "long: failed, see build/long:$failed" >&2; exit 1; }
+[ -z "$skipped" ] || echo "long: skipped:$skipped" >&2
+[ -z "$failed" ] || echo "long: failed, see build/long:$failed" >&2
+[ -z "$failed$skipped" ]

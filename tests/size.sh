@@ -10,13 +10,13 @@
 #   sh tests/size.sh --ceilings      prints the table for the present size: 2 % more, and five lines
 set -eu
 cd "$(dirname "$(readlink -f "$0")")/.."
-# Folder, most lines of code, most lines of scripts. Who raises a number writes behind it, after #, what for.
+# Folder, most lines of code, most lines of scripts. Write the reason for a raised number after # at the end of its line.
 ceilings='
 .ci 0 131
 . 0 199
 framework 0 58
 framework/cli 3376 32
-framework/cmake 0 207
+framework/cmake 0 220 # packages of a cross build
 framework/core 18031 49
 framework/desk 9609 126
 framework/include 807 0
@@ -32,7 +32,7 @@ plugins/kernels 547 0
 plugins/programs 520 0
 plugins/shapes 2026 0
 plugins/starters 203 28
-tests 0 1822
+tests 0 1874 # reasons for counts of instructions, campaigns by name, checks of packages for ARM
 tests/bad_plugins 447 49
 tests/baxter 5676 0
 tests/benchmark 1071 857
