@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Builds palpate for 64-bit ARM with a cross compiler and tests it under emulation: the files of Debian 12 for arm64 are
 # unpacked by mmdebstrap, and programs run in qemu. Unit, contract and stability tests, then runs that are compared with
-# those of the release build, tap by tap, then packages. Needs root, the packages under [arm64] in packages.txt, a
-# network, 4 GB in the build folder, and an hour.
+# those of the release build, tap by tap, then packages. Needs root, mmdebstrap, g++-aarch64-linux-gnu, qemu-user-static,
+# dpkg-dev and file, a network, 4 GB in the build folder, and an hour.
 #   sh tests/arm64.sh [--seeds N] [build | test | compare | packages]...
 # N seeds of paper and default are compared, 20 unless said. Without further words, all four.
 set -eu
@@ -12,6 +12,7 @@ folder=$root/build/arm64
 system=$folder/system
 build=$folder/build
 seeds=20
+cores=$(nproc)
 
 refuse() {
   echo "arm64: $1" >&2
@@ -29,7 +30,8 @@ while [ $# -gt 0 ]; do
 done
 steps=${steps:-build test compare packages}
 for tool in mmdebstrap aarch64-linux-gnu-g++ qemu-aarch64-static; do
-  command -v "$tool" >/dev/null || { echo "arm64: $tool is missing: apt install $(sed -n '/^\[arm64\]/,/^$/s/^\([a-z][^ ]*\).*/\1/p' "$root/packages.txt" | tr '\n' ' ')" >&2; exit 77; }
+  command -v "$tool" >/dev/null ||
+    { echo "arm64: $tool is missing: apt install mmdebstrap g++-aarch64-linux-gnu qemu-user-static" >&2; exit 77; }
 done
 [ "$(id -u)" = 0 ] || refuse "only root can register an emulator"
 
@@ -43,7 +45,7 @@ unpack() {
   [ ! -e "$system/usr/include/hwy" ] || return 0
   rm -rf "$system"
   packages=$(sed -n '/^\[core\]/,/^\[ros\]/s/^\(lib[^ ]*-dev\|nlohmann-json3-dev\)  *#.*/\1/p' "$root/packages.txt" | tr '\n' ',')
-  mmdebstrap --quiet --arch=arm64 --variant=extract --include="libc6-dev,libstdc++-12-dev,libblas-dev,liblapack-dev,$packages" bookworm "$system" http://deb.debian.org/debian
+  mmdebstrap --quiet --arch=arm64 --variant=extract --include="base-files,libc6-dev,libstdc++-12-dev,libblas-dev,liblapack-dev,$packages" bookworm "$system" http://deb.debian.org/debian
   # No package was configured, so that the links of alternatives are not there, and Ceres names its libraries by whole paths.
   for name in blas lapack; do
     for end in so so.3; do ln -sf "$name/lib$name.$end" "$system/usr/lib/aarch64-linux-gnu/lib$name.$end"; done
@@ -95,6 +97,17 @@ sys.exit(1 if differ or not one or one.keys() != other.keys() else 0)
 python
 }
 
+# packages: makes the packages, and checks their architecture and that palpate depends on libfmt.
+packages() {
+  rm -rf "$folder/packages"
+  (cd "$build" && cpack -B "$folder/packages" >"$folder/cpack.log")
+  for deb in "$folder"/packages/*.deb; do
+    [ "$(dpkg-deb -f "$deb" Architecture)" = arm64 ] || { echo "arm64: $deb is not for arm64" >&2; exit 1; }
+  done
+  dpkg-deb -f "$folder"/packages/palpate_*.deb Depends | grep 'libfmt9 (>=' ||
+    { echo "arm64: palpate does not depend on libfmt9" >&2; exit 1; }
+}
+
 mkdir -p "$folder"
 export QEMU_LD_PREFIX="$system" PKG_CONFIG_SYSROOT_DIR="$system"
 export PKG_CONFIG_LIBDIR="$system/usr/lib/aarch64-linux-gnu/pkgconfig:$system/usr/share/pkgconfig"
@@ -107,7 +120,9 @@ for step in $steps; do
     test)
       for suite in unit contract stability; do
         echo "arm64: $suite tests" >&2
-        (cd "$build/tests" && "./${suite}_tests" --gtest_brief=1)
+        # One part per core.
+        (cd "$build/tests" && seq 0 $((cores - 1)) | xargs -P "$cores" -I PART \
+          env GTEST_TOTAL_SHARDS="$cores" GTEST_SHARD_INDEX=PART "./${suite}_tests" --gtest_brief=1)
       done
       ;;
     compare)
@@ -116,6 +131,6 @@ for step in $steps; do
       runs "$build/palpate-whole" "$folder/arm"
       compare "$folder/x86" "$folder/arm"
       ;;
-    packages) (cd "$build" && cpack -B "$folder/packages" >"$folder/cpack.log" && ls "$folder/packages"/*.deb) ;;
+    packages) packages ;;
   esac
 done

@@ -20,6 +20,14 @@ foreach(component ${CPACK_COMPONENTS_ALL})
   set(usr ${CPACK_TEMPORARY_DIRECTORY}/${component}/usr)
   set(documents ${usr}/share/doc/${name})
 
+  # dpkg-shlibdeps knows the packages of this machine's libraries only. On Debian those of another architecture have the
+  # same names.
+  if(CPACK_PALPATE_CROSS AND NOT component STREQUAL "dev")
+    file(MAKE_DIRECTORY ${CPACK_TEMPORARY_DIRECTORY}/${component}/debian)
+    execute_process(COMMAND sh -c "cat /var/lib/dpkg/info/*:*.shlibs /var/lib/dpkg/info/*.shlibs | grep -v ':[a-z]'"
+                    OUTPUT_FILE ${CPACK_TEMPORARY_DIRECTORY}/${component}/debian/shlibs.local COMMAND_ERROR_IS_FATAL ANY)
+  endif()
+
   file(WRITE ${documents}/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: palpate
 

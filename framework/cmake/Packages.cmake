@@ -22,8 +22,8 @@ endif()
 
 # Built on another Debian it depends on other libraries and is another package, of which the later one's is the newer.
 set(distribution "")
-if(EXISTS /etc/os-release)
-  file(STRINGS /etc/os-release distribution REGEX "^(ID|VERSION_ID)=")
+if(EXISTS ${CMAKE_SYSROOT}/etc/os-release)
+  file(STRINGS ${CMAKE_SYSROOT}/etc/os-release distribution REGEX "^(ID|VERSION_ID)=")
   if(distribution MATCHES "(^|;)ID=debian" AND distribution MATCHES "VERSION_ID=\"?([0-9]+)")
     set(distribution "+deb${CMAKE_MATCH_1}")
   else()
@@ -51,6 +51,12 @@ set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/PackageDate.cmake)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/DebianFiles.cmake)
 set(CPACK_PALPATE_SOURCE ${PROJECT_SOURCE_DIR})
 set(CPACK_PALPATE_STRIP ${CMAKE_STRIP})
+set(CPACK_PALPATE_CROSS ${CMAKE_CROSSCOMPILING})
+if(CMAKE_CROSSCOMPILING)
+  string(REPLACE aarch64 arm64 CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${CMAKE_SYSTEM_PROCESSOR})
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_SYSROOT}/lib/${CMAKE_LIBRARY_ARCHITECTURE}
+                                                  ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
+endif()
 
 # debian_package COMPONENT NAME SECTION DESCRIPTION, of which the first line is the short one.
 macro(debian_package component name section description)
@@ -71,8 +77,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "palpate-dev, python3-palpate, palpate-baxter, slurm-client")
 
 debian_package(dev palpate-dev libdevel "experiments in active touch - to build plugins with
-Headers and the CMake package for plugins of palpate: kernels, acquisitions,
-fittings, footprints, backends and shapes.")
+Headers, a static library of elementary functions, and the CMake package for
+plugins of palpate: kernels, acquisitions, fittings, footprints, backends and
+shapes.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "palpate ${same_version}, libeigen3-dev (>= 3.4), cmake (>= 3.25), ninja-build | make")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS g++)
