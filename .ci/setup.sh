@@ -3,7 +3,8 @@
 
 say() { printf '%s\n' "$*" >&2; }
 
-# lock FD NAME WHAT: waits for the lock build/NAME.lock and holds it as FD, until FD is closed or this shell has ended.
+# lock FD NAME WHAT: waits for the lock build/NAME.lock and holds it as FD. Programs that this shell starts inherit FD. If
+# the shell is killed while ninja or apt-get is running, the lock is therefore held until they end.
 lock() {
   mkdir -p "$root/build"
   eval "exec $1>>\"\$root/build/$2.lock\""
@@ -12,7 +13,7 @@ lock() {
   flock "$1"
 }
 
-# One set-up of this folder at a time. What does not set up or build lets go of it first.
+# One set-up of this folder at a time. Commands that neither set up nor build begin after unlock_setup.
 lock_setup() { lock 9 setup "another set-up of this folder"; }
 unlock_setup() { exec 9>&-; }
 
