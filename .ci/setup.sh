@@ -122,11 +122,13 @@ build() {
   fi
   shown=yes # progress and output of ninja, else only if it fails
   if [ $first = yes ]; then
-    # Minutes of one core, and space, for everything, for ./check, and for the first ./palpate run.
+    # Minutes of one core, and space, for everything, for ./check, for ./palpate build, and for the first ./palpate run.
     case "$preset $*" in
       'release ') whole=25 disk='900 MB' ;;
       *' ') whole=25 disk='1.9 GB' ;;
-      *' palpate_everyday' | *' palpate_hostile') whole=14 disk='800 MB' ;;
+      *' palpate_everyday') whole=10 disk='1.1 GB' ;;
+      *' palpate_hostile') whole=6 disk='800 MB' ;;
+      *' palpate_complete '*) whole=8 disk='700 MB' ;;
       *) whole=8 disk='200 MB' ;;
     esac
     say "building preset $preset: $(minutes $whole) the first time, $disk of disk"
