@@ -7,7 +7,7 @@
 set -u
 cd "$(dirname "$(readlink -f "$0")")/.." || exit 1
 tests=build/release/tests
-names="stress crash fuzz accuracy same_taps stability robots chaos clang tsan threads arm64"
+names="sanitizers stress crash fuzz accuracy same_taps stability robots chaos clang tsan threads arm64"
 names="$names debian_12 pages_12 packages_12 debian_13 pages_13 packages_13 benchmarks"
 for name in "$@"; do
   case " $names " in *" $name "*) continue ;; esac
@@ -38,6 +38,12 @@ smoke() {
     ctest --test-dir "build/$folder" --output-on-failure --no-tests=error -R '^everyday/(unit|contract)/'
 }
 
+# sanitizers: every test under the address and undefined-behaviour sanitizers.
+sanitizers() {
+  cmake --preset asan && cmake --build build/asan &&
+    ctest --test-dir build/asan -j "$((3 * $(nproc)))" --output-on-failure --no-tests=error -LE '^everyday$' --repeat until-pass:2
+}
+
 # threads: eight threads of Python over one run, for a minute, under both sanitizers.
 threads() {
   [ -d build/release/python ] || { echo "the Python module is missing"; return 77; }
@@ -50,6 +56,7 @@ threads() {
 # campaign NAME: status 77 if something is missing, with the reason as the last line of its output.
 campaign() {
   case $1 in
+    sanitizers) sanitizers ;;
     stress) sh tests/stress.sh ;;
     crash) python3 -B tests/crash/crash.py build/release --long ;;
     fuzz) needs clang++ && sh tests/fuzz.sh ;;
