@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The laws of footprint.hpp, over every footprint found: those that need no options, and those of every shipped config.
 #include "config/yaml.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -119,6 +120,17 @@ TEST_P(FootprintContract, GivesTheSameBytesHoweverOftenAndWhereItIsAskedInBetwee
   const std::vector<FootprintNumber> others = often->numbers();
   ASSERT_EQ(some.size(), others.size());
   for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].value, others[i].value) << some[i].name;
+}
+
+TEST_P(FootprintContract, GivesTheSameProbabilitiesOnEveryInstructionSet) {
+  std::vector<Eigen::VectorXd> found;
+  for (const Instructions set : math::instruction_sets()) {
+    const OnInstructions on(set);
+    const auto footprint = fresh();
+    take(*footprint, disc_touches(30));
+    found.push_back(probability_of(*footprint, lattice(23, 23)));
+    EXPECT_LT((found.back() - found.front()).cwiseAbs().maxCoeff(), 1e-9) << math::name_of(set);
+  }
 }
 
 TEST_P(FootprintContract, TellsFiniteNumbersOfTheSameNamesAtEachTouch) {

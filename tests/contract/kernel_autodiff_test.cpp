@@ -3,6 +3,7 @@
 // automatically (ceres::Jet), in long double, whose 64 bits of mantissa leave the oracle's rounding out of account.
 #include "config/quantity.hpp"
 #include "contract/kernel_cases.hpp"
+#include "support/instruction_sets.hpp"
 
 #include <palpate/kernel.hpp>
 
@@ -105,9 +106,20 @@ Jet Walk::evaluate(const std::string& type, const Tree& options) {
   return all_formulas().at(type)(options, *this);
 }
 
-class KernelFormula : public testing::TestWithParam<KernelCase> {};
+class KernelFormula : public testing::TestWithParam<KernelCase> {
+ protected:
+  static void expect_formula();
+};
 
-TEST_P(KernelFormula, HasTheValuesAndSlopesThatAutomaticDifferentiationFinds) {
+TEST_P(KernelFormula, HasTheValuesAndSlopesThatAutomaticDifferentiationFindsOnEveryInstructionSet) {
+  for (const Instructions set : math::instruction_sets()) {
+    SCOPED_TRACE(math::name_of(set));
+    const OnInstructions on(set);
+    expect_formula();
+  }
+}
+
+void KernelFormula::expect_formula() {
   const PluginChoice choice = choose(shared_host(), "kernel", GetParam().type, GetParam().options);
   const auto kernel = context_of(shared_host()).create<Kernel>(choice);
   const auto parameters = static_cast<Eigen::Index>(kernel->parameters().size());

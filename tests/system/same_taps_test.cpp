@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The promise of the tie rule: engine, threads and instruction set decide no tap.
+#include "math/instructions.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -27,18 +29,13 @@ std::vector<int> taps_of(const ExperimentOptions& options) {
   return out;
 }
 
-/// Not an override: the way is taken with PALPATE_INSTRUCTIONS=baseline.
-constexpr const char* kBaseline = "baseline";
-
-/// Ways to compute the same; the first is the plainest.
-std::vector<std::vector<std::string>> ways() {
-  std::vector<std::vector<std::string>> out{{"engine.type=dense", kBaseline}};
+/// Ways to compute the same, overrides and a value of PALPATE_INSTRUCTIONS.
+std::vector<std::pair<std::vector<std::string>, std::string>> ways() {
+  std::vector<std::pair<std::vector<std::string>, std::string>> out;
   for (const char* engine : {"engine.type=dense", "engine.type=grid", "engine.type=lowrank"}) {
-    out.push_back({engine});
-    out.push_back({engine, "engine.threads=2"});
+    for (const Instructions set : math::instruction_sets()) out.push_back({{engine}, math::name_of(set)});
+    out.push_back({{engine, "engine.threads=2"}, ""});
   }
-  out.push_back({"engine.type=grid", kBaseline});
-  out.push_back({"engine.type=lowrank", kBaseline});
   return out;
 }
 
@@ -53,10 +50,9 @@ class SameTaps : public testing::TestWithParam<std::tuple<const char*, const cha
 
 TEST_P(SameTaps, OnEveryEngineOneAndTwoThreadsAndEveryInstructionSet) {
   std::vector<std::vector<int>> expected;
-  for (const std::vector<std::string>& way : ways()) {
-    const bool is_baseline = way.back() == kBaseline;
-    const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", is_baseline ? kBaseline : "");
-    ExperimentOptions one = options({way.begin(), way.end() - (is_baseline ? 1 : 0)});
+  for (const auto& [way, set] : ways()) {
+    const test::EnvironmentVariable variable("PALPATE_INSTRUCTIONS", set);
+    ExperimentOptions one = options(way);
     for (int seed = 0; seed < kSeeds; ++seed) {
       one.seed = seed;
       const std::vector<int> taps = taps_of(one);
@@ -64,7 +60,7 @@ TEST_P(SameTaps, OnEveryEngineOneAndTwoThreadsAndEveryInstructionSet) {
         expected.push_back(taps);
       } else {
         ASSERT_EQ(taps, expected[static_cast<std::size_t>(seed)])
-            << fmt::format("{}, seed {}", fmt::join(way, " "), seed);
+            << fmt::format("{} {}, seed {}", fmt::join(way, " "), set, seed);
       }
     }
   }
