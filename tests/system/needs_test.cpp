@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -15,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Targets = std::set<std::string>;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsSubsetOf;
@@ -54,6 +56,8 @@ TEST_F(FirstCommand, ARunTakesThePluginsThatItsConfigNamesAndNothingElse) {
     EXPECT_TRUE(kPaper.count(target) != 0 || target.rfind("palpate_shape_", 0) == 0) << target;
   }
   EXPECT_THAT(found, Not(Contains("palpate_shape_mesh")));
+  EXPECT_THAT(needs({"run", paper(), "kernel=matern52"}),
+              AllOf(Contains("palpate_kernel_matern52"), Not(Contains("palpate_kernel_rbf"))));
 }
 
 TEST_F(FirstCommand, WhatAPluginNamesIsKnownOnceThatIsBuilt) {
@@ -101,10 +105,29 @@ TEST_F(FirstCommand, CalledByItselfTheProgramSaysWhatIsNotBuilt) {
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.err, HasSubstr("plugin kernel/rbf is not built, build it with ./palpate, or with 'cmake --build "));
   EXPECT_EQ(lines(run.err), 1);
+  EXPECT_THAT(call({"run", paper(), "kernel.type=matern25"}).err, HasSubstr("did you mean 'matern52'?"));
   const Ended sweep = call({"sweep", paper(), "seed=1,2"});
   EXPECT_EQ(sweep.status, 2);
   EXPECT_THAT(sweep.err, HasSubstr("palpate-whole: has this command but is not built, build it with ./palpate, or"));
   EXPECT_EQ(lines(sweep.err), 1);
+}
+
+TEST(CoreHash, IsOverEveryLibraryOfTheProjectThatIsLinkedWithCore) {
+  const std::string rules = text_of(program_file().parent_path() / "build.ninja");
+  const auto line_with = [&](const std::string& mark) {
+    const auto at = rules.find(mark);
+    return at == std::string::npos ? "" : rules.substr(at, rules.find('\n', at + 1) - at);
+  };
+  const std::string linked = line_with("\nbuild palpate: ");
+  const std::string hashed = line_with("-DFILES=");
+  const std::regex library("/lib(palpate_[a-z]+)\\.a");
+  int found = 0;
+  for (std::sregex_iterator at(linked.begin(), linked.end(), library), end; at != end; ++at) {
+    if ((*at)[1] == "palpate_commands") continue;  // what they say makes no other build
+    EXPECT_THAT(hashed, HasSubstr("/" + (*at)[1].str() + ".dir/"));
+    ++found;
+  }
+  EXPECT_GE(found, 6);
 }
 
 using Builds = Shell;
