@@ -167,6 +167,30 @@ TEST_F(Completion, InBashItselfEndsAWordAndLeavesAKeyOpen) {
   EXPECT_EQ(bash.wait() & 1, 0) << bash.screen();
 }
 
+TEST_F(Completion, InZshItselfEndsAWordAndLeavesAKeyOpen) {
+  if (!fs::exists("/usr/bin/zsh")) GTEST_SKIP() << "zsh is not installed";
+  write(".zshrc", "PS1='ready> '\nunsetopt zle_bracketed_paste\nautoload -Uz compinit && compinit -u -D\nsource '" +
+                      script("_palpate") + "'\n");
+  Terminal zsh({"/usr/bin/zsh", "-d", "-i"}, here(),
+               {path(), "TERM=dumb", "COLUMNS=200", "ZDOTDIR=" + here().string()});
+  ASSERT_TRUE(zsh.shows("ready> "));
+  zsh.type("palpate ru\tconfigs/paper/object_i.y\tkernel=matern5\tkernel.t\trb\t>seen\nfc -ln -1\nexit\n");
+  zsh.wait();
+  EXPECT_THAT(zsh.screen(), HasSubstr("configs/paper/object_i.yaml kernel=matern52 kernel.type=rbf >seen"));
+}
+
+TEST_F(Completion, InFishItselfHasWordsWithTheirMeaningAndElseFiles) {
+  if (!fs::exists("/usr/bin/fish")) GTEST_SKIP() << "fish is not installed";
+  const auto asked = [&](const std::string& line) {
+    return test::run_program(
+        {"/usr/bin/fish", "--no-config", "-c", "source '" + script("palpate.fish") + "'; complete -C '" + line + "'"},
+        here(), {path(), "HOME=" + here().string()});
+  };
+  EXPECT_EQ(asked("palpate sta").out, "status\tShow the state of a run or sweep\n");
+  EXPECT_THAT(asked("palpate run configs/default.yaml kernel=rb").out, StartsWith("kernel=rbf\tSquared exponential: "));
+  EXPECT_THAT(asked("palpate export x --to con").out, StartsWith("configs"));
+}
+
 TEST_F(Completion, ScriptsAreCleanToShellcheck) {
   if (!fs::exists("/usr/bin/shellcheck")) GTEST_SKIP() << "shellcheck is not installed";
   const Ended ended = test::run_program({"/usr/bin/shellcheck", script("palpate.bash")}, here());
