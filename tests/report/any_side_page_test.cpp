@@ -75,6 +75,10 @@ TEST_P(AnySidePage, DrawsTheSurfaceAfterEachTapAndTheTapsAsArrows) {
     EXPECT_NEAR(drawn_mesh.at(2).get<double>(), 1e6 * volume, 1e4 * volume);
   }
   fs::current_path(here);
+  const Browsed flat = test::browse(directory / "report.html", {drawn(kTaps), "return document.body.innerText"}, false);
+  ASSERT_EQ(flat.trouble, "");
+  EXPECT_THAT(flat.severe, testing::IsEmpty());
+  EXPECT_THAT(flat.values.at(0).get<std::string>(), HasSubstr("is not drawn, because this browser has no WebGL"));
   const auto names = seen.values.at(1).get<std::vector<std::string>>();
   EXPECT_THAT(names, testing::IsSupersetOf({"surface", "on the object", "next"}));
   EXPECT_THAT(seen.values.at(2).get<std::string>(), HasSubstr(fmt::format("Tap {} from (", kTaps)));

@@ -94,6 +94,29 @@ TEST_F(LivePage, BeginsWithTheFirstTapAndSaysWhenItsServerIsGone) {
   EXPECT_EQ(server_->wait().status, 0);
 }
 
+TEST_F(LivePage, OfASweepFillsUpAndItsReaderKeepsWhatWasChosen) {
+  const test::Ended swept = test::palpate({"sweep", paper_, "seed=range(0,2)", "taps=5", "--quiet"}, folder_.path());
+  ASSERT_EQ(swept.status, 0) << swept.err;
+  const fs::path sweep = test::only_run(folder_.path() / "runs");
+  const fs::path job = sweep / "jobs" / csv_rows(text_of(sweep / "results.csv")).at(1).at("id");
+  fs::copy_file(job / "record.jsonl", folder_.path() / "ended");
+  test::forget_end(job);
+  const auto done = [](int count) {
+    return fmt::format("await document.getElementById('standing').textContent.includes('{}done')", count);
+  };
+  const Browsed seen = test::browse(
+      serve(sweep),
+      {drawn(1), kMark, done(1),
+       "const s = document.getElementById('metric'); s.value = 'taps'; s.dispatchEvent(new Event('change')); return 1",
+       fmt::format("shell mv {} {}", (folder_.path() / "ended").string(), (job / "record.jsonl").string()), done(2),
+       kMarked, "return document.getElementById('metric').value"},
+      false);
+  ASSERT_EQ(seen.trouble, "");
+  EXPECT_THAT(seen.severe, IsEmpty());
+  EXPECT_EQ(seen.values.at(2), "still here");
+  EXPECT_EQ(seen.values.at(3), "taps");
+}
+
 TEST_F(LivePage, OfAFileOrAServerPlaysItsTapsOneByOne) {
   under_way(17);
   report(directory_);
