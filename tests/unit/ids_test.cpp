@@ -145,7 +145,19 @@ void add_neutral(Lines& out, const std::vector<FieldDescription>& fields, const 
   }
 }
 
-TEST(NeutralValues, OfAllOptionsAreThoseThatWereRecorded) {
+/// What the reader of configs says of "path,value".
+std::string read_neutral(const std::string& line) {
+  const std::string path = line.substr(0, line.find(','));
+  const std::string value = line.substr(path.size() + 1);
+  const auto slash = path.find('/');
+  if (slash == std::string::npos) return error_of([&] { shipped_config("default.yaml", {path + "=" + value}); });
+  const auto dot = path.find('.');
+  const std::string name = path.substr(slash + 1, dot - slash - 1);
+  const std::string options = "{" + path.substr(dot + 1) + ": " + value + "}";
+  return error_of([&] { choose(shared_host(), path.substr(0, slash), name, options); });
+}
+
+TEST(NeutralValues, OfAllOptionsAreThoseThatWereRecordedAndInTheirRanges) {
   Lines now;
   add_neutral(now, describe_fields([](Fields& fields) { ExperimentOptions().list(fields); }), "");
   for (const std::string& kind : PluginHost::kinds()) {
@@ -159,6 +171,7 @@ TEST(NeutralValues, OfAllOptionsAreThoseThatWereRecorded) {
   recorded.erase(recorded.begin());
   EXPECT_EQ(difference(sorted(recorded), sorted(now)), "")
       << "a new line belongs into tests/data/neutral.csv; since 0.1.0 none of it is changed or taken away";
+  for (const std::string& line : now) EXPECT_EQ(read_neutral(line), "accepted") << line;
 }
 
 }  // namespace

@@ -68,6 +68,15 @@ TEST(JsonRow, ReadsBackWhatARowWrites) {
   }
 }
 
+TEST(JsonRow, TakesAWholeNumberBeyond63BitsForTheSameRealNumber) {
+  for (const char* text : {"12345678901234567168", "-12345678901234567168", "9223372036854775808"}) {
+    const auto row = parse_json_row(std::string("{\"a\": ") + text + "}");
+    ASSERT_TRUE(row);
+    EXPECT_EQ(row->fields, (Row{{{"a", std::stod(text)}}}).fields) << text;
+    EXPECT_EQ(parse_json_row(to_json_line(*row))->fields, row->fields) << text;
+  }
+}
+
 using JsonLinesFile = InFolder;
 
 TEST_F(JsonLinesFile, IsReadWithItsLengthAndOfAnEmptyOneNothing) {
