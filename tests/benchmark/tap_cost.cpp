@@ -90,20 +90,11 @@ Result steady(const std::string& effects, const std::string& motion) {
 }
 
 void print_table() {
-  const std::vector<std::pair<std::string, std::string>> rows{
-      {"none", "{}"},
-      {"force_noise", "{force_noise: {}}"},
-      {"force_drift", "{force_drift: {}}"},
-      {"stiffness", "{stiffness: {}}"},
-      {"joint_lag", "{joint_lag: {}}"},
-      {"tip_radius", "{tip_radius: {}}"},
-      {"pose_noise", "{pose_noise: {}}"},
-      {"missed_contacts", "{missed_contacts: {}}"},
-      {"false_contacts", "{false_contacts: {}}"},
-      {"reach", "{reach: {}}"},
-      {"shaft", "{shaft: {}}"},
-      {"stiffness, joint_lag, force_noise", "{stiffness: {}, joint_lag: {}, force_noise: {}}"},
-  };
+  std::vector<std::pair<std::string, std::string>> rows{{"none", "{}"}};
+  for (const std::string name : {"force_noise", "force_drift", "stiffness", "joint_lag", "tip_radius", "pose_noise",
+                                 "missed_contacts", "false_contacts", "reach", "shaft"})
+    rows.emplace_back(name, "{" + name + ": {}}");
+  rows.emplace_back("stiffness, joint_lag, force_noise", "{stiffness: {}, joint_lag: {}, force_noise: {}}");
   fmt::print("| effect | ns a tap | height error, paper | two_stage | continuous | failed taps |\n");
   fmt::print("|---|---|---|---|---|---|\n");
   for (const auto& [name, effects] : rows) {

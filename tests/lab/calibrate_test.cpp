@@ -10,15 +10,10 @@
 #include "support/filled.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/random.hpp>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace palpate {
@@ -121,13 +116,8 @@ class Calibrate : public testing::Test {
            static_cast<double>(off.end() - off.begin() - 2 * quarter);
   }
 
-  std::string error_of(const std::vector<Recording>& runs) {
-    try {
-      calibrate(workshop, runs);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+  std::string refusal(const std::vector<Recording>& runs) {
+    return test::error_of([&] { calibrate(workshop, runs); });
   }
 
  private:
@@ -175,7 +165,7 @@ TEST(Contacts, AreBesideTheSceneByHowFarTheyAreOffAllHeightsWithinOneCentimetre)
 TEST_F(Calibrate, RejectsARunWhoseSceneDoesNotStandAsItsConfigSays) {
   const Recording arm = recorded(
       test::shipped_config("default.yaml", {"scene=block", "acquisition=random", "taps=40", "scene.effects=standard"}));
-  EXPECT_EQ(error_of({arm}), "no error");
+  EXPECT_EQ(refusal({arm}), "accepted");
   const auto said_to_be = [&](const char* scene) {
     Tree tree = arm.config.tree;
     const Tree changes = parse_yaml(scene, "scene");
@@ -185,13 +175,13 @@ TEST_F(Calibrate, RejectsARunWhoseSceneDoesNotStandAsItsConfigSays) {
     return out;
   };
   const std::string block = "{type: block, length: 12 cm, width: 8 cm, height: 5 cm, rotation: 30 deg, at: ";
-  EXPECT_THAT(error_of({said_to_be("{objects: []}")}),
+  EXPECT_THAT(refusal({said_to_be("{objects: []}")}),
               HasSubstr("contacts are far from its scene, but only one in 5 may be, use taps on a scene"));
-  EXPECT_THAT(error_of({said_to_be(("{objects: [" + block + "[8 cm, 11.5 cm]}]}").c_str())}),
+  EXPECT_THAT(refusal({said_to_be(("{objects: [" + block + "[8 cm, 11.5 cm]}]}").c_str())}),
               HasSubstr("contacts are within an object of its scene, but only one in 20 may be"));
-  EXPECT_THAT(error_of({said_to_be("{desk: 4 cm}")}), HasSubstr("the heights are off by -40."));
+  EXPECT_THAT(refusal({said_to_be("{desk: 4 cm}")}), HasSubstr("the heights are off by -40."));
   const Recording moved = said_to_be("{objects: []}");
-  EXPECT_THAT(error_of({arm, arm, arm, moved}), HasSubstr("far from its scene")) << "among others, too";
+  EXPECT_THAT(refusal({arm, arm, arm, moved}), HasSubstr("far from its scene")) << "among others, too";
 }
 
 }  // namespace

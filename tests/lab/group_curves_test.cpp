@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Curves of groups of made-up jobs, against means that are worked out here by hand.
 #include "analysis/group_curves_report.hpp"
-
-#include <palpate/error.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
+#include "support/testing.hpp"
 
 namespace palpate {
 namespace {
@@ -134,12 +126,7 @@ TEST(GroupCurves, LeaveOutOfAPointTheJobsThatHaveNoValueThereAndSaySo) {
 
 TEST(GroupCurves, AreRefusedWhereThereIsNothingToDraw) {
   const auto refusal = [](const TappedSweep& made, const std::vector<std::string>& by, const std::string& against) {
-    try {
-      made.curves(by, against);
-    } catch (const Error& trouble) {
-      return std::string(trouble.what());
-    }
-    return std::string("accepted");
+    return test::error_of([&] { made.curves(by, against); });
   };
   EXPECT_THAT(refusal(TappedSweep({{"a", "cube", 1, {}}}), {}, "taps"),
               HasSubstr("none of the jobs to draw ended well"));

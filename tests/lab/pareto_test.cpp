@@ -4,13 +4,8 @@
 
 #include "analysis/gnuplot.hpp"
 #include "analysis/pareto_report.hpp"
+#include "support/testing.hpp"
 
-#include <palpate/error.hpp>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <random>
 #include <string_view>
 
@@ -58,13 +53,10 @@ struct MadeUp {
     return make_pareto(sweep, results, cost, error);
   }
   std::string refusal(const std::string& cost, const std::string& error, const std::string& within = "") const {
-    try {
+    return test::error_of([&] {
       const Pareto made = pareto(cost, error);
       if (!within.empty()) read_bound(made, within);
-    } catch (const Error& trouble) {
-      return trouble.what();
-    }
-    return "accepted";
+    });
   }
 };
 
@@ -326,14 +318,9 @@ TEST(ParetoOfScenes, HasAFrontOfEachAndNoneOfSeveral) {
 }
 
 TEST(ParetoOfScenes, ChoosesWithinABoundOnOneSceneAlone) {
-  try {
-    read_bound(on_two_scenes(), "2 m");
-    FAIL() << "accepted";
-  } catch (const Error& trouble) {
-    EXPECT_STREQ(trouble.what(),
-                 "command line: --within: the sweep has 2 scenes, whose best settings may differ, choose one: --where "
-                 "\"scene == cube\"");
-  }
+  EXPECT_EQ(test::error_of([] { read_bound(on_two_scenes(), "2 m"); }),
+            "command line: --within: the sweep has 2 scenes, whose best settings may differ, choose one: --where "
+            "\"scene == cube\"");
   const Pareto ring = on_two_scenes("scene == ring");
   EXPECT_EQ(ring.settings.size(), 2U);
   const Setting* const cheapest = cheapest_within(ring, read_bound(ring, "2 m"));

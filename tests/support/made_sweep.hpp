@@ -3,12 +3,7 @@
 #pragma once
 
 #include "analysis/compare_report.hpp"
-
-#include <palpate/error.hpp>
-
-#include <optional>
-#include <string>
-#include <vector>
+#include "support/testing.hpp"
 
 namespace palpate::test {
 
@@ -54,12 +49,7 @@ struct MadeSweep {
 
   std::string refusal(const std::vector<std::string>& keys, const std::string& metric = "rmse_m",
                       const std::optional<std::string>& baseline = {}, const std::string& where = "") const {
-    try {
-      by(keys, metric, baseline, where);
-    } catch (const Error& trouble) {
-      return trouble.what();
-    }
-    return "accepted";
+    return error_of([&] { by(keys, metric, baseline, where); });
   }
 };
 

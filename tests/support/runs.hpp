@@ -5,8 +5,12 @@
 
 #include "config/compose.hpp"
 #include "experiment/from_above.hpp"
+#include "record/json.hpp"
 #include "record/resolved.hpp"
+#include "record/tap_row.hpp"
 #include "support/support.hpp"
+
+#include <gtest/gtest.h>
 
 #include <functional>
 #include <iterator>
@@ -115,5 +119,16 @@ struct Finished : Prepared {
     run();
   }
 };
+
+/// Resumes what `unbroken` did after its first `cut` taps, and expects the same rows of the others.
+inline void expect_resumed(Prepared& rest, const Prepared& unbroken, std::size_t cut) {
+  rest.experiment.resume(unbroken.past(cut));
+  rest.run();
+  ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
+  for (std::size_t i = 0; i < rest.taps.size(); ++i) {
+    ASSERT_EQ(to_json_line(tap_row(rest.taps[i])), to_json_line(tap_row(unbroken.taps[cut + i])))
+        << "cut " << cut << " tap " << i;
+  }
+}
 
 }  // namespace palpate::test

@@ -193,15 +193,8 @@ TEST(Experiment, AResumedOneChoosesWhatTheUnbrokenOneChose) {
     const Finished unbroken("paper/object_i_right.yaml", overrides);
     for (std::size_t cut : {1U, 3U, 9U, 16U}) {
       Prepared rest("paper/object_i_right.yaml", overrides);
-      rest.experiment.resume(unbroken.past(cut));
-      rest.run();
-      ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
-      for (std::size_t i = 0; i < rest.taps.size(); ++i) {
-        const TapRecord& expected = unbroken.taps[cut + i];
-        EXPECT_EQ(rest.taps[i].candidate, expected.candidate) << words.back() << " cut " << cut << " tap " << i;
-        EXPECT_EQ(rest.taps[i].score, expected.score);
-        EXPECT_EQ(rest.taps[i].contact.seconds, expected.contact.seconds);
-      }
+      SCOPED_TRACE(words.back());
+      expect_resumed(rest, unbroken, cut);
     }
   }
 }
@@ -220,13 +213,7 @@ TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore)
   ASSERT_FALSE(unbroken.taps.back().suspected_outliers->empty());
   for (const std::size_t cut : {100U, 149U}) {
     Prepared rest("default.yaml", words);
-    rest.experiment.resume(unbroken.past(cut));
-    rest.run();
-    ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
-    for (std::size_t i = 0; i < rest.taps.size(); ++i) {
-      const TapRecord& expected = unbroken.taps[cut + i];
-      ASSERT_EQ(to_json_line(tap_row(rest.taps[i])), to_json_line(tap_row(expected))) << "cut " << cut << " tap " << i;
-    }
+    expect_resumed(rest, unbroken, cut);
   }
 }
 

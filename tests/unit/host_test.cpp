@@ -25,23 +25,6 @@ std::string refusal_of(const std::string& kind, const std::string& name) {
   return error_of([&] { options_of(shared_host(), kind, name); });
 }
 
-/// The value of an environment variable for the time of a test.
-class Variable {
- public:
-  Variable(const char* name, const char* value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old, had_ = true;
-    ::setenv(name, value, 1);
-  }
-  ~Variable() { had_ ? ::setenv(name_, old_.c_str(), 1) : ::unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::string old_;
-  bool had_ = false;
-};
-
 /// Whether a file is mapped into this process.
 bool mapped(const fs::path& file) { return text_of("/proc/self/maps").find(file.string()) != std::string::npos; }
 
@@ -147,7 +130,7 @@ TEST(PluginHost, RefusesNamesWithAPath) {
 
 TEST(PluginHost, SearchPathIsTheVariableWithoutEmptyPartsThenTheShippedFolder) {
   const auto search_path = [](const char* variable) {
-    const Variable path("PALPATE_PLUGIN_PATH", variable);
+    const EnvironmentVariable path("PALPATE_PLUGIN_PATH", variable);
     return PluginHost::search_path("/shipped");
   };
   EXPECT_THAT(search_path("/a/b:relative"), ElementsAre("/a/b", "relative", "/shipped"));

@@ -50,13 +50,8 @@ TEST(Motions, TellWhatATapTakesOnAPerfectArm) {
 }
 
 TEST(Motions, OfWhichThereIsNoChoiceAreRefused) {
-  const auto refusal = [](const std::string& motion) -> std::string {
-    try {
-      choose(shared_host(), "backend", "simulator", "{motion: " + motion + "}");
-      return "accepted";
-    } catch (const Error& error) {
-      return error.what();
-    }
+  const auto refusal = [](const std::string& motion) {
+    return error_of([&] { choose(shared_host(), "backend", "simulator", "{motion: " + motion + "}"); });
   };
   EXPECT_NE(refusal("{type: per_tap, of: [{type: paper}]}").find("at least two"), std::string::npos);
   EXPECT_NE(refusal("{type: per_tap, of: [{type: paper}, {type: paper, hover: 20 cm}]}").find("same hover"),

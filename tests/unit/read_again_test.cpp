@@ -107,13 +107,7 @@ TEST(ReadAgain, AResumedRunGoesOnAsTheUnbrokenOne) {
   EXPECT_EQ(result.object_taps + result.desk_taps + result.failed_taps, result.taps);
   for (std::size_t cut = 0; cut < unbroken.taps.size(); cut += brief() ? 13 : 3) {
     Prepared rest("default.yaml", words);
-    rest.experiment.resume(unbroken.past(cut));
-    rest.run();
-    ASSERT_EQ(rest.taps.size(), unbroken.taps.size() - cut);
-    for (std::size_t i = 0; i < rest.taps.size(); ++i) {
-      ASSERT_EQ(to_json_line(tap_row(rest.taps[i])), to_json_line(tap_row(unbroken.taps[cut + i])))
-          << "cut " << cut << " tap " << i;
-    }
+    expect_resumed(rest, unbroken, cut);
     EXPECT_EQ(rest.experiment.result().errors.rmse, result.errors.rmse);
     EXPECT_EQ(rest.experiment.counts().first_hit_tap, result.first_hit_tap);
   }

@@ -162,28 +162,12 @@ TEST(Slug, IsNeverEmptyHiddenLongOrAPath) {
 }
 
 TEST(Slug, OfOtherNamesIsAnother) {
-  const std::vector<std::string> names{"Tasse blau",
-                                       "Tasse-blau",
-                                       "Tasse  blau",
-                                       "Tasse-blau-",
-                                       " Tasse blau",
-                                       "Schüssel",
-                                       "Schässel",
-                                       "Schssel",
-                                       "茶碗",
-                                       "花瓶",
-                                       "",
-                                       "experiment",
-                                       "///",
-                                       "..",
-                                       "a/b",
-                                       "a-b",
-                                       "a\nb",
-                                       std::string(64, 'a'),
-                                       std::string(65, 'a')};
-  std::set<std::string> folders;
-  for (const std::string& name : names) folders.insert(slug(name));
-  EXPECT_EQ(folders.size(), names.size());
+  std::set<std::string> folders{slug(std::string(64, 'a')), slug(std::string(65, 'a'))};
+  for (const char* const name :
+       {"Tasse blau", "Tasse-blau", "Tasse  blau", "Tasse-blau-", " Tasse blau", "Schüssel", "Schässel", "Schssel",
+        "茶碗", "花瓶", "", "experiment", "///", "..", "a/b", "a-b", "a\nb"})
+    folders.insert(slug(name));
+  EXPECT_EQ(folders.size(), 19U);
 }
 
 }  // namespace

@@ -203,12 +203,7 @@ TEST(SkinAndNormals, OneOfAnotherSurfaceThanTheSolidsHaveIsLeftOut) {
 }
 
 std::string refusal(const std::string& type, const std::string& options) {
-  try {
-    Skin(kernel_of(type, options), {0.006, 0.0005});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return error_of([&] { Skin(kernel_of(type, options), {0.006, 0.0005}); });
 }
 
 TEST(SkinAndKernels, ThoseThatAreNotOfTheDistanceAloneAreRefused) {
@@ -223,11 +218,11 @@ TEST(SkinAndKernels, ThoseThatAreNotOfTheDistanceAloneAreRefused) {
             line);
   for (const char* type : {"matern12", "matern32", "matern52", "rbf", "rational_quadratic"}) {
     for (const char* length : {"1 um", "1 mm", "4 cm", "10 m"})
-      EXPECT_EQ(refusal(type, std::string("{length_scale: ") + length + "}"), "") << type << length;
+      EXPECT_EQ(refusal(type, std::string("{length_scale: ") + length + "}"), "accepted") << type << length;
   }
-  EXPECT_EQ(refusal("scale", "{factor: 3, kernel: {type: rbf}}"), "");
-  EXPECT_EQ(refusal("sum", "{kernels: [{type: rbf}, {type: matern12}]}"), "");
-  EXPECT_EQ(refusal("product", "{kernels: [{type: matern32, length_scale: 1 mm}, {type: matern32}]}"), "");
+  EXPECT_EQ(refusal("scale", "{factor: 3, kernel: {type: rbf}}"), "accepted");
+  EXPECT_EQ(refusal("sum", "{kernels: [{type: rbf}, {type: matern12}]}"), "accepted");
+  EXPECT_EQ(refusal("product", "{kernels: [{type: matern32, length_scale: 1 mm}, {type: matern32}]}"), "accepted");
 }
 
 TEST(SkinAndKernels, NormalsAreRefusedWhereTheKernelHasNoSlopes) {
@@ -236,14 +231,9 @@ TEST(SkinAndKernels, NormalsAreRefusedWhereTheKernelHasNoSlopes) {
   touch.normal = Vector3d(0, 1, 0);
   for (const char* type : {"matern12", "rational_quadratic"}) {
     Skin skin(kernel_of(type), {0.006, 0.0005});
-    try {
-      skin.fit(solids, {touch});
-      ADD_FAILURE() << type;
-    } catch (const Error& error) {
-      EXPECT_STREQ(error.what(),
-                   "kernel: is not differentiable everywhere, but measured surface normals need its derivatives, "
-                   "choose matern32, matern52 or rbf");
-    }
+    EXPECT_EQ(error_of([&] { skin.fit(solids, {touch}); }),
+              "kernel: is not differentiable everywhere, but measured surface normals need its derivatives, choose "
+              "matern32, matern52 or rbf");
   }
 }
 
