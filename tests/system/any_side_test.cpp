@@ -289,6 +289,7 @@ TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
     ++compared;
   }
   EXPECT_EQ(compared, 1);
+  EXPECT_NE(starts_of(job_of(sweep, 0)), starts_of(job_of(sweep, 1))) << "each rule has taps of its own";
   // The one error that tables and curves show is that from any side, beside taps from above a root mean square of
   // either.
   EXPECT_THAT(palpate("list").out, HasSubstr("rms_surface_distance_m [mm]"));
@@ -347,36 +348,29 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
               testing::HasSubstr("kernel: depends on more than the distance"));
   const fs::path run = touched("taps=4");
+  EXPECT_THAT(palpate({"resume", run}).out,
+              testing::AllOf(testing::HasSubstr("on the object"), testing::Not(testing::HasSubstr("IoU"))));
   EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, but --figures"));
   EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, but pages of several"));
+  const std::string record = text_of(run / "record.jsonl");
+  for (const auto& [lost, told] : {std::pair("\"z\": ", "a tap of a run from any side has no z and no direction, its"),
+                                   std::pair("\"along\": ", "has no number 'along', how far the tool went to its")}) {
+    std::string damaged = record;
+    for (auto at = record.find(lost); at != std::string::npos; at = record.find(lost, at + 1)) damaged[at + 1] = '_';
+    write(run / "record.jsonl", damaged);
+    EXPECT_THAT(palpate({"export", run}).err, testing::HasSubstr(told));
+  }
 }
 
 TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
-  for (const char* const key : {"candidates.count=60",
-                                "candidates.spacing=5mm",
-                                "height.outlier_probability=0.1",
-                                "height.offset={}",
-                                "height.kernel={type: rbf}",
-                                "height.fitting={type: fixed}",
-                                "label.signal=2",
-                                "label.noise=0.3",
-                                "label.prior_mean=1",
-                                "label.clip=true",
-                                "label.hyperparameters=shared",
-                                "label.kernel={type: rbf}",
-                                "label.fitting={type: fixed}",
-                                "engine.type=dense",
-                                "engine.tolerance=1e-9",
-                                "footprint={type: primitives, kernel: {type: rbf}}",
-                                "fitting.type=ceres",
-                                "fallback=none",
-                                "repeat=allow",
-                                "engine.accuracy=1e-6",
-                                "stop.max_standard_deviation=1cm",
-                                "stop.expected_rmse=1cm",
-                                "engine.threads=2",
-                                "log.maps=true"}) {
-    const std::string word(key);
+  for (const std::string& word :
+       Words(R"(candidates.count=60 candidates.spacing=5mm height.outlier_probability=0.1 height.offset={}
+                height.kernel={"type":rbf} height.fitting={"type":fixed} label.signal=2 label.noise=0.3
+                label.prior_mean=1 label.clip=true label.hyperparameters=shared label.kernel={"type":rbf}
+                label.fitting={"type":fixed} engine.type=dense engine.tolerance=1e-9
+                footprint={"type":primitives,"kernel":{"type":rbf}} fitting.type=ceres fallback=none repeat=allow
+                engine.accuracy=1e-6 stop.max_standard_deviation=1cm stop.expected_rmse=1cm engine.threads=2
+                log.maps=true)")) {
     EXPECT_THAT(
         refused({"run", config(), "--dry-run", word}),
         testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),

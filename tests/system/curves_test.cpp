@@ -94,6 +94,10 @@ TEST_F(CurvesOfGroups, AreDrawnAsPngPdfAndSvgWithABandForEachGroup) {
   curves(directory);
   EXPECT_TRUE(fs::exists(directory / "curves_acquisition_rmse_m_taps.png"));
   EXPECT_TRUE(fs::exists(directory / "curves_acquisition_rmse_m_taps.csv"));
+  environment_ = {"PATH=/nowhere"};
+  const Ended undrawn = curves(directory);
+  EXPECT_THAT(undrawn.out, StartsWith("rmse_m [mm] against taps; less is better\n"));
+  EXPECT_THAT(undrawn.err, ContainsRegex("no picture was drawn: .*: gnuplot is not installed"));
 }
 
 TEST_F(CurvesOfGroups, AreAFigureOfTheSweepsReportOnceTheyAreComputed) {

@@ -92,7 +92,8 @@ TEST_F(Export, WritesTheProbabilityOfTheFootprint) {
 }
 
 TEST_F(Export, WritesContactsAsPointsAndNoFailedTaps) {
-  const fs::path directory = ran({"scene.effects={missed_contacts: {probability: 0.3}}"});
+  const fs::path directory =
+      ran({"scene.effects={missed_contacts: {probability: 0.3}}", "name=\"a\\nend_header\\n1\""});
   ASSERT_EQ(exported(directory, "--format ply --to elsewhere/deep").status, 0);
   std::vector<Cells> contacts = csv_rows(text_of(directory / "taps.csv"));
   ASSERT_EQ(contacts.size(), 17U);

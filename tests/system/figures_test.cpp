@@ -87,7 +87,8 @@ TEST_F(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThemAndCurvesThatEndWithItsSumma
   EXPECT_NEAR(curves.at("curve_3_1").back()[1], field("object_taps") / 17, 1e-9);
   EXPECT_NEAR(curves.at("curve_6_1").back()[1], field("robot_seconds"), 1e-6);
   EXPECT_THAT(text_of(directory / "figures/curves.gnuplot"),
-              HasSubstr("Hyperparameters of the height GP: signal 1, noise 0.0001, length_scale 0.017"))
+              AllOf(HasSubstr("Constant over all taps:"),
+                    HasSubstr("Hyperparameters of the height GP: signal 1, noise 0.0001, length_scale 0.017")))
       << "what never changes is told, not drawn";
 }
 

@@ -193,9 +193,13 @@ class LostMesh : public Shell {
 TEST_F(LostMesh, ASweepIsReadAndWhatItsRecordsLackIsRefusedByTheNameOfTheFile) {
   put("mug");
   const fs::path sweep = swept("taps=5 candidates.count=12 acquisition=random,uncertainty seed=1,2", own_config());
+  const fs::path run = ran("taps=5 candidates.count=12 --runs alone", own_config());
   const Words curves{"curves", sweep, "-o", "curves.csv"};
+  const Words at_2 = Words{"compare", sweep} + "--by acquisition --metric rmse_m --at 2";
   fs::remove(here() / "a.stl");
-  EXPECT_THAT(refused(curves, 1), HasSubstr("a.stl: no such file"));
+  fs::remove(run / "surface.csv");
+  EXPECT_THAT(refused({"resume", run, "--quiet"}), HasSubstr("a.stl: no such file"));
+  for (const Words& words : {curves, at_2}) EXPECT_THAT(refused(words, 1), HasSubstr("a.stl: no such file"));
   put("bracket");
   EXPECT_THAT(refused(curves, 1), HasSubstr("a.stl"));
   put("mug");
@@ -203,8 +207,7 @@ TEST_F(LostMesh, ASweepIsReadAndWhatItsRecordsLackIsRefusedByTheNameOfTheFile) {
   const std::string whole = text_of(here() / "curves.csv");
   fs::remove(here() / "a.stl");
   for (const Words& words : {curves, Words{"report", sweep}, Words{"resume", sweep, "--quiet"}, Words{"status", sweep},
-                             Words{"compare", sweep} + "--by acquisition --metric rmse_m",
-                             Words{"compare", sweep} + "--by acquisition --metric rmse_m --at 2",
+                             Words{"compare", sweep} + "--by acquisition --metric rmse_m", at_2,
                              Words{"pareto", sweep} + "--cost robot_seconds --error rmse_m"}) {
     const Ended ended = palpate(words);
     EXPECT_EQ(ended.status, 0) << words.front() << ": " << ended.err;

@@ -66,6 +66,11 @@ TEST_F(Pareto, PrintsATableAndLeavesAPictureAndTheTableAsCsv) {
     EXPECT_NEAR(std::stod(setting.at("rmse_m.mean")), sum / jobs, 1e-15);
     EXPECT_LT(std::stod(setting.at("rmse_m.low_95")), std::stod(setting.at("rmse_m.mean")));
   }
+  environment_ = {"PATH=/nowhere"};
+  const Ended undrawn = pareto(directory);
+  EXPECT_EQ(undrawn.status, 0);
+  EXPECT_EQ(undrawn.out, ended.out);
+  EXPECT_THAT(undrawn.err, StartsWith("no picture was drawn: gnuplot is not installed, install the package"));
 }
 
 TEST_F(Pareto, TheCheapestSettingWithinIsAConfigThatRunsAsTheSameJob) {

@@ -83,6 +83,10 @@ TEST_F(Record, ThatHasEndedMakesTheFilesAgainThatAPowerCutTook) {
 TEST_F(Record, ThatIsDamagedIsMovedAsideAsItsErrorSays) {
   const fs::path directory = ran();
   std::string record = text_of(directory / "record.jsonl");
+  fs::resize_file(directory / "record.jsonl", record.find("{\"tap\": 9,"));
+  const Ended cut = status_of(directory);
+  EXPECT_THAT(cut.out, HasSubstr("unfinished after 8 of 17 taps"));
+  EXPECT_THAT(cut.err, HasSubstr("record.jsonl: was cut short, because summary.json says that the run had ended"));
   const std::size_t line = record.find("{\"tap\": 5,");
   record.erase(line, record.find('\n', line) + 1 - line);
   write(directory / "record.jsonl", record);

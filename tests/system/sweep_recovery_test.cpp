@@ -113,6 +113,8 @@ TEST_F(Recovery, AJobThatIsKilledIsBegunAgainButNotForEver) {
   EXPECT_EQ(attempts(0), 1);
   EXPECT_EQ(attempts(1), 3);
   EXPECT_EQ(lines(part_of(job(1), "tap")), 4) << "what was tapped before is kept, and not tapped again";
+  EXPECT_EQ(resume().status, 1);
+  EXPECT_EQ(attempts(1), 3) << "a failed job is tried again on request only";
   EXPECT_EQ(resume("--retry-failed").status, 1);
   EXPECT_EQ(attempts(1), 6) << "whoever asks gets as many more";
   EXPECT_EQ(resume("--retry-failed --attempts 2").status, 1);
