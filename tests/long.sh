@@ -7,7 +7,7 @@
 set -u
 cd "$(dirname "$(readlink -f "$0")")/.." || exit 1
 tests=build/release/tests
-names="sanitizers stress crash fuzz accuracy same_taps stability robots chaos clang tsan threads arm64"
+names="sanitizers stress crash fuzz accuracy coverage same_taps stability robots chaos clang tsan threads arm64"
 names="$names debian_12 pages_12 packages_12 debian_13 pages_13 packages_13 benchmarks"
 for name in "$@"; do
   case " $names " in *" $name "*) continue ;; esac
@@ -44,6 +44,13 @@ sanitizers() {
     ctest --test-dir build/asan -j "$((3 * $(nproc)))" --output-on-failure --no-tests=error -LE '^everyday$' --repeat until-pass:2
 }
 
+# coverage: how often the intervals of `compare` hold, over sweeps that are drawn from 2880 recorded jobs.
+coverage() {
+  rm -rf build/long/coverage
+  build/release/palpate sweep tests/benchmark/coverage/arm.yaml --runs build/long/coverage --quiet &&
+    $tests/interval_coverage 1000 build/long/coverage/*/*/results.csv=rmse_m
+}
+
 # threads: eight threads of Python over one run, for a minute, under both sanitizers.
 threads() {
   [ -d build/release/python ] || { echo "the Python module is missing"; return 77; }
@@ -61,6 +68,7 @@ campaign() {
     crash) python3 -B tests/crash/crash.py build/release --long ;;
     fuzz) needs clang++ && sh tests/fuzz.sh ;;
     accuracy) sh tests/accuracy.sh build/release --long ;;
+    coverage) coverage ;;
     same_taps) gtest system 'Of/SameTaps.*' ;;
     stability) gtest stability '*' ;;
     robots) needs $tests/baxter_tests && sh tests/robot_campaign.sh ;;

@@ -176,10 +176,10 @@ class SlurmLauncher final : public Launcher {
   LaunchOrder order_;
   fs::path directory_ = absolute(order_.sweep.directory / "").lexically_normal().parent_path();
   std::vector<int> arrays_;
-  std::vector<std::size_t> open_;              ///< jobs that have not returned
-  std::set<int> queued_;                       ///< arrays that have tasks in the queue, as last seen
-  int running_ = 0;                            ///< their tasks that run
-  Clock::time_point next_ = Clock::now();      ///< look
+  std::vector<std::size_t> open_;          ///< jobs that have not returned
+  std::set<int> queued_;                   ///< arrays that have tasks in the queue, as last seen
+  int running_ = 0;                        ///< their tasks that run
+  Clock::time_point next_ = Clock::now();  ///< look
   std::optional<Clock::time_point> silent_since_;
 };
 

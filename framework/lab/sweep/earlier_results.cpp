@@ -29,8 +29,7 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, cons
                                                         const std::function<bool(const TapSummaries&)>& complete) {
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (const Occasion& one : occasions) fewest = std::min(fewest, static_cast<std::size_t>(one.taps().value_or(0)));
-  std::vector<std::vector<std::optional<Row>>> at(occasions.size(),
-                                                  std::vector<std::optional<Row>>(sweep.jobs.size()));
+  std::vector<std::vector<std::optional<Row>>> at(occasions.size(), std::vector<std::optional<Row>>(sweep.jobs.size()));
   const TapSummaries summaries(
       sweep,
       [&](std::size_t job, const std::vector<Row>& rows) {
@@ -38,8 +37,7 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, cons
       },
       fewest);
   std::size_t most = 0;
-  for (const std::optional<Row>& summary : summaries.whole())
-    most = std::max(most, summary ? taps_made(*summary) : 0);
+  for (const std::optional<Row>& summary : summaries.whole()) most = std::max(most, summary ? taps_made(*summary) : 0);
   for (const Occasion& one : occasions) {
     if (most == 0 || static_cast<std::size_t>(one.taps().value_or(0)) <= most) continue;
     throw Error("command line", fmt::format("--at: no job made {} taps", *one.taps()),
