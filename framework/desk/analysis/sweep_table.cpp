@@ -44,8 +44,10 @@ std::string spread(const std::vector<double>& values, const Scale& scale) {
 SweepTableRow row_of(const JobGroup& group, const std::string& error,
                      const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
   SweepTableRow out;
-  std::optional<int> initial;  // taps: the jobs of a group have as many
-  bool asked = false;
+  constexpr std::size_t kMostAsked = 3;  // a config may be damaged
+  std::optional<int> initial;            // taps: the jobs of a group have as many
+  for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i)
+    initial = initial_taps(static_cast<std::size_t>(group.jobs[i].job->index));
   for (const auto& [job, row] : group.jobs) {
     if (row == nullptr) continue;
     ++out.runs;
@@ -53,7 +55,6 @@ SweepTableRow row_of(const JobGroup& group, const std::string& error,
       ++out.failed;
       continue;
     }
-    if (!std::exchange(asked, true)) initial = initial_taps(static_cast<std::size_t>(job->index));
     const std::optional<double> hit = row->number("first_hit_tap");
     const bool is_without_contact = !hit || !initial || *hit > *initial;
     out.without_contact += is_without_contact ? 1 : 0;
