@@ -264,31 +264,35 @@ int sweep(Program& program, const SweepArguments& arguments) {
   std::optional<ResolvedConfig> first;
   std::optional<SweepDraft> draft;
   if (!arguments.list) draft.emplace(arguments.runs);
-  const SweepPlan plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes, arguments.runs,
-                                    [&](const Job& job, const ResolvedConfig& config) {
-                                      if (draft) check_who_taps(config, "backend");
-                                      if (draft) draft->add(job, config);
-                                      if (job.index == 0) first = config;
-                                      one_at_a_time = one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
-                                    });
-  Campaign campaign{program, plan.sweep, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
-  const std::string jobs = counted(static_cast<long>(plan.sweep.jobs.size()), "job");
+  std::optional<SweepPlan> plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes,
+                                             arguments.runs, [&](const Job& job, const ResolvedConfig& config) {
+                                               if (draft) check_who_taps(config, "backend");
+                                               if (draft) draft->add(job, config);
+                                               if (job.index == 0) first = config;
+                                               one_at_a_time =
+                                                   one_at_a_time || program.host.one_at_a_time(config.notes.plugins);
+                                             });
+  const std::string jobs = counted(static_cast<long>(plan->sweep.jobs.size()), "job");
   if (arguments.list) {
-    for (const Job& job : plan.sweep.jobs) {
-      print_out("{}  {}{}\n", job.index, job.id, values_text(plan.sweep, job, "  "));
+    for (const Job& job : plan->sweep.jobs) {
+      print_out("{}  {}{}\n", job.index, job.id, values_text(plan->sweep, job, "  "));
     }
     if (!arguments.launch.quiet) mention(jobs + "\n");
     return kDone;
   }
-  const bool is_new = draft->publish(plan);
+  const bool is_new = draft->publish(*plan);
+  const std::filesystem::path directory = plan->sweep.directory;
   draft.reset();
+  plan.reset();  // the process of every job would copy the memory that planning took
+  const Sweep planned = read_sweep(directory);
+  Campaign campaign{program, planned, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
   if (!is_new) check_builds(campaign, jobs_of(campaign));
   if (!arguments.launch.quiet) {
     for (const std::string& line : half_said_sizes(campaign.first->tree, campaign.first->notes)) mention(line + "\n");
-    mention(fmt::format("{} in {}{}\n", jobs, plan.sweep.directory.string(),
+    mention(fmt::format("{} in {}{}\n", jobs, directory.string(),
                         is_new ? "" : ", which exists: only missing jobs are run"));
   }
-  return run_campaign(campaign, standing_of(plan.sweep, jobs_of(campaign)));
+  return run_campaign(campaign, standing_of(planned, jobs_of(campaign)));
 }
 
 int resume_sweep(Program& program, const ResumeArguments& arguments) {

@@ -153,7 +153,7 @@ TEST_F(Compare, ReachesASweptKeyAndTheResultOfTheSameName) {
   std::map<std::string, double> needed;
   int fewer = 0;
   for (const Cells& job : csv_rows(text_of(directory / "results.csv"))) {
-    const std::vector<Row> kept = read_json_lines(directory / "jobs" / job.at("id") / "summaries.jsonl").rows;
+    const std::vector<Row> kept = json_rows(directory / "jobs" / job.at("id") / "summaries.jsonl");
     const auto good = [](const Row& row) { return *row.number("rmse_m") <= 0.03; };
     const auto taps = std::find_if(kept.begin(), kept.end(), good) - kept.begin() + 1;
     needed[job.at("taps")] += static_cast<double>(taps) / 12.0;

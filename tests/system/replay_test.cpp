@@ -111,7 +111,7 @@ TEST_F(Earlier, SummariesHaveTheModelsThatABackendReadsWhereNoTruthIsKnown) {
       swept("motion.adaptive_hover={} name=early acquisition=random,grid taps=8", config("process.yaml"));
   EXPECT_EQ(palpate(Words{"compare", directory} + "--by acquisition --at 5 --metric robot_seconds").status, 0);
   for (int job : {0, 1})
-    EXPECT_THAT(to_json_line(read_json_lines(job_of(directory, job) / "summaries.jsonl").rows.at(4)),
+    EXPECT_THAT(to_json_line(json_rows(job_of(directory, job) / "summaries.jsonl").at(4)),
                 ContainsRegex("\"signal\": [0-9]"));
 }
 

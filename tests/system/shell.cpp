@@ -109,8 +109,14 @@ void Shell::make_of_another_build(const fs::path& run) const {
   write(file, record);
 }
 
+std::vector<Row> json_rows(const fs::path& file) {
+  std::vector<Row> rows;
+  read_json_lines(file, [&](Row row) { rows.push_back(std::move(row)); });
+  return rows;
+}
+
 fs::path job_of(const fs::path& sweep, int index) {
-  const std::vector<Row> rows = read_json_lines(sweep / "manifest.jsonl").rows;
+  const std::vector<Row> rows = json_rows(sweep / "manifest.jsonl");
   return sweep / "jobs" / std::get<std::string>(*rows.at(static_cast<std::size_t>(index)).find("id"));
 }
 

@@ -2,6 +2,7 @@
 // A folder in which a test calls palpate as a user does, and looks at what that leaves there.
 #pragma once
 
+#include "record/row.hpp"
 #include "support/parts.hpp"
 #include "system/shipped.hpp"
 
@@ -76,6 +77,8 @@ inline std::string with_plugin(const std::string& name) {
   return "PALPATE_PLUGIN_PATH=" + bad_plugin_folder(name).string();
 }
 
+/// The rows of a file that has an object per line.
+std::vector<Row> json_rows(const std::filesystem::path& file);
 /// The directory of a job of a sweep, by its number.
 std::filesystem::path job_of(const std::filesystem::path& sweep, int index);
 /// The folders below jobs/, in no order.
@@ -94,6 +97,7 @@ namespace palpate {
 using test::cut_taps;
 using test::job_of;
 using test::jobs_of;
+using test::json_rows;
 using test::outcomes;
 using test::part_of;
 using test::rows_of;

@@ -79,19 +79,29 @@ TEST(JsonRow, TakesAWholeNumberBeyond63BitsForTheSameRealNumber) {
 
 using JsonLinesFile = InFolder;
 
+struct JsonLines {
+  std::vector<Row> rows;
+  std::uintmax_t bytes = 0;
+};
+JsonLines lines_of_file(const std::filesystem::path& file) {
+  JsonLines out;
+  out.bytes = read_json_lines(file, [&](Row row) { out.rows.push_back(std::move(row)); });
+  return out;
+}
+
 TEST_F(JsonLinesFile, IsReadWithItsLengthAndOfAnEmptyOneNothing) {
-  const JsonLines lines = read_json_lines(folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n"));
+  const JsonLines lines = lines_of_file(folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"tap\": 2}\n"));
   ASSERT_EQ(lines.rows.size(), 2U);
   EXPECT_EQ(*lines.rows[1].find("tap"), Scalar{std::int64_t{2}});
   EXPECT_EQ(lines.bytes, 22U);
-  const JsonLines none = read_json_lines(folder_.write("taps.jsonl", ""));
+  const JsonLines none = lines_of_file(folder_.write("taps.jsonl", ""));
   EXPECT_TRUE(none.rows.empty());
   EXPECT_EQ(none.bytes, 0U);
 }
 
 TEST_F(JsonLinesFile, LeavesOutALastLineThatWasCutOff) {
   for (const char* tail : {"{\"ta", "{\"tap\": 2}"}) {
-    const JsonLines lines = read_json_lines(folder_.write("taps.jsonl", std::string("{\"tap\": 1}\n") + tail));
+    const JsonLines lines = lines_of_file(folder_.write("taps.jsonl", std::string("{\"tap\": 1}\n") + tail));
     EXPECT_EQ(lines.rows.size(), 1U) << tail;
     EXPECT_EQ(lines.bytes, 11U) << tail;
   }
@@ -99,14 +109,14 @@ TEST_F(JsonLinesFile, LeavesOutALastLineThatWasCutOff) {
 
 TEST_F(JsonLinesFile, RefusesADamagedLineInTheMiddleAndAMissingFile) {
   const auto file = folder_.write("taps.jsonl", "{\"tap\": 1}\n{\"ta\n{\"tap\": 3}\n");
-  EXPECT_EQ(error_of([&] { read_json_lines(file); }), file.string() + ":2: is not a JSON object, the file is damaged");
-  EXPECT_EQ(error_of([] { read_json_lines("/nonexistent/taps.jsonl"); }), "/nonexistent/taps.jsonl: cannot be read");
+  EXPECT_EQ(error_of([&] { lines_of_file(file); }), file.string() + ":2: is not a JSON object, the file is damaged");
+  EXPECT_EQ(error_of([] { lines_of_file("/nonexistent/taps.jsonl"); }), "/nonexistent/taps.jsonl: cannot be read");
 }
 
 TEST_F(JsonLinesFile, RefusesALineThatIsTooLongTooDeepOrHoldsTooMuch) {
   const auto refusal = [&](const std::string& line) {
     const auto file = folder_.write("taps.jsonl", "{}\n" + line + "\n");
-    return error_of([&] { read_json_lines(file); }).substr(file.string().size());
+    return error_of([&] { lines_of_file(file); }).substr(file.string().size());
   };
   const auto nested = [](int levels) {
     std::string open, close;
@@ -118,7 +128,7 @@ TEST_F(JsonLinesFile, RefusesALineThatIsTooLongTooDeepOrHoldsTooMuch) {
     for (int i = 0; i < count; ++i) out += (i == 0 ? "\"" : ",\"") + std::to_string(i) + "\":0";
     return out + "}";
   };
-  EXPECT_EQ(read_json_lines(folder_.write("sound", nested(100) + "\n" + fields(4096) + "\n")).rows.size(), 2U);
+  EXPECT_EQ(lines_of_file(folder_.write("sound", nested(100) + "\n" + fields(4096) + "\n")).rows.size(), 2U);
   EXPECT_EQ(refusal(nested(101)), ":2: is nested too deeply: at most 100 levels, the file is damaged");
   EXPECT_EQ(refusal(nested(150'000)), ":2: is nested too deeply: at most 100 levels, the file is damaged");
   EXPECT_EQ(refusal(fields(4097)), ":2: contains too many values: at most 4096, the file is damaged");

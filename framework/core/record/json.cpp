@@ -254,13 +254,13 @@ JsonList list_of(const std::vector<Row>& rows) {
   return {out + "]"};
 }
 
-JsonLines read_json_lines(const std::filesystem::path& file) {
+std::uintmax_t read_json_lines(const std::filesystem::path& file, const std::function<void(Row)>& use) {
   const std::string text = read_file(file);
-  JsonLines out;
   RowLines lines(file);
-  for (std::size_t end; (end = text.find('\n', out.bytes)) != std::string::npos; out.bytes = end + 1)
-    out.rows.push_back(lines.read(text.substr(out.bytes, end - out.bytes)));
-  return out;
+  std::size_t begin = 0;
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
+    use(lines.read(text.substr(begin, end - begin)));
+  return begin;
 }
 
 Tree read_json(const std::filesystem::path& file, Origin origin) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -49,13 +50,9 @@ class RowLines {
   std::size_t values_ = 0;
 };
 
-/// The objects of a file, one a line. A last line without its line end was cut off by a kill and is left out; `bytes`
-/// then says where it begins. Throws Error for any other line that is no object.
-struct JsonLines {
-  std::vector<Row> rows;
-  std::uintmax_t bytes = 0;  ///< of the complete lines
-};
-JsonLines read_json_lines(const std::filesystem::path& file);
+/// Hands `use` the objects of a file, one a line. A last line without its line end was cut off by a kill and is left
+/// out. Returns the bytes of the complete lines. Throws Error for any other line that is no object.
+std::uintmax_t read_json_lines(const std::filesystem::path& file, const std::function<void(Row)>& use);
 
 /// The JSON object in a file of at most 64 MiB, in which nothing is nested deeper than 100 levels: what to_json() wrote
 /// comes back as it was. Throws Error.

@@ -112,14 +112,12 @@ Sweep read_sweep(const fs::path& directory) {
     throw Error(directory.string(), "is not the directory of a sweep", "it has no manifest.jsonl");
   Sweep sweep{directory, {}, {}};
   const fs::path file = directory / "manifest.jsonl";
-  const JsonLines lines = read_json_lines(file);
-  // Complete before the first job began: a line without its end is damage, not work under way.
-  if (lines.bytes != fs::file_size(file))
-    throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
-  if (lines.rows.empty()) throw Error(file.string(), "lists no jobs", "the file is damaged");
-  sweep.keys = texts_at(lines.rows.front(), "key");
-  const std::string id = lines.rows.front().text(kSweep);
-  for (const Row& row : lines.rows) {
+  std::string id;
+  const std::uintmax_t bytes = read_json_lines(file, [&](const Row& row) {
+    if (sweep.jobs.empty()) {
+      sweep.keys = texts_at(row, "key");
+      id = row.text(kSweep);
+    }
     const Job job{static_cast<int>(sweep.jobs.size()), row.text("id"), texts_at(row, "value")};
     // What is read must be all that the line says, and an id is the name of a folder: nothing of it is believed before.
     if (!is_id(job.id) || job.values.size() != sweep.keys.size() || id.empty() ||
@@ -127,7 +125,10 @@ Sweep read_sweep(const fs::path& directory) {
       throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is not a job of this sweep",
                   "the file is damaged: put it back as it was");
     sweep.jobs.push_back(job);
-  }
+  });
+  // Complete before the first job began: a line without its end is damage, not work under way.
+  if (bytes != fs::file_size(file)) throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
+  if (sweep.jobs.empty()) throw Error(file.string(), "lists no jobs", "the file is damaged");
   if (sweep_id(read_run_config(directory), sweep) != id) {
     throw Error(directory.string(), "config.yaml or manifest.jsonl was changed after this sweep started",
                 "restore the old file, or run the changed config with 'palpate sweep'");

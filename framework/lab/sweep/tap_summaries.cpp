@@ -53,7 +53,7 @@ std::optional<std::vector<Row>> TapSummaries::kept(std::size_t job) const {
   if (!is_there(file)) return std::nullopt;
   std::vector<Row> rows;
   // What somebody has damaged is computed again, as what is not there.
-  const auto trouble = trouble_in([&] { rows = read_json_lines(file).rows; });
+  const auto trouble = trouble_in([&] { read_json_lines(file, [&](Row row) { rows.push_back(std::move(row)); }); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   if (trouble) return std::nullopt;
   const Scalar hash(summary_hash(whole));
