@@ -19,6 +19,11 @@ refuse() {
   exit 2
 }
 
+# What qemu does not do as the kernel does: it starts files that are no programs, keeps no limit of memory, and does not
+# tell a parent that its child could not be started. On x86-64 the same tests fail under qemu-x86_64.
+not_emulated=ProgramAcquisition.IsEndedWithAllThatItStarted:StartedProgram.ThatIsNotThereIsToldByErrno
+not_emulated=$not_emulated:ProcessBackend.AFileThatIsNoProgramIsNotGivenToAShell:MeshFile.ThatTakesFarMoreMemoryThanItsSizeIsRefused
+
 steps=
 while [ $# -gt 0 ]; do
   case $1 in
@@ -118,11 +123,14 @@ for step in $steps; do
   case $step in
     build) ninja -C "$build" palpate_complete unit_tests contract_tests stability_tests ;;
     test)
+      # A test strips a library, which this machine's own program cannot do for ARM.
+      mkdir -p "$folder/bin"
+      ln -sf "$(command -v aarch64-linux-gnu-strip)" "$folder/bin/strip"
       for suite in unit contract stability; do
         echo "arm64: $suite tests" >&2
         # One part per core.
-        (cd "$build/tests" && seq 0 $((cores - 1)) | xargs -P "$cores" -I PART \
-          env GTEST_TOTAL_SHARDS="$cores" GTEST_SHARD_INDEX=PART "./${suite}_tests" --gtest_brief=1)
+        (cd "$build/tests" && seq 0 $((cores - 1)) | PATH="$folder/bin:$PATH" xargs -P "$cores" -I PART \
+          env GTEST_TOTAL_SHARDS="$cores" GTEST_SHARD_INDEX=PART "./${suite}_tests" --gtest_brief=1 --gtest_filter="-$not_emulated")
       done
       ;;
     compare)
