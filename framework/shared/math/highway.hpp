@@ -4,11 +4,12 @@
 // no include guard. Its functions stand in HWY_NAMESPACE, and are called by PALPATE_DISPATCH(function)(arguments).
 //
 // Highway is used by its headers alone. Its library would choose, too, but measures clocks when it is loaded, which
-// takes as long as a fifth of a short run.
+// takes as long as a fifth of a short run. Its assertions, which debug builds have, are in the library, too.
 //
 // The sets are AVX2 and AVX-512 (which Highway calls AVX3) on x86, and what every processor of the architecture has: on
 // 64-bit ARM that is NEON. Vectors of SVE have no size that a compiler knows, so that arrays of them do not compile.
 #ifndef PALPATE_DISPATCH
+#define HWY_IS_DEBUG_BUILD 0
 #ifdef __aarch64__
 #define HWY_COMPILE_ONLY_STATIC
 #else
