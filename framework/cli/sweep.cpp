@@ -266,8 +266,10 @@ int sweep(Program& program, const SweepArguments& arguments) {
   if (!arguments.list) draft.emplace(arguments.runs);
   std::optional<SweepPlan> plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes,
                                              arguments.runs, [&](const Job& job, const ResolvedConfig& config) {
-                                               if (draft) check_who_taps(config, "backend");
-                                               if (draft) draft->add(job, config);
+                                               if (draft) {
+                                                 check_who_taps(config, "backend");
+                                                 draft->add(job, config);
+                                               }
                                                if (job.index == 0) first = config;
                                                one_at_a_time =
                                                    one_at_a_time || program.host.one_at_a_time(config.notes.plugins);

@@ -31,10 +31,7 @@ std::array<std::int64_t, 3> cube_of(const Vector3d& point, double side) {
   return out;
 }
 
-constexpr double kFar = 0.1;  // what lies further off, or has nothing to be near to, counts so much
-
-constexpr double kNear = 0.005;
-constexpr double kSide = 0.003;  // so that where many lines meet a surface counts no more than elsewhere
+constexpr double kFar = 0.1;  ///< metres: the largest distance that counts, also of a point to an empty cloud
 
 }  // namespace
 
@@ -102,6 +99,8 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
 }
 
 CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth) {
+  constexpr double kNear = 0.005;      // metres: of the F-score
+  constexpr double kThinning = 0.003;  // metres: so that where many lines meet a surface counts no more than elsewhere
   struct Sums {
     double count = 0.0, distance = 0.0, square = 0.0, near = 0.0;
     explicit Sums(const std::vector<double>& distances) : count(static_cast<double>(distances.size())) {
@@ -113,8 +112,8 @@ CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth) {
       }
     }
   };
-  const Sums forth(nearest_distances(thinned(belief, kSide), truth));
-  const Sums back(nearest_distances(thinned(truth, kSide), belief));
+  const Sums forth(nearest_distances(thinned(belief, kThinning), truth));
+  const Sums back(nearest_distances(thinned(truth, kThinning), belief));
   const auto ratio = [](double part, double whole, double of_nothing) {
     return whole > 0.0 ? part / whole : of_nothing;
   };
