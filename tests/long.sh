@@ -7,7 +7,7 @@
 set -u
 cd "$(dirname "$(readlink -f "$0")")/.." || exit 1
 tests=build/release/tests
-names="sanitizers stress crash fuzz accuracy coverage same_taps stability robots chaos clang tsan threads arm64"
+names="sanitizers stress fuzz accuracy coverage same_taps stability robots chaos clang tsan threads arm64"
 names="$names debian_12 pages_12 packages_12 debian_13 pages_13 packages_13 benchmarks"
 for name in "$@"; do
   case " $names " in *" $name "*) continue ;; esac
@@ -65,7 +65,6 @@ campaign() {
   case $1 in
     sanitizers) sanitizers ;;
     stress) sh tests/stress.sh ;;
-    crash) python3 -B tests/crash/crash.py build/release --long ;;
     fuzz) needs clang++ && sh tests/fuzz.sh ;;
     accuracy) sh tests/accuracy.sh build/release --long ;;
     coverage) coverage ;;
