@@ -3,6 +3,7 @@
 // ratio of any kind of move is seen. The posterior is compared with draws of the prior in outline_posterior_test.cpp.
 #include "outline_bench.hpp"
 #include "primitives/particles.hpp"
+#include "primitives/steps.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -136,6 +137,190 @@ INSTANTIATE_TEST_SUITE_P(
                     FalseRatio{"Replace", Kind::replace, Kind::replace, 0.45, 0.15, 5.0, 0.8, 200, 40000},
                     FalseRatio{"ChangeForm", Kind::change_form, Kind::change_form, 0.45, 0.15, 5.0, 0.8, 20, 90000}),
     [](const auto& one) { return one.param.name; });
+
+/// A hypothesis with all primitives, those with an object tap and the others, a push, noise, and labels.
+struct Joint {
+  Outline seen, unseen;
+  Push push;
+  bool noisy = false;
+  std::vector<Touch> touches;
+};
+
+/// Draws labels for hypotheses and moves hypotheses by the labels, in turn (Geweke 2004). Metropolis and Hastings with
+/// likelihoods by the definition, and with what no tap has touched drawn in full.
+class Geweke {
+ public:
+  static constexpr int kTaps = 10;
+  static constexpr double kPushes = 0.06;
+  static constexpr double kMistaken = 0.1, kLies = 0.05, kNoise = 0.01;
+
+  /// `by`: makes the ratios of pushes so much larger.
+  Geweke(const OutlinePrior& prior, double by, Random random) : prior_(prior), by_(by), random_(random) {}
+
+  Joint draw() {
+    Joint out;
+    out.touches = touches_over(0.23, kTaps);
+    out.noisy = random_.uniform() < 0.5;
+    out.unseen = prior_.draw(random_);
+    if (random_.uniform() * (1.0 + kPushes * (kTaps - 1)) >= 1.0) {
+      out.push.before = 1 + static_cast<int>(random_.index(kTaps - 1));
+      out.push.origin_x = out.push.origin_y = 0.115;
+      out.push.dx = 0.012 * normal(random_);
+      out.push.dy = 0.012 * normal(random_);
+      const double angle = 0.1 * normal(random_);
+      out.push.cosine = std::cos(angle);
+      out.push.sine = std::sin(angle);
+    }
+    draw_labels(out);
+    return out;
+  }
+
+  void draw_labels(Joint& one) {
+    Outline all = one.seen;
+    for (const Piece& piece : one.unseen) all.add(piece);
+    for (std::size_t i = 0; i < kTaps; ++i) {
+      one.touches[i].on = true;
+      one.touches[i].on = random_.uniform() < probability(one, all, i);
+    }
+    std::tie(one.seen, one.unseen) = std::pair(Outline(), Outline());
+    for (const Piece& piece : all) (touched(piece, seen_touches(one)) ? one.seen : one.unseen).add(piece);
+  }
+
+  void move(Joint& one, int times) {
+    for (int i = 0; i < times; ++i) {
+      const double which = random_.uniform();
+      Joint other = one;
+      double ratio = 1.0;
+      if (which < 0.05) {
+        other.noisy = !one.noisy;
+      } else if (which < 0.1) {
+        other.unseen = drawn_unseen(one);
+      } else {
+        Proposal proposal;
+        proposal.begin({one.seen, one.push});
+        if (which < 0.4) {
+          propose_push(proposal, prior_, kTaps, kPushes, random_);
+          ratio = by_;
+        } else {
+          const std::vector<Touch> touches = seen_touches(one);
+          propose(proposal, prior_, made_.seen(touches), random_.uniform(), random_);
+        }
+        ratio *= proposal.correction;
+        other.seen = proposal.outline;
+        other.push = proposal.push;
+      }
+      if (!(ratio > 0.0) || other.seen.size() + other.unseen.size() > prior_.settings().most) continue;
+      if (!in_order(other)) continue;
+      if (random_.uniform() < ratio * likelihood(other) / likelihood(one)) one = other;
+    }
+  }
+
+ private:
+  /// The taps where they would be made after the push.
+  static std::vector<Touch> seen_touches(const Joint& one) {
+    std::vector<Touch> out = one.touches;
+    for (int i = 0; i < one.push.before; ++i) {
+      Target& place = out[static_cast<std::size_t>(i)].place;
+      place = one.push.now(place);
+    }
+    return out;
+  }
+
+  double probability(const Joint& one, const Outline& all, std::size_t tap) const {
+    const Touch touch = seen_touches(one)[tap];
+    double depth = -1.0;
+    for (const Piece& piece : all) depth = std::max(depth, piece.depth(touch.place.x, touch.place.y));
+    const double inside = one.noisy ? 0.5 * std::erfc(-depth / kNoise / std::sqrt(2.0)) : (depth >= 0.0 ? 1.0 : 0.0);
+    const double on = inside * (1.0 - kMistaken) + (1.0 - inside) * kLies;
+    return touch.on ? on : 1.0 - on;
+  }
+
+  double likelihood(const Joint& one) const {
+    Outline all = one.seen;
+    for (const Piece& piece : one.unseen) all.add(piece);
+    double out = 1.0;
+    for (std::size_t i = 0; i < kTaps; ++i) out *= probability(one, all, i);
+    return out;
+  }
+
+  /// Whether each primitive is on its side.
+  static bool in_order(const Joint& one) {
+    const std::vector<Touch> touches = seen_touches(one);
+    const auto is_touched = [&](const Piece& piece) { return touched(piece, touches); };
+    return std::all_of(one.seen.begin(), one.seen.end(), is_touched) &&
+           std::none_of(one.unseen.begin(), one.unseen.end(), is_touched);
+  }
+
+  /// Primitives without an object tap, of a new draw of the prior.
+  Outline drawn_unseen(const Joint& one) {
+    const std::vector<Touch> touches = seen_touches(one);
+    return parts_of(prior_.draw(random_), touches).unseen;
+  }
+
+  OutlinePrior prior_;
+  double by_;
+  Random random_;
+  Made made_;
+};
+
+/// What moves and labels do on average to draws of the joint distribution, in standard errors.
+std::pair<double, std::string> drift_of_the_joint(double by, int draws) {
+  OutlinePrior::Settings settings = prior_settings(12, 0.23);
+  settings.expected = 3.0;
+  const OutlinePrior prior(settings);
+  Geweke chain(prior, by, Random(9, "outline jumps test: the joint"));
+  const auto numbers = [&](const Joint& one) {
+    double wrong = 0.0, extent = 0.0, on = 0.0;
+    for (const Touch& touch : one.touches) {
+      on += touch.on ? 1.0 : 0.0;
+      wrong += touch.on != one.seen.contains(touch.place.x, touch.place.y) ? 1.0 : 0.0;
+    }
+    for (const Piece& piece : one.seen) extent += piece.form.extent();
+    const double pushed = one.push ? 1.0 : 0.0;
+    const double far = one.push.dx * one.push.dx + one.push.dy * one.push.dy;
+    const double angle = one.push.angle();
+    return std::array<Number, 14>{{{"primitives", 1.0 * one.seen.size()},
+                                   {"no primitive", one.seen.size() == 0 ? 1.0 : 0.0},
+                                   {"primitives without a tap", 1.0 * one.unseen.size()},
+                                   {"holes", 1.0 * holes_of(one.seen)},
+                                   {"extent", extent},
+                                   {"noise", one.noisy ? 1.0 : 0.0},
+                                   {"pushed", pushed},
+                                   {"before", 1.0 * one.push.before},
+                                   {"dx", one.push.dx},
+                                   {"shift squared", far},
+                                   {"turn squared", angle * angle},
+                                   {"pushed noise", one.noisy ? pushed : 0.0},
+                                   {"objects", on},
+                                   {"contradictions", wrong}}};
+  };
+  std::array<double, 14> sums{}, squares{};
+  std::pair<double, std::string> out{0.0, ""};
+  for (int i = 0; i < draws; ++i) {
+    Joint one = chain.draw();
+    const auto before = numbers(one);
+    for (int round = 0; round < 4; ++round) {
+      chain.move(one, 25);
+      chain.draw_labels(one);
+    }
+    const auto after = numbers(one);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      const double change = after[k].value - before[k].value;
+      sums[k] += change;
+      squares[k] += change * change;
+    }
+  }
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    out = std::max(out, {std::abs(sums[k]) / std::sqrt(squares[k]), numbers(chain.draw())[k].name});
+  return out;
+}
+
+TEST(Moves, WithPushesAndNoiseAndLabelsInTurnLeaveTheJointDistributionAsItIs) {
+  const auto [right, of] = drift_of_the_joint(1.0, test::brief() ? 1500 : 15000);
+  EXPECT_LT(right, kRare) << of;
+  if (test::brief()) return;  // few draws do not show a wrong ratio
+  for (const double by : {0.8, 1.0 / 0.8}) EXPECT_GT(drift_of_the_joint(by, 15000).first, kRare) << by;
+}
 
 TEST(Moves, SayWhichPiecesStayAndKeepTheDensityOfPieces) {
   const OutlinePrior prior(prior_settings(12, 0.23));
