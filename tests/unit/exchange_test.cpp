@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Outlines that are drawn again take over what a touch tells of, and keep their own of what lies apart.
-#include "primitives/exchange.hpp"
+// Exchange between particles: a particle takes over the primitives that a tap says something about, and keeps the
+// others.
+#include "primitives/sampler.hpp"
 
-#include "outline_bench.hpp"
-#include "primitives/particles.hpp"
+#include "hypothesis_bench.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
 
@@ -13,47 +13,42 @@
 namespace palpate::footprints {
 namespace {
 
-constexpr int kMost = Outline::kMost;
+constexpr int kMost = ShortList<Primitive>::kMost;
 
 /// Touches, and particles that see them.
 class Desk {
  public:
   explicit Desk(const std::vector<Touch>& touches) {
-    for (const Touch& touch : touches) places_.add(touch.place);
-    objects_.resize(static_cast<std::size_t>(places_.length()), 0);
-    for (std::size_t i = 0; i < touches.size(); ++i) objects_[i] = touches[i].on ? 0xFF : 0;
+    for (const Touch& touch : touches) taps_.add(touch);
   }
 
   Particle with(const std::vector<Form>& forms) const {
     Particle out;
-    out.depths.grow_to(places_.length());
+    out.rows.grow(taps_.length());
     for (const Form& form : forms) {
-      Piece piece;
-      piece.form = form;
-      places_.steps(piece, exact_, out.depths.row(out.outline.size()));
-      out.outline.add(piece);
+      Primitive primitive;
+      primitive.form = form;
+      taps_.steps(primitive, exact_, out.rows.row(out.hypothesis.primitives.size()));
+      out.hypothesis.primitives.add(primitive);
     }
-    deepest_of(out.depths.rows().data(), out.outline.size(), places_.length(), out.depths.deepest());
     return out;
   }
 
-  bool take_over(const Particle& from, const Target& here, Particle& to, int most = kMost) const {
-    return footprints::take_over(from, here, objects_.data(), most, to);
+  bool exchange(const Particle& from, Particle& to, int most = kMost) const {
+    return footprints::exchange(from, taps_, most, to);
   }
 
-  /// That its rows are what its pieces come to.
+  /// That its rows are what its primitives come to.
   void expect_rows(const Particle& one) const {
     std::vector<Form> forms;
-    for (const Piece& piece : one.outline) forms.push_back(piece.form);
+    for (const Primitive& primitive : one.hypothesis.primitives) forms.push_back(primitive.form);
     const Particle again = with(forms);
-    for (int i = 0; i < one.outline.size(); ++i)
-      EXPECT_TRUE(std::equal(one.depths.row(i), one.depths.row(i) + places_.length(), again.depths.row(i)));
-    EXPECT_TRUE(std::equal(one.depths.deepest(), one.depths.deepest() + places_.length(), again.depths.deepest()));
+    for (int i = 0; i < one.hypothesis.primitives.size(); ++i)
+      EXPECT_TRUE(std::equal(one.rows.row(i), one.rows.row(i) + taps_.length(), again.rows.row(i)));
   }
 
  private:
-  Places places_;
-  std::vector<LabelModel::Step> objects_;
+  Taps taps_;
   LabelModel exact_{0.01, 0.01, 0.0};
 };
 
@@ -68,7 +63,7 @@ Form box(double x, double y, double a = 0.02, double b = 0.02) {
 
 std::vector<double> lefts(const Particle& one) {
   std::vector<double> out;
-  for (const Piece& piece : one.outline) out.push_back(piece.form.x);
+  for (const Primitive& primitive : one.hypothesis.primitives) out.push_back(primitive.form.x);
   return out;
 }
 
@@ -79,15 +74,15 @@ TEST(Exchange, TakesOverWhatATouchTellsOfAndKeepsWhatLiesApart) {
   const Desk desk(kTwo);
   const Particle from = desk.with({box(0.301, 0.30), box(0.052, 0.05), box(0.055, 0.055)});
   Particle to = desk.with({box(0.049, 0.05), box(0.299, 0.30)});
-  ASSERT_TRUE(desk.take_over(from, {0.06, 0.06}, to));
+  ASSERT_TRUE(desk.exchange(from, to));
   EXPECT_EQ(lefts(to), (std::vector<double>{0.299, 0.052, 0.055}));
   desk.expect_rows(to);
-  ASSERT_TRUE(desk.take_over(desk.with({box(0.048, 0.05)}), {0.06, 0.06}, to));
+  ASSERT_TRUE(desk.exchange(desk.with({box(0.048, 0.05)}), to));
   EXPECT_EQ(lefts(to), (std::vector<double>{0.299, 0.048}));
   desk.expect_rows(to);
 }
 
-TEST(Exchange, IsOfAllThatGoesTogetherInEitherOutline) {
+TEST(Exchange, IsOfAllThatGoesTogetherInEitherHypothesis) {
   const Desk desk(kTwo);
   const std::vector<Form> apart{box(0.05, 0.05), box(0.30, 0.30)};
   Form across = box(0.175, 0.175, 0.20, 0.02);
@@ -96,50 +91,49 @@ TEST(Exchange, IsOfAllThatGoesTogetherInEitherOutline) {
   for (const std::vector<Form>& whole :
        {std::vector<Form>{across}, {box(0.05, 0.05), box(0.17, 0.17, 0.105, 0.105), box(0.30, 0.30)}}) {
     Particle to = desk.with(apart);
-    EXPECT_FALSE(desk.take_over(desk.with(whole), {0.06, 0.06}, to));
+    EXPECT_FALSE(desk.exchange(desk.with(whole), to));
     EXPECT_EQ(lefts(to), lefts(desk.with(apart)));
     to = desk.with(whole);
-    EXPECT_FALSE(desk.take_over(desk.with(apart), {0.06, 0.06}, to));
+    EXPECT_FALSE(desk.exchange(desk.with(apart), to));
     EXPECT_EQ(lefts(to), lefts(desk.with(whole)));
   }
 }
 
-TEST(Exchange, IsNotOfOutlinesThatSeeTouchesUnalikeNorOfMoreThanThereIsRoomFor) {
+TEST(Exchange, IsNotOfHypothesesThatSeeTouchesUnalikeNorOfMoreThanThereIsRoomFor) {
   const Desk desk(kTwo);
-  const Target here{0.06, 0.06};
   const Particle to = desk.with({box(0.05, 0.05), box(0.30, 0.30)});
   const Particle from = desk.with({box(0.05, 0.05), box(0.055, 0.055), box(0.30, 0.30)});
   const auto takes = [&](const auto& change, int most) {
     Particle one = from;
     Particle other = to;
     change(one, other);
-    return desk.take_over(one, here, other, most);
+    return desk.exchange(one, other, most);
   };
   EXPECT_TRUE(takes([](Particle&, Particle&) {}, 3));
   EXPECT_FALSE(takes([](Particle&, Particle&) {}, 2));
-  EXPECT_FALSE(takes([](Particle& one, Particle&) { one.blurred = true; }, 3));
-  EXPECT_FALSE(takes([](Particle& one, Particle&) { one.push.before = 1; }, 3));
-  EXPECT_FALSE(takes([](Particle&, Particle& other) { other.push.before = 1; }, 3));
+  EXPECT_FALSE(takes([](Particle& one, Particle&) { one.hypothesis.noisy = true; }, 3));
+  EXPECT_FALSE(takes([](Particle& one, Particle&) { one.hypothesis.push.before = 1; }, 3));
+  EXPECT_FALSE(takes([](Particle&, Particle& other) { other.hypothesis.push.before = 1; }, 3));
 }
 
-TEST(Exchange, LeavesOfOneObjectAsManyOutlinesAsThereAreHoweverOftenAnotherIsTouched) {
-  OutlinePrior::Settings settings;
+TEST(Exchange, LeavesOfOneObjectAsManyHypothesesAsThereAreHoweverOftenAnotherIsTouched) {
+  Prior::Settings settings;
   settings.area = {0.4, 0.4};
-  ParticleSettings how;
-  how.count = 300;
+  SamplerSettings how;
+  how.particles = 300;
   how.moves = how.moves_apart = 0.1;
-  Particles belief(OutlinePrior(settings), how, Random(3, "exchange test"));
+  Sampler belief(Prior(settings), how, Random(3, "exchange test"));
   const auto touch_disc = [&](double x, double y, int from, int until) {
     for (int i = from; i < until; ++i) {
       const double far = 0.02 + 0.01 * (i % 5);
       belief.add(test::touch_at(x + far * std::cos(2.4 * i), y + far * std::sin(2.4 * i), far < 0.035));
     }
   };
-  const auto outlines_of_first = [&] {
+  const auto hypotheses_of_first = [&] {
     std::set<double> different;
     for (const Particle& one : belief.particles()) {
-      for (const Piece& piece : one.outline) {
-        if (piece.contains(0.1, 0.12)) different.insert(piece.form.x);
+      for (const Primitive& primitive : one.hypothesis.primitives) {
+        if (primitive.contains(0.1, 0.12)) different.insert(primitive.form.x);
       }
     }
     return different.size();
@@ -147,7 +141,7 @@ TEST(Exchange, LeavesOfOneObjectAsManyOutlinesAsThereAreHoweverOftenAnotherIsTou
   touch_disc(0.1, 0.1, 0, 10);
   touch_disc(0.3, 0.3, 0, 10);
   touch_disc(0.3, 0.3, 10, 40);
-  EXPECT_GT(2 * outlines_of_first(), static_cast<std::size_t>(belief.size()));
+  EXPECT_GT(2 * hypotheses_of_first(), static_cast<std::size_t>(belief.size()));
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The belief of the footprint `primitives` against what its model implies: the prior of pushes, the truth of drawn
 // desks, and an exact sum over all ways in which primitives can cover the taps.
-#include "outline_bench.hpp"
-#include "primitives/particles.hpp"
-#include "primitives/steps.hpp"
+#include "hypothesis_bench.hpp"
+#include "primitives/proposals.hpp"
+#include "primitives/sampler.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -17,8 +17,8 @@ namespace {
 // A standard normal deviation exceeds 4.5 once in 150000 times.
 constexpr double kDeviations = 4.5;
 
-OutlinePrior::Settings prior_of_the_default() {
-  OutlinePrior::Settings out;
+Prior::Settings prior_of_the_default() {
+  Prior::Settings out;
   out.area = {0.23, 0.23};
   return out;
 }
@@ -40,11 +40,11 @@ struct Moments {
 // Only the last tap has the label of an object. No push comes after it, so primitives and pushes are independent.
 TEST(FootprintModel, KeepsThePriorOfPushesAndOfNoiseUnderLabelsThatSayNothing) {
   constexpr int kTaps = 15;
-  ParticleSettings how;
-  how.count = test::brief() ? 1000 : 2000;
-  how.mistaken = how.lies = 0.5;
-  how.blur = 0.004;
-  how.pushes = 0.05;
+  SamplerSettings how;
+  how.particles = test::brief() ? 1000 : 2000;
+  how.label_error = how.false_contact = 0.5;
+  how.position_noise = 0.004;
+  how.push_probability = 0.05;
   how.heights = false;
   how.moves = test::brief() ? 60 : 100;
   how.most_moves = 1000;
@@ -54,27 +54,27 @@ TEST(FootprintModel, KeepsThePriorOfPushesAndOfNoiseUnderLabelsThatSayNothing) {
   Moments pushed, noisy, dx, dy, turn;
   std::vector<long> before(kTaps - 1, 0);
   for (int run = 0; run < runs; ++run) {
-    Particles belief(OutlinePrior(prior_of_the_default()), how,
-                     Random(static_cast<std::uint64_t>(run), "footprint model test: pushes"));
+    Sampler belief(Prior(prior_of_the_default()), how,
+                   Random(static_cast<std::uint64_t>(run), "footprint model test: pushes"));
     for (const Touch& touch : touches) belief.add(touch);
     Moments of_run, noisy_of_run;
     for (const Particle& one : belief.particles()) {
-      of_run.add(one.push ? 1.0 : 0.0);
-      noisy_of_run.add(one.blurred ? 1.0 : 0.0);
-      if (!one.push) continue;
-      dx.add(one.push.dx);
-      dy.add(one.push.dy);
-      turn.add(one.push.angle());
-      ++before[static_cast<std::size_t>(one.push.before - 1)];
+      of_run.add(one.hypothesis.push ? 1.0 : 0.0);
+      noisy_of_run.add(one.hypothesis.noisy ? 1.0 : 0.0);
+      if (!one.hypothesis.push) continue;
+      dx.add(one.hypothesis.push.dx);
+      dy.add(one.hypothesis.push.dy);
+      turn.add(one.hypothesis.push.angle());
+      ++before[static_cast<std::size_t>(one.hypothesis.push.before - 1)];
     }
     pushed.add(of_run.mean());
     noisy.add(noisy_of_run.mean());
   }
-  const double expected = how.pushes * (kTaps - 1) / (1.0 + how.pushes * (kTaps - 1));
+  const double expected = how.push_probability * (kTaps - 1) / (1.0 + how.push_probability * (kTaps - 1));
   // Hypotheses are doubled after the find: copies that have not moved apart yet say the same.
   const double independent = 0.5 * dx.count;
-  EXPECT_NEAR(pushed.mean(), expected, kDeviations * std::sqrt(expected * (1.0 - expected) / how.count / runs));
-  EXPECT_NEAR(noisy.mean(), 0.5, kDeviations * 0.5 / std::sqrt(how.count * runs));
+  EXPECT_NEAR(pushed.mean(), expected, kDeviations * std::sqrt(expected * (1.0 - expected) / how.particles / runs));
+  EXPECT_NEAR(noisy.mean(), 0.5, kDeviations * 0.5 / std::sqrt(how.particles * runs));
   EXPECT_NEAR(dx.mean(), 0.0, kDeviations * 0.012 / std::sqrt(independent));
   EXPECT_NEAR(dx.deviation(), 0.012, kDeviations * 0.012 / std::sqrt(2.0 * independent));
   EXPECT_NEAR(dy.deviation(), 0.012, kDeviations * 0.012 / std::sqrt(2.0 * independent));
@@ -101,10 +101,10 @@ INSTANTIATE_TEST_SUITE_P(Every, Calibrated,
 
 TEST_P(Calibrated, ProbabilitiesAreThoseOfDesksThatThePriorDraws) {
   constexpr std::array<int, 3> kTaps{6, 15, 30};
-  const OutlinePrior prior(prior_of_the_default());
-  ParticleSettings how;
-  how.lies = 0.015;
-  how.blur = GetParam().noise;
+  const Prior prior(prior_of_the_default());
+  SamplerSettings how;
+  how.false_contact = 0.015;
+  how.position_noise = GetParam().noise;
   how.heights = false;
   const Points places = test::lattice(15, 15);
   const int runs = test::brief() ? 40 : GetParam().runs;
@@ -115,14 +115,14 @@ TEST_P(Calibrated, ProbabilitiesAreThoseOfDesksThatThePriorDraws) {
   std::array<Bin, 10> bins{};
   for (int run = 0; run < runs; ++run) {
     Random random(static_cast<std::uint64_t>(run), "footprint model test: desks");
-    const Outline desk = prior.draw(random);
-    const double noise = random.uniform() < 0.5 ? how.blur : 0.0;
-    Particles belief(prior, how, Random(static_cast<std::uint64_t>(run), "footprint model test: belief"));
+    const Hypothesis desk = prior.draw(random);
+    const double noise = random.uniform() < 0.5 ? how.position_noise : 0.0;
+    Sampler belief(prior, how, Random(static_cast<std::uint64_t>(run), "footprint model test: belief"));
     std::size_t asked = 0;
     for (int tap = 1; tap <= kTaps.back(); ++tap) {
       const Target place{0.23 * random.uniform(), 0.23 * random.uniform()};
       const bool on = desk.contains(place.x + noise * normal(random), place.y + noise * normal(random));
-      const bool wrong = random.uniform() < (on ? how.mistaken : how.lies);
+      const bool wrong = random.uniform() < (on ? how.label_error : how.false_contact);
       belief.add({place, 0.0, on != wrong});
       if (tap != kTaps[asked]) continue;
       Eigen::VectorXd said(places.rows());
@@ -157,24 +157,24 @@ TEST(FootprintModel, IsTheExactSumOverTheSetsOfTapsThatPrimitivesCover) {
   const std::vector<Touch> touches{test::touch_at(0.08, 0.09, true), test::touch_at(0.10, 0.10, true),
                                    test::touch_at(0.15, 0.13, true), test::touch_at(0.09, 0.12, true),
                                    test::touch_at(0.17, 0.15, true), test::touch_at(0.20, 0.04, true)};
-  ParticleSettings how;
-  how.count = 1000;
-  how.mistaken = 0.01;
-  how.lies = 0.1;
+  SamplerSettings how;
+  how.particles = 1000;
+  how.label_error = 0.01;
+  how.false_contact = 0.1;
   how.heights = false;
   how.moves = 100;
   how.most_moves = 1000;
-  const OutlinePrior prior(prior_of_the_default());
+  const Prior prior(prior_of_the_default());
 
   // How often a primitive covers each set of taps.
   std::array<double, kSets> share{};
   Random random(1, "footprint model test: sets");
   const int draws = test::brief() ? 300000 : 3000000;
   for (int i = 0; i < draws; ++i) {
-    const Piece piece = prior.draw_piece_or_hollow(random);
+    const Primitive primitive = prior.draw_primitive(random);
     std::size_t set = 0;
     for (std::size_t k = 0; k < kTaps; ++k)
-      set |= piece.contains(touches[k].place.x, touches[k].place.y) ? std::size_t{1} << k : 0;
+      set |= primitive.contains(touches[k].place.x, touches[k].place.y) ? std::size_t{1} << k : 0;
     share[set] += 1.0 / draws;
   }
   // Weights of the unions of n primitives with a tap each, times expected^n / n!.
@@ -186,7 +186,8 @@ TEST(FootprintModel, IsTheExactSumOverTheSetsOfTapsThatPrimitivesCover) {
   for (int n = 0; n <= kMost; ++n) {
     for (std::size_t set = 0; set < kSets; ++set) {
       double weight = of_union[set];
-      for (std::size_t k = 0; k < kTaps; ++k) weight *= (set >> k & 1U) != 0 ? 1.0 - how.mistaken : how.lies;
+      for (std::size_t k = 0; k < kTaps; ++k)
+        weight *= (set >> k & 1U) != 0 ? 1.0 - how.label_error : how.false_contact;
       exact[static_cast<std::size_t>(n)] += weight;
       evidence += weight;
       last_covered += (set >> (kTaps - 1) & 1U) != 0 ? weight : 0.0;
@@ -203,13 +204,13 @@ TEST(FootprintModel, IsTheExactSumOverTheSetsOfTapsThatPrimitivesCover) {
   Moments covered;
   const int runs = test::brief() ? 4 : 20;
   for (int run = 0; run < runs; ++run) {
-    Particles belief(prior, how, Random(static_cast<std::uint64_t>(run), "footprint model test: enumeration"));
+    Sampler belief(prior, how, Random(static_cast<std::uint64_t>(run), "footprint model test: enumeration"));
     for (const Touch& touch : touches) belief.add(touch);
     std::vector<double> shares(kMost + 1, 0.0);
     double last = 0.0;
     for (const Particle& one : belief.particles()) {
-      shares[static_cast<std::size_t>(std::min(one.outline.size(), kMost))] += 1.0 / belief.size();
-      last += one.outline.contains(touches.back().place.x, touches.back().place.y) ? 1.0 / belief.size() : 0.0;
+      shares[static_cast<std::size_t>(std::min(one.hypothesis.primitives.size(), kMost))] += 1.0 / belief.size();
+      last += one.hypothesis.contains(touches.back().place.x, touches.back().place.y) ? 1.0 / belief.size() : 0.0;
     }
     for (std::size_t n = 0; n <= kMost; ++n) sampled[n].add(shares[n]);
     covered.add(last);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Boxes and ellipses, against the simplest ways to compute the same: corners and foci.
-#include "primitives/form.hpp"
-#include "primitives/forms.hpp"
+#include "primitives/coverage.hpp"
+#include "primitives/hypothesis.hpp"
 
-#include "outline_bench.hpp"
+#include "hypothesis_bench.hpp"
 #include "support/support.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -13,16 +13,16 @@ namespace {
 
 /// Forms and holes as the prior has them.
 std::vector<Form> forms(std::size_t count, std::uint64_t seed) {
-  OutlinePrior::Settings settings;
+  Prior::Settings settings;
   settings.area = {0.23, 0.23};
-  const OutlinePrior prior(settings);
+  const Prior prior(settings);
   Random random(seed, "form test");
   std::vector<Form> out;
   while (out.size() < count) {
-    Piece piece = prior.draw_piece(random);
-    prior.draw_hole(piece, random);
-    out.push_back(piece.form);
-    out.push_back(piece.hole);
+    Primitive primitive = prior.draw_whole(random);
+    prior.draw_hole(primitive, random);
+    out.push_back(primitive.form);
+    out.push_back(primitive.hole);
   }
   return out;
 }
@@ -65,67 +65,130 @@ TEST(Form, ReachesAsFarAsItsRim) {
     // The farthest of 4000 points of an ellipse falls short by half the square of half a step.
     EXPECT_NEAR(form.reach_x(), x, 1e-7);
     EXPECT_NEAR(form.reach_y(), y, 1e-7);
-    EXPECT_GE(form.radius(), radius - 1e-12);
+    EXPECT_GE(radius_of(form), radius - 1e-12);
   }
 }
 
-TEST(Form, AmongManyMeetsWhatItMeetsAlone) {
+TEST(Form, AmongManyOverlapsWhatItOverlapsAlone) {
   const std::vector<Form> all = forms(301, 6);
-  Forms many;
-  for (const Form& form : all) many.add(form);
-  ASSERT_EQ(many.size(), all.size());
+  std::vector<const Form*> pointers;
+  for (const Form& form : all) pointers.push_back(&form);
+  FormTable table;
+  table.set(pointers);
+  ASSERT_GE(table.x.size(), all.size());
   for (const Form& other : forms(50, 7)) {
-    std::vector<std::uint8_t> met;
-    many.mark_met(other, false, met);
-    for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(met[i] != 0, meet(other, all[i])) << i;
-    many.mark_met(all[7], true, met);
-    for (std::size_t i = 0; i < all.size(); ++i)
-      ASSERT_EQ(met[i] != 0, meet(other, all[i]) || meet(all[7], all[i])) << i;
-    many.mark_met(other, false, met);
-    for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(met[i] != 0, meet(other, all[i])) << i;
-  }
-}
-
-TEST(Form, IsCutWhereALineEntersAndLeavesIt) {
-  constexpr int kRows = 121;
-  constexpr int kColumns = 241;
-  for (const Form& form : forms(100, 3)) {
-    const double x0 = form.x - 1.2 * form.reach_x();
-    const double y0 = form.y - 1.2 * form.reach_y();
-    const double step_x = 0.01 * form.reach_x();
-    const double step_y = 0.02 * form.reach_y();
-    std::array<int, kRows> begins{};
-    std::array<int, kRows> ends{};
-    Cuts(form).scaled(x0, step_x, y0, step_y).rows(0, kRows, kColumns, begins.data(), ends.data());
-    for (int row = 0; row < kRows; ++row) {
-      for (int column = 0; column < kColumns; ++column) {
-        const double inside = inside_of(form, {x0 + column * step_x, y0 + row * step_y});
-        if (std::abs(inside) <= kOnTheRim) continue;
-        const auto at = static_cast<std::size_t>(row);
-        ASSERT_EQ(begins[at] <= column && column<ends[at], inside> 0.0) << "row " << row << " column " << column;
+    Hypothesis hypothesis;
+    for (const Form& form : {other, all[7]}) {
+      hypothesis.primitives.add({}).form = form;
+      std::vector<float> count(table.x.size(), 2.0F);
+      count_overlaps(hypothesis, table, count.data());
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool any = std::any_of(hypothesis.primitives.begin(), hypothesis.primitives.end(),
+                                     [&](const Primitive& one) { return overlap(one.form, all[i]); });
+        ASSERT_EQ(count[i], any ? 3.0F : 2.0F) << i;
       }
     }
   }
 }
 
-/// Of the cut of a form at one place along y: the first millimetre that it holds the middle of, and the first beyond.
-std::pair<int, int> millimetres(const Form& form, double y) {
-  std::pair<int, int> out;
-  Cuts(form).scaled(0.0005, 0.001, y, 1.0).rows(0, 1, 230, &out.first, &out.second);
+/// For each position of a grid, how many spans have it.
+std::vector<int> covered(const Grid& grid, const Primitive& primitive) {
+  Grid::Spans spans;
+  grid.add_spans(primitive, spans);
+  std::vector<int> out(static_cast<std::size_t>(grid.size()), 0);
+  for (const Grid::Span& span : spans) {
+    for (int i = span.begin; i < span.end; ++i) ++out[static_cast<std::size_t>(i)];
+  }
   return out;
+}
+
+TEST(Grid, HasSpansOfThePositionsInAPrimitive) {
+  Prior::Settings settings;
+  settings.area = {0.23, 0.23};
+  settings.hole_probability = 0.6;
+  const Prior prior(settings);
+  Random random(3, "form test: spans");
+  for (const auto& [columns, rows] : {std::pair{97, 89}, {31, 200}, {150, 3}, {1, 40}, {40, 1}, {1, 1}}) {
+    const Points positions = test::lattice(columns, rows);
+    const Grid grid(positions);
+    const Grid scattered(test::doubled(positions, 0.0));
+    for (int k = 0; k < 60; ++k) {
+      const Primitive primitive = prior.draw_primitive(random);
+      const std::vector<int> in_rows = covered(grid, primitive);
+      const std::vector<int> one_by_one = covered(scattered, primitive);
+      for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+        const Point p{positions(i, 0), positions(i, 1)};
+        const double in_form = inside_of(primitive.form, p);
+        const double in_hole = primitive.hollow ? inside_of(primitive.hole, p) : -1.0;
+        if (std::min(std::abs(in_form), std::abs(in_hole)) <= kOnTheRim) continue;
+        const auto at = static_cast<std::size_t>(i);
+        ASSERT_EQ(in_rows[at], in_form > 0.0 && in_hole < 0.0 ? 1 : 0) << columns << " x " << rows << ", " << i;
+        ASSERT_EQ(one_by_one[2 * at], in_rows[at]);
+      }
+    }
+  }
+}
+
+TEST(Grid, KnowsItsPositionsAgain) {
+  const Points positions = test::lattice(5, 4);
+  const Grid grid(positions);
+  EXPECT_TRUE(grid.is(positions));
+  EXPECT_FALSE(grid.is(test::lattice(4, 5)));
+  EXPECT_FALSE(grid.is(test::scattered(20)));
+}
+
+/// The columns of a row of a grid of millimetres that a form covers: the first one, and the first one beyond.
+std::pair<int, int> millimetres(const Form& form, double y) {
+  Points row(230, 2);
+  for (int i = 0; i < 230; ++i) row.row(i) << 0.001 * i + 0.0005, y;
+  Primitive primitive;
+  primitive.form = form;
+  Grid::Spans spans;
+  Grid(row).add_spans(primitive, spans);
+  return spans.empty() ? std::pair(0, 0) : std::pair(spans[0].begin, spans[0].end);
 }
 
 TEST(Form, OfAnUprightBoxAndACircleIsWhatItIs) {
   const Form box{Form::Family::box, 0.1, 0.1, 0.04, 0.02, 1.0, 0.0};
   EXPECT_EQ(millimetres(box, 0.115), std::pair(60, 140));
-  EXPECT_GT(millimetres(box, 0.125).first, millimetres(box, 0.125).second) << "beyond it";
+  EXPECT_EQ(millimetres(box, 0.125), std::pair(0, 0)) << "beyond it";
   EXPECT_DOUBLE_EQ(box.depth(0.13, 0.1), 0.01);
   EXPECT_DOUBLE_EQ(box.extent(), 0.08 * 0.04);
   const Form circle{Form::Family::ellipse, 0.1, 0.1, 0.05, 0.05, 0.8, 0.6};
   EXPECT_EQ(millimetres(circle, 0.13), std::pair(60, 140));
-  EXPECT_GT(millimetres(circle, 0.1501).first, millimetres(circle, 0.1501).second);
+  EXPECT_EQ(millimetres(circle, 0.1501), std::pair(0, 0));
   EXPECT_NEAR(circle.depth(0.1, 0.16), -0.01, 2e-3) << "to first order";
   EXPECT_DOUBLE_EQ(circle.extent(), kPi * 0.05 * 0.05);
+}
+
+/// Steps of the depths by the wide loop are those of the depths one by one, but for rounding to single precision.
+TEST(Taps, HaveTheStepOfEachDepthInAPrimitive) {
+  Prior::Settings settings;
+  settings.area = {0.23, 0.23};
+  settings.hole_probability = 0.5;
+  const Prior prior(settings);
+  Random random(4, "form test: steps");
+  Taps taps;
+  for (const Touch& touch : test::disc_touches(77)) taps.add(touch);
+  ASSERT_EQ(taps.length() % Taps::kRound, 0);
+  std::vector<LabelModel::Step> row(static_cast<std::size_t>(taps.length()));
+  int beside = 0;
+  for (const double noise : {0.0, 0.004}) {
+    const LabelModel labels(0.02, 0.01, noise);
+    for (int k = 0; k < 500; ++k) {
+      const Primitive primitive = prior.draw_primitive(random);
+      taps.steps(primitive, labels, row.data());
+      for (int i = 0; i < taps.length(); ++i) {
+        const LabelModel::Step found = row[static_cast<std::size_t>(i)];
+        const Target place = taps[i];
+        const LabelModel::Step exact = labels.step(primitive.depth(place.x, place.y));
+        ASSERT_LE(std::abs(found - exact), noise > 0.0 ? 1 : 0) << k << ", tap " << i;
+        ASSERT_TRUE(i < taps.size() || found == LabelModel::kOutside);
+        beside += found != exact ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_LE(beside, 50) << "of 48000";
 }
 
 TEST(Form, IsAsDeepNearItsRimAsThatIsFar) {
@@ -159,7 +222,7 @@ TEST(Form, IsBeyondACircleAboutItNoNearerThanThat) {
     for (int i = 0; i < 300; ++i) {
       const double angle = 2.0 * kPi * random.uniform();
       const double beyond = 0.05 * random.uniform();
-      const double far = form.radius() + beyond;
+      const double far = radius_of(form) + beyond;
       ASSERT_LE(form.depth(form.x + far * std::cos(angle), form.y + far * std::sin(angle)), -beyond + 1e-12);
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Things that are pushed: where they stand after, what is measured against it, and that the belief finds out as surely
 // as draws do that are weighed by all labels.
-#include "primitives/particles.hpp"
+#include "primitives/sampler.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -97,19 +97,19 @@ const std::vector<std::pair<Target, bool>> kLabels{{{0.08, 0.09}, true},  {{0.15
                                                    {{0.11, 0.07}, false}, {{0.08, 0.12}, true},  {{0.14, 0.12}, true},
                                                    {{0.11, 0.10}, false}, {{0.10, 0.14}, false}, {{0.12, 0.118}, true}};
 
-TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
+TEST(Sampler, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
   if (test::brief()) GTEST_SKIP() << "./check --all makes it in release";
-  ParticleSettings how;
-  how.count = 2000;
-  how.mistaken = how.lies = 0.05;
-  how.pushes = 0.05;
+  SamplerSettings how;
+  how.particles = 2000;
+  how.label_error = how.false_contact = 0.05;
+  how.push_probability = 0.05;
   how.moves = how.moves_apart = 160;  // a push is found slowly: with 40 a twentieth less of them, with 12 a fifth
   how.most_moves = 800;
-  OutlinePrior::Settings settings;
+  Prior::Settings settings;
   settings.area = kDesk;
   settings.expected = 1.0;
-  settings.hollow = 0.05;  // few draws say much of outlines that fit anything
-  const OutlinePrior prior(settings);
+  settings.hole_probability = 0.05;  // few draws say much of hypotheses that fit anything
+  const Prior prior(settings);
   const auto touches = static_cast<int>(kLabels.size());
   Random random(5, "push test");
   double evidence = 0.0;
@@ -117,25 +117,25 @@ TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
   Eigen::VectorXd since = Eigen::VectorXd::Zero(touches);  // pushed after that many touches
   constexpr int kDraws = 400000;                           // of a quarter as many the share is off by 0.02
   for (int i = 0; i < kDraws; ++i) {
-    const Outline outline = prior.draw(random);
+    const Hypothesis hypothesis = prior.draw(random);
     const auto normal = [&] {
       return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(2.0 * kPi * random.uniform());
     };
     const double dx = 0.012 * normal();
     const double dy = 0.012 * normal();
     const double angle = 0.1 * normal();
-    // The suffix sees the outline as it is, the prefix where it was: by hand, about the middle of the area.
+    // The suffix sees the hypothesis as it is, the prefix where it was: by hand, about the middle of the area.
     std::vector<double> now, then;
     for (const auto& [place, on] : kLabels) {
       const double x = place.x - 0.115;
       const double y = place.y - 0.115;
       const Target moved{0.115 + std::cos(angle) * x - std::sin(angle) * y + dx,
                          0.115 + std::sin(angle) * x + std::cos(angle) * y + dy};
-      now.push_back(outline.contains(place.x, place.y) == on ? 1.0 - how.mistaken : how.mistaken);
-      then.push_back(outline.contains(moved.x, moved.y) == on ? 1.0 - how.mistaken : how.mistaken);
+      now.push_back(hypothesis.contains(place.x, place.y) == on ? 1.0 - how.label_error : how.label_error);
+      then.push_back(hypothesis.contains(moved.x, moved.y) == on ? 1.0 - how.label_error : how.label_error);
     }
     for (int before = 0; before < touches; ++before) {
-      double weight = before == 0 ? 1.0 : how.pushes;
+      double weight = before == 0 ? 1.0 : how.push_probability;
       for (int k = 0; k < touches; ++k) weight *= (k < before ? then : now)[static_cast<std::size_t>(k)];
       evidence += weight;
       if (before == 0) continue;
@@ -149,11 +149,11 @@ TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
   Eigen::VectorXd found_since = Eigen::VectorXd::Zero(touches);
   constexpr int kRuns = 3;
   for (int run = 0; run < kRuns; ++run) {
-    Particles belief(prior, how, Random(40 + static_cast<std::uint64_t>(run), "push test"));
+    Sampler belief(prior, how, Random(40 + static_cast<std::uint64_t>(run), "push test"));
     for (const auto& [place, on] : kLabels) belief.add({place, 0.0, on});
-    found += belief.pushed().share / kRuns;
+    found += belief.mean_push().share / kRuns;
     for (const Particle& one : belief.particles()) {
-      if (one.push) found_since(one.push.before) += 1.0 / (belief.size() * kRuns);
+      if (one.hypothesis.push) found_since(one.hypothesis.push.before) += 1.0 / (belief.size() * kRuns);
     }
   }
   EXPECT_GT(pushed, 0.2) << "the labels say something";
@@ -163,12 +163,12 @@ TEST(Particles, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
       << found_since.transpose() << " for " << since.transpose();
 }
 
-TEST(Particles, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
-  OutlinePrior::Settings settings;
+TEST(Sampler, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
+  Prior::Settings settings;
   settings.area = kDesk;
-  ParticleSettings how;
-  how.pushes = 0.01;
-  Particles belief(OutlinePrior(settings), how, Random(1, "push test"));
+  SamplerSettings how;
+  how.push_probability = 0.01;
+  Sampler belief(Prior(settings), how, Random(1, "push test"));
   // A disc of 6 cm, on a lattice of touches, then the same 1.5 cm to the right.
   std::vector<Target> places;
   for (const double shift : {0.0, 0.015}) {
@@ -180,10 +180,10 @@ TEST(Particles, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
       }
     }
   }
-  EXPECT_GT(belief.pushed().share, 0.5);
+  EXPECT_GT(belief.mean_push().share, 0.5);
   // Of the labels from the 15th to the 36th each is the same wherever the disc is.
-  EXPECT_GE(belief.pushed().before, 14.0);
-  EXPECT_LE(belief.pushed().before, 36.0);
+  EXPECT_GE(belief.mean_push().before, 14.0);
+  EXPECT_LE(belief.mean_push().before, 36.0);
   Points now(50, 2);
   for (Eigen::Index i = 0; i < 50; ++i)
     now.row(i) << places[static_cast<std::size_t>(i)].x, places[static_cast<std::size_t>(i)].y;

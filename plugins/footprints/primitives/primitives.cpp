@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A Bayesian belief over outlines of any number of simple pieces: the probability of a place is the share of outlines
-// that hold it. Where the touches contradict all of these, the classifier takes over.
+// Bayesian inference of hypotheses, each a set of primitives: the probability of a position is the share of hypotheses
+// that cover it. If the taps contradict all hypotheses, gp_classifier replaces the inference.
 #include "../gp_classifier/laplace.hpp"
-#include "particles.hpp"
+#include "sampler.hpp"
 
 #include <fmt/format.h>
 
@@ -79,87 +79,87 @@ class Primitives final : public Footprint {
   Primitives(const Options& options, const Context& context)
       : options_(options),
         classifier_(options, context),
-        particles_(prior(options, context.scene.area()),
-                   {static_cast<int>(options.particles), options.label_error_probability,
-                    options.false_contact_probability.value_or(options.label_error_probability), options.position_noise,
-                    options.push_probability, options.heights},
-                   context.random("footprint/shape")) {}
+        sampler_(prior(options, context.scene.area()),
+                 {static_cast<int>(options.particles), options.label_error_probability,
+                  options.false_contact_probability.value_or(options.label_error_probability), options.position_noise,
+                  options.push_probability, options.heights},
+                 context.random("footprint/primitives")) {}
 
   void add(const Touch& touch) override {
-    ++touches_;
+    ++taps_;
     classifier_.add(touch);
-    if (handed_over_at_ > 0) return;
-    particles_.add(touch);
-    const double unexpected = particles_.mean_mistakes() - options_.label_error_probability * touches_;
-    if (unexpected > options_.max_contradictions) handed_over_at_ = touches_;
+    if (replaced_at_ > 0) return;
+    sampler_.add(touch);
+    const double unexpected = sampler_.mean_label_errors() - options_.label_error_probability * taps_;
+    if (unexpected > options_.max_contradictions) replaced_at_ = taps_;
   }
 
   void probability(const PointsView& places, VectorOut out) override {
-    if (handed_over_at_ > 0) return classifier_.probability(places, out);
-    particles_.probability(places, out);
+    if (replaced_at_ > 0) return classifier_.probability(places, out);
+    sampler_.probability(places, out);
   }
 
   void sample(const PointsView& places, OutlineSample& out) const override {
-    if (handed_over_at_ > 0) return Footprint::sample(places, out);
-    particles_.sample(places, kSample, out);
+    if (replaced_at_ > 0) return Footprint::sample(places, out);
+    sampler_.sample(places, kSample, out);
   }
 
   void doubt(VectorOut out) const override {
-    if (handed_over_at_ > 0) return Footprint::doubt(out);
-    particles_.doubt(out);
+    if (replaced_at_ > 0) return Footprint::doubt(out);
+    sampler_.label_errors(out);
   }
 
   void current_positions(Points& places) const override {
-    if (handed_over_at_ == 0 && options_.push_probability > 0.0) particles_.current_positions(places);
+    if (replaced_at_ == 0 && options_.push_probability > 0.0) sampler_.current_positions(places);
   }
 
   std::optional<double> undiscovered_probability() const override {
-    if (handed_over_at_ > 0) return std::nullopt;
-    return particles_.undiscovered_probability(kWorthFinding);
+    if (replaced_at_ > 0) return std::nullopt;
+    return sampler_.undiscovered_probability(kMinLength);
   }
 
   std::vector<FootprintNumber> numbers() const override {
-    std::vector<FootprintNumber> out{{"label_errors", particles_.mean_mistakes()},
-                                     {"primitives", particles_.mean_pieces()},
-                                     {"undiscovered_probability", particles_.undiscovered_probability(kWorthFinding)},
-                                     {"acceptance_rate", particles_.acceptance()},
-                                     {"gp_share", handed_over_at_ > 0 ? 1.0 : 0.0}};
-    if (options_.push_probability > 0.0) out.push_back({"push_probability", particles_.pushed().share});
+    std::vector<FootprintNumber> out{{"label_errors", sampler_.mean_label_errors()},
+                                     {"primitives", sampler_.mean_primitives()},
+                                     {"undiscovered_probability", sampler_.undiscovered_probability(kMinLength)},
+                                     {"acceptance_rate", sampler_.acceptance_rate()},
+                                     {"gp_share", replaced_at_ > 0 ? 1.0 : 0.0}};
+    if (options_.push_probability > 0.0) out.push_back({"push_probability", sampler_.mean_push().share});
     return out;
   }
 
   std::string remark() const override {
-    if (handed_over_at_ == 0) {
-      const Particles::Pushed pushed = particles_.pushed();
-      if (pushed.share <= 0.5) return {};
+    if (replaced_at_ == 0) {
+      const Sampler::MeanPush push = sampler_.mean_push();
+      if (push.share <= 0.5) return {};
       return fmt::format(
           "the object was pushed after contact {:.0f}, by {:.1f} cm (probability {:.2f}): earlier contacts are moved "
           "along with it",
-          pushed.before, 100.0 * pushed.shift, pushed.share);
+          push.before, 100.0 * push.shift, push.share);
     }
-    return "gp_classifier has taken over at contact " + std::to_string(handed_over_at_) +
+    return "gp_classifier has taken over at contact " + std::to_string(replaced_at_) +
            ": no small number of primitives fits the contacts";
   }
 
  private:
   static constexpr int kSample = 256;
-  static constexpr double kWorthFinding = 0.03;  // metres
+  static constexpr double kMinLength = 0.03;  // metres
 
-  static OutlinePrior prior(const Options& options, const Area& area) {
-    OutlinePrior::Settings settings;
+  static Prior prior(const Options& options, const Area& area) {
+    Prior::Settings settings;
     settings.area = area;
-    settings.smallest = options.min_width;
-    settings.largest = options.max_length;
+    settings.min_width = options.min_width;
+    settings.max_length = options.max_length;
     settings.expected = options.expected_count * area.width * area.depth / (0.23 * 0.23);
-    settings.hollow = options.hole_probability;
-    return OutlinePrior(settings);
+    settings.hole_probability = options.hole_probability;
+    return Prior(settings);
   }
 
   Options options_;
   Classifier classifier_;
-  Particles particles_;
-  int touches_ = 0;
-  int handed_over_at_ = 0;  ///< touches; 0: not yet
+  mutable Sampler sampler_;  ///< queries keep what the next one about the same positions needs
+  int taps_ = 0;
+  int replaced_at_ = 0;  ///< number of taps; 0: not yet
 };
 
 PALPATE_PLUGIN(Footprint, Primitives, "primitives",

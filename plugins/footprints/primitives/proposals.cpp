@@ -1,345 +1,421 @@
 // SPDX-License-Identifier: MIT
 #include "proposals.hpp"
 
-#include "steps.hpp"
-
 #include <palpate/math.hpp>
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 namespace palpate::footprints {
 namespace {
 
-// Greatest steps.
-constexpr double kShift = 0.05;   // metres
-constexpr double kTurn = 0.6;     // tangent of half an angle
-constexpr double kStretch = 0.3;  // see stretch()
-constexpr double kShare = 0.2;    // of a form's axes, for a fitted hole
+// Largest steps.
+constexpr double kShift = 0.05;    // metres
+constexpr double kTurn = 0.6;      // tangent of half of the angle
+constexpr double kStretch = 0.3;   // see stretched()
+constexpr double kHoleStep = 0.2;  // of a form's axes, for a fitted hole
 
-constexpr double kNear = 0.03;  // metres: standard deviation, along x and y, of a new piece from a wrong label
+constexpr double kNearTap = 0.03;  // metres: standard deviation, along x and y, of a hole's centre from a tap
 
-// How much more often a piece at the latest touch is moved than another.
-constexpr double kHere = 30.0;
+// How much more often a primitive near the latest tap is changed than another one.
+constexpr double kNearWeight = 30.0;
 
-double wish_to_move(const Piece& piece, const Target& here) { return piece.near(here) ? kHere : 1.0; }
+// Standard deviations of a push along x and y, metres, and of its turn, radians.
+constexpr double kPushShift = 0.012;
+constexpr double kPushTurn = 0.1;
 
-/// Which piece is moved.
-class Choice {
- public:
-  Choice(const Outline& outline, const Target& here, Random& random) {
-    if (outline.size() == 1) return;
-    std::array<double, Outline::kMost> wishes;
-    for (int i = 0; i < outline.size(); ++i)
-      sum_ += wishes[static_cast<std::size_t>(i)] = wish_to_move(outline[i], here);
-    double left = random.uniform();
-    for (; one_ + 1 < outline.size(); ++one_) {
-      if ((left -= wishes[static_cast<std::size_t>(one_)] / sum_) < 0.0) break;
-    }
-    wish_ = wishes[static_cast<std::size_t>(one_)];
+/// The steps of one move, symmetric about 0, from one draw of 64 bits. Their scale is drawn, too, from 1 down to a
+/// twentieth with uniform logarithms, because posteriors are wide or narrow.
+struct Steps {
+  explicit Steps(Random& random) {
+    constexpr int kScales = 16;
+    static const std::array<double, kScales> scales = [] {
+      std::array<double, kScales> out{};
+      for (int i = 0; i < kScales; ++i)
+        out[static_cast<std::size_t>(i)] = math::exp(math::log(1.0 / 20.0) * i / (kScales - 1.0));
+      return out;
+    }();
+    const std::uint64_t bits = random.bits();
+    const double scale = scales[bits % kScales];
+    const auto uniform = [scale](std::uint64_t number) {
+      return scale * (1.0 - 0x1.0p-27 * static_cast<double>(static_cast<std::int32_t>(number & 0xFFFFFFF)));
+    };
+    coin = (bits & 0x10) != 0;
+    other_coin = (bits & 0x20) != 0;
+    one = uniform(bits >> 8);
+    other = uniform(bits >> 36);
   }
 
-  int one() const { return one_; }
-  /// How much more probable this choice is where that piece has become another.
-  double correction(const Piece& other, const Target& here) const {
+  double one, other;  ///< in [-1, 1]
+  bool coin, other_coin;
+};
+
+/// A primitive chosen at random, those near the latest tap more often.
+class Choice {
+ public:
+  Choice(const ShortList<Primitive>& primitives, const Target& latest, Random& random) : latest_(latest) {
+    if (primitives.size() == 1) return;
+    std::array<double, ShortList<Primitive>::kMost> weights;
+    for (int i = 0; i < primitives.size(); ++i) sum_ += weights[static_cast<std::size_t>(i)] = weight(primitives[i]);
+    double left = random.uniform() * sum_;
+    for (; index_ + 1 < primitives.size(); ++index_) {
+      if ((left -= weights[static_cast<std::size_t>(index_)]) < 0.0) break;
+    }
+    weight_ = weights[static_cast<std::size_t>(index_)];
+  }
+
+  int index() const { return index_; }
+  /// The probability of the choice if the chosen primitive has become another one, over its probability now.
+  double ratio(const Primitive& changed) const {
     if (!(sum_ > 0.0)) return 1.0;
-    const double wish = wish_to_move(other, here);
-    return (wish / (sum_ - wish_ + wish)) / (wish_ / sum_);
+    const double after = weight(changed);
+    return (after / (sum_ - weight_ + after)) / (weight_ / sum_);
   }
 
  private:
-  int one_ = 0;
-  double sum_ = 0.0;  ///< of the wishes: whole numbers
-  double wish_ = 0.0;
+  double weight(const Primitive& one) const { return one.near(latest_) ? kNearWeight : 1.0; }
+
+  Target latest_;
+  int index_ = 0;
+  double sum_ = 0.0;  ///< of the weights: a whole number
+  double weight_ = 0.0;
 };
 
-// Both without a function of the library, and as probable as the way back, which has the other sign.
-void turn(Form& form, double tangent) {
-  const double square = tangent * tangent;
-  form.turn_by((1.0 - square) / (1.0 + square), 2.0 * tangent / (1.0 + square));
-}
-double stretch(double step) { return (1.0 + step) / (1.0 - step); }
-
-/// Moves a side and leaves the one across from it; the axes are to be put in order. Returns the correction: even steps
-/// in the length of a half axis are uneven ones in its logarithm.
-double move_side(Form& form, const Steps& steps) {
-  const bool along = steps.heads;
-  double& half = along ? form.a : form.b;
-  const double before = half;
-  const double change = 0.5 * kShift * steps.one;
-  half += change;
-  if (half <= 0.0) return 0.0;
-  const double side = steps.also_heads ? change : -change;
-  form.x += side * (along ? form.cosine : -form.sine);
-  form.y += side * (along ? form.sine : form.cosine);
-  return before / half;
+int chosen(const ShortList<Primitive>& primitives, Random& random) {
+  return static_cast<int>(random.index(static_cast<std::size_t>(primitives.size())));
 }
 
-void change_family(Form& form) {
-  constexpr double kSameExtent = 1.1283791670955126;  // an ellipse as large as a box is longer by this
-  const bool box = form.family == Form::Family::box;
-  form.family = box ? Form::Family::ellipse : Form::Family::box;
-  form.a *= box ? kSameExtent : 1.0 / kSameExtent;
-  form.b *= box ? kSameExtent : 1.0 / kSameExtent;
-}
-
-/// Anywhere in a form.
-Target somewhere_in(const Form& form, Random& random) {
-  double u, v;
-  do {
-    u = 2.0 * random.uniform() - 1.0;
-    v = 2.0 * random.uniform() - 1.0;
-  } while (form.family == Form::Family::ellipse && u * u + v * v > 1.0);
-  return {form.x + form.cosine * u * form.a - form.sine * v * form.b,
-          form.y + form.sine * u * form.a + form.cosine * v * form.b};
-}
-
-/// The density of a centre that is drawn about one of these places.
-double density_near(const std::vector<Target>& near, const Form& form) {
-  double sum = 0.0;
-  for (const Target& place : near) {
-    const double dx = (form.x - place.x) / kNear;
-    const double dy = (form.y - place.y) / kNear;
-    sum += math::exp(-0.5 * (dx * dx + dy * dy));
+/// Calls visit(tap) for the taps in a form whose label is `on`.
+template <class Visit>
+void for_each_inside(const Form& form, const Taps& taps, bool on, const Visit& visit) {
+  for (int i = 0; i < taps.size(); ++i) {
+    const Target place = taps[i];
+    if (taps.on(i) == on && form.contains(place.x, place.y)) visit(place);
   }
-  return sum / (2.0 * kPi * kNear * kNear * static_cast<double>(near.size()));
 }
 
-/// How much more often the prior has the centre than it is proposed.
-double correction_near(double by_prior, const std::vector<Target>& near, const Form& form) {
-  if (near.empty()) return 1.0;
-  return by_prior / (0.5 * by_prior + 0.5 * density_near(near, form));
+/// The density of a new primitive's centre: a random object tap is at a uniform position in the form. Per square metre.
+double density_about_taps(const Form& form, const Taps& taps) {
+  int inside = 0;
+  for_each_inside(form, taps, true, [&](const Target&) { ++inside; });
+  return inside / (taps.objects() * form.extent());
 }
 
-void draw_near(Form& form, const std::vector<Target>& near, Random& random) {
-  if (near.empty() || random.uniform() < 0.5) return;
-  const Target& place = near[random.index(near.size())];
-  form.x = place.x + kNear * normal(random);
-  form.y = place.y + kNear * normal(random);
+/// Prior density of a new primitive without a hole, over the density of drawing it by draw_about_taps().
+double ratio_about_taps(const Form& form, const Prior& prior, const Taps& taps) {
+  const double drawn = density_about_taps(form, taps);
+  return drawn > 0.0 ? prior.whole(form) * prior.centre_density(form) / drawn : 0.0;
 }
 
-/// Which touches a form contains, by bytes of all bits.
-const LabelModel::Step* held_by(const Form& form, const Seen& seen, Proposal& out) {
-  out.held.resize(static_cast<std::size_t>(seen.places.length()));
-  seen.places.contained(form, out.held.data());
-  return out.held.data();
-}
-
-std::uint64_t word_of(const LabelModel::Step* row, int from) {
-  std::uint64_t out;
-  std::memcpy(&out, row + from, sizeof(out));
-  return out;
-}
-
-/// How many bytes of a word have all bits, where the others have none.
-int count_of(std::uint64_t word) {
-  constexpr std::uint64_t kOnes = 0x0101010101010101;
-  return static_cast<int>((word & kOnes) * kOnes >> 56U);
-}
-
-/// The density of a centre so that a touch of an object, any of them, lies anywhere in the form: per square metre.
-double density_about_touches(const Seen& seen, const Form& form, Proposal& out) {
-  const LabelModel::Step* const row = held_by(form, seen, out);
-  int held = 0;
-  for (int from = 0; from < seen.places.length(); from += Places::kWord)
-    held += count_of(word_of(row, from) & word_of(seen.objects, from));
-  return held / (seen.of_objects * form.extent());
-}
-
-/// How much more often the prior has the centre of a form than it is drawn about a touch.
-double correction_about(const Seen& seen, const OutlinePrior& prior, const Form& form, Proposal& out) {
-  const double drawn = density_about_touches(seen, form, out);
-  return drawn > 0.0 ? prior.centre_density(form) / drawn : 0.0;
-}
-
-/// A piece without a hole about a touch of an object; false where there is none.
-bool draw_about(Piece& out, const Seen& seen, const OutlinePrior& prior, Random& random) {
-  if (seen.of_objects == 0) return false;
-  auto before = static_cast<int>(random.index(static_cast<std::size_t>(seen.of_objects)));
-  int number = 0;
-  for (int count; before >= (count = count_of(word_of(seen.objects, number))); number += Places::kWord) before -= count;
-  while (seen.objects[number] == 0 || before-- > 0) ++number;
-  out = prior.draw_piece(random);
-  const Target place = seen.places[number];
-  Form about = out.form;
-  about.x = place.x;
-  about.y = place.y;
-  const Target centre = somewhere_in(about, random);
+/// Draws a primitive without a hole over a random object tap; false if there is none, or the prior does not allow it.
+bool draw_about_taps(Primitive& out, const Prior& prior, const Taps& taps, Random& random) {
+  if (taps.objects() == 0) return false;
+  auto left = static_cast<int>(random.index(static_cast<std::size_t>(taps.objects())));
+  int tap = 0;
+  while (!taps.on(tap) || left-- > 0) ++tap;
+  out = prior.draw_whole(random);
+  out.form.x = taps[tap].x;
+  out.form.y = taps[tap].y;
+  const Target centre = drawn_inside(out.form, random);
   out.form.x = centre.x;
   out.form.y = centre.y;
   out.density = prior.density(out);
   return out.density > 0.0;
 }
 
-/// Touches of the desk within a form.
-const std::vector<Target>& wrongly_held(const Seen& seen, const Form& form, Proposal& out) {
-  const LabelModel::Step* const row = held_by(form, seen, out);
-  out.near.clear();
-  for (int from = 0; from < seen.places.length(); from += Places::kWord) {
-    for (std::uint64_t left = word_of(row, from) & ~word_of(seen.objects, from); left != 0;) {
-      const int byte = __builtin_ctzll(left) / 8;
-      left &= ~(std::uint64_t{0xFF} << (8 * byte));
-      out.near.push_back(seen.places[from + byte]);
+void add(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, Random& random) {
+  const int count = from.primitives.size();
+  Primitive primitive;
+  if (count >= prior.settings().most || !draw_about_taps(primitive, prior, taps, random)) return;
+  // A primitive with a hole is proposed as one without, and then its hole.
+  out.ratio = prior.settings().expected / (count + 1) * ratio_about_taps(primitive.form, prior, taps);
+  out.added.add(primitive);
+}
+
+void remove(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, Random& random) {
+  const int count = from.primitives.size();
+  if (count == 0) return;
+  const int index = chosen(from.primitives, random);
+  const Primitive& primitive = from.primitives[index];
+  if (primitive.hollow) return;
+  const double reverse = prior.settings().expected / count * ratio_about_taps(primitive.form, prior, taps);
+  if (!(reverse > 0.0)) return;
+  out.ratio = 1.0 / reverse;
+  out.removed.add(index);
+}
+
+/// Draws another primitive for one of them.
+void replace(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, Random& random) {
+  if (from.primitives.size() == 0) return;
+  const int index = chosen(from.primitives, random);
+  Primitive& primitive = out.replace(from, index);
+  if (primitive.hollow) return;
+  const double before = ratio_about_taps(primitive.form, prior, taps);
+  if (!(before > 0.0) || !draw_about_taps(primitive, prior, taps, random)) return;
+  out.ratio = ratio_about_taps(primitive.form, prior, taps) / before;
+}
+
+/// The centre of a free hole: half of the time near one of the first twelve taps of the desk in the form.
+class HoleCentre {
+ public:
+  HoleCentre(const Form& form, const Taps& taps) {
+    for_each_inside(form, taps, false, [&](const Target& place) {
+      if (taps_.size() < ShortList<Target>::kMost) taps_.add(place);
+    });
+  }
+
+  void draw(Form& hole, Random& random) const {
+    if (taps_.size() == 0 || random.uniform() < 0.5) return;
+    const Target& place = taps_[static_cast<int>(random.index(static_cast<std::size_t>(taps_.size())))];
+    hole.x = place.x + kNearTap * normal(random);
+    hole.y = place.y + kNearTap * normal(random);
+  }
+
+  /// Prior density of the centre over the density of drawing it.
+  double ratio(double by_prior, const Form& hole) const {
+    if (taps_.size() == 0) return 1.0;
+    double sum = 0.0;
+    for (const Target& place : taps_) {
+      const double dx = (hole.x - place.x) / kNearTap;
+      const double dy = (hole.y - place.y) / kNearTap;
+      sum += math::exp(-0.5 * (dx * dx + dy * dy));
     }
+    const double near = sum / (2.0 * kPi * kNearTap * kNearTap * taps_.size());
+    return by_prior / (0.5 * by_prior + 0.5 * near);
   }
-  return out.near;
-}
 
-void add_piece(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
-  const int pieces = out.outline.size();
-  if (pieces >= prior.settings().most) return;
-  Piece piece;
-  if (!draw_about(piece, seen, prior, random)) return;
-  // Pieces with a hole come by way of a piece without.
-  out.correction = prior.settings().expected / (pieces + 1) * prior.whole(piece.form) *
-                   correction_about(seen, prior, piece.form, out);
-  out.add(piece);
-}
+ private:
+  ShortList<Target> taps_;
+};
 
-void remove_piece(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
-  const int pieces = out.outline.size();
-  if (pieces == 0) return;
-  const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
-  const Piece piece = out.outline[one];
-  if (piece.hollow) return;
-  const double way_back = prior.whole(piece.form) * correction_about(seen, prior, piece.form, out);
-  if (!(way_back > 0.0)) return;
-  out.correction = pieces / (prior.settings().expected * way_back);
-  out.remove(one);
-}
-
-void change_hole(Proposal& out, bool adds, const OutlinePrior& prior, const Seen& seen, Random& random) {
-  const int pieces = out.outline.size();
-  if (pieces == 0) return;
-  const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
-  Piece& piece = out.outline[one];
-  if (piece.hollow == adds || piece.form.a < prior.settings().smallest) return;
-  const std::vector<Target>& near = wrongly_held(seen, piece.form, out);
-  out.changes(one);
+void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& prior, const Taps& taps,
+                 Random& random) {
+  if (from.primitives.size() == 0) return;
+  const int index = chosen(from.primitives, random);
+  if (from.primitives[index].hollow == adds || from.primitives[index].form.a < prior.settings().min_width) return;
+  Primitive& primitive = out.replace(from, index);
+  const HoleCentre centre(primitive.form, taps);
   if (adds) {
-    prior.draw_hole(piece, random);
-    if (piece.fit == Piece::Fit::free) draw_near(piece.hole, near, random);
+    prior.draw_hole(primitive, random);
+    if (primitive.fit == Primitive::Fit::free) centre.draw(primitive.hole, random);
   }
-  double correction = prior.settings().hollow / (1.0 - prior.settings().hollow);
-  if (piece.fit == Piece::Fit::free) {
-    const double by_prior = prior.hole_centre_density(piece.form, piece.hole);
+  double ratio = prior.settings().hole_probability / (1.0 - prior.settings().hole_probability);
+  if (primitive.fit == Primitive::Fit::free) {
+    const double by_prior = prior.hole_centre_density(primitive.form, primitive.hole);
     if (!(by_prior > 0.0)) return;
-    correction *= correction_near(by_prior, near, piece.hole);
+    ratio *= centre.ratio(by_prior, primitive.hole);
   }
-  out.correction = adds ? correction : 1.0 / correction;
-  piece.hollow = adds;
-  piece.density = prior.density(piece);
+  out.ratio = adds ? ratio : 1.0 / ratio;
+  primitive.hollow = adds;
+  primitive.density = prior.density(primitive);
 }
 
-/// Stretches a form; an ellipse one time in two so that a round one stays round.
+// A turn by 2 atan(tangent), and a factor, each as probable as its reverse, which has the other sign.
+void turn(Form& form, double tangent) {
+  const double square = tangent * tangent;
+  form.turn_by((1.0 - square) / (1.0 + square), 2.0 * tangent / (1.0 + square));
+}
+double stretched(double step) { return (1.0 + step) / (1.0 - step); }
+
+/// Stretches a form. Half of the time an ellipse keeps its proportions, so that a round one stays round.
 void stretch(Form& form, const Steps& steps) {
-  const double one = stretch(kStretch * steps.one);
+  const double one = stretched(kStretch * steps.one);
   form.a *= one;
-  form.b *= form.family == Form::Family::ellipse && steps.heads ? one : stretch(kStretch * steps.other);
+  form.b *= form.family == Form::Family::ellipse && steps.coin ? one : stretched(kStretch * steps.other);
 }
 
-/// A fitted hole takes more or less, or may be at another corner.
-void move_fitted(Piece& piece, double which, const Steps& steps) {
+/// Moves a side; the opposite one stays. Returns the ratio: a symmetric step in the length of a half axis is not
+/// symmetric in its logarithm.
+double move_side(Form& form, const Steps& steps) {
+  const bool along = steps.coin;
+  double& half = along ? form.a : form.b;
+  const double before = half;
+  const double change = 0.5 * kShift * steps.one;
+  half += change;
+  if (half <= 0.0) return 0.0;
+  const double side = steps.other_coin ? change : -change;
+  form.x += side * (along ? form.cosine : -form.sine);
+  form.y += side * (along ? form.sine : form.cosine);
+  return before / half;
+}
+
+void change_family(Form& form) {
+  constexpr double kSameExtent = 1.1283791670955126;  // sqrt(4 / pi)
+  const bool box = form.family == Form::Family::box;
+  form.family = box ? Form::Family::ellipse : Form::Family::box;
+  form.a *= box ? kSameExtent : 1.0 / kSameExtent;
+  form.b *= box ? kSameExtent : 1.0 / kSameExtent;
+}
+
+/// Changes the shares of a fitted hole, and sometimes its corner.
+void change_fitted(Primitive& primitive, double which, const Steps& steps) {
   constexpr double kOtherCorner = 0.05;
-  piece.along += kShare * steps.one;
-  if (piece.fit != Piece::Fit::corner) return;
-  piece.across += kShare * steps.other;
-  if (which < kOtherCorner) (steps.heads ? piece.side_a : piece.side_b) *= -1;
+  primitive.along += kHoleStep * steps.one;
+  if (primitive.fit != Primitive::Fit::corner) return;
+  primitive.across += kHoleStep * steps.other;
+  if (which < kOtherCorner) (steps.coin ? primitive.side_a : primitive.side_b) *= -1;
 }
 
-/// Moves the form of a piece, or its hole, or both. Returns the correction, but for the prior.
-double move_part(Piece& piece, bool of_form, bool both, double which, const Steps& steps) {
-  Form& form = of_form ? piece.form : piece.hole;
-  double correction = 1.0;
+/// Changes the form of a primitive or its hole; `both`: a shift of the hole shifts the form, too. Returns the ratio
+/// without the prior.
+double change_part(Primitive& primitive, bool of_form, bool both, double which, const Steps& steps) {
+  Form& form = of_form ? primitive.form : primitive.hole;
+  double ratio = 1.0;
   if (which < 0.38) {
     const double dx = kShift * steps.one;
     const double dy = kShift * steps.other;
     form.x += dx;
     form.y += dy;
     if (both) {
-      piece.form.x += dx;
-      piece.form.y += dy;
+      primitive.form.x += dx;
+      primitive.form.y += dy;
     }
   } else if (which < 0.59) {
     turn(form, kTurn * steps.one);
   } else if (which < 0.78) {
     stretch(form, steps);
   } else if (which < 0.965) {
-    correction = move_side(form, steps);
+    ratio = move_side(form, steps);
   } else {
     change_family(form);
   }
   if (of_form) {
-    piece.order_axes();
+    primitive.order_axes();
   } else {
     form.order_axes();
   }
-  return correction;
+  return ratio;
 }
 
-/// Moves a form, or the hole in it, or both.
-void change_form(Proposal& out, const OutlinePrior& prior, const Target& here, double which, Random& random) {
-  if (out.outline.size() == 0) return;
-  const Choice choice(out.outline, here, random);
-  Piece& piece = out.outline[choice.one()];
-  const double before = piece.density;
-  out.changes(choice.one());
-  const double target = piece.hollow ? random.uniform() : 0.0;
+void change_form(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, double which,
+                 Random& random) {
+  if (from.primitives.size() == 0) return;
+  const Choice choice(from.primitives, taps.size() == 0 ? Target{} : taps[taps.size() - 1], random);
+  Primitive& primitive = out.replace(from, choice.index());
+  const double before = primitive.density;
+  const double part = primitive.hollow ? random.uniform() : 0.0;
   const Steps steps(random);
-  if (piece.fitted() && target > 0.6) {
-    move_fitted(piece, which, steps);
-    out.correction = 1.0;
+  double ratio = 1.0;
+  if (primitive.fitted() && part > 0.6) {
+    change_fitted(primitive, which, steps);
   } else {
-    out.correction = move_part(piece, piece.fitted() || target<0.5, target> 0.8, which, steps);
+    ratio = change_part(primitive, primitive.fitted() || part<0.5, part> 0.8, which, steps);
   }
-  piece.fit_hole();
-  piece.density = out.correction > 0.0 ? prior.density(piece) : 0.0;
-  out.correction *= piece.density / before * choice.correction(piece, here);
+  if (!(ratio > 0.0)) return;
+  primitive.fit_hole();
+  primitive.density = prior.density(primitive);
+  if (!(primitive.density > 0.0)) return;
+  out.ratio = ratio * primitive.density / before * choice.ratio(primitive);
 }
 
-/// Takes a new piece for one of them.
-void replace(Proposal& out, const OutlinePrior& prior, const Seen& seen, Random& random) {
-  const int pieces = out.outline.size();
-  if (pieces == 0) return;
-  const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
-  Piece& piece = out.outline[one];
-  if (piece.hollow) return;
-  const double before = prior.whole(piece.form) * correction_about(seen, prior, piece.form, out);
-  out.changes(one);
-  if (!(before > 0.0) || !draw_about(piece, seen, prior, random)) return;
-  out.correction = prior.whole(piece.form) * correction_about(seen, prior, piece.form, out) / before;
-}
-
-// Shares of the moves that are not of a form. What leads there is proposed as often as what leads back.
+// Shares of the moves that do not change a form. A move and its reverse have the same share.
 constexpr double kAddOrRemove = 0.03;  // each
-constexpr double kHoleOrFill = 0.04;
+constexpr double kMakeOrFillHole = 0.04;
 constexpr double kSplitOrMerge = 0.005;
 constexpr double kReplace = 0.01;
-constexpr double kOthers = 2.0 * (kAddOrRemove + kHoleOrFill + kSplitOrMerge) + kReplace;  // in sum
+constexpr double kNotOfForms = 2.0 * (kAddOrRemove + kMakeOrFillHole + kSplitOrMerge) + kReplace;
+
+/// A push from the prior, and its density up to a factor.
+Push drawn_push(const Area& area, Random& random) {
+  Push out;
+  out.origin_x = 0.5 * area.width;
+  out.origin_y = 0.5 * area.depth;
+  out.dx = kPushShift * normal(random);
+  out.dy = kPushShift * normal(random);
+  const double angle = kPushTurn * normal(random);
+  out.cosine = math::cos(angle);
+  out.sine = math::sin(angle);
+  return out;
+}
+
+double density(const Push& push) {
+  const double angle = push.angle() / kPushTurn;
+  return math::exp(-0.5 * ((push.dx * push.dx + push.dy * push.dy) / (kPushShift * kPushShift) + angle * angle));
+}
+
+/// Changes when a push was, or how far it went; false if that is impossible.
+bool change_push(Push& push, int taps, Random& random) {
+  if (random.uniform() < 0.25) {
+    constexpr int kFarthest = 3;  // taps
+    push.before += static_cast<int>(random.index(2 * kFarthest + 1)) - kFarthest;
+    return push.before >= 1 && push.before < taps;
+  }
+  const Steps shift(random);
+  push.dx += 2.0 * kPushShift * shift.one;
+  push.dy += 2.0 * kPushShift * shift.other;
+  const double angle = push.angle() + 2.0 * kPushTurn * Steps(random).one;
+  push.cosine = math::cos(angle);
+  push.sine = math::sin(angle);
+  return true;
+}
 
 }  // namespace
 
-void propose(Proposal& out, const OutlinePrior& prior, const Seen& seen, double which, Random& random) {
+double normal(Random& random) {
+  const double radius = std::sqrt(-2.0 * math::log(1.0 - random.uniform()));
+  return radius * math::cos(2.0 * kPi * random.uniform());
+}
+
+void propose(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, double which,
+             Random& random) {
   using Kind = Proposal::Kind;
-  if (which >= kOthers) {
-    out.kind = Kind::change_form;
-    const int touches = seen.places.size();
-    const Target here = touches == 0 ? Target{} : seen.places[touches - 1];
-    return change_form(out, prior, here, (which - kOthers) / (1.0 - kOthers), random);
-  }
-  const auto falls = [&](Kind kind, double share) {
+  out.begin(from);
+  out.kind = Kind::change_form;
+  if (which >= kNotOfForms)
+    return change_form(out, from, prior, taps, (which - kNotOfForms) / (1.0 - kNotOfForms), random);
+  const auto is = [&](Kind kind, double share) {
     out.kind = kind;
     return (which -= share) < 0.0;
   };
-  if (falls(Kind::replace, kReplace)) return replace(out, prior, seen, random);
-  if (falls(Kind::add, kAddOrRemove)) return add_piece(out, prior, seen, random);
-  if (falls(Kind::remove, kAddOrRemove)) return remove_piece(out, prior, seen, random);
-  if (falls(Kind::make_hole, kHoleOrFill)) return change_hole(out, true, prior, seen, random);
-  if (falls(Kind::fill_hole, kHoleOrFill)) return change_hole(out, false, prior, seen, random);
-  if (falls(Kind::split, kSplitOrMerge)) return propose_split(out, prior, random);
-  out.kind = Kind::merge;
-  propose_merge(out, prior, random);
+  if (is(Kind::replace, kReplace)) return replace(out, from, prior, taps, random);
+  if (is(Kind::add, kAddOrRemove)) return add(out, from, prior, taps, random);
+  if (is(Kind::remove, kAddOrRemove)) return remove(out, from, prior, taps, random);
+  if (is(Kind::make_hole, kMakeOrFillHole)) return change_hole(out, from, true, prior, taps, random);
+  if (is(Kind::fill_hole, kMakeOrFillHole)) return change_hole(out, from, false, prior, taps, random);
+  if (is(Kind::split, kSplitOrMerge)) return propose_split(out, from, prior, random);
+  propose_merge(out, from, prior, random);
+}
+
+void propose_noise(Proposal& out, const Hypothesis& from) {
+  out.begin(from);
+  out.kind = Proposal::Kind::flip_noise;
+  out.ratio = 1.0;
+  out.noisy = !from.noisy;
+  for (int i = 0; i < from.primitives.size(); ++i) out.replace(from, i);
+}
+
+void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int taps, double rate, Random& random) {
+  out.begin(from);
+  out.kind = Proposal::Kind::push;
+  const bool moves_along = random.uniform() < 0.5;
+  if (random.uniform() < 0.5) {
+    // A push is often noticed some taps later. Half of the time it is proposed among the latest taps.
+    constexpr int kLatest = 6;
+    const int latest = std::min(kLatest, taps - 1);
+    const auto ratio = [&](int before) {
+      return rate / (0.5 / (taps - 1) + (before >= taps - latest ? 0.5 / latest : 0.0));
+    };
+    if (from.push) {
+      out.push = Push();
+      out.ratio = 1.0 / ratio(from.push.before);
+    } else {
+      out.push = drawn_push(prior.settings().area, random);
+      const int among = random.uniform() < 0.5 ? latest : taps - 1;
+      out.push.before = taps - 1 - static_cast<int>(random.index(static_cast<std::size_t>(among)));
+      out.ratio = ratio(out.push.before);
+    }
+  } else {
+    if (!from.push || !change_push(out.push, taps, random)) return;
+    out.ratio = density(out.push) / density(from.push);
+  }
+  for (int i = 0; i < from.primitives.size(); ++i) {
+    Primitive& primitive = out.replace(from, i);
+    if (!moves_along) continue;
+    if (from.push) primitive = from.push.then(primitive);
+    if (out.push) primitive = out.push.now(primitive);
+    primitive.density = prior.density(primitive);
+    out.ratio *= primitive.density / from.primitives[i].density;
+  }
 }
 
 }  // namespace palpate::footprints

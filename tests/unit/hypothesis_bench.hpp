@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Outlines by the simplest ways to say what they hold: corners and foci; which of their pieces were touched; and in
-// numbers, by which it is seen whether two ways to draw outlines are one distribution.
+// Hypotheses by the simplest definitions of what they contain, corners and foci; their primitives with an object tap;
+// and numbers by which distributions of hypotheses are compared.
 #pragma once
 
-#include "primitives/outline.hpp"
+#include "primitives/hypothesis.hpp"
 
 #include <palpate/footprint.hpp>
 
@@ -44,37 +44,41 @@ inline double inside_of(const Form& o, const Point& p) {
   return out;
 }
 
+/// No point of a form is farther from its centre.
+inline double radius_of(const Form& form) { return std::hypot(form.a, form.b); }
+
 /// Nearer to a rim than that the two ways to say it may differ by rounding.
 constexpr double kOnTheRim = 1e-12;
 
-/// Whether a piece holds a touch that has the label of an object.
-inline bool touched(const Piece& piece, const std::vector<Touch>& touches) {
+/// Whether a primitive holds a touch that has the label of an object.
+inline bool touched(const Primitive& primitive, const std::vector<Touch>& touches) {
   return std::any_of(touches.begin(), touches.end(),
-                     [&](const Touch& one) { return one.on && piece.contains(one.place.x, one.place.y); });
+                     [&](const Touch& one) { return one.on && primitive.contains(one.place.x, one.place.y); });
 }
 
-/// The pieces that were touched and those that were not, together not more than there is room for.
+/// The primitives that were touched and those that were not, together not more than there is room for.
 struct Parts {
-  Outline seen, unseen;
+  Hypothesis seen, undiscovered;
 };
-inline Parts parts_of(const Outline& outline, const std::vector<Touch>& touches) {
+inline Parts parts_of(const Hypothesis& hypothesis, const std::vector<Touch>& touches) {
   Parts out;
-  for (const Piece& piece : outline) (touched(piece, touches) ? out.seen : out.unseen).add(piece);
+  for (const Primitive& primitive : hypothesis.primitives)
+    (touched(primitive, touches) ? out.seen : out.undiscovered).primitives.add(primitive);
   return out;
 }
 
-/// Draws the touched pieces of the prior, up to its `most`; pieces come as often as the law of Poisson says.
-inline Outline drawn_and_touched(const OutlinePrior& prior, const std::vector<Touch>& touches, Random& random) {
-  const OutlinePrior::Settings& settings = prior.settings();
+/// Draws the touched primitives of the prior, up to its `most`; primitives come as often as the law of Poisson says.
+inline Hypothesis drawn_and_touched(const Prior& prior, const std::vector<Touch>& touches, Random& random) {
+  const Prior::Settings& settings = prior.settings();
   for (;;) {
-    Outline out;
+    Hypothesis out;
     bool too_many = false;
     double time = -std::log(1.0 - random.uniform());
     for (; time < settings.expected && !too_many; time -= std::log(1.0 - random.uniform())) {
-      const Piece piece = prior.draw_piece_or_hollow(random);
-      if (!touched(piece, touches)) continue;
-      too_many = out.size() == settings.most;
-      if (!too_many) out.add(piece);
+      const Primitive primitive = prior.draw_primitive(random);
+      if (!touched(primitive, touches)) continue;
+      too_many = out.primitives.size() == settings.most;
+      if (!too_many) out.primitives.add(primitive);
     }
     if (!too_many) return out;
   }
@@ -127,15 +131,15 @@ inline double direction_of(const Form& form) {
   return turns - std::floor(turns);
 }
 
-/// Every number that says what a piece is, where it lies and how large.
+/// Every number that says what a primitive is, where it false_contact and how large.
 inline constexpr std::size_t kNumbers = 18;
-inline std::array<Number, kNumbers> numbers_of(const Piece& piece, const OutlinePrior::Settings& prior) {
-  const Form& form = piece.form;
-  const Form& hole = piece.hole;
-  const double sizes = std::log(prior.largest / prior.smallest);
-  const auto size = [&](double half) { return std::log(2.0 * half / prior.smallest) / sizes; };
-  const auto of_hole = [&](double value) { return piece.hollow && !piece.fitted() ? value : -1.0; };
-  const bool corner = piece.fitted() && piece.fit == Piece::Fit::corner;
+inline std::array<Number, kNumbers> numbers_of(const Primitive& primitive, const Prior::Settings& prior) {
+  const Form& form = primitive.form;
+  const Form& hole = primitive.hole;
+  const double sizes = std::log(prior.max_length / prior.min_width);
+  const auto size = [&](double half) { return std::log(2.0 * half / prior.min_width) / sizes; };
+  const auto of_hole = [&](double value) { return primitive.hollow && !primitive.fitted() ? value : -1.0; };
+  const bool corner = primitive.fitted() && primitive.fit == Primitive::Fit::corner;
   // A form that is turned about by half a circle is the same, with its hole at the other corner.
   const int about = form.sine < 0.0 || (form.sine == 0.0 && form.cosine < 0.0) ? -1 : 1;
   const double dx = hole.x - form.x;
@@ -149,45 +153,47 @@ inline std::array<Number, kNumbers> numbers_of(const Piece& piece, const Outline
            {"an ellipse", form.family == Form::Family::ellipse ? 0.99 : 0.01},
            {"size of ellipses", form.family == Form::Family::ellipse ? size(form.a) : -1.0},
            {"edge", std::min(form.x - form.reach_x(), form.y - form.reach_y()) / prior.area.width},
-           {"a hole", piece.hollow ? 0.99 : 0.01},
-           {"log a of hole", of_hole(std::log(2.0 * hole.a / prior.smallest + 1e-9) / sizes)},
+           {"a hole", primitive.hollow ? 0.99 : 0.01},
+           {"log a of hole", of_hole(std::log(2.0 * hole.a / prior.min_width + 1e-9) / sizes)},
            {"slenderness of hole", of_hole(std::log(hole.a / hole.b) / sizes)},
            {"direction of hole", of_hole(direction_of(hole))},
            {"place of hole", of_hole(0.5 + 0.5 * (form.cosine * dx + form.sine * dy) / form.a)},
-           {"a hole at a corner", piece.hollow ? 0.99 - 0.49 * static_cast<int>(corner) - 0.25 * piece.fitted() : -1.0},
-           {"share along", piece.fitted() ? piece.along : -1.0},
-           {"share across", corner ? piece.across : -1.0},
-           {"corner", corner ? 0.5 + about * (0.25 * piece.side_a + 0.125 * piece.side_b) : -1.0}}};
+           {"a hole at a corner",
+            primitive.hollow ? 0.99 - 0.49 * static_cast<int>(corner) - 0.25 * primitive.fitted() : -1.0},
+           {"share along", primitive.fitted() ? primitive.along : -1.0},
+           {"share across", corner ? primitive.across : -1.0},
+           {"corner", corner ? 0.5 + about * (0.25 * primitive.side_a + 0.125 * primitive.side_b) : -1.0}}};
 }
 
-inline int holes_of(const Outline& outline) {
-  return static_cast<int>(std::count_if(outline.begin(), outline.end(), [](const Piece& one) { return one.hollow; }));
+inline int holes_of(const Hypothesis& hypothesis) {
+  return static_cast<int>(std::count_if(hypothesis.primitives.begin(), hypothesis.primitives.end(),
+                                        [](const Primitive& one) { return one.hollow; }));
 }
 
-/// Numbers of all pieces together, whatever their order.
-inline std::array<Number, 4> numbers_of(const Outline& outline, const OutlinePrior::Settings& prior) {
+/// Numbers of all primitives together, whatever their order.
+inline std::array<Number, 4> numbers_of(const Hypothesis& hypothesis, const Prior::Settings& prior) {
   double nearest = 1e9;
   double covered = 0.0;
-  for (int i = 0; i < outline.size(); ++i) {
-    covered += outline[i].form.extent();
+  for (int i = 0; i < hypothesis.primitives.size(); ++i) {
+    covered += hypothesis.primitives[i].form.extent();
     for (int k = 0; k < i; ++k)
-      nearest =
-          std::min(nearest, std::hypot(outline[i].form.x - outline[k].form.x, outline[i].form.y - outline[k].form.y));
+      nearest = std::min(nearest, std::hypot(hypothesis.primitives[i].form.x - hypothesis.primitives[k].form.x,
+                                             hypothesis.primitives[i].form.y - hypothesis.primitives[k].form.y));
   }
   const double diagonal = std::hypot(prior.area.width, prior.area.depth);
-  return {{{"pieces", (outline.size() + 0.5) / (Outline::kMost + 1)},
-           {"holes", (holes_of(outline) + 0.5) / (Outline::kMost + 1)},
-           {"least distance", outline.size() > 1 ? nearest / diagonal : -1.0},
+  return {{{"primitives", (hypothesis.primitives.size() + 0.5) / (ShortList<Primitive>::kMost + 1)},
+           {"holes", (holes_of(hypothesis) + 0.5) / (ShortList<Primitive>::kMost + 1)},
+           {"least distance", hypothesis.primitives.size() > 1 ? nearest / diagonal : -1.0},
            {"extent", covered / (covered + 0.02)}}};
 }
 
-/// What moves that leave a distribution as it is do to its outlines on average: nothing. Each outline is compared with
-/// itself, so that little is needed to see more.
+/// What moves that leave a distribution as it is do to its hypotheses on average: nothing. Each hypothesis is compared
+/// with itself, so that little is needed to see more.
 class Drift {
  public:
-  explicit Drift(const OutlinePrior::Settings& prior) : prior_(prior) {}
+  explicit Drift(const Prior::Settings& prior) : prior_(prior) {}
 
-  void add(const Outline& before, const Outline& after) {
+  void add(const Hypothesis& before, const Hypothesis& after) {
     const auto one = sums(before);
     const auto other = sums(after);
     for (std::size_t i = 0; i < kSums; ++i) {
@@ -209,24 +215,24 @@ class Drift {
 
  private:
   static constexpr std::size_t kSums = 6 + kNumbers;
-  /// Over all pieces, how many have each number and what these come to, in so far as that says something.
-  std::array<Number, kSums> sums(const Outline& outline) const {
+  /// Over all primitives, how many have each number and what these come to, in so far as that says something.
+  std::array<Number, kSums> sums(const Hypothesis& hypothesis) const {
     std::array<Number, kSums> out{};
-    const auto whole = numbers_of(outline, prior_);
+    const auto whole = numbers_of(hypothesis, prior_);
     std::copy(whole.begin(), whole.end(), out.begin());
-    out[4] = {"none", outline.size() == 0 ? 1.0 : 0.0};
+    out[4] = {"none", hypothesis.primitives.size() == 0 ? 1.0 : 0.0};
     out[5] = {"small", 0.0};
-    for (std::size_t i = 0; i < kNumbers; ++i) out[6 + i].name = numbers_of(Piece(), prior_)[i].name;
-    for (const Piece& piece : outline) {
-      out[5].value += piece.form.a < prior_.smallest ? 1.0 : 0.0;
-      const auto numbers = numbers_of(piece, prior_);
+    for (std::size_t i = 0; i < kNumbers; ++i) out[6 + i].name = numbers_of(Primitive(), prior_)[i].name;
+    for (const Primitive& primitive : hypothesis.primitives) {
+      out[5].value += primitive.form.a < prior_.min_width ? 1.0 : 0.0;
+      const auto numbers = numbers_of(primitive, prior_);
       for (std::size_t i = 0; i < numbers.size(); ++i)
         out[6 + i].value += numbers[i].value < 0.0 ? 0.0 : numbers[i].value - 0.5;
     }
     return out;
   }
 
-  OutlinePrior::Settings prior_;
+  Prior::Settings prior_;
   std::array<const char*, kSums> names_{};
   std::array<double, kSums> sum_{}, squares_{};
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // "5 % that something is left": of all desks of which it is said, on 5 % there is. Desks are drawn from the prior, with
 // labels, heights and errors as the belief expects them, and tapped where it is least sure.
-#include "outline_bench.hpp"
-#include "primitives/particles.hpp"
-#include "primitives/steps.hpp"
+#include "hypothesis_bench.hpp"
+#include "primitives/proposals.hpp"
+#include "primitives/sampler.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -52,46 +52,47 @@ class Calibration {
   int count_ = 0;
 };
 
-/// Whether a piece that is so long lies apart from all that were touched, and was not touched itself.
-bool something_left(const Outline& desk, const std::vector<Touch>& touches) {
+/// Whether a primitive that is so long lies apart from all that were touched, and was not touched itself.
+bool something_left(const Hypothesis& desk, const std::vector<Touch>& touches) {
   const Parts parts = parts_of(desk, touches);
-  return std::any_of(parts.unseen.begin(), parts.unseen.end(), [&](const Piece& piece) {
-    return 2.0 * piece.form.a >= kLong && std::none_of(parts.seen.begin(), parts.seen.end(), [&](const Piece& known) {
-             return meet(known.form, piece.form);
-           });
-  });
+  return std::any_of(parts.undiscovered.primitives.begin(), parts.undiscovered.primitives.end(),
+                     [&](const Primitive& primitive) {
+                       return 2.0 * primitive.form.a >= kLong &&
+                              std::none_of(parts.seen.primitives.begin(), parts.seen.primitives.end(),
+                                           [&](const Primitive& known) { return overlap(known.form, primitive.form); });
+                     });
 }
 
 class Desk {
  public:
-  Desk(const OutlinePrior& prior, const ParticleSettings& how, std::uint64_t seed)
-      : how_(how), random_(seed, "a desk"), outline_(prior.draw(random_)), blurred_(random_.uniform() < 0.5) {
+  Desk(const Prior& prior, const SamplerSettings& how, std::uint64_t seed)
+      : how_(how), random_(seed, "a desk"), hypothesis_(prior.draw(random_)), noisy_(random_.uniform() < 0.5) {
     for (double& top : tops_) top = 0.03 + 0.07 * random_.uniform();
   }
-  const Outline& outline() const { return outline_; }
+  const Hypothesis& hypothesis() const { return hypothesis_; }
 
   Touch tap(const Target& place) {
-    const double blur = blurred_ ? how_.blur : 0.0;
-    const double x = place.x + blur * normal(random_);
-    const double y = place.y + blur * normal(random_);
-    const Piece* top =
-        std::find_if(outline_.begin(), outline_.end(), [&](const Piece& one) { return one.contains(x, y); });
-    bool on = top != outline_.end();
-    const double height = on ? tops_[static_cast<std::size_t>(top - outline_.begin())] : 0.0;
-    if (random_.uniform() < (on ? how_.mistaken : how_.lies)) on = !on;
+    const double noise = noisy_ ? how_.position_noise : 0.0;
+    const double x = place.x + noise * normal(random_);
+    const double y = place.y + noise * normal(random_);
+    const Primitive* top = std::find_if(hypothesis_.primitives.begin(), hypothesis_.primitives.end(),
+                                        [&](const Primitive& one) { return one.contains(x, y); });
+    bool on = top != hypothesis_.primitives.end();
+    const double height = on ? tops_[static_cast<std::size_t>(top - hypothesis_.primitives.begin())] : 0.0;
+    if (random_.uniform() < (on ? how_.label_error : how_.false_contact)) on = !on;
     return {place, height + 0.001 * normal(random_), on};
   }
 
  private:
-  ParticleSettings how_;
+  SamplerSettings how_;
   Random random_;
-  Outline outline_;
-  bool blurred_;
-  std::array<double, Outline::kMost> tops_{};
+  Hypothesis hypothesis_;
+  bool noisy_;
+  std::array<double, ShortList<Primitive>::kMost> tops_{};
 };
 
 /// Of the places that were not tapped, the one that may as well be on an object as not.
-Eigen::Index least_sure(Particles& belief, const Points& places, const std::vector<bool>& tapped) {
+Eigen::Index least_sure(Sampler& belief, const Points& places, const std::vector<bool>& tapped) {
   Eigen::VectorXd p = Eigen::VectorXd::Zero(places.rows());
   belief.probability(places, p);
   Eigen::Index out = 0;
@@ -106,21 +107,21 @@ Eigen::Index least_sure(Particles& belief, const Points& places, const std::vect
 }
 
 TEST(Left, ItIsSaidOfDesksOfThePriorAsOftenAsSomethingIsLeft) {
-  OutlinePrior::Settings settings;
+  Prior::Settings settings;
   settings.area = {0.23, 0.23};
-  const OutlinePrior prior(settings);
-  ParticleSettings how;  // as configs/default.yaml has it
-  how.lies = 0.015;
-  how.blur = 0.002;
+  const Prior prior(settings);
+  SamplerSettings how;  // as configs/default.yaml has it
+  how.false_contact = 0.015;
+  how.position_noise = 0.002;
   const Points places = test::lattice(23, 23);
-  how.count = 300;
+  how.particles = 300;
   std::array<Calibration, kTaps.size()> calibrations;
   const char* wanted = std::getenv("PALPATE_DESKS");
   const int desks = wanted != nullptr ? std::atoi(wanted) : test::brief() ? 20 : 200;
   for (int desk = 0; desk < desks; ++desk) {
     const auto seed = static_cast<std::uint64_t>(desk);
     Desk truth(prior, how, seed);
-    Particles belief(prior, how, Random(seed, "left test"));
+    Sampler belief(prior, how, Random(seed, "left test"));
     std::vector<Touch> touches;
     std::vector<bool> tapped(static_cast<std::size_t>(places.rows()), false);
     for (std::size_t asked = 0; asked < kTaps.size();) {
@@ -129,7 +130,7 @@ TEST(Left, ItIsSaidOfDesksOfThePriorAsOftenAsSomethingIsLeft) {
       touches.push_back(truth.tap({places(next, 0), places(next, 1)}));
       belief.add(touches.back());
       if (static_cast<int>(touches.size()) < kTaps[asked]) continue;
-      calibrations[asked++].add(belief.undiscovered_probability(kLong), something_left(truth.outline(), touches));
+      calibrations[asked++].add(belief.undiscovered_probability(kLong), something_left(truth.hypothesis(), touches));
     }
   }
   for (std::size_t i = 0; i < kTaps.size(); ++i) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Splits a piece and merges two (Richardson and Green 1997): the parts are drawn about those of a cut, the whole about
-// the form that two have together.
+// Splitting a primitive and merging two (Richardson and Green 1997). The parts are drawn about those of a cut, the
+// whole about the form with the moments of both.
 #include "proposals.hpp"
-#include "steps.hpp"
 
 #include <palpate/math.hpp>
 
@@ -18,7 +17,7 @@ class About {
  public:
   explicit About(const Form& fit) : fit_(fit), shift_(kShift * std::sqrt(fit.a * fit.b)) {}
 
-  Form draw(const OutlinePrior& prior, Random& random) const {
+  Form draw(const Prior& prior, Random& random) const {
     Form out = fit_;
     out.family = random.uniform() < prior.settings().ellipses ? Form::Family::ellipse : Form::Family::box;
     out.x += shift_ * normal(random);
@@ -30,7 +29,7 @@ class About {
   }
 
   /// In centre, angle and logarithms of the half axes. Those whose half axes are not in order are never taken.
-  double density(const OutlinePrior& prior, const Form& form) const {
+  double density(const Prior& prior, const Form& form) const {
     const auto square = [](double x) { return x * x; };
     const double apart = square((form.x - fit_.x) / shift_) + square((form.y - fit_.y) / shift_) +
                          square(math::log(form.a / fit_.a) / kSize) + square(math::log(form.b / fit_.b) / kSize);
@@ -42,7 +41,7 @@ class About {
 
   // The parts of this density, for one about many forms. How much of it the family has, times a density's factor but
   // for the product of the half axes.
-  static double factor(const OutlinePrior& prior, const Form& form) {
+  static double factor(const Prior& prior, const Form& form) {
     constexpr double kNormals = 0.010105326013811644;  // (2 pi)^-5/2
     const double ellipses = prior.settings().ellipses;
     const double family = form.family == Form::Family::ellipse ? ellipses : 1.0 - ellipses;
@@ -119,15 +118,15 @@ Form joined(const Form& first, const Form& second) {
   return out;
 }
 
-/// How probable it is that two of the pieces are those that are merged: one of them is any, the other near it.
+/// How probable it is that two of the primitives are those that are merged: one of them is any, the other near it.
 class Pairs {
  public:
-  explicit Pairs(const Outline& outline) : size_(outline.size()) {
+  explicit Pairs(const ShortList<Primitive>& primitives) : size_(primitives.size()) {
     constexpr double kClose = 0.05;  // metres
     for (int a = 0; a < size_; ++a) {
       for (int b = 0; b < a; ++b) {
-        const Form& one = outline[a].form;
-        const Form& other = outline[b].form;
+        const Form& one = primitives[a].form;
+        const Form& other = primitives[b].form;
         wish(a, b) = wish(b, a) = math::exp(-math::hypot(one.x - other.x, one.y - other.y) / kClose);
       }
       wish(a, a) = 0.0;
@@ -157,14 +156,14 @@ class Pairs {
   double& wish(int a, int b) { return wishes_[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]; }
 
   int size_;
-  std::array<std::array<double, Outline::kMost>, Outline::kMost> wishes_;
-  std::array<double, Outline::kMost> sums_{};
+  std::array<std::array<double, ShortList<Primitive>::kMost>, ShortList<Primitive>::kMost> wishes_;
+  std::array<double, ShortList<Primitive>::kMost> sums_{};
 };
 
 /// A part as About has it for all cuts of a whole, so that logarithms and angles are asked for once.
 class Part {
  public:
-  Part(const OutlinePrior& prior, const Form& whole, const Form& part)
+  Part(const Prior& prior, const Form& whole, const Form& part)
       : whole_(whole),
         part_(part),
         along_(math::log(part.a / whole.a)),
@@ -203,7 +202,7 @@ class Part {
 };
 
 /// The density of two parts, whichever comes first, as split() draws them.
-double density_of_split(const OutlinePrior& prior, const Form& whole, const Form& first, const Form& second) {
+double density_of_split(const Prior& prior, const Form& whole, const Form& first, const Form& second) {
   const Part one(prior, whole, first);
   const Part other(prior, whole, second);
   static const std::array<double, 3> logs{math::log(kShares[0]), math::log(kShares[1]), math::log(kShares[2])};
@@ -219,57 +218,64 @@ double density_of_split(const OutlinePrior& prior, const Form& whole, const Form
   return 2.0 * out / kCuts;
 }
 
-/// Of `pieces` forms one more.
-double correction_of_split(const OutlinePrior& prior, const Outline& split, std::pair<int, int> parts,
-                           const Piece& whole, int pieces) {
-  const Piece& first = split[parts.first];
-  const Piece& second = split[parts.second];
-  const double way_there = density_of_split(prior, whole.form, first.form, second.form) / pieces;
-  const double way_back = Pairs(split).probability(parts.first, parts.second) *
-                          About(joined(first.form, second.form)).density(prior, whole.form);
-  return prior.settings().expected * first.density * second.density / whole.density * way_back / way_there;
+/// The ratio of splitting `whole`, one of `count` primitives; `split`: the primitives afterwards.
+double ratio_of_split(const Prior& prior, const ShortList<Primitive>& split, std::pair<int, int> parts,
+                      const Primitive& whole, int count) {
+  const Primitive& first = split[parts.first];
+  const Primitive& second = split[parts.second];
+  const double there = density_of_split(prior, whole.form, first.form, second.form) / count;
+  const double back = Pairs(split).probability(parts.first, parts.second) *
+                      About(joined(first.form, second.form)).density(prior, whole.form);
+  return prior.settings().expected * first.density * second.density / whole.density * back / there;
 }
 
-bool in_order(const Form& form) { return form.b <= form.a; }
+/// Gives a form its density; false if the prior does not allow it.
+bool complete(Primitive& primitive, const Prior& prior) {
+  if (primitive.form.b > primitive.form.a) return false;
+  primitive.density = prior.density(primitive);
+  return primitive.density > 0.0;
+}
 
 }  // namespace
 
-void propose_split(Proposal& out, const OutlinePrior& prior, Random& random) {
-  const int pieces = out.outline.size();
-  if (pieces == 0 || pieces >= prior.settings().most) return;
-  const int one = static_cast<int>(random.index(static_cast<std::size_t>(pieces)));
-  const Piece whole = out.outline[one];
+void propose_split(Proposal& out, const Hypothesis& from, const Prior& prior, Random& random) {
+  out.begin(from);
+  out.kind = Proposal::Kind::split;
+  const int count = from.primitives.size();
+  if (count == 0 || count >= prior.settings().most) return;
+  const int one = static_cast<int>(random.index(static_cast<std::size_t>(count)));
+  const Primitive& whole = from.primitives[one];
   if (whole.hollow) return;
   const auto [a, b] = cut(whole.form, static_cast<int>(random.index(kCuts)));
-  Piece first, second;
+  Primitive first, second;
   first.form = About(a).draw(prior, random);
   second.form = About(b).draw(prior, random);
-  if (!in_order(first.form) || !in_order(second.form)) return;
-  first.density = prior.density(first);
-  second.density = prior.density(second);
-  if (first.density <= 0.0 || second.density <= 0.0) return;
-  out.outline[one] = first;
-  out.changes(one);
-  out.add(second);
-  out.correction = correction_of_split(prior, out.outline, {one, pieces}, whole, pieces);
+  if (!complete(first, prior) || !complete(second, prior)) return;
+  ShortList<Primitive> split = from.primitives;
+  split[one] = first;
+  split.add(second);
+  out.removed.add(one);
+  out.added.add(first);
+  out.added.add(second);
+  out.ratio = ratio_of_split(prior, split, {one, count}, whole, count);
 }
 
-void propose_merge(Proposal& out, const OutlinePrior& prior, Random& random) {
-  const int pieces = out.outline.size();
-  if (pieces < 2) return;
-  const std::pair<int, int> parts = Pairs(out.outline).choose(random);
-  const Piece& first = out.outline[parts.first];
-  const Piece& second = out.outline[parts.second];
+void propose_merge(Proposal& out, const Hypothesis& from, const Prior& prior, Random& random) {
+  out.begin(from);
+  out.kind = Proposal::Kind::merge;
+  const int count = from.primitives.size();
+  if (count < 2) return;
+  const std::pair<int, int> parts = Pairs(from.primitives).choose(random);
+  const Primitive& first = from.primitives[parts.first];
+  const Primitive& second = from.primitives[parts.second];
   if (first.hollow || second.hollow) return;
-  Piece whole;
+  Primitive whole;
   whole.form = About(joined(first.form, second.form)).draw(prior, random);
-  if (!in_order(whole.form)) return;
-  whole.density = prior.density(whole);
-  if (whole.density <= 0.0) return;
-  out.correction = 1.0 / correction_of_split(prior, out.outline, parts, whole, pieces - 1);
-  out.outline[parts.first] = whole;
-  out.changes(parts.first);
-  out.remove(parts.second);
+  if (!complete(whole, prior)) return;
+  out.removed.add(parts.first);
+  out.removed.add(parts.second);
+  out.added.add(whole);
+  out.ratio = 1.0 / ratio_of_split(prior, from.primitives, parts, whole, count - 1);
 }
 
 }  // namespace palpate::footprints

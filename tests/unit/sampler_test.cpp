@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A belief as a set of outlines: what is told of them is what is told of each one, and they are drawn by their weights.
-#include "primitives/particles.hpp"
+// A belief as a set of hypotheses: what is told of them is what is told of each one, and they are drawn by their
+// weights.
+#include "primitives/sampler.hpp"
 
-#include "outline_bench.hpp"
+#include "hypothesis_bench.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -13,19 +14,19 @@
 namespace palpate::footprints {
 namespace {
 
-Particles belief_of(int count, double moves, double mistaken, std::uint64_t seed) {
-  OutlinePrior::Settings settings;
+Sampler belief_of(int count, double moves, double label_error, std::uint64_t seed) {
+  Prior::Settings settings;
   settings.area = {0.23, 0.23};
-  ParticleSettings how;
-  how.count = count;
+  SamplerSettings how;
+  how.particles = count;
   how.moves = how.moves_apart = moves;
-  how.mistaken = how.lies = mistaken;
-  return {OutlinePrior(settings), how, Random(seed, "particles test")};
+  how.label_error = how.false_contact = label_error;
+  return {Prior(settings), how, Random(seed, "particles test")};
 }
 
-std::vector<Outline> outlines(const Particles& belief) {
-  std::vector<Outline> out;
-  for (const Particle& particle : belief.particles()) out.push_back(particle.outline);
+std::vector<Hypothesis> hypotheses(const Sampler& belief) {
+  std::vector<Hypothesis> out;
+  for (const Particle& particle : belief.particles()) out.push_back(particle.hypothesis);
   return out;
 }
 
@@ -34,10 +35,12 @@ bool equal_forms(const Form& one, const Form& other) {
          one.cosine == other.cosine && one.sine == other.sine;
 }
 
-bool equal_outlines(const Outline& one, const Outline& other) {
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(), [](const Piece& a, const Piece& b) {
-    return equal_forms(a.form, b.form) && a.hollow == b.hollow && (!a.hollow || equal_forms(a.hole, b.hole));
-  });
+bool equal_hypotheses(const Hypothesis& one, const Hypothesis& other) {
+  return std::equal(one.primitives.begin(), one.primitives.end(), other.primitives.begin(), other.primitives.end(),
+                    [](const Primitive& a, const Primitive& b) {
+                      return equal_forms(a.form, b.form) && a.hollow == b.hollow &&
+                             (!a.hollow || equal_forms(a.hole, b.hole));
+                    });
 }
 
 /// Whether bit `k` of a sample is set at place `i`.
@@ -46,8 +49,8 @@ bool bit(const Bits& bits, int k, Eigen::Index i) {
   return (bits(k / 64, i) >> (k % 64) & 1U) != 0;
 }
 
-TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTheirOutlines) {
-  Particles belief = belief_of(500, 4, 0.02, 4);
+TEST(Sampler, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTheirHypotheses) {
+  Sampler belief = belief_of(500, 4, 0.02, 4);
   std::vector<Touch> touches = test::disc_touches(6);
   touches.insert(touches.begin() + 2, test::touch_at(0.115, 0.115, true));
   for (const Touch& touch : touches) {
@@ -63,7 +66,7 @@ TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTh
       for (Eigen::Index i = 0; i < places.rows(); ++i) {
         ASSERT_NEAR(inside(i), one_by_one(2 * i), 1e-9) << columns << " x " << rows << ", place " << i;
         const auto held = std::count_if(belief.particles().begin(), belief.particles().end(), [&](const Particle& one) {
-          return one.outline.contains(places(i, 0), places(i, 1));
+          return one.hypothesis.contains(places(i, 0), places(i, 1));
         });
         ASSERT_GE(inside(i), static_cast<double>(held) / belief.size() - 1e-12);
         ASSERT_LE(inside(i), 1.0);
@@ -72,9 +75,9 @@ TEST(Particles, AreAsProbablyAtPlacesOfALatticeAsAtEachAloneAndNowhereLessThanTh
   }
 }
 
-TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
+TEST(Sampler, AreSampledAsTheyAreWithWhatMeetsThem) {
   constexpr int kSample = 6400;
-  Particles belief = belief_of(320, 4, 0.02, 5);
+  Sampler belief = belief_of(320, 4, 0.02, 5);
   const std::vector<Touch> touches{test::touch_at(0.08, 0.08, true), test::touch_at(0.03, 0.10, false),
                                    test::touch_at(0.09, 0.14, false), test::touch_at(0.12, 0.05, false)};
   for (const Touch& touch : touches) belief.add(touch);
@@ -87,12 +90,11 @@ TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
     Eigen::VectorXd held = Eigen::VectorXd::Zero(where.rows());
     Eigen::VectorXd touched = Eigen::VectorXd::Zero(where.rows());
     for (int k = 0; k < kSample; ++k) {
-      // Words of 64 of them, each as often as any.
-      const int one = k / 64 / (kSample / belief.size()) * 64 + k % 64;
-      const Outline& outline = belief.particles()[static_cast<std::size_t>(one)].outline;
+      const int one = k / (kSample / belief.size());
+      const Hypothesis& hypothesis = belief.particles()[static_cast<std::size_t>(one)].hypothesis;
       for (Eigen::Index i = 0; i < where.rows(); ++i) {
         const bool holds = bit(sample.holds, k, i);
-        const bool has = outline.contains(where(i, 0), where(i, 1));
+        const bool has = hypothesis.contains(where(i, 0), where(i, 1));
         ASSERT_TRUE(holds || !has);
         held(i) += holds ? 1.0 / kSample : 0.0;
         touched(i) += has ? 1.0 / kSample : 0.0;
@@ -102,22 +104,54 @@ TEST(Particles, AreSampledAsTheyAreWithWhatMeetsThem) {
     for (Eigen::Index i = 0; i < where.rows(); ++i)
       EXPECT_LE(held(i),
                 probability(i) + 5.0 * std::sqrt(probability(i) * (1.0 - probability(i)) / kSample) + 1.0 / kSample);
-    EXPECT_GT(held.sum(), 1.01 * touched.sum()) << "some pieces that were not touched meet some that were";
+    EXPECT_GT(held.sum(), 1.01 * touched.sum()) << "some primitives that were not touched meet some that were";
   }
 }
 
-TEST(Particles, ExpectToFindWhatThePriorHasWhereNothingWasTouchedAndLessBesideAnObject) {
+TEST(Sampler, TakesEveryParticleForSomeSampleThatIsSmallerThanThereAreParticles) {
+  constexpr int kCount = 384;
+  constexpr int kSample = 256;
+  Sampler belief = belief_of(kCount / 2, 4, 0.02, 6);
+  belief.add(test::touch_at(0.11, 0.12, true));  // doubles them
+  const Points where = test::scattered(100);
+  std::vector<bool> taken(kCount, false);
+  for (int tap = 0; tap < 8; ++tap) {
+    belief.add(test::touch_at(0.02 + 0.01 * tap, 0.2, false));
+    ASSERT_EQ(belief.size(), kCount);
+    OutlineSample sample;
+    belief.sample(where, kSample, sample);
+    // Two of three particles from a first one on: the sample is one of these, with other primitives beside.
+    int possible = 0;
+    for (const double first : {0.1, 0.5, 0.9}) {
+      const auto particle = [&](int k) { return static_cast<std::size_t>((k + first) * kCount / kSample); };
+      bool is = true;
+      for (int k = 0; k < kSample && is; ++k) {
+        for (Eigen::Index i = 0; i < where.rows(); ++i)
+          is = is && (bit(sample.holds, k, i) ||
+                      !belief.particles()[particle(k)].hypothesis.contains(where(i, 0), where(i, 1)));
+      }
+      if (!is) continue;
+      ++possible;
+      for (int k = 0; k < kSample; ++k) taken[particle(k)] = true;
+    }
+    EXPECT_EQ(possible, 1);
+  }
+  EXPECT_EQ(std::count(taken.begin(), taken.end(), false), 0);
+}
+
+TEST(Sampler, ExpectToFindWhatThePriorHasWhereNothingWasTouchedAndLessBesideAnObject) {
   const Points places = test::scattered(12);
   Eigen::VectorXd exact = Eigen::VectorXd::Zero(places.rows());
-  OutlinePrior::Settings settings;
+  Prior::Settings settings;
   settings.area = {0.23, 0.23};
-  const OutlinePrior prior(settings);
+  const Prior prior(settings);
   Random random(31, "particles test");
   const int draws = test::brief() ? 50000 : 200000;
   for (int i = 0; i < draws; ++i) {
-    const Piece piece = prior.draw_piece_or_hollow(random);
+    const Primitive primitive = prior.draw_primitive(random);
     for (Eigen::Index k = 0; k < places.rows(); ++k) {
-      if (piece.contains(places(k, 0), places(k, 1))) exact(k) += settings.expected * piece.form.extent() / draws;
+      if (primitive.contains(places(k, 0), places(k, 1)))
+        exact(k) += settings.expected * primitive.form.extent() / draws;
     }
   }
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(places.rows());
@@ -125,7 +159,7 @@ TEST(Particles, ExpectToFindWhatThePriorHasWhereNothingWasTouchedAndLessBesideAn
   constexpr int kRuns = 10;
   OutlineSample sample;
   for (int run = 0; run < kRuns; ++run) {
-    Particles belief = belief_of(100, 20, 0.02, 40 + static_cast<std::uint64_t>(run));
+    Sampler belief = belief_of(100, 20, 0.02, 40 + static_cast<std::uint64_t>(run));
     belief.sample(places, 64, sample);
     mean += sample.to_find / kRuns;
     belief.add(test::touch_at(places(0, 0), places(0, 1), true));
@@ -133,13 +167,13 @@ TEST(Particles, ExpectToFindWhatThePriorHasWhereNothingWasTouchedAndLessBesideAn
     beside += sample.to_find / kRuns;
     EXPECT_EQ(sample.to_find(0), 0.0) << "what holds it was found";
   }
-  // Each run stands for the prior by four thousand pieces, of which at least one in a hundred holds a place.
+  // Each run stands for the prior by four thousand primitives, of which at least one in a hundred holds a place.
   EXPECT_LT((mean - exact).cwiseQuotient(exact).cwiseAbs().maxCoeff(), 5.0 / std::sqrt(4096.0 * kRuns * 0.01));
   EXPECT_TRUE((beside.array() <= mean.array() + 1e-15).all());
 }
 
-TEST(Particles, AreTwiceAsManyForTenTouchesFromWhenSomethingIsFound) {
-  Particles belief = belief_of(100, 1.0, 0.02, 3);
+TEST(Sampler, AreTwiceAsManyForTenTouchesFromWhenSomethingIsFound) {
+  Sampler belief = belief_of(100, 1.0, 0.02, 3);
   const auto add = [&](double x, double y, bool on) {
     belief.add(test::touch_at(x, y, on));
     return belief.size();
@@ -152,7 +186,7 @@ TEST(Particles, AreTwiceAsManyForTenTouchesFromWhenSomethingIsFound) {
   EXPECT_EQ(add(0.19, 0.12, true), 200) << "another thing";
 }
 
-TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
+TEST(Sampler, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
   constexpr std::size_t kCount = 100;
   const int seeds = test::brief() ? 40 : 400;
   constexpr double kWrong = 0.2;
@@ -161,25 +195,25 @@ TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
   std::array<double, 3> excess{};
   std::array<int, 3> times{};
   for (int seed = 1; seed <= seeds; ++seed) {
-    Particles belief = belief_of(static_cast<int>(kCount), 0.0, kWrong, static_cast<std::uint64_t>(seed));  // no moves
-    belief.add(test::touch_at(0.11, 0.12, true));  // of which each outline makes its own
+    Sampler belief = belief_of(static_cast<int>(kCount), 0.0, kWrong, static_cast<std::uint64_t>(seed));  // no moves
+    belief.add(test::touch_at(0.11, 0.12, true));  // of which each hypothesis makes its own
     Random random(static_cast<std::uint64_t>(seed), "particles test: places");
     for (int touch = 0; touch < kLooks; ++touch) {
       const Target place{0.23 * random.uniform(), 0.23 * random.uniform()};
-      const std::vector<Outline> before = outlines(belief);
+      const std::vector<Hypothesis> before = hypotheses(belief);
       const double evidence = belief.add({place, 0.0, false});
-      const std::vector<Outline> after = outlines(belief);
+      const std::vector<Hypothesis> after = hypotheses(belief);
       // Evidence is the mean weight; from it is seen how probable it was that something new is there.
-      const auto weight = [&](const Outline& one) { return one.contains(place.x, place.y) ? kWrong : 1.0 - kWrong; };
+      const auto weight = [&](const Hypothesis& one) { return one.contains(place.x, place.y) ? kWrong : 1.0 - kWrong; };
       double mean = 0.0;
-      for (const Outline& one : before) mean += weight(one) / static_cast<double>(before.size());
+      for (const Hypothesis& one : before) mean += weight(one) / static_cast<double>(before.size());
       if (mean < kWrong + 1e-9) continue;  // all hold it
       const double something_new = (mean - evidence) / (mean - kWrong);
       ASSERT_GE(something_new, -1e-9);
       ASSERT_LT(something_new, 0.9);
       for (std::size_t k = 0; k < looked_at.size(); ++k) {
-        const Outline& one = before[looked_at[k]];
-        const auto equal = [&](const Outline& other) { return equal_outlines(other, one); };
+        const Hypothesis& one = before[looked_at[k]];
+        const auto equal = [&](const Hypothesis& other) { return equal_hypotheses(other, one); };
         const auto alike = static_cast<double>(std::count_if(before.begin(), before.end(), equal));
         const auto copies = static_cast<double>(std::count_if(after.begin(), after.end(), equal));
         const double expected = ((1.0 - something_new) * weight(one) + something_new * kWrong) / evidence *
@@ -198,92 +232,89 @@ TEST(Particles, AreDrawnAsOftenAsTheirWeightSaysButForLessThanOneAndOnAverage) {
   }
 }
 
-TEST(Particles, OfOneSeedAreTheSameToTheLastBitAndOfAnotherAreOthers) {
+TEST(Sampler, OfOneSeedAreTheSameToTheLastBitAndOfAnotherAreOthers) {
   const auto after = [](std::uint64_t seed) {
-    Particles belief = belief_of(300, 4, 0.02, seed);
+    Sampler belief = belief_of(300, 4, 0.02, seed);
     for (const Touch& touch : test::disc_touches(8)) belief.add(touch);
-    return outlines(belief);
+    return hypotheses(belief);
   };
-  const std::vector<Outline> one = after(7);
-  EXPECT_TRUE(std::equal(one.begin(), one.end(), after(7).begin(), equal_outlines));
-  EXPECT_FALSE(std::equal(one.begin(), one.end(), after(8).begin(), equal_outlines));
+  const std::vector<Hypothesis> one = after(7);
+  EXPECT_TRUE(std::equal(one.begin(), one.end(), after(7).begin(), equal_hypotheses));
+  EXPECT_FALSE(std::equal(one.begin(), one.end(), after(8).begin(), equal_hypotheses));
 }
 
-TEST(Particles, AgreeWithLabelsThatAnOutlineExplains) {
-  Particles belief = belief_of(1000, 4, 0.02, 9);
+TEST(Sampler, AgreeWithLabelsThatAnHypothesisExplains) {
+  Sampler belief = belief_of(1000, 4, 0.02, 9);
   for (const Touch& touch : test::disc_touches(25)) belief.add(touch);
-  EXPECT_LT(belief.mean_mistakes(), 0.7);
-  // Objects and desk by turns at one place: one half of the labels is wrong whatever the outline.
-  Particles puzzled = belief_of(1000, 4, 0.02, 9);
+  EXPECT_LT(belief.mean_label_errors(), 0.7);
+  // Objects and desk by turns at one place: one half of the labels is wrong whatever the hypothesis.
+  Sampler puzzled = belief_of(1000, 4, 0.02, 9);
   for (const Touch& touch : test::contradictory_touches(24)) puzzled.add(touch);
-  EXPECT_NEAR(puzzled.mean_mistakes(), 12.0, 1e-9);
+  EXPECT_NEAR(puzzled.mean_label_errors(), 12.0, 1e-9);
 }
 
-TEST(Particles, KeepWhatTheyAskForAgainAndAgainAsItIs) {
-  OutlinePrior::Settings settings;
+TEST(Sampler, KeepWhatTheyAskForAgainAndAgainAsItIs) {
+  Prior::Settings settings;
   settings.area = {0.23, 0.23};
-  const OutlinePrior prior(settings);
-  for (const auto& [blur, pushes] : {std::pair(0.0, 0.0), std::pair(0.004, 0.0), std::pair(0.004, 0.2)}) {
-    ParticleSettings how;
-    how.count = 300;
-    how.mistaken = 0.05;
-    how.lies = 0.02;
-    how.blur = blur;
-    how.pushes = pushes;
-    Particles belief(prior, how, Random(10, "particles test"));
+  const Prior prior(settings);
+  for (const auto& [noise, pushes] : {std::pair(0.0, 0.0), std::pair(0.004, 0.0), std::pair(0.004, 0.2)}) {
+    SamplerSettings how;
+    how.particles = 300;
+    how.label_error = 0.05;
+    how.false_contact = 0.02;
+    how.position_noise = noise;
+    how.push_probability = pushes;
+    Sampler belief(prior, how, Random(10, "particles test"));
     const std::vector<Touch> made = test::disc_touches(25);
     for (const Touch& touch : made) belief.add(touch);
-    int pieces = 0;
+    int primitives = 0;
     int beside = 0;
     for (const Particle& one : belief.particles()) {
       std::vector<Touch> touches = made;
-      for (int i = 0; i < one.push.before; ++i) {
+      for (int i = 0; i < one.hypothesis.push.before; ++i) {
         Target& place = touches[static_cast<std::size_t>(i)].place;
-        place = one.push.now(place);
+        place = one.hypothesis.push.now(place);
       }
-      const LabelModel labels(how.mistaken, how.lies, one.blurred ? blur : 0.0);
-      double loss = 0.0;
+      const LabelModel labels(how.label_error, how.false_contact, one.hypothesis.noisy ? noise : 0.0);
+      LogUnits loss = 0;
       for (std::size_t i = 0; i < touches.size(); ++i) {
         const Target& place = touches[i].place;
-        unsigned holders = 0;
-        double deepest = -1.0;
-        for (int p = 0; p < one.outline.size(); ++p) {
-          holders |= one.outline[p].contains(place.x, place.y) ? 1U << p : 0U;
-          deepest = std::max(deepest, one.outline[p].depth(place.x, place.y));
+        LabelModel::Step deepest = LabelModel::kOutside;
+        for (int p = 0; p < one.hypothesis.primitives.size(); ++p) {
+          const LabelModel::Step kept = one.rows.row(p)[i];
+          const Primitive& primitive = one.hypothesis.primitives[p];
+          // Single precision may take it for the step beside it, once in some thousand.
+          const LabelModel::Step step = labels.step(primitive.depth(place.x, place.y));
+          ASSERT_LE(std::abs(kept - step), one.hypothesis.noisy ? 1 : 0);
+          ASSERT_TRUE(one.hypothesis.noisy || LabelModel::inside(kept) == primitive.contains(place.x, place.y));
+          beside += kept != step ? 1 : 0;
+          deepest = std::max(deepest, kept);
         }
-        ASSERT_EQ(one.depths.holders(i, one.outline.size()), holders);
-        const LabelModel::Step step =
-            !one.blurred ? (holders != 0 ? LabelModel::kInside : LabelModel::kOutside) : labels.step(deepest);
-        // Single precision may take it for the step beside it, once in some thousand.
-        const LabelModel::Step kept = one.depths.deepest()[i];
-        ASSERT_LE(std::abs(kept - step), one.blurred ? 1 : 0);
-        beside += kept != step ? 1 : 0;
-        loss += labels.loss(kept, touches[i].on);
+        loss += labels.loss(deepest, touches[i].on);
       }
-      // Summed up over some hundred moves.
-      ASSERT_NEAR(one.labels, loss, 1e-9);
-      for (const Piece& piece : one.outline) {
-        ASSERT_EQ(piece.density, prior.density(piece));
-        ASSERT_TRUE(touched(piece, touches));
+      ASSERT_EQ(one.loss, loss) << "whole numbers do not drift";
+      for (const Primitive& primitive : one.hypothesis.primitives) {
+        ASSERT_EQ(primitive.density, prior.density(primitive));
+        ASSERT_TRUE(touched(primitive, touches));
       }
-      pieces += one.outline.size();
+      primitives += one.hypothesis.primitives.size();
     }
-    EXPECT_LE(beside, 7) << "of 7500";
-    EXPECT_DOUBLE_EQ(belief.mean_pieces(), pieces / 300.0);
+    EXPECT_LE(beside, 40) << "of some 20000";
+    EXPECT_DOUBLE_EQ(belief.mean_primitives(), primitives / 300.0);
   }
 }
 
-/// Whether two pieces have a place in common, but for a hole: as is seen on a lattice.
-bool meet(const Piece& one, const Piece& other, const Points& places) {
+/// Whether two primitives have a place in common, but for a hole: as is seen on a lattice.
+bool meet(const Primitive& one, const Primitive& other, const Points& places) {
   const double distance = std::hypot(one.form.x - other.form.x, one.form.y - other.form.y);
-  if (distance > one.form.radius() + other.form.radius()) return false;
+  if (distance > radius_of(one.form) + radius_of(other.form)) return false;
   for (Eigen::Index i = 0; i < places.rows(); ++i) {
     if (one.form.contains(places(i, 0), places(i, 1)) && other.form.contains(places(i, 0), places(i, 1))) return true;
   }
   return false;
 }
 
-TEST(Particles, ThinkAsOftenThatSomethingIsLeftAsTheDrawsDoThatAreWeighedByAllLabels) {
+TEST(Sampler, ThinkAsOftenThatSomethingIsLeftAsTheDrawsDoThatAreWeighedByAllLabels) {
   constexpr double kWrong = 0.05;
   constexpr double kLong = 0.04;
   EXPECT_EQ(belief_of(10, 0, kWrong, 11).undiscovered_probability(1.0), 0.0) << "nothing is a metre long";
@@ -296,13 +327,13 @@ TEST(Particles, ThinkAsOftenThatSomethingIsLeftAsTheDrawsDoThatAreWeighedByAllLa
     const int runs = test::brief() ? 3 : 8;
     double found = 0.0;
     for (int run = 0; run < runs; ++run) {
-      Particles belief = belief_of(500, 40, kWrong, 20 + static_cast<std::uint64_t>(run));
+      Sampler belief = belief_of(500, 40, kWrong, 20 + static_cast<std::uint64_t>(run));
       for (const Touch& touch : touches) belief.add(touch);
       found += belief.undiscovered_probability(kLong) / runs;
     }
-    OutlinePrior::Settings settings;
+    Prior::Settings settings;
     settings.area = {0.23, 0.23};
-    const OutlinePrior prior(settings);
+    const Prior prior(settings);
     Random random(12, "particles test");
     const Points fine = test::lattice(47, 47);
     double evidence = 0.0;
@@ -311,28 +342,30 @@ TEST(Particles, ThinkAsOftenThatSomethingIsLeftAsTheDrawsDoThatAreWeighedByAllLa
     double before = 0.0;
     const int draws = test::brief() ? 20000 : 80000;
     for (int k = 0; k < draws; ++k) {
-      const Outline outline = prior.draw(random);
+      const Hypothesis hypothesis = prior.draw(random);
       double weight = 1.0;
       for (const Touch& touch : touches)
-        weight *= outline.contains(touch.place.x, touch.place.y) == touch.on ? 1.0 - kWrong : kWrong;
-      const auto is_long = [](const Piece& piece) { return 2.0 * piece.form.a >= kLong; };
-      before += std::any_of(outline.begin(), outline.end(), is_long) ? 1.0 / draws : 0.0;
+        weight *= hypothesis.contains(touch.place.x, touch.place.y) == touch.on ? 1.0 - kWrong : kWrong;
+      const auto is_long = [](const Primitive& primitive) { return 2.0 * primitive.form.a >= kLong; };
+      before += std::any_of(hypothesis.primitives.begin(), hypothesis.primitives.end(), is_long) ? 1.0 / draws : 0.0;
       // Of those with little weight some are taken by lot and weigh more.
       constexpr double kLittle = 0.1;
       if (weight < kLittle && random.uniform() >= weight / kLittle) continue;
       weight = std::max(weight, kLittle);
-      const auto [seen, unseen] = parts_of(outline, touches);
-      const bool any = std::any_of(unseen.begin(), unseen.end(), [&, &known = seen](const Piece& piece) {
-        return is_long(piece) &&
-               std::none_of(known.begin(), known.end(), [&](const Piece& one) { return meet(one, piece, fine); });
-      });
+      const auto [seen, undiscovered] = parts_of(hypothesis, touches);
+      const bool any = std::any_of(
+          undiscovered.primitives.begin(), undiscovered.primitives.end(),
+          [&, &known = seen](const Primitive& primitive) {
+            return is_long(primitive) && std::none_of(known.primitives.begin(), known.primitives.end(),
+                                                      [&](const Primitive& one) { return meet(one, primitive, fine); });
+          });
       evidence += weight;
       squares += weight * weight;
       left += any ? weight : 0.0;
     }
     left /= evidence;
-    // What is left is counted by the touches of the desk for each piece, not for all together: that comes to less than
-    // a hundredth, as does what is not seen on the lattice.
+    // What is left is counted by the touches of the desk for each primitive, not for all together: that comes to less
+    // than a hundredth, as does what is not seen on the lattice.
     EXPECT_NEAR(found, left, 5.0 * std::sqrt(left * (1.0 - left) * squares) / evidence + 0.02);
     EXPECT_LT(left, before - 0.2) << "the labels say something";
   }

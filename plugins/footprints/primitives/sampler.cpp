@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+#include "sampler.hpp"
+
+#include <palpate/math.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace palpate::footprints {
+namespace {
+
+// Shares of the moves.
+constexpr double kNoiseMoves = 0.02;
+constexpr double kPushMoves = 0.10;
+// Primitives far from the tap count in the number of moves up to this many.
+constexpr double kMostFar = 3.0;
+// Taps after a find with twice as many particles.
+constexpr int kDoubledTaps = 10;
+
+/// Primitives that are this close are exchanged together, metres.
+constexpr double kTogether = 0.01;
+
+bool close(const Form& one, const Form& other) {
+  Form wide = one;
+  wide.a += kTogether;
+  wide.b += kTogether;
+  return overlap(wide, other);
+}
+
+void copy_row(const TapRows& from, int row, TapRows& to, int to_row) {
+  std::copy_n(from.row(row), from.length(), to.row(to_row));
+}
+
+}  // namespace
+
+bool exchange(const Particle& from, const Taps& taps, int most, Particle& to) {
+  if (from.hypothesis.push || to.hypothesis.push || from.hypothesis.noisy != to.hypothesis.noisy) return false;
+  const std::array<const Particle*, 2> sides{&from, &to};
+  struct Member {
+    std::size_t side;
+    int index;
+  };
+  std::vector<Member> rest, exchanged;
+  const Target latest = taps[taps.size() - 1];
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (int i = 0; i < sides[side]->hypothesis.primitives.size(); ++i)
+      (sides[side]->hypothesis.primitives[i].near(latest) ? exchanged : rest).push_back({side, i});
+  }
+  const auto form = [&](const Member& one) { return sides[one.side]->hypothesis.primitives[one.index].form; };
+  const auto row = [&](const Member& one) { return sides[one.side]->rows.row(one.index); };
+  for (std::size_t done = 0; done < exchanged.size(); ++done) {
+    const Member one = exchanged[done];
+    const auto stays = [&](const Member& other) {
+      return !close(form(one), form(other)) && !share_object(row(one), row(other), taps);
+    };
+    const auto joining = std::stable_partition(rest.begin(), rest.end(), stays);
+    exchanged.insert(exchanged.end(), joining, rest.end());
+    rest.erase(joining, rest.end());
+  }
+  const auto of_side = [](std::size_t side) { return [side](const Member& one) { return one.side == side; }; };
+  const auto staying = std::count_if(rest.begin(), rest.end(), of_side(1));
+  const auto coming = std::count_if(exchanged.begin(), exchanged.end(), of_side(0));
+  if (staying == 0 || staying + coming > most) return false;
+  int count = 0;
+  for (const Member& one : rest) {
+    if (one.side != 1) continue;
+    to.hypothesis.primitives[count] = to.hypothesis.primitives[one.index];
+    copy_row(to.rows, one.index, to.rows, count++);
+  }
+  while (to.hypothesis.primitives.size() > count) to.hypothesis.primitives.remove(to.hypothesis.primitives.size() - 1);
+  for (const Member& one : exchanged) {
+    if (one.side != 0) continue;
+    to.hypothesis.primitives.add(from.hypothesis.primitives[one.index]);
+    copy_row(from.rows, one.index, to.rows, count++);
+  }
+  return true;
+}
+
+Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random random)
+    : prior_(prior),
+      settings_(settings),
+      random_(random),
+      labels_{LabelModel(settings.label_error, settings.false_contact, 0.0),
+              LabelModel(settings.label_error, settings.false_contact, settings.position_noise)},
+      undiscovered_(prior_, random_) {
+  particles_.resize(static_cast<std::size_t>(settings.particles));
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    particles_[i].hypothesis.noisy = settings.position_noise > 0.0 && i % 2 == 1;
+}
+
+RowList Sampler::rows_of(const Particle& particle) {
+  RowList out;
+  for (int i = 0; i < particle.hypothesis.primitives.size(); ++i) out.add(particle.rows.row(i));
+  return out;
+}
+
+LogUnits Sampler::loss(const RowList& rows, const LabelModel& labels) {
+  std::vector<LabelModel::Step>& steps = scratch_.steps;
+  steps.resize(static_cast<std::size_t>(taps_.length()));
+  deepest(rows, taps_.length(), steps.data());
+  return labels.loss(steps.data(), taps_.labels(), taps_.length());
+}
+
+LogUnits Sampler::evidence(const RowList& rows) {
+  if (!settings_.heights) return 0;
+  std::vector<std::uint16_t>& holders = scratch_.holders;
+  holders.clear();
+  for (int tap = 0; tap < taps_.size(); ++tap) {
+    if (!taps_.on(tap)) continue;
+    unsigned bits = 0;
+    for (int i = 0; i < rows.size(); ++i) bits |= LabelModel::inside(rows[i][tap]) ? 1U << i : 0U;
+    holders.push_back(static_cast<std::uint16_t>(bits));
+  }
+  return heights_.evidence(holders, rows.size());
+}
+
+void Sampler::weigh(Particle& particle) {
+  const RowList rows = rows_of(particle);
+  particle.loss = loss(rows, labels(particle.hypothesis.noisy));
+  particle.heights = evidence(rows);
+}
+
+LabelModel::Step Sampler::add_latest(Particle& particle) const {
+  const LabelModel& labels = this->labels(particle.hypothesis.noisy);
+  const int tap = taps_.size() - 1;
+  const Target place = taps_[tap];
+  particle.rows.grow(taps_.length());
+  LabelModel::Step out = LabelModel::kOutside;
+  for (int i = 0; i < particle.hypothesis.primitives.size(); ++i) {
+    const Primitive& one = particle.hypothesis.primitives[i];
+    LabelModel::Step& step = particle.rows.row(i)[tap];
+    step = one.near(place, labels.reach()) ? labels.step(one.depth(place.x, place.y)) : LabelModel::kOutside;
+    out = std::max(out, step);
+  }
+  return out;
+}
+
+// A tap finds one new primitive at most, and covers it fully: an undiscovered primitive whose noisy rim is near the tap
+// is not found. Later moves correct both.
+double Sampler::add(const Touch& touch) {
+  taps_.add(touch);
+  prepared_ = false;
+  if (touch.on) heights_.add(touch);
+  const Undiscovered::Covering covering = undiscovered_.covering(touch.place);
+  const double p_new = 1.0 - math::exp(-covering.rate());
+  std::vector<double> weights;
+  weights.reserve(particles_.size());
+  double sum = 0.0;
+  double sum_of_squares = 0.0;
+  double p_label = 0.0;
+  for (Particle& particle : particles_) {
+    const LabelModel& labels = this->labels(particle.hypothesis.noisy);
+    const LabelModel::Step step = add_latest(particle);
+    particle.loss += labels.loss(step, touch.on);
+    double weight =
+        (1.0 - p_new) * labels.probability(step, touch.on) + p_new * labels.probability(LabelModel::kInside, touch.on);
+    p_label += weight;
+    if (touch.on) {
+      const LogUnits heights = evidence(rows_of(particle));
+      weight *= math::exp(from_units(heights - particle.heights));
+      particle.heights = heights;
+    }
+    weights.push_back(weight);
+    sum += weight;
+    sum_of_squares += weight * weight;
+  }
+  const int before = size();
+  const double p_found = before * p_new * labels(false).probability(LabelModel::kInside, true);
+  if (touch.on && 2.0 * p_found > p_label) doubled_until_ = taps_.size() + kDoubledTaps;
+  const bool doubled = taps_.size() < doubled_until_;
+  resample(weights, sum, static_cast<std::size_t>(doubled ? 2 * settings_.particles : settings_.particles));
+  if (touch.on && p_new > 0.0) find(covering, p_new);
+  undiscovered_.add(touch, labels(settings_.position_noise > 0.0));
+  const int times = moves(sum * sum / (sum_of_squares * before));
+  for (Particle& particle : particles_) move(particle, times);
+  constexpr std::size_t kCompared = 8;
+  std::vector<const Hypothesis*> known;
+  for (std::size_t k = 0; k < kCompared; ++k)
+    known.push_back(&particles_[k * particles_.size() / kCompared].hypothesis);
+  undiscovered_.compare(known);
+  return p_label / before;
+}
+
+/// Adds the undiscovered primitive that the tap may have found to each particle, with its posterior probability.
+void Sampler::find(const Undiscovered::Covering& covering, double p_new) {
+  const int tap = taps_.size() - 1;
+  Taps seen;
+  for (Particle& particle : particles_) {
+    const int count = particle.hypothesis.primitives.size();
+    if (count >= prior_.settings().most) continue;
+    const LabelModel& labels = this->labels(particle.hypothesis.noisy);
+    LabelModel::Step step = LabelModel::kOutside;
+    for (int i = 0; i < count; ++i) step = std::max(step, particle.rows.row(i)[tap]);
+    const double found = p_new * labels.probability(LabelModel::kInside, true);
+    const double known = (1.0 - p_new) * labels.probability(step, true);
+    if (random_.uniform() * (found + known) >= found) continue;
+    const Primitive& primitive = particle.hypothesis.primitives.add(covering.draw(random_));
+    seen.see(taps_, particle.hypothesis.push);
+    seen.steps(primitive, labels, particle.rows.row(count));
+    weigh(particle);
+  }
+}
+
+/// Systematic resampling: each particle comes as often as its weight says, up to rounding, by a single random number.
+/// The first copy stays where it is; others replace particles that are not drawn, or exchange primitives with them.
+void Sampler::resample(const std::vector<double>& weights, double sum, std::size_t count) {
+  const double step = sum / static_cast<double>(count);
+  const double first = random_.uniform() * step;
+  particles_.resize(std::max(count, weights.size()));
+  std::vector<int> copies(particles_.size(), 0);
+  std::size_t from = 0;
+  double cumulative = weights.front();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double wanted = first + static_cast<double>(i) * step;
+    while (cumulative < wanted && from + 1 < weights.size()) cumulative += weights[++from];
+    ++copies[from];
+  }
+  // Particles that are not drawn, by whether they are noisy, the first ones last.
+  std::array<std::vector<std::size_t>, 2> free;
+  for (std::size_t i = particles_.size(); i-- > 0;) {
+    if (copies[i] == 0) free[particles_[i].hypothesis.noisy ? 1 : 0].push_back(i);
+  }
+  const auto next_free = [&](const Particle& copied) -> Particle& {
+    const std::size_t noisy = copied.hypothesis.noisy ? 1 : 0;
+    std::vector<std::size_t>& chosen = free[free[noisy].empty() ? 1 - noisy : noisy];
+    const std::size_t index = chosen.back();
+    chosen.pop_back();
+    return particles_[index];
+  };
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    for (int more = copies[i]; more > 1; --more) {
+      Particle& other = next_free(particles_[i]);
+      if (exchange(particles_[i], taps_, prior_.settings().most, other)) {
+        weigh(other);
+      } else {
+        other = particles_[i];
+      }
+    }
+  }
+  // If there are fewer particles than before, the last ones move to the front.
+  for (std::size_t i = count; i < particles_.size(); ++i) {
+    if (copies[i] > 0) next_free(particles_[i]) = std::move(particles_[i]);
+  }
+  particles_.resize(count);
+}
+
+/// The number of moves of each particle after a tap that left this effective share of the particles. It depends on the
+/// states that are moved, which biases the chain by O(1 / particles).
+int Sampler::moves(double effective_share) const {
+  const Target latest = taps_[taps_.size() - 1];
+  double sum = 0.0;
+  for (const Particle& particle : particles_) {
+    double far = 0.0;
+    for (const Primitive& one : particle.hypothesis.primitives)
+      (one.near(latest) ? sum : far) += one.hollow ? 2.0 : 1.0;
+    sum += std::min(far, kMostFar);
+  }
+  const double each = settings_.moves + settings_.moves_apart * (1.0 / effective_share - 1.0);
+  return std::min(settings_.most_moves, static_cast<int>(std::ceil(std::max(1.0, sum / size()) * each)));
+}
+
+void Sampler::move(Particle& particle, int times) {
+  Proposal& proposal = scratch_.proposal;
+  Taps& seen = scratch_.seen;
+  Taps& pushed = scratch_.pushed;
+  const double noise = settings_.position_noise > 0.0 ? kNoiseMoves : 0.0;
+  const double push = settings_.push_probability > 0.0 && taps_.size() > 1 ? kPushMoves : 0.0;
+  seen.see(taps_, particle.hypothesis.push);
+  for (int i = 0; i < times; ++i) {
+    const double which = random_.uniform();
+    if (which < noise) {
+      propose_noise(proposal, particle.hypothesis);
+    } else if (which < noise + push) {
+      propose_push(proposal, particle.hypothesis, prior_, taps_.size(), settings_.push_probability, random_);
+    } else {
+      propose(proposal, particle.hypothesis, prior_, seen, (which - noise - push) / (1.0 - noise - push), random_);
+    }
+    ++count_.tried;
+    if (!(proposal.ratio > 0.0)) continue;
+    const bool pushes = proposal.kind == Proposal::Kind::push;
+    if (pushes) pushed.see(taps_, proposal.push);
+    if (!accept(particle, proposal, pushes ? pushed : seen)) continue;
+    ++count_.accepted;
+    if (pushes) std::swap(seen, pushed);
+  }
+}
+
+/// Accepts or rejects a proposal by Metropolis and Hastings in two steps: first by the labels, then by the heights,
+/// which take longer (delayed acceptance: Christen and Fox 2005). `taps`: as seen after the push of the proposal.
+bool Sampler::accept(Particle& particle, const Proposal& proposal, const Taps& taps) {
+  TapRows& added = scratch_.added;
+  const double ratio = proposal.ratio / (1.0 - random_.uniform());
+  if (particle.loss == 0 && ratio < 1.0) return false;  // no loss is negative; most moves need no logarithm
+  const auto most = particle.loss + static_cast<LogUnits>(std::floor(math::log(ratio) * 0x1p20));
+  if (most < 0) return false;
+  const LabelModel& labels = this->labels(proposal.noisy);
+  added.grow(taps.length());
+  RowList added_rows;
+  for (int i = 0; i < proposal.added.size(); ++i) {
+    taps.steps(proposal.added[i], labels, added.row(i));
+    added_rows.add(added.row(i));
+  }
+  RowList rows = rows_of(particle);
+  proposal.apply(added_rows, rows);
+  const LogUnits loss = this->loss(rows, labels);
+  if (loss > most) return false;
+  // A primitive without an object tap would be an undiscovered one.
+  for (const LabelModel::Step* row : added_rows) {
+    if (!holds_object(row, taps)) return false;
+  }
+  bool same_objects = proposal.added.size() == proposal.removed.size();
+  for (int i = 0; i < proposal.added.size() && same_objects; ++i)
+    same_objects = !hold_different_objects(added_rows[i], particle.rows.row(proposal.removed[i]), taps);
+  LogUnits heights = particle.heights;
+  if (!same_objects) {
+    heights = evidence(rows);
+    if (heights < particle.heights && math::log(1.0 - random_.uniform()) > from_units(heights - particle.heights))
+      return false;
+  }
+  particle.loss = loss;
+  particle.heights = heights;
+  particle.rows.set(rows);
+  proposal.apply(proposal.added, particle.hypothesis.primitives);
+  particle.hypothesis.push = proposal.push;
+  particle.hypothesis.noisy = proposal.noisy;
+  return true;
+}
+
+}  // namespace palpate::footprints

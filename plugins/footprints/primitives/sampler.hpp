@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// The posterior distribution of hypotheses given the taps, as equally probable particles. After each tap they are drawn
+// again by their likelihood and moved by a Markov chain (resample-move: Gilks and Berzuini 2001).
+#pragma once
+
+#include "proposals.hpp"
+#include "tap_model.hpp"
+#include "undiscovered.hpp"
+
+#include <palpate/footprint.hpp>
+#include <palpate/random.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace palpate::footprints {
+
+struct SamplerSettings {
+  /// Number of particles; doubled for ten taps after a find.
+  int particles = 384;
+  double label_error = 0.01;    ///< probability that a tap of an object has the label of the desk
+  double false_contact = 0.01;  ///< probability that a tap of the desk has the label of an object
+  /// Standard deviation of the positions of taps along x and y, metres. If above 0, half of the hypotheses have noisy
+  /// positions before the first tap, and half have exact ones.
+  double position_noise = 0.0;
+  /// Prior weight of a push between two taps, relative to none. A hypothesis has one push at most.
+  double push_probability = 0.0;
+  bool heights = true;  ///< whether heights are part of the likelihood
+  /// Moves per primitive and hole after each tap, and how many more per unit of N / ESS - 1 (effective sample size:
+  /// Kong, Liu and Wong 1994): an improbable label leaves many copies of few particles, which have to move apart.
+  double moves = 2.5;
+  double moves_apart = 7.5;
+  int most_moves = 200;  ///< per particle and tap
+};
+
+/// A hypothesis, and its likelihood: sums over all taps.
+struct Particle {
+  Hypothesis hypothesis;
+  TapRows rows;          ///< of its primitives, with taps as seen after its push
+  LogUnits loss = 0;     ///< of labels
+  LogUnits heights = 0;  ///< evidence of heights
+};
+
+/// Replaces those primitives of `to` that the latest tap says something about by those of `from`: primitives near the
+/// tap, and primitives that are close to one of these, or have an object tap in common, in either hypothesis. The
+/// others stay, because a tap of one object says nothing about another (local particle filters: Rebeschini and van
+/// Handel 2015). Otherwise few distinct hypotheses of one object would be left while another one is tapped. The
+/// likelihood of `to` is left as it was. Returns false, and changes nothing, if no primitive would stay, if there would
+/// be more than `most`, or if the hypotheses see taps differently. `taps`: as made.
+///
+/// An approximation: the weights of resampling are not corrected for the primitives that stay. The moves that follow
+/// keep the error below what the tests of the posterior allow, 0.01.
+bool exchange(const Particle& from, const Taps& taps, int most, Particle& to);
+
+/// Updates: sampler.cpp. Queries: sampler_queries.cpp. Positions are M x 2 metres.
+class Sampler {
+ public:
+  /// Throws Error as Prior does.
+  Sampler(const Prior& prior, const SamplerSettings& settings, Random random);
+
+  /// Updates the particles by a tap. Returns the probability of its label before the tap.
+  double add(const Touch& touch);
+
+  /// The probability that each position is on an object.
+  void probability(const PointsView& positions, VectorOut out);
+  /// Draws `count` hypotheses, a multiple of 64, from the particles and the undiscovered primitives that overlap them.
+  /// The particles are taken evenly, from a random one on.
+  void sample(const PointsView& positions, int count, OutlineSample& out);
+  /// The probability that the label of each tap is an error. A label that noise of the position explains is none.
+  void label_errors(VectorOut out) const;
+  /// Replaces the positions of all taps by where they would be made now, if over half of the particles have a push
+  /// since. `positions` holds where they were made.
+  void current_positions(Points& positions) const;
+  /// The probability that an object at least `length` long, metres, is apart from all that was touched.
+  double undiscovered_probability(double length) const;
+
+  /// The mean number of contradicted labels per particle, and of primitives.
+  double mean_label_errors() const;
+  double mean_primitives() const;
+  /// Share of particles with a push, and their mean number of taps before it and mean shift of the first primitive.
+  struct MeanPush {
+    double share = 0.0;
+    double before = 0.0;
+    double shift = 0.0;  ///< metres
+  };
+  MeanPush mean_push() const;
+  /// Share of accepted moves.
+  double acceptance_rate() const {
+    return count_.tried > 0 ? static_cast<double>(count_.accepted) / static_cast<double>(count_.tried) : 0.0;
+  }
+
+  int size() const { return static_cast<int>(particles_.size()); }
+  const std::vector<Particle>& particles() const { return particles_; }
+
+ private:
+  const LabelModel& labels(bool noisy) const { return labels_[noisy ? 1 : 0]; }
+  LogUnits loss(const RowList& rows, const LabelModel& labels);
+  LogUnits evidence(const RowList& rows);
+  static RowList rows_of(const Particle& particle);
+  void weigh(Particle& particle);
+  /// The step of the latest tap in the union of the primitives; adds it to their rows.
+  LabelModel::Step add_latest(Particle& particle) const;
+  void resample(const std::vector<double>& weights, double sum, std::size_t count);
+  void find(const Undiscovered::Covering& covering, double p_new);
+  int moves(double effective_share) const;
+  void move(Particle& particle, int times);
+  bool accept(Particle& particle, const Proposal& proposal, const Taps& taps);
+  /// Sets spans_ for these positions.
+  void prepare(const PointsView& positions);
+  /// Calls visit(tap, labels, step, on) for each tap of each particle with a loss.
+  template <class Visit>
+  void for_each_label(const Visit& visit) const;
+
+  Prior prior_;
+  SamplerSettings settings_;
+  Random random_;
+  std::array<LabelModel, 2> labels_;  ///< exact and noisy
+  HeightModel heights_;
+  Undiscovered undiscovered_;
+  Taps taps_;  ///< as made
+  std::vector<Particle> particles_;
+  int doubled_until_ = 0;  ///< number of taps until which there are twice as many particles
+  struct {
+    long tried = 0, accepted = 0;
+  } count_;  ///< of moves
+  /// What each particle covers of the positions of the latest query, unless there was a tap since.
+  std::vector<Grid::Spans> spans_;
+  bool prepared_ = false;
+
+  /// What moves work with, kept to save allocations.
+  struct {
+    Proposal proposal;
+    Taps seen, pushed;
+    TapRows added;
+    std::vector<LabelModel::Step> steps;
+    std::vector<std::uint16_t> holders;
+  } scratch_;
+};
+
+}  // namespace palpate::footprints

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "sampler.hpp"
+
+#include <palpate/math.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace palpate::footprints {
+double Sampler::mean_primitives() const {
+  double sum = 0.0;
+  for (const Particle& particle : particles_) sum += particle.hypothesis.primitives.size();
+  return sum / size();
+}
+
+template <class Visit>
+void Sampler::for_each_label(const Visit& visit) const {
+  std::vector<LabelModel::Step> steps(static_cast<std::size_t>(taps_.length()));
+  for (const Particle& particle : particles_) {
+    if (particle.loss == 0) continue;
+    deepest(rows_of(particle), taps_.length(), steps.data());
+    const LabelModel& labels = this->labels(particle.hypothesis.noisy);
+    for (int i = 0; i < taps_.size(); ++i) visit(i, labels, steps[static_cast<std::size_t>(i)], taps_.on(i));
+  }
+}
+
+double Sampler::mean_label_errors() const {
+  double sum = 0.0;
+  for_each_label([&](int, const LabelModel& labels, LabelModel::Step step, bool on) {
+    sum += labels.contradicts(step, on) ? 1.0 : 0.0;
+  });
+  return sum / size();
+}
+
+void Sampler::label_errors(VectorOut out) const {
+  out.setZero();
+  for_each_label(
+      [&](int tap, const LabelModel& labels, LabelModel::Step step, bool on) { out(tap) += labels.wrong(step, on); });
+  out /= size();
+}
+
+double Sampler::undiscovered_probability(double length) const {
+  return 1.0 - math::exp(-undiscovered_.expected_apart(length));
+}
+
+void Sampler::current_positions(Points& positions) const {
+  Points sums = Points::Zero(positions.rows(), 2);
+  std::vector<int> counts(static_cast<std::size_t>(taps_.size()), 0);
+  for (const Particle& particle : particles_) {
+    const Push& push = particle.hypothesis.push;
+    for (int i = 0; i < push.before; ++i) {
+      const Target now = push.now({positions(i, 0), positions(i, 1)});
+      sums.row(i) += Eigen::RowVector2d(now.x, now.y);
+      ++counts[static_cast<std::size_t>(i)];
+    }
+  }
+  for (int i = 0; i < taps_.size(); ++i) {
+    const int count = counts[static_cast<std::size_t>(i)];
+    if (2 * count > size()) positions.row(i) = sums.row(i) / count;
+  }
+}
+
+Sampler::MeanPush Sampler::mean_push() const {
+  MeanPush out;
+  for (const Particle& particle : particles_) {
+    const Push& push = particle.hypothesis.push;
+    if (!push) continue;
+    Target now;
+    if (particle.hypothesis.primitives.size() > 0) {
+      const Form& first = particle.hypothesis.primitives[0].form;
+      now = {first.x, first.y};
+    }
+    const Target then = push.then(now);
+    out.share += 1.0;
+    out.before += push.before;
+    out.shift += math::hypot(now.x - then.x, now.y - then.y);
+  }
+  if (!(out.share > 0.0)) return out;
+  out.before /= out.share;
+  out.shift /= out.share;
+  out.share /= size();
+  return out;
+}
+
+void Sampler::prepare(const PointsView& positions) {
+  const bool others = undiscovered_.prepare(positions);
+  if (!others && prepared_) return;
+  spans_.resize(particles_.size());
+  for (std::size_t i = 0; i < spans_.size(); ++i) {
+    spans_[i].clear();
+    undiscovered_.grid().add_spans(particles_[i].hypothesis.primitives, spans_[i]);
+  }
+  prepared_ = true;
+}
+
+void Sampler::probability(const PointsView& positions, VectorOut out) {
+  prepare(positions);
+  GridSums counts(undiscovered_.grid().size());
+  for (const Grid::Spans& spans : spans_) counts.add(spans, 1);
+  counts.values(1.0 / size(), out);
+  Eigen::VectorXd rates(out.size());
+  undiscovered_.rates(rates);
+  rates = -rates;
+  math::exp(rates.data(), rates.size(), rates.data());  // the probability that nothing undiscovered is there
+  out = (1.0 - (1.0 - out.array()) * rates.array()).cwiseMax(0.0).cwiseMin(1.0);
+}
+
+void Sampler::sample(const PointsView& positions, int count, OutlineSample& out) {
+  prepare(positions);
+  Random random(static_cast<std::uint64_t>(taps_.size()), "sample");
+  const double first = random.uniform();
+  const auto drawn = [&](int k) { return std::min(size() - 1, static_cast<int>((k + first) * size() / count)); };
+  out.count = count;
+  out.holds.setZero(count / 64, positions.rows());
+  for (int k = 0; k < count; ++k) {
+    // A bit changes where a span begins and where it ends.
+    const std::uint64_t bit = std::uint64_t{1} << (k % 64);
+    for (const Grid::Span& span : spans_[static_cast<std::size_t>(drawn(k))]) {
+      out.holds(k / 64, span.begin) ^= bit;
+      if (span.end < positions.rows()) out.holds(k / 64, span.end) ^= bit;
+    }
+  }
+  for (Eigen::Index i = 1; i < positions.rows(); ++i) {
+    for (Eigen::Index word = 0; word < out.holds.rows(); ++word) out.holds(word, i) ^= out.holds(word, i - 1);
+  }
+  out.to_find.resize(positions.rows());
+  undiscovered_.expected_extent(out.to_find);
+  // Undiscovered primitives that overlap no primitive are other objects, which `to_find` counts.
+  Grid::Spans spans;
+  for (const Undiscovered::Member& one : undiscovered_.draw(count, random)) {
+    const ShortList<Primitive>& known = particles_[static_cast<std::size_t>(drawn(one.set))].hypothesis.primitives;
+    const auto overlaps = [&](const Primitive& other) { return overlap(other.form, one.primitive->form); };
+    if (std::none_of(known.begin(), known.end(), overlaps)) continue;
+    spans.clear();
+    undiscovered_.grid().add_spans(*one.primitive, spans);
+    for (const Grid::Span& span : spans) {
+      for (int i = span.begin; i < span.end; ++i) out.holds(one.set / 64, i) |= std::uint64_t{1} << (one.set % 64);
+    }
+  }
+}
+
+}  // namespace palpate::footprints
