@@ -27,7 +27,7 @@ plugins 33 161
 plugins/acquisitions 799 89
 plugins/backends 5791 528
 plugins/fitting 953 0
-plugins/footprints 3416 0
+plugins/footprints 2425 0
 plugins/kernels 547 0
 plugins/programs 520 0
 plugins/shapes 2026 0
@@ -48,7 +48,7 @@ tests/slurm 483 0
 tests/stability 2435 0
 tests/support 2211 0
 tests/system 9088 0
-tests/unit 16982 0
+tests/unit 17104 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution
 tests/ur_rtde 0 230
 tests/versions 50 17
 '

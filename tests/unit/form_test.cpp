@@ -132,9 +132,9 @@ TEST(Grid, HasSpansOfThePositionsInAPrimitive) {
 TEST(Grid, KnowsItsPositionsAgain) {
   const Points positions = test::lattice(5, 4);
   const Grid grid(positions);
-  EXPECT_TRUE(grid.is(positions));
-  EXPECT_FALSE(grid.is(test::lattice(4, 5)));
-  EXPECT_FALSE(grid.is(test::scattered(20)));
+  EXPECT_TRUE(grid.matches(positions));
+  EXPECT_FALSE(grid.matches(test::lattice(4, 5)));
+  EXPECT_FALSE(grid.matches(test::scattered(20)));
 }
 
 /// The columns of a row of a grid of millimetres that a form covers: the first one, and the first one beyond.

@@ -4,6 +4,7 @@
 #include "primitives/sampler.hpp"
 
 #include "hypothesis_bench.hpp"
+#include "support/instruction_sets.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
@@ -241,6 +242,30 @@ TEST(Sampler, OfOneSeedAreTheSameToTheLastBitAndOfAnotherAreOthers) {
   const std::vector<Hypothesis> one = after(7);
   EXPECT_TRUE(std::equal(one.begin(), one.end(), after(7).begin(), equal_hypotheses));
   EXPECT_FALSE(std::equal(one.begin(), one.end(), after(8).begin(), equal_hypotheses));
+}
+
+TEST(Sampler, OfOneSeedAreTheSameToTheLastBitOnEveryInstructionSet) {
+  const Points positions = test::lattice(31, 29);
+  const auto after = [&](Instructions set) {
+    const test::OnInstructions on(set);
+    Prior::Settings settings;
+    settings.area = {0.23, 0.23};
+    SamplerSettings how;
+    how.position_noise = 0.003;
+    how.push_probability = 0.05;
+    Sampler belief(Prior(settings), how, Random(8, "sampler test: instructions"));
+    for (const Touch& touch : test::disc_touches(12)) belief.add(touch);
+    std::pair<std::vector<Hypothesis>, OutlineSample> out(hypotheses(belief), {});
+    belief.sample(positions, 256, out.second);
+    return out;
+  };
+  const auto [some, sample] = after(Instructions::baseline);
+  for (const Instructions set : math::instruction_sets()) {
+    const auto [others, other_sample] = after(set);
+    EXPECT_TRUE(std::equal(some.begin(), some.end(), others.begin(), others.end(), equal_hypotheses));
+    EXPECT_EQ(sample.holds, other_sample.holds);
+    EXPECT_EQ(sample.to_find, other_sample.to_find);
+  }
 }
 
 TEST(Sampler, AgreeWithLabelsThatAnHypothesisExplains) {

@@ -238,10 +238,9 @@ void Taps::see(const Taps& made, const Push& push) {
   }
 }
 
-void Taps::steps(const Primitive& primitive, const LabelModel& labels, Step* row, int from) const {
-  static const auto loop = &PALPATE_DISPATCH(steps);
-  loop(primitive, static_cast<float>(labels.steps_per_metre()), x_.data() + from, y_.data() + from, length() - from,
-       row + from);
+void Taps::steps(const Primitive& primitive, const LabelModel& labels, Step* row) const {
+  PALPATE_DISPATCH(steps)
+  (primitive, static_cast<float>(labels.steps_per_metre()), x_.data(), y_.data(), length(), row);
 }
 
 void TapRows::grow(int length) {
@@ -259,7 +258,7 @@ void TapRows::set(const RowList& rows) {
   }
 }
 
-void deepest(const RowList& rows, int length, LabelModel::Step* out) {
+void find_deepest(const RowList& rows, int length, LabelModel::Step* out) {
   std::fill_n(out, length, LabelModel::kOutside);
   for (const LabelModel::Step* row : rows) {
     for (int i = 0; i < length; ++i) out[i] = std::max(out[i], row[i]);
@@ -298,35 +297,38 @@ bool Grid::has_equal_steps() const {
   return true;
 }
 
-bool Grid::is(const PointsView& positions) const {
+bool Grid::matches(const PointsView& positions) const {
   return positions.rows() == positions_.rows() && positions == positions_;
 }
 
 void Grid::add_spans(const Primitive& primitive, Spans& out) const {
-  const auto add = [&out](int begin, int end) {
-    if (begin < end) out.push_back({begin, end});
-  };
   if (!regular_) {
     for (int i = 0; i < size(); ++i) {
-      if (primitive.contains(positions_(i, 0), positions_(i, 1))) add(i, i + 1);
+      if (primitive.contains(positions_(i, 0), positions_(i, 1))) out.push_back({i, i + 1});
     }
     return;
   }
-  static const auto cut_rows = &PALPATE_DISPATCH(cut_rows);
+  const auto& cut_rows = PALPATE_DISPATCH(cut_rows);
   const auto cut = [this](const Form& form) { return cut_of(form, x_.first, x_.step, y_.first, y_.step); };
   const RowCut form = cut(primitive.form);
   const RowCut hole = primitive.hollow ? cut(primitive.hole) : RowCut();
   const auto row_at = [this](double y) { return static_cast<int>(std::min(std::max(y, 0.0), 1.0 * y_.count)); };
   const int begin = row_at(form.y - form.reach);
   const int last = row_at(form.y + form.reach + 1.0);
-  if (out.empty()) out.reserve(static_cast<std::size_t>(primitive.hollow ? 2 * (last - begin) : last - begin));
+  // Room for all spans. Each is written, and the next one takes its place if it is empty.
+  std::size_t count = out.size();
+  out.resize(count + static_cast<std::size_t>(primitive.hollow ? 2 * (last - begin) : last - begin));
+  const auto add = [&](int from, int to) {
+    out[count] = {from, to};
+    count += from < to ? 1 : 0;
+  };
   constexpr std::size_t kRoom = kRowsAtOnce + 8;  // the loop writes whole vectors
   std::array<std::int32_t, kRoom> begins, ends, hole_begins, hole_ends;
   for (int row = begin; row < last; row += kRowsAtOnce) {
-    const int count = std::min(kRowsAtOnce, last - row);
-    cut_rows(form, row, count, x_.count, begins.data(), ends.data());
-    if (primitive.hollow) cut_rows(hole, row, count, x_.count, hole_begins.data(), hole_ends.data());
-    for (int i = 0; i < count; ++i) {
+    const int rows = std::min(kRowsAtOnce, last - row);
+    cut_rows(form, row, rows, x_.count, begins.data(), ends.data());
+    if (primitive.hollow) cut_rows(hole, row, rows, x_.count, hole_begins.data(), hole_ends.data());
+    for (int i = 0; i < rows; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const int from = (row + i) * x_.count;
       if (!primitive.hollow || hole_begins[k] >= hole_ends[k]) {
@@ -337,6 +339,7 @@ void Grid::add_spans(const Primitive& primitive, Spans& out) const {
       }
     }
   }
+  out.resize(count);
 }
 
 void Grid::add_spans(const ShortList<Primitive>& primitives, Spans& out) const {

@@ -36,8 +36,8 @@ class Taps {
   /// Number of taps with the label of an object.
   int objects() const { return objects_; }
 
-  /// Computes the step of the depth of each tap in a primitive, from tap `from` on, a multiple of kRound.
-  void steps(const Primitive& primitive, const LabelModel& labels, Step* row, int from = 0) const;
+  /// Sets a row to the step of the depth of each tap in a primitive.
+  void steps(const Primitive& primitive, const LabelModel& labels, Step* row) const;
 
  private:
   int size_ = 0;
@@ -67,8 +67,8 @@ class TapRows {
   std::vector<Step> steps_;
 };
 
-/// The step of each tap in the union of the rows: the largest.
-void deepest(const RowList& rows, int length, LabelModel::Step* out);
+/// Sets `out` to the step of each tap in the union of the rows: the largest one.
+void find_deepest(const RowList& rows, int length, LabelModel::Step* out);
 /// Whether a row has an object tap inside; whether two rows have one in common; and whether they have different ones.
 bool holds_object(const LabelModel::Step* row, const Taps& taps);
 bool share_object(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
@@ -80,7 +80,7 @@ class Grid {
   explicit Grid(const PointsView& positions);
 
   int size() const { return static_cast<int>(positions_.rows()); }
-  bool is(const PointsView& positions) const;
+  bool matches(const PointsView& positions) const;
 
   /// Consecutive positions, from `begin` on and before `end`.
   struct Span {

@@ -143,56 +143,16 @@ Primitive Push::then(Primitive now) const {
   return now;
 }
 
-Prior::Prior(const Settings& settings) : settings_(settings) {
-  const Area& area = settings_.area;
-  // A form longer than the diagonal never fits.
-  longest_ = 0.5 * std::min(settings_.max_length, math::hypot(area.width, area.depth));
-  // The share of all forms that fit: a sum over a grid of half axes and directions, correct to a thousandth.
-  constexpr int kAxes = 48;
-  constexpr int kTurns = 32;
-  const double shortest = 0.5 * settings_.min_width;
-  range_ = math::log(longest_ / shortest);
-  std::array<double, kAxes> halves{};
-  for (int i = 0; i < kAxes; ++i)
-    halves[static_cast<std::size_t>(i)] = shortest * math::exp(range_ * (i + 0.5) / kAxes);
-  constexpr int kApart = 3;  // nearly round forms differ little
-  std::array<Form, kAxes * kApart> rounds;
-  for (std::size_t i = 0; i < rounds.size(); ++i) {
-    rounds[i].family = Form::Family::ellipse;
-    NearlyRound(shortest, range_)
-        .set(rounds[i], (static_cast<double>(i % kApart) + 0.5) / kApart,
-             (static_cast<double>(i / kApart) + 0.5) / kAxes);
-  }
-  double share = 0.0;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    Form form;
-    form.turn(kPi * (turn + 0.5) / kTurns);
-    for (const Form::Family family : {Form::Family::box, Form::Family::ellipse}) {
-      form.family = family;
-      const double of_family = this->family(form);
-      const double of_round = family == Form::Family::ellipse ? settings_.round : 0.0;
-      for (const double a : halves) {
-        for (const double b : halves) {
-          if (b > a) break;
-          form.a = a;
-          form.b = b;
-          if (fits(form)) share += (b == a ? 1.0 : 2.0) * of_family * (1.0 - of_round);
-        }
-      }
-      if (!(of_round > 0.0)) continue;
-      for (Form& one : rounds) {
-        one.cosine = form.cosine;
-        one.sine = form.sine;
-        if (fits(one)) share += kAxes * of_family * of_round / kApart;
-      }
-    }
-  }
-  share = longest_ > shortest ? share / (kAxes * kAxes * kTurns) : 0.0;
-  if (!(share > 1e-5)) {
+Prior::Prior(const Settings& settings)
+    : settings_(settings),
+      // A form longer than the diagonal never fits.
+      longest_(0.5 * std::min(settings.max_length, math::hypot(settings.area.width, settings.area.depth))),
+      range_(math::log(longest_ / (0.5 * settings.min_width))) {
+  constexpr double kRoom = 1.01;  // with less, hardly any draw fits
+  if (std::min(settings.area.width, settings.area.depth) < kRoom * settings.min_width) {
     throw Error("footprint", "hardly any primitive of this prior fits into the area",
                 "make min_width and max_length smaller");
   }
-  normaliser_ = 1.0 / share;
 }
 
 Form Prior::draw_form(double longest, Random& random) const {
@@ -314,7 +274,7 @@ double Prior::fitted_hole(const Primitive& primitive) const {
 double Prior::density(const Primitive& primitive) const {
   const double centre = centre_density(primitive.form);
   if (!(centre > 0.0)) return 0.0;
-  const double of_form = centre * family(primitive.form) * axes(primitive.form, range_) * normaliser_;
+  const double of_form = centre * family(primitive.form) * axes(primitive.form, range_);
   if (!primitive.hollow) return of_form * whole(primitive.form);
   const double of_hollow = of_form * (1.0 - whole(primitive.form));
   if (!(of_hollow > 0.0)) return 0.0;

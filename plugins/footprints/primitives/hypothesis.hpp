@@ -181,7 +181,7 @@ class Prior {
     int most = ShortList<Primitive>::kMost;  ///< at least 1
   };
 
-  /// Throws Error if the area has hardly any room for the smallest primitive.
+  /// Throws Error if the area is hardly larger than the smallest primitive.
   explicit Prior(const Settings& settings);
 
   const Settings& settings() const { return settings_; }
@@ -198,11 +198,11 @@ class Prior {
   double whole(const Form& form) const {
     return form.a >= settings_.min_width ? 1.0 - settings_.hole_probability : 1.0;
   }
-  /// The density of a primitive in all centres, angles, shares and logarithms of half axes; 0 if it is impossible.
+  /// The density of a primitive in all centres, angles, shares and logarithms of half axes, up to a factor that all
+  /// primitives share; 0 if it is impossible.
   double density(const Primitive& primitive) const;
-  /// The factor of the density that is due to the centre of the form, or of the hole, per square metre.
+  /// The density of the centre of a form, per square metre; 0 if the form does not fit there.
   double centre_density(const Form& form) const;
-  double hole_centre_density(const Form& form, const Form& hole) const;
 
  private:
   /// Family, half axes up to `longest`, and direction; at the origin.
@@ -211,14 +211,14 @@ class Prior {
   /// The density of ordered logarithms of half axes over this range, and of the direction.
   double axes(const Form& form, double range) const;
   double fitted_hole(const Primitive& primitive) const;
+  double hole_centre_density(const Form& form, const Form& hole) const;
   bool in_bounds(const Form& form) const;
   /// Whether the form is within the bounds and smaller than the area.
   bool fits(const Form& form) const;
 
   Settings settings_;
-  double longest_;           ///< half axis
-  double range_;             ///< of logarithms of half axes
-  double normaliser_ = 0.0;  ///< one over the share of all forms that fit
+  double longest_;  ///< half axis
+  double range_;    ///< of logarithms of half axes
 };
 
 }  // namespace palpate::footprints

@@ -15,8 +15,6 @@ constexpr double kTurn = 0.6;      // tangent of half of the angle
 constexpr double kStretch = 0.3;   // see stretched()
 constexpr double kHoleStep = 0.2;  // of a form's axes, for a fitted hole
 
-constexpr double kNearTap = 0.03;  // metres: standard deviation, along x and y, of a hole's centre from a tap
-
 // How much more often a primitive near the latest tap is changed than another one.
 constexpr double kNearWeight = 30.0;
 
@@ -85,19 +83,10 @@ int chosen(const ShortList<Primitive>& primitives, Random& random) {
   return static_cast<int>(random.index(static_cast<std::size_t>(primitives.size())));
 }
 
-/// Calls visit(tap) for the taps in a form whose label is `on`.
-template <class Visit>
-void for_each_inside(const Form& form, const Taps& taps, bool on, const Visit& visit) {
-  for (int i = 0; i < taps.size(); ++i) {
-    const Target place = taps[i];
-    if (taps.on(i) == on && form.contains(place.x, place.y)) visit(place);
-  }
-}
-
 /// The density of a new primitive's centre: a random object tap is at a uniform position in the form. Per square metre.
 double density_about_taps(const Form& form, const Taps& taps) {
   int inside = 0;
-  for_each_inside(form, taps, true, [&](const Target&) { ++inside; });
+  for (int i = 0; i < taps.size(); ++i) inside += taps.on(i) && form.contains(taps[i].x, taps[i].y) ? 1 : 0;
   return inside / (taps.objects() * form.extent());
 }
 
@@ -155,59 +144,18 @@ void replace(Proposal& out, const Hypothesis& from, const Prior& prior, const Ta
   out.ratio = ratio_about_taps(primitive.form, prior, taps) / before;
 }
 
-/// The centre of a free hole: half of the time near one of the first twelve taps of the desk in the form.
-class HoleCentre {
- public:
-  HoleCentre(const Form& form, const Taps& taps) {
-    for_each_inside(form, taps, false, [&](const Target& place) {
-      if (taps_.size() < ShortList<Target>::kMost) taps_.add(place);
-    });
-  }
-
-  void draw(Form& hole, Random& random) const {
-    if (taps_.size() == 0 || random.uniform() < 0.5) return;
-    const Target& place = taps_[static_cast<int>(random.index(static_cast<std::size_t>(taps_.size())))];
-    hole.x = place.x + kNearTap * normal(random);
-    hole.y = place.y + kNearTap * normal(random);
-  }
-
-  /// Prior density of the centre over the density of drawing it.
-  double ratio(double by_prior, const Form& hole) const {
-    if (taps_.size() == 0) return 1.0;
-    double sum = 0.0;
-    for (const Target& place : taps_) {
-      const double dx = (hole.x - place.x) / kNearTap;
-      const double dy = (hole.y - place.y) / kNearTap;
-      sum += math::exp(-0.5 * (dx * dx + dy * dy));
-    }
-    const double near = sum / (2.0 * kPi * kNearTap * kNearTap * taps_.size());
-    return by_prior / (0.5 * by_prior + 0.5 * near);
-  }
-
- private:
-  ShortList<Target> taps_;
-};
-
-void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& prior, const Taps& taps,
-                 Random& random) {
+/// Draws a hole from the prior, or fills one: the densities of hole and draw cancel.
+void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& prior, Random& random) {
   if (from.primitives.size() == 0) return;
   const int index = chosen(from.primitives, random);
   if (from.primitives[index].hollow == adds || from.primitives[index].form.a < prior.settings().min_width) return;
   Primitive& primitive = out.replace(from, index);
-  const HoleCentre centre(primitive.form, taps);
-  if (adds) {
-    prior.draw_hole(primitive, random);
-    if (primitive.fit == Primitive::Fit::free) centre.draw(primitive.hole, random);
-  }
-  double ratio = prior.settings().hole_probability / (1.0 - prior.settings().hole_probability);
-  if (primitive.fit == Primitive::Fit::free) {
-    const double by_prior = prior.hole_centre_density(primitive.form, primitive.hole);
-    if (!(by_prior > 0.0)) return;
-    ratio *= centre.ratio(by_prior, primitive.hole);
-  }
-  out.ratio = adds ? ratio : 1.0 / ratio;
+  if (adds) prior.draw_hole(primitive, random);
   primitive.hollow = adds;
   primitive.density = prior.density(primitive);
+  if (!(primitive.density > 0.0)) return;
+  const double odds = prior.settings().hole_probability / (1.0 - prior.settings().hole_probability);
+  out.ratio = adds ? odds : 1.0 / odds;
 }
 
 // A turn by 2 atan(tangent), and a factor, each as probable as its reverse, which has the other sign.
@@ -311,9 +259,8 @@ void change_form(Proposal& out, const Hypothesis& from, const Prior& prior, cons
 // Shares of the moves that do not change a form. A move and its reverse have the same share.
 constexpr double kAddOrRemove = 0.03;  // each
 constexpr double kMakeOrFillHole = 0.04;
-constexpr double kSplitOrMerge = 0.005;
 constexpr double kReplace = 0.01;
-constexpr double kNotOfForms = 2.0 * (kAddOrRemove + kMakeOrFillHole + kSplitOrMerge) + kReplace;
+constexpr double kNotOfForms = 2.0 * (kAddOrRemove + kMakeOrFillHole) + kReplace;
 
 /// A push from the prior, and its density up to a factor.
 Push drawn_push(const Area& area, Random& random) {
@@ -370,10 +317,9 @@ void propose(Proposal& out, const Hypothesis& from, const Prior& prior, const Ta
   if (is(Kind::replace, kReplace)) return replace(out, from, prior, taps, random);
   if (is(Kind::add, kAddOrRemove)) return add(out, from, prior, taps, random);
   if (is(Kind::remove, kAddOrRemove)) return remove(out, from, prior, taps, random);
-  if (is(Kind::make_hole, kMakeOrFillHole)) return change_hole(out, from, true, prior, taps, random);
-  if (is(Kind::fill_hole, kMakeOrFillHole)) return change_hole(out, from, false, prior, taps, random);
-  if (is(Kind::split, kSplitOrMerge)) return propose_split(out, from, prior, random);
-  propose_merge(out, from, prior, random);
+  if (is(Kind::make_hole, kMakeOrFillHole)) return change_hole(out, from, true, prior, random);
+  out.kind = Kind::fill_hole;
+  change_hole(out, from, false, prior, random);
 }
 
 void propose_noise(Proposal& out, const Hypothesis& from) {

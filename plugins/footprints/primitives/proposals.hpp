@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The moves of the Markov chain over hypotheses: the change that a move proposes, and its acceptance ratio without the
-// likelihood (between numbers of primitives: Green 1995; splitting and merging: Richardson and Green 1997).
+// likelihood (between numbers of primitives: Green 1995).
 #pragma once
 
 #include "coverage.hpp"
@@ -16,7 +16,7 @@ double normal(Random& random);
 /// A change of a hypothesis.
 struct Proposal {
   /// Each of change_form, replace, flip_noise and push is the reverse of its own kind; the others are pairs.
-  enum class Kind { change_form, replace, add, remove, make_hole, fill_hole, split, merge, flip_noise, push };
+  enum class Kind { change_form, replace, add, remove, make_hole, fill_hole, flip_noise, push };
   Kind kind = Kind::change_form;
   /// Prior density times the density of proposing the reverse, after over before: the factor of Metropolis and
   /// Hastings beside the likelihood. 0 if the move is impossible.
@@ -49,7 +49,7 @@ struct Proposal {
         to.add(added_ones[i]);
       }
     }
-    if (removed.size() > added_ones.size()) to.remove(removed[removed.size() - 1]);  // one at most
+    for (int i = added_ones.size(); i < removed.size(); ++i) to.remove(removed[i]);  // one at most
   }
 };
 
@@ -57,13 +57,8 @@ struct Proposal {
 /// chooses the kind.
 ///
 /// A form is shifted, turned, stretched, has a side moved, or changes its family; primitives near the latest tap are
-/// chosen more often. A new primitive covers a random object tap. A new hole is where the prior has it or, half of the
-/// time if the hole is free, near a tap of the desk inside the form.
+/// chosen more often. A new primitive covers a random object tap; a new hole is drawn from the prior.
 void propose(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, double which, Random& random);
-
-/// The moves of propose() that split a primitive into two, and merge two.
-void propose_split(Proposal& out, const Hypothesis& from, const Prior& prior, Random& random);
-void propose_merge(Proposal& out, const Hypothesis& from, const Prior& prior, Random& random);
 
 /// Proposes that the positions are noisy if the hypothesis has exact ones, and the reverse.
 void propose_noise(Proposal& out, const Hypothesis& from);

@@ -19,7 +19,7 @@ void Sampler::for_each_label(const Visit& visit) const {
   std::vector<LabelModel::Step> steps(static_cast<std::size_t>(taps_.length()));
   for (const Particle& particle : particles_) {
     if (particle.loss == 0) continue;
-    deepest(rows_of(particle), taps_.length(), steps.data());
+    find_deepest(rows_of(particle), taps_.length(), steps.data());
     const LabelModel& labels = this->labels(particle.hypothesis.noisy);
     for (int i = 0; i < taps_.size(); ++i) visit(i, labels, steps[static_cast<std::size_t>(i)], taps_.on(i));
   }

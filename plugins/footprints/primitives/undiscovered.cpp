@@ -42,13 +42,15 @@ void Undiscovered::for_each_near(Draws& draws, const Target& position, double re
   const auto x = static_cast<float>(position.x);
   const auto y = static_cast<float>(position.y);
   const auto margin = static_cast<float>(reach * reach);
-  for (std::size_t i = 0; i < draws.size(); ++i) {
+  std::vector<std::uint8_t> near(draws.size());
+  for (std::size_t i = 0; i < near.size(); ++i) {
     const float dx = forms_.x[i] - x;
     const float dy = forms_.y[i] - y;
-    const float radius = forms_.a[i] * forms_.a[i] + forms_.b[i] * forms_.b[i];
     // Twice the square of the radius is above the square of radius and reach together.
-    if (dx * dx + dy * dy <= 2.0F * (radius + margin)) visit(draws[i]);
+    near[i] = dx * dx + dy * dy <= 2.0F * (forms_.a[i] * forms_.a[i] + forms_.b[i] * forms_.b[i] + margin);
   }
+  for (auto one = near.begin(); (one = std::find(one, near.end(), 1)) != near.end(); ++one)
+    visit(draws[static_cast<std::size_t>(one - near.begin())]);
 }
 
 const Primitive& Undiscovered::Covering::draw(Random& random) const {
@@ -92,7 +94,7 @@ void Undiscovered::add(const Touch& touch, const LabelModel& labels) {
 }
 
 bool Undiscovered::prepare(const PointsView& positions) {
-  if (grid_ && grid_->is(positions)) return false;
+  if (grid_ && grid_->matches(positions)) return false;
   grid_.emplace(positions);
   rates_ = GridSums(grid_->size());
   for (Draw& one : draws_) {
