@@ -27,7 +27,7 @@ plugins 33 161
 plugins/acquisitions 799 89
 plugins/backends 5791 528
 plugins/fitting 953 0
-plugins/footprints 2425 0
+plugins/footprints 2422 0
 plugins/kernels 547 0
 plugins/programs 520 0
 plugins/shapes 2026 0

@@ -231,9 +231,9 @@ TEST(Undiscovered, HasOverALatticeTheRatesThatItHasOneByOne) {
     for (const Points& places :
          {test::lattice(41, 37), test::lattice(31, 7), test::lattice(1, 40), test::lattice(40, 1), test::lattice(1, 1),
           test::scattered(50), test::doubled(test::scattered(5), 0.0)}) {
-      Eigen::VectorXd rates = Eigen::VectorXd::Constant(places.rows(), std::nan(""));
       undiscovered.prepare(places);
-      undiscovered.rates(rates);
+      const Eigen::VectorXd rates = undiscovered.rates();
+      ASSERT_EQ(rates.size(), places.rows());
       for (Eigen::Index i = 0; i < places.rows(); ++i) {
         ASSERT_NEAR(rates(i), undiscovered.covering({places(i, 0), places(i, 1)}).rate(), 1e-9)
             << places.rows() << " places, " << i;

@@ -381,12 +381,14 @@ void count_overlaps(const Hypothesis& hypothesis, const FormTable& table, float*
   PALPATE_DISPATCH(count_overlaps)(hypothesis, table, count);
 }
 
-void GridSums::values(double factor, VectorOut out) const {
+Eigen::VectorXd GridSums::values(double factor) const {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(steps_.size()) - 1);
   std::int64_t sum = 0;
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     sum += steps_[static_cast<std::size_t>(i)];
     out(i) = factor * static_cast<double>(sum);
   }
+  return out;
 }
 
 }  // namespace palpate::footprints

@@ -122,7 +122,7 @@ class GridSums {
     }
   }
   /// The sum at each position, times a factor.
-  void values(double factor, VectorOut out) const;
+  Eigen::VectorXd values(double factor) const;
 
  private:
   std::vector<std::int64_t> steps_;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Bayesian inference of hypotheses, each a set of primitives: the probability of a position is the share of hypotheses
 // that cover it. If the taps contradict all hypotheses, gp_classifier replaces the inference.
+//
+// Reading order: hypothesis.hpp (state and prior), tap_model.hpp (likelihood of labels and heights), undiscovered.hpp
+// (primitives that no object tap has touched), proposals.hpp (moves and their ratios), sampler.hpp (particles, weights,
+// Markov chain). coverage.hpp has what all of them compute with: rows of taps, spans of candidates, wide loops.
 #include "../gp_classifier/laplace.hpp"
 #include "sampler.hpp"
 

@@ -98,12 +98,9 @@ void Sampler::probability(const PointsView& positions, VectorOut out) {
   prepare(positions);
   GridSums counts(undiscovered_.grid().size());
   for (const Grid::Spans& spans : spans_) counts.add(spans, 1);
-  counts.values(1.0 / size(), out);
-  Eigen::VectorXd rates(out.size());
-  undiscovered_.rates(rates);
-  rates = -rates;
-  math::exp(rates.data(), rates.size(), rates.data());  // the probability that nothing undiscovered is there
-  out = (1.0 - (1.0 - out.array()) * rates.array()).cwiseMax(0.0).cwiseMin(1.0);
+  Eigen::VectorXd nothing_new = -undiscovered_.rates();
+  math::exp(nothing_new.data(), nothing_new.size(), nothing_new.data());
+  out = (1.0 - (1.0 - counts.values(1.0 / size()).array()) * nothing_new.array()).cwiseMax(0.0).cwiseMin(1.0);
 }
 
 void Sampler::sample(const PointsView& positions, int count, OutlineSample& out) {
@@ -124,8 +121,7 @@ void Sampler::sample(const PointsView& positions, int count, OutlineSample& out)
   for (Eigen::Index i = 1; i < positions.rows(); ++i) {
     for (Eigen::Index word = 0; word < out.holds.rows(); ++word) out.holds(word, i) ^= out.holds(word, i - 1);
   }
-  out.to_find.resize(positions.rows());
-  undiscovered_.expected_extent(out.to_find);
+  out.to_find = undiscovered_.expected_extent();
   // Undiscovered primitives that overlap no primitive are other objects, which `to_find` counts.
   Grid::Spans spans;
   for (const Undiscovered::Member& one : undiscovered_.draw(count, random)) {

@@ -65,9 +65,9 @@ class LabelModel {
 };
 
 /// The probability of the heights of the object taps, relative to independent uniform heights. The top of a primitive
-/// is level, sloped or of any form. A height depends on that of the nearest earlier tap in the same primitive, a
-/// Gaussian process with one neighbour (Vecchia 1988), or on none if the top is of any form. The first tap of a
-/// primitive has any height, or that of the nearest earlier tap outside.
+/// is level, sloped or of any form. On a level or sloped top a height depends on that of the nearest earlier tap in the
+/// same primitive: a Gaussian process with one neighbour (Vecchia 1988). The first tap of a primitive has any height,
+/// or that of the nearest earlier tap outside.
 class HeightModel {
  public:
   /// Adds a tap of an object.

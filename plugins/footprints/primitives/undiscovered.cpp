@@ -105,9 +105,7 @@ bool Undiscovered::prepare(const PointsView& positions) {
   return true;
 }
 
-void Undiscovered::rates(VectorOut out) const { rates_.values(unit_, out); }
-
-void Undiscovered::expected_extent(VectorOut out) const {
+Eigen::VectorXd Undiscovered::expected_extent() const {
   constexpr double kExtentUnits = 0x1p24;  // per square metre: whole numbers, as weights are
   GridSums sums(grid_->size());
   for (std::size_t i = 0; i < draws_.size(); i += 2) {
@@ -115,7 +113,7 @@ void Undiscovered::expected_extent(VectorOut out) const {
     const std::int64_t value = std::llround(kExtentUnits * one.primitive.form.extent()) * one.weight * apart(i);
     if (value != 0) sums.add(one.spans, value);
   }
-  sums.values(2.0 * unit_ / (kExtentUnits * static_cast<double>(known_)), out);
+  return sums.values(2.0 * unit_ / (kExtentUnits * static_cast<double>(known_)));
 }
 
 void Undiscovered::compare(const std::vector<const Hypothesis*>& known) {
@@ -142,8 +140,8 @@ std::vector<Undiscovered::Member> Undiscovered::draw(int count, Random& random) 
   const auto pause = [&] { return -math::log(1.0 - random.uniform()); };
   std::vector<Member> out;
   for (int set = 0; set < count; ++set) {
-    for (double time = pause(); time < rate; time += pause())
-      out.push_back({set, &draws_[drawn_index(cumulative, random)].primitive});
+    double time = pause();
+    for (; time < rate; time += pause()) out.push_back({set, &draws_[drawn_index(cumulative, random)].primitive});
   }
   return out;
 }

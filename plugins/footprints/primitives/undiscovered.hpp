@@ -49,10 +49,10 @@ class Undiscovered {
   /// The prepared positions.
   const Grid& grid() const { return *grid_; }
   /// The rate at each of the prepared positions.
-  void rates(VectorOut out) const;
+  Eigen::VectorXd rates() const { return rates_.values(unit_); }
   /// At each of them: the expected extent of all that is apart from what is known and covers the position, square
   /// metres, as a sum over every second draw.
-  void expected_extent(VectorOut out) const;
+  Eigen::VectorXd expected_extent() const;
 
   /// Compares the draws with some hypotheses, until the next tap. A draw is apart from a hypothesis if it overlaps none
   /// of its primitives. Eight hypotheses give the probability to be apart in steps of 1/8.
