@@ -65,7 +65,7 @@ struct PrimitivesOptions : LaplaceOptions {
         Field(
             "max_contradictions",
             "maximum number of unexpected wrong labels, averaged over the particles. Above this maximum, gp_classifier "
-            "replaces the primitives. label_error_probability times the number of contacts is the expected number")
+            "replaces the primitives. As many are expected as label_error_probability and false_contact_probability say")
             .above(0));
     fields.integer(particles, Field("particles",
                                     "number of particles. A particle is one hypothesis of the outlines. The number is "
@@ -85,8 +85,7 @@ class Primitives final : public Footprint {
         classifier_(options, context),
         sampler_(prior(options, context.scene.area()),
                  {static_cast<int>(options.particles), options.label_error_probability,
-                  options.false_contact_probability.value_or(options.label_error_probability), options.position_noise,
-                  options.push_probability, options.heights},
+                  false_contact_probability(options), options.position_noise, options.push_probability, options.heights},
                  context.random("footprint/primitives")) {}
 
   void add(const Touch& touch) override {
@@ -94,7 +93,8 @@ class Primitives final : public Footprint {
     classifier_.add(touch);
     if (replaced_at_ > 0) return;
     sampler_.add(touch);
-    const double unexpected = sampler_.mean_label_errors() - options_.label_error_probability * taps_;
+    expected_label_errors_ += touch.on ? options_.label_error_probability : false_contact_probability(options_);
+    const double unexpected = sampler_.mean_label_errors() - expected_label_errors_;
     if (unexpected > options_.max_contradictions) replaced_at_ = taps_;
   }
 
@@ -149,6 +149,10 @@ class Primitives final : public Footprint {
   static constexpr int kSample = 256;
   static constexpr double kMinLength = 0.03;  // metres
 
+  static double false_contact_probability(const Options& options) {
+    return options.false_contact_probability.value_or(options.label_error_probability);
+  }
+
   static Prior prior(const Options& options, const Area& area) {
     Prior::Settings settings;
     settings.area = area;
@@ -163,6 +167,7 @@ class Primitives final : public Footprint {
   Classifier classifier_;
   mutable Sampler sampler_;  ///< queries keep what the next one about the same positions needs
   int taps_ = 0;
+  double expected_label_errors_ = 0.0;
   int replaced_at_ = 0;  ///< number of taps; 0: not yet
 };
 

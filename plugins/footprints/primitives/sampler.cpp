@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace palpate::footprints {
@@ -82,6 +83,7 @@ Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random ran
     : prior_(prior),
       settings_(settings),
       random_(random),
+      sample_seed_(random_.bits()),
       labels_{LabelModel(settings.label_error, settings.false_contact, 0.0),
               LabelModel(settings.label_error, settings.false_contact, settings.position_noise)},
       undiscovered_(prior_, random_) {
@@ -217,9 +219,10 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
     while (cumulative < wanted && from + 1 < weights.size()) cumulative += weights[++from];
     ++copies[from];
   }
-  // Particles that are not drawn, by whether they are noisy, the first ones last.
+  // Places of particles that are not drawn, by whether these are noisy, the first ones last. There are as many as
+  // further copies, and particles that have to move to the front.
   std::array<std::vector<std::size_t>, 2> free;
-  for (std::size_t i = particles_.size(); i-- > 0;) {
+  for (std::size_t i = count; i-- > 0;) {
     if (copies[i] == 0) free[particles_[i].hypothesis.noisy ? 1 : 0].push_back(i);
   }
   const auto next_free = [&](const Particle& copied) -> Particle& {
@@ -291,7 +294,8 @@ void Sampler::move(Particle& particle, int times) {
 /// which take longer (delayed acceptance: Christen and Fox 2005). `taps`: as seen after the push of the proposal.
 bool Sampler::accept(Particle& particle, const Proposal& proposal, const Taps& taps) {
   TapRows& added = scratch_.added;
-  const double ratio = proposal.ratio / (1.0 - random_.uniform());
+  // The density of a far push may be too small for a double.
+  const double ratio = std::min(proposal.ratio / (1.0 - random_.uniform()), std::numeric_limits<double>::max());
   if (particle.loss == 0 && ratio < 1.0) return false;  // no loss is negative; most moves need no logarithm
   const auto most = particle.loss + static_cast<LogUnits>(std::floor(math::log(ratio) * 0x1p20));
   if (most < 0) return false;

@@ -78,7 +78,7 @@ class Sampler {
   /// The mean number of contradicted labels per particle, and of primitives.
   double mean_label_errors() const;
   double mean_primitives() const;
-  /// Share of particles with a push, and their mean number of taps before it and mean shift of the first primitive.
+  /// Share of particles with a push, and their mean number of taps before it and mean shift of their primitives.
   struct MeanPush {
     double share = 0.0;
     double before = 0.0;
@@ -115,6 +115,7 @@ class Sampler {
   Prior prior_;
   SamplerSettings settings_;
   Random random_;
+  std::uint64_t sample_seed_;
   std::array<LabelModel, 2> labels_;  ///< exact and noisy
   HeightModel heights_;
   Undiscovered undiscovered_;

@@ -66,15 +66,14 @@ Sampler::MeanPush Sampler::mean_push() const {
   for (const Particle& particle : particles_) {
     const Push& push = particle.hypothesis.push;
     if (!push) continue;
-    Target now;
-    if (particle.hypothesis.primitives.size() > 0) {
-      const Form& first = particle.hypothesis.primitives[0].form;
-      now = {first.x, first.y};
+    double shift = 0.0;
+    for (const Primitive& one : particle.hypothesis.primitives) {
+      const Target then = push.then({one.form.x, one.form.y});
+      shift += math::hypot(one.form.x - then.x, one.form.y - then.y);
     }
-    const Target then = push.then(now);
     out.share += 1.0;
     out.before += push.before;
-    out.shift += math::hypot(now.x - then.x, now.y - then.y);
+    out.shift += shift / std::max(1, particle.hypothesis.primitives.size());
   }
   if (!(out.share > 0.0)) return out;
   out.before /= out.share;
@@ -105,7 +104,7 @@ void Sampler::probability(const PointsView& positions, VectorOut out) {
 
 void Sampler::sample(const PointsView& positions, int count, OutlineSample& out) {
   prepare(positions);
-  Random random(static_cast<std::uint64_t>(taps_.size()), "sample");
+  Random random(sample_seed_, "sample", static_cast<std::uint64_t>(taps_.size()));
   const double first = random.uniform();
   const auto drawn = [&](int k) { return std::min(size() - 1, static_cast<int>((k + first) * size() / count)); };
   out.count = count;

@@ -39,7 +39,8 @@ double gain(const Touch& earlier, const Touch& later, double growth) {
 LogUnits to_units(double logarithm) { return std::llround(logarithm * 0x1p20); }
 
 LabelModel::LabelModel(double label_error, double false_contact, double noise)
-    : contradiction_(to_units(0.5 * math::log((1.0 - label_error) / label_error))) {
+    : contradictions_{to_units(0.5 * math::log((1.0 - false_contact) / label_error)),
+                      to_units(0.5 * math::log((1.0 - label_error) / false_contact))} {
   constexpr double kDeviations = 3.5;  // beyond, noise puts one tap in some thousand on the other side of the rim
   // Without noise a step is so short that no tap is within one of a rim.
   reach_ = kDeviations * std::max(noise, 1e-12);

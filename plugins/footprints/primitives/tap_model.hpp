@@ -48,7 +48,7 @@ class LabelModel {
   /// The probability that the label is an error, rather than due to noise near a rim.
   double wrong(Step step, bool on) const { return entry(step, on).wrong; }
   /// Whether the label counts as a label error, because its probability is small.
-  bool contradicts(Step step, bool on) const { return loss(step, on) > contradiction_; }
+  bool contradicts(Step step, bool on) const { return loss(step, on) > contradictions_[on ? 1 : 0]; }
 
  private:
   struct Entry {
@@ -59,7 +59,7 @@ class LabelModel {
 
   double reach_;
   double steps_per_metre_;
-  LogUnits contradiction_;
+  std::array<LogUnits, 2> contradictions_;  ///< half of the loss of a wrong label of the desk, and of an object
   std::vector<Entry> table_;
   std::vector<std::int32_t> losses_;
 };
