@@ -322,8 +322,8 @@ void Grid::add_spans(const Primitive& primitive, Spans& out) const {
     out[count] = {from, to};
     count += from < to ? 1 : 0;
   };
-  constexpr std::size_t kRoom = kRowsAtOnce + 8;  // the loop writes whole vectors
-  std::array<std::int32_t, kRoom> begins, ends, hole_begins, hole_ends;
+  static_assert(kRowsAtOnce % 16 == 0, "the loop writes whole vectors");
+  std::array<std::int32_t, kRowsAtOnce> begins, ends, hole_begins, hole_ends;
   for (int row = begin; row < last; row += kRowsAtOnce) {
     const int rows = std::min(kRowsAtOnce, last - row);
     cut_rows(form, row, rows, x_.count, begins.data(), ends.data());

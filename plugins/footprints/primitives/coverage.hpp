@@ -10,7 +10,6 @@
 #include <palpate/footprint.hpp>
 #include <palpate/types.hpp>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -36,7 +35,7 @@ class Taps {
   /// Number of taps with the label of an object.
   int objects() const { return objects_; }
 
-  /// Sets a row to the step of the depth of each tap in a primitive.
+  /// Sets a row of length() entries to the step of the depth of each tap in a primitive.
   void steps(const Primitive& primitive, const LabelModel& labels, Step* row) const;
 
  private:
@@ -69,7 +68,8 @@ class TapRows {
 
 /// Sets `out` to the step of each tap in the union of the rows: the largest one.
 void find_deepest(const RowList& rows, int length, LabelModel::Step* out);
-/// Whether a row has an object tap inside; whether two rows have one in common; and whether they have different ones.
+/// Return whether a row has an object tap inside, whether two rows have one in common, and whether they have different
+/// ones.
 bool holds_object(const LabelModel::Step* row, const Taps& taps);
 bool share_object(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
 bool hold_different_objects(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
@@ -88,7 +88,7 @@ class Grid {
   };
   using Spans = std::vector<Span>;
   /// Appends the positions that a primitive covers, in order, each once. This is quick if the positions are rows in
-  /// equal steps, and asks the primitive for each position otherwise.
+  /// equal steps, and a test of each position otherwise.
   void add_spans(const Primitive& primitive, Spans& out) const;
   /// Appends the positions that any of the primitives covers.
   void add_spans(const ShortList<Primitive>& primitives, Spans& out) const;
@@ -132,6 +132,7 @@ class GridSums {
 struct FormTable {
   static constexpr std::size_t kRound = 16;
 
+  /// Replaces the forms, and fills the last vector up with forms that overlap nothing.
   void set(const std::vector<const Form*>& forms);
   std::vector<float> x, y, a, b, cosine, sine, ellipse;  ///< `ellipse`: 1 for an ellipse, 0 for a box
 };

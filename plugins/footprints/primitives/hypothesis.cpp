@@ -151,7 +151,7 @@ Prior::Prior(const Settings& settings)
   constexpr double kRoom = 1.01;  // with less, hardly any draw fits
   if (std::min(settings.area.width, settings.area.depth) < kRoom * settings.min_width) {
     throw Error("footprint", "hardly any primitive of this prior fits into the area",
-                "make min_width and max_length smaller");
+                "make min_width smaller or the area larger");
   }
 }
 

@@ -161,7 +161,8 @@ struct Hypothesis {
 };
 
 /// The probability of primitives before any tap: a Poisson process of `expected` primitives, cut off above `most`. Each
-/// lies wholly on the area, at a uniform position. Angle and logarithms of the half axes are uniform within the bounds.
+/// lies wholly on the area, at a uniform position. Angle and logarithms of the half axes are uniform within the bounds,
+/// of which that of length to width holds for forms, not for free holes. Push and noise: sampler.hpp.
 /// Most ellipses are nearly round: the logarithm of the short half axis is uniform, the long one up to 6 % longer. Only
 /// primitives twice as long as `min_width` have holes. A free hole has its centre on the primitive, and half axes from
 /// half of `min_width` to the long half axis of the primitive. A fitted hole takes a tenth to nine tenths of the axes,
@@ -178,7 +179,7 @@ class Prior {
     double round = 0.8;                      ///< probability that an ellipse is nearly round, in [0, 1)
     double hole_probability = 0.25;          ///< in [0, 1)
     double fitted = 0.8;                     ///< probability that a hole is not free, in [0, 1)
-    int most = ShortList<Primitive>::kMost;  ///< at least 1
+    int most = ShortList<Primitive>::kMost;  ///< 1 to kMost
   };
 
   /// Throws Error if the area is hardly larger than the smallest primitive.

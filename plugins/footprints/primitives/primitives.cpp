@@ -30,8 +30,9 @@ struct PrimitivesOptions : LaplaceOptions {
   void list(Fields& fields) override {
     fields.real(min_width,
                 Field("min_width", "minimum width of a primitive (box or ellipse)").in(Unit::metre).above(0));
-    fields.real(max_length,
-                Field("max_length", "maximum length of a primitive (box or ellipse)").in(Unit::metre).above(0));
+    fields.real(
+        max_length,
+        Field("max_length", "maximum length of a primitive (box or ellipse)").in(Unit::metre).above(0).at_most(1));
     fields.real(expected_count,
                 Field("expected_count", "prior mean number of boxes and ellipses per 23 cm x 23 cm of the area")
                     .above(0)
@@ -65,7 +66,8 @@ struct PrimitivesOptions : LaplaceOptions {
         Field(
             "max_contradictions",
             "maximum number of unexpected wrong labels, averaged over the particles. Above this maximum, gp_classifier "
-            "replaces the primitives. As many are expected as label_error_probability and false_contact_probability say")
+            "replaces the primitives. As many are expected as label_error_probability and false_contact_probability "
+            "say")
             .above(0));
     fields.integer(particles, Field("particles",
                                     "number of particles. A particle is one hypothesis of the outlines. The number is "
@@ -83,10 +85,11 @@ class Primitives final : public Footprint {
   Primitives(const Options& options, const Context& context)
       : options_(options),
         classifier_(options, context),
-        sampler_(prior(options, context.scene.area()),
-                 {static_cast<int>(options.particles), options.label_error_probability,
-                  false_contact_probability(options), options.position_noise, options.push_probability, options.heights},
-                 context.random("footprint/primitives")) {}
+        sampler_(
+            prior(options, context.scene.area()),
+            {static_cast<int>(options.particles), options.label_error_probability, false_contact_probability(options),
+             options.position_noise, options.push_probability, options.heights},
+            context.random("footprint/primitives")) {}
 
   void add(const Touch& touch) override {
     ++taps_;

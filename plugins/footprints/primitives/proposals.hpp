@@ -66,9 +66,9 @@ void propose_noise(Proposal& out, const Hypothesis& from);
 /// Adds a push, removes it, or changes it. Half of the time the primitives move along, and fit the taps before the push
 /// as well as they did. `rate`: prior weight of a push between two taps, relative to none; `taps`: at least 2.
 ///
-/// The weight omits (1 - rate)^(taps - 1), which hypotheses share up to one factor 1 - rate: 1 % at the default. The
-/// prior of a touched primitive omits exp(-r), r the expected number of primitives with an object tap, which changes
-/// with a push: no effect was seen in 1200 runs.
+/// The weight omits (1 - rate)^(taps - 1), which hypotheses share up to one factor 1 - rate. The prior of a primitive
+/// with an object tap omits exp(-r), r the expected number of them, and the desk taps' part of the same factor. Both
+/// change with a push: no effect was seen in 1200 runs.
 void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int taps, double rate, Random& random);
 
 }  // namespace palpate::footprints

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The posterior distribution of hypotheses given the taps, as equally probable particles. After each tap they are drawn
-// again by their likelihood and moved by a Markov chain (resample-move: Gilks and Berzuini 2001).
+// again by their likelihood and moved by a Markov chain (resample-move: Gilks and Berzuini 2001). The chain has the
+// density
+//
+//     rate^[push] f(push) expected^n density(1) ... density(n) P(labels | union, push, noisy) P(heights | primitives)
+//
+// of n primitives (in any order; hypothesis.hpp) that contain an object tap each, of a push (proposals.cpp) and of
+// noisy positions (half of the hypotheses). Undiscovered primitives (undiscovered.hpp) are independent of these, up to
+// the approximations that are stated where they are made.
 #pragma once
 
 #include "proposals.hpp"
@@ -19,8 +26,8 @@ namespace palpate::footprints {
 struct SamplerSettings {
   /// Number of particles; doubled for ten taps after a find.
   int particles = 384;
-  double label_error = 0.01;    ///< probability that a tap of an object has the label of the desk
-  double false_contact = 0.01;  ///< probability that a tap of the desk has the label of an object
+  double label_error = 0.01;    ///< probability that a tap of an object has the label of the desk, in (0, 0.5]
+  double false_contact = 0.01;  ///< probability that a tap of the desk has the label of an object, in (0, 0.5]
   /// Standard deviation of the positions of taps along x and y, metres. If above 0, half of the hypotheses have noisy
   /// positions before the first tap, and half have exact ones.
   double position_noise = 0.0;
@@ -47,10 +54,10 @@ struct Particle {
 /// others stay, because a tap of one object says nothing about another (local particle filters: Rebeschini and van
 /// Handel 2015). Otherwise few distinct hypotheses of one object would be left while another one is tapped. The
 /// likelihood of `to` is left as it was. Returns false, and changes nothing, if no primitive would stay, if there would
-/// be more than `most`, or if the hypotheses see taps differently. `taps`: as made.
+/// be more than `most`, if either hypothesis has a push, or if only one has noisy positions. `taps`: as made.
 ///
-/// An approximation: the weights of resampling are not corrected for the primitives that stay. The moves that follow
-/// keep the error below what the tests of the posterior allow, 0.01.
+/// An approximation: the weights of resampling are not corrected for the primitives that stay; the moves that follow
+/// correct the particles. In the calibration with the moves of the defaults, no error was seen at 0.003.
 bool exchange(const Particle& from, const Taps& taps, int most, Particle& to);
 
 /// Updates: sampler.cpp. Queries: sampler_queries.cpp. Positions are M x 2 metres.
@@ -62,20 +69,22 @@ class Sampler {
   /// Updates the particles by a tap. Returns the probability of its label before the tap.
   double add(const Touch& touch);
 
-  /// The probability that each position is on an object.
+  /// Queries keep what the next one about the same positions needs, so they must not run at the same time.
+  /// Sets `out` to the probability that each position is on an object.
   void probability(const PointsView& positions, VectorOut out);
   /// Draws `count` hypotheses, a multiple of 64, from the particles and the undiscovered primitives that overlap them.
   /// The particles are taken evenly, from a random one on.
   void sample(const PointsView& positions, int count, OutlineSample& out);
-  /// The probability that the label of each tap is an error. A label that noise of the position explains is none.
+  /// Sets `out` to the probability that the label of each tap is an error. A label that noise of the position explains
+  /// is none.
   void label_errors(VectorOut out) const;
   /// Replaces the positions of all taps by where they would be made now, if over half of the particles have a push
   /// since. `positions` holds where they were made.
   void current_positions(Points& positions) const;
-  /// The probability that an object at least `length` long, metres, is apart from all that was touched.
+  /// Returns the probability that an object at least `length` long, metres, is apart from all known primitives.
   double undiscovered_probability(double length) const;
 
-  /// The mean number of contradicted labels per particle, and of primitives.
+  /// Return the mean number of improbable labels (LabelModel::contradicts) per particle, and of primitives.
   double mean_label_errors() const;
   double mean_primitives() const;
   /// Share of particles with a push, and their mean number of taps before it and mean shift of their primitives.

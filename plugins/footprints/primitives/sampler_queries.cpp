@@ -4,8 +4,6 @@
 #include <palpate/math.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace palpate::footprints {
 double Sampler::mean_primitives() const {

@@ -64,11 +64,11 @@ LabelModel::Step LabelModel::step(double depth) const {
   return static_cast<Step>(std::min(std::max(steps, -1.0), 1.0 * kSteps) + 1.0);
 }
 
-LogUnits LabelModel::loss(const Step* steps, const Step* said, int length) const {
+LogUnits LabelModel::loss(const Step* steps, const Step* labels, int length) const {
   LogUnits out = 0;
   for (int from = 0; from < length; from += 8) {
-    if (std::memcmp(steps + from, said + from, 8) == 0) continue;  // most labels are right, far from a rim
-    for (int i = from; i < from + 8; ++i) out += loss(steps[i], said[i] == kInside);
+    if (std::memcmp(steps + from, labels + from, 8) == 0) continue;  // most labels are right, far from a rim
+    for (int i = from; i < from + 8; ++i) out += loss(steps[i], labels[i] == kInside);
   }
   return out;
 }

@@ -17,13 +17,14 @@ using LogUnits = std::int64_t;
 LogUnits to_units(double logarithm);
 inline double from_units(LogUnits units) { return static_cast<double>(units) * 0x1p-20; }
 
-/// The probability of the label of a tap, given its depth in a hypothesis. The depth is that in the deepest primitive:
-/// where the rims of two primitives are both within the noise, the union is deeper than that (the error was not seen in
-/// the calibration with 4 mm of noise).
+/// The probability of the label of a tap, given its depth in a hypothesis. The depth is that in the deepest primitive.
+/// It is not exact where two rims are within the noise, of two primitives or of one that is thin: the first are deeper,
+/// the second less deep (no error was seen in the calibration with 4 mm of noise).
 class LabelModel {
  public:
   /// `label_error`: probability that a tap of an object has the label of the desk. `false_contact`: probability that a
-  /// tap of the desk has the label of an object. `noise`: standard deviation of positions along x and y, metres.
+  /// tap of the desk has the label of an object; both in (0, 0.5]. `noise`: standard deviation of positions along x and
+  /// y, metres, not negative.
   LabelModel(double label_error, double false_contact, double noise);
 
   /// A depth in steps of 2 * reach() / kSteps. kOutside: farther outside than reach(); kInside: deeper than reach().
@@ -33,7 +34,7 @@ class LabelModel {
   static constexpr Step kInside = kSteps + 1;
   /// Whether the depth is not negative.
   static bool inside(Step step) { return step > kSteps / 2; }
-  /// The step of a depth, metres.
+  /// Returns the step of a depth, metres.
   Step step(double depth) const;
   double steps_per_metre() const { return steps_per_metre_; }
   /// The distance from a rim within which noise matters, metres.
@@ -42,9 +43,9 @@ class LabelModel {
   double probability(Step step, bool on) const { return entry(step, on).probability; }
   /// The logarithm of the largest probability of such a label minus that of its probability; not negative.
   std::int32_t loss(Step step, bool on) const { return losses_[index(step, on)]; }
-  /// The sum of the losses of rows of `length` taps, a multiple of 8. `said`: kInside for taps with the label of an
+  /// Returns the sum of the losses of `length` taps, a multiple of 8. `labels`: kInside for taps with the label of an
   /// object, otherwise kOutside, which are the steps without a loss.
-  LogUnits loss(const Step* steps, const Step* said, int length) const;
+  LogUnits loss(const Step* steps, const Step* labels, int length) const;
   /// The probability that the label is an error, rather than due to noise near a rim.
   double wrong(Step step, bool on) const { return entry(step, on).wrong; }
   /// Whether the label counts as a label error, because its probability is small.
@@ -72,11 +73,10 @@ class HeightModel {
  public:
   /// Adds a tap of an object.
   void add(const Touch& touch);
-  /// Number of object taps so far.
-  std::size_t size() const { return taps_.size(); }
 
-  /// Returns the logarithm of the probability. Bit i of `holders` of an object tap, in their order, is set if primitive
-  /// i contains the tap. A tap in k primitives counts 1/k in each.
+  /// Returns the logarithm of the probability. `holders` has an entry for each object tap, in their order: bit i is set
+  /// if primitive i, of 16 at most, contains the tap. A tap in k primitives counts 1/k in each. A push moves no tap
+  /// here.
   LogUnits evidence(const std::vector<std::uint16_t>& holders, int primitives) const;
 
  private:
