@@ -132,7 +132,7 @@ class GridSums {
 struct FormTable {
   static constexpr std::size_t kRound = 16;
 
-  /// Replaces the forms, and fills the last vector up with forms that overlap nothing.
+  /// Replaces the forms; after the last one come points at the origin, up to a multiple of kRound.
   void set(const std::vector<const Form*>& forms);
   std::vector<float> x, y, a, b, cosine, sine, ellipse;  ///< `ellipse`: 1 for an ellipse, 0 for a box
 };

@@ -79,52 +79,47 @@ bool exchange(const Particle& from, const Taps& taps, int most, Particle& to) {
   return true;
 }
 
-Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random random)
-    : prior_(prior),
-      settings_(settings),
-      random_(random),
-      sample_seed_(random_.bits()),
-      labels_{LabelModel(settings.label_error, settings.false_contact, 0.0),
-              LabelModel(settings.label_error, settings.false_contact, settings.position_noise)},
-      undiscovered_(prior_, random_) {
-  particles_.resize(static_cast<std::size_t>(settings.particles));
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    particles_[i].hypothesis.noisy = settings.position_noise > 0.0 && i % 2 == 1;
-}
-
-RowList Sampler::rows_of(const Particle& particle) {
+RowList Particle::list_rows() const {
   RowList out;
-  for (int i = 0; i < particle.hypothesis.primitives.size(); ++i) out.add(particle.rows.row(i));
+  for (int i = 0; i < hypothesis.primitives.size(); ++i) out.add(rows.row(i));
   return out;
 }
 
-LogUnits Sampler::loss(const RowList& rows, const LabelModel& labels) {
-  std::vector<LabelModel::Step>& steps = scratch_.steps;
-  steps.resize(static_cast<std::size_t>(taps_.length()));
-  find_deepest(rows, taps_.length(), steps.data());
-  return labels.loss(steps.data(), taps_.labels(), taps_.length());
+Likelihood::Likelihood(const SamplerSettings& settings)
+    : has_heights_(settings.heights),
+      labels_{LabelModel(settings.label_error, settings.false_contact, 0.0),
+              LabelModel(settings.label_error, settings.false_contact, settings.position_noise)} {}
+
+void Likelihood::add(const Touch& touch) {
+  taps_.add(touch);
+  if (touch.on) heights_.add(touch);
 }
 
-LogUnits Sampler::evidence(const RowList& rows) {
-  if (!settings_.heights) return 0;
-  std::vector<std::uint16_t>& holders = scratch_.holders;
-  holders.clear();
+LogUnits Likelihood::loss(const RowList& rows, bool noisy) {
+  steps_.resize(static_cast<std::size_t>(taps_.length()));
+  find_deepest(rows, taps_.length(), steps_.data());
+  return labels(noisy).loss(steps_.data(), taps_.labels(), taps_.length());
+}
+
+LogUnits Likelihood::evidence(const RowList& rows) {
+  if (!has_heights_) return 0;
+  holders_.clear();
   for (int tap = 0; tap < taps_.size(); ++tap) {
     if (!taps_.on(tap)) continue;
     unsigned bits = 0;
     for (int i = 0; i < rows.size(); ++i) bits |= LabelModel::inside(rows[i][tap]) ? 1U << i : 0U;
-    holders.push_back(static_cast<std::uint16_t>(bits));
+    holders_.push_back(static_cast<std::uint16_t>(bits));
   }
-  return heights_.evidence(holders, rows.size());
+  return heights_.evidence(holders_, rows.size());
 }
 
-void Sampler::weigh(Particle& particle) {
-  const RowList rows = rows_of(particle);
-  particle.loss = loss(rows, labels(particle.hypothesis.noisy));
+void Likelihood::weigh(Particle& particle) {
+  const RowList rows = particle.list_rows();
+  particle.loss = loss(rows, particle.hypothesis.noisy);
   particle.heights = evidence(rows);
 }
 
-LabelModel::Step Sampler::add_latest(Particle& particle) const {
+LabelModel::Step Likelihood::add_latest(Particle& particle) const {
   const LabelModel& labels = this->labels(particle.hypothesis.noisy);
   const int tap = taps_.size() - 1;
   const Target place = taps_[tap];
@@ -139,14 +134,27 @@ LabelModel::Step Sampler::add_latest(Particle& particle) const {
   return out;
 }
 
+Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random random)
+    : prior_(prior),
+      settings_(settings),
+      random_(random),
+      sample_seed_(random_.bits()),
+      likelihood_(settings),
+      mover_(prior, settings),
+      undiscovered_(prior_, random_) {
+  particles_.resize(static_cast<std::size_t>(settings.particles));
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    particles_[i].hypothesis.noisy = settings.position_noise > 0.0 && i % 2 == 1;
+}
+
 // A tap finds one new primitive at most, and is taken to be fully inside: an undiscovered primitive whose noisy rim is
 // near the tap is not found. Its heights do not count, and a particle with the maximum number of primitives finds
 // nothing. Later moves correct all of that: with 4 mm of noise, probabilities were off by less than 0.01; with heights
 // in the weights, the accuracy of the default did not change.
 double Sampler::add(const Touch& touch) {
-  taps_.add(touch);
+  likelihood_.add(touch);
+  const Taps& taps = likelihood_.taps();
   prepared_ = false;
-  if (touch.on) heights_.add(touch);
   const Undiscovered::Covering covering = undiscovered_.covering(touch.place);
   const double p_new = 1.0 - math::exp(-covering.rate());
   std::vector<double> weights;
@@ -155,14 +163,14 @@ double Sampler::add(const Touch& touch) {
   double sum_of_squares = 0.0;
   double p_label = 0.0;
   for (Particle& particle : particles_) {
-    const LabelModel& labels = this->labels(particle.hypothesis.noisy);
-    const LabelModel::Step step = add_latest(particle);
+    const LabelModel& labels = likelihood_.labels(particle.hypothesis.noisy);
+    const LabelModel::Step step = likelihood_.add_latest(particle);
     particle.loss += labels.loss(step, touch.on);
     double weight =
         (1.0 - p_new) * labels.probability(step, touch.on) + p_new * labels.probability(LabelModel::kInside, touch.on);
     p_label += weight;
     if (touch.on) {
-      const LogUnits heights = evidence(rows_of(particle));
+      const LogUnits heights = likelihood_.evidence(particle.list_rows());
       weight *= math::exp(from_units(heights - particle.heights));
       particle.heights = heights;
     }
@@ -171,14 +179,14 @@ double Sampler::add(const Touch& touch) {
     sum_of_squares += weight * weight;
   }
   const int before = size();
-  const double p_found = before * p_new * labels(false).probability(LabelModel::kInside, true);
-  if (touch.on && 2.0 * p_found > p_label) doubled_until_ = taps_.size() + kDoubledTaps;
-  const bool doubled = taps_.size() < doubled_until_;
+  const double p_found = before * p_new * likelihood_.labels(false).probability(LabelModel::kInside, true);
+  if (touch.on && 2.0 * p_found > p_label) doubled_until_ = taps.size() + kDoubledTaps;
+  const bool doubled = taps.size() < doubled_until_;
   resample(weights, sum, static_cast<std::size_t>(doubled ? 2 * settings_.particles : settings_.particles));
   if (touch.on && p_new > 0.0) find(covering, p_new);
-  undiscovered_.add(touch, labels(settings_.position_noise > 0.0));
-  const int times = moves(sum * sum / (sum_of_squares * before));
-  for (Particle& particle : particles_) move(particle, times);
+  undiscovered_.add(touch, likelihood_.labels(settings_.position_noise > 0.0));
+  const int times = count_moves(sum * sum / (sum_of_squares * before));
+  for (Particle& particle : particles_) mover_.move(particle, times, likelihood_, random_);
   constexpr std::size_t kCompared = 8;
   std::vector<const Hypothesis*> known;
   for (std::size_t k = 0; k < kCompared; ++k)
@@ -189,21 +197,22 @@ double Sampler::add(const Touch& touch) {
 
 /// Adds the undiscovered primitive that the tap may have found to each particle, with its probability given the label.
 void Sampler::find(const Undiscovered::Covering& covering, double p_new) {
-  const int tap = taps_.size() - 1;
+  const Taps& taps = likelihood_.taps();
+  const int tap = taps.size() - 1;
   Taps seen;
   for (Particle& particle : particles_) {
     const int count = particle.hypothesis.primitives.size();
     if (count >= prior_.settings().most) continue;
-    const LabelModel& labels = this->labels(particle.hypothesis.noisy);
+    const LabelModel& labels = likelihood_.labels(particle.hypothesis.noisy);
     LabelModel::Step step = LabelModel::kOutside;
     for (int i = 0; i < count; ++i) step = std::max(step, particle.rows.row(i)[tap]);
     const double found = p_new * labels.probability(LabelModel::kInside, true);
     const double known = (1.0 - p_new) * labels.probability(step, true);
     if (random_.uniform() * (found + known) >= found) continue;
     const Primitive& primitive = particle.hypothesis.primitives.add(covering.draw(random_));
-    seen.see(taps_, particle.hypothesis.push);
+    seen.see(taps, particle.hypothesis.push);
     seen.steps(primitive, labels, particle.rows.row(count));
-    weigh(particle);
+    likelihood_.weigh(particle);
   }
 }
 
@@ -237,8 +246,8 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
   for (std::size_t i = 0; i < weights.size(); ++i) {
     for (int more = copies[i]; more > 1; --more) {
       Particle& other = next_free(particles_[i]);
-      if (exchange(particles_[i], taps_, prior_.settings().most, other)) {
-        weigh(other);
+      if (exchange(particles_[i], likelihood_.taps(), prior_.settings().most, other)) {
+        likelihood_.weigh(other);
       } else {
         other = particles_[i];
       }
@@ -253,8 +262,9 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
 
 /// The number of moves of each particle after a tap that left this effective share of the particles. It depends on the
 /// states that are moved, which biases the chain by O(1 / particles).
-int Sampler::moves(double effective_share) const {
-  const Target latest = taps_[taps_.size() - 1];
+int Sampler::count_moves(double effective_share) const {
+  const Taps& taps = likelihood_.taps();
+  const Target latest = taps[taps.size() - 1];
   double sum = 0.0;
   for (const Particle& particle : particles_) {
     double far = 0.0;
@@ -266,51 +276,49 @@ int Sampler::moves(double effective_share) const {
   return std::min(settings_.most_moves, static_cast<int>(std::ceil(std::max(1.0, sum / size()) * each)));
 }
 
-void Sampler::move(Particle& particle, int times) {
-  Proposal& proposal = scratch_.proposal;
-  Taps& seen = scratch_.seen;
-  Taps& pushed = scratch_.pushed;
+void Mover::move(Particle& particle, int times, Likelihood& likelihood, Random& random) {
+  const Taps& taps = likelihood.taps();
   const double noise = settings_.position_noise > 0.0 ? kNoiseMoves : 0.0;
-  const double push = settings_.push_probability > 0.0 && taps_.size() > 1 ? kPushMoves : 0.0;
-  seen.see(taps_, particle.hypothesis.push);
+  const double push = settings_.push_probability > 0.0 && taps.size() > 1 ? kPushMoves : 0.0;
+  seen_.see(taps, particle.hypothesis.push);
   for (int i = 0; i < times; ++i) {
-    const double which = random_.uniform();
+    const double which = random.uniform();
     if (which < noise) {
-      propose_noise(proposal, particle.hypothesis);
+      propose_noise(proposal_, particle.hypothesis);
     } else if (which < noise + push) {
-      propose_push(proposal, particle.hypothesis, prior_, taps_.size(), settings_.push_probability, random_);
+      propose_push(proposal_, particle.hypothesis, prior_, taps.size(), settings_.push_probability, random);
     } else {
-      propose(proposal, particle.hypothesis, prior_, seen, (which - noise - push) / (1.0 - noise - push), random_);
+      propose(proposal_, particle.hypothesis, prior_, seen_, (which - noise - push) / (1.0 - noise - push), random);
     }
-    ++count_.tried;
-    if (!(proposal.ratio > 0.0)) continue;
-    const bool pushes = proposal.kind == Proposal::Kind::push;
-    if (pushes) pushed.see(taps_, proposal.push);
-    if (!accept(particle, proposal, pushes ? pushed : seen)) continue;
-    ++count_.accepted;
-    if (pushes) std::swap(seen, pushed);
+    ++tried_;
+    if (!(proposal_.ratio > 0.0)) continue;
+    const bool pushes = proposal_.kind == Proposal::Kind::push;
+    if (pushes) pushed_.see(taps, proposal_.push);
+    if (!accept(particle, pushes ? pushed_ : seen_, likelihood, random)) continue;
+    ++accepted_;
+    if (pushes) std::swap(seen_, pushed_);
   }
 }
 
 /// Accepts or rejects a proposal by Metropolis and Hastings in two steps: first by the labels, then by the heights,
 /// which take longer (delayed acceptance: Christen and Fox 2005). `taps`: as seen after the push of the proposal.
-bool Sampler::accept(Particle& particle, const Proposal& proposal, const Taps& taps) {
-  TapRows& added = scratch_.added;
+bool Mover::accept(Particle& particle, const Taps& taps, Likelihood& likelihood, Random& random) {
+  const Proposal& proposal = proposal_;
   // The density of a far push may be too small for a double.
-  const double ratio = std::min(proposal.ratio / (1.0 - random_.uniform()), std::numeric_limits<double>::max());
+  const double ratio = std::min(proposal.ratio / (1.0 - random.uniform()), std::numeric_limits<double>::max());
   if (particle.loss == 0 && ratio < 1.0) return false;  // no loss is negative; most moves need no logarithm
   const auto most = particle.loss + static_cast<LogUnits>(std::floor(math::log(ratio) * 0x1p20));
   if (most < 0) return false;
-  const LabelModel& labels = this->labels(proposal.noisy);
-  added.grow(taps.length());
+  const LabelModel& labels = likelihood.labels(proposal.noisy);
+  added_.grow(taps.length());
   RowList added_rows;
   for (int i = 0; i < proposal.added.size(); ++i) {
-    taps.steps(proposal.added[i], labels, added.row(i));
-    added_rows.add(added.row(i));
+    taps.steps(proposal.added[i], labels, added_.row(i));
+    added_rows.add(added_.row(i));
   }
-  RowList rows = rows_of(particle);
+  RowList rows = particle.list_rows();
   proposal.apply(added_rows, rows);
-  const LogUnits loss = this->loss(rows, labels);
+  const LogUnits loss = likelihood.loss(rows, proposal.noisy);
   if (loss > most) return false;
   // A primitive without an object tap would be an undiscovered one.
   for (const LabelModel::Step* row : added_rows) {
@@ -321,8 +329,8 @@ bool Sampler::accept(Particle& particle, const Proposal& proposal, const Taps& t
     same_objects = !hold_different_objects(added_rows[i], particle.rows.row(proposal.removed[i]), taps);
   LogUnits heights = particle.heights;
   if (!same_objects) {
-    heights = evidence(rows);
-    if (heights < particle.heights && math::log(1.0 - random_.uniform()) > from_units(heights - particle.heights))
+    heights = likelihood.evidence(rows);
+    if (heights < particle.heights && math::log(1.0 - random.uniform()) > from_units(heights - particle.heights))
       return false;
   }
   particle.loss = loss;

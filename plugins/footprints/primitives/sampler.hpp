@@ -47,6 +47,8 @@ struct Particle {
   TapRows rows;          ///< of its primitives, with taps as seen after its push
   LogUnits loss = 0;     ///< of labels
   LogUnits heights = 0;  ///< evidence of heights
+
+  RowList list_rows() const;
 };
 
 /// Replaces those primitives of `to` that the latest tap says something about by those of `from`: primitives near the
@@ -59,6 +61,59 @@ struct Particle {
 /// An approximation: the weights of resampling are not corrected for the primitives that stay; the moves that follow
 /// correct the particles. In the calibration with the moves of the defaults, no error was seen at 0.003.
 bool exchange(const Particle& from, const Taps& taps, int most, Particle& to);
+
+/// The taps, and how well a hypothesis explains them.
+class Likelihood {
+ public:
+  explicit Likelihood(const SamplerSettings& settings);
+
+  void add(const Touch& touch);
+  /// The taps as made.
+  const Taps& taps() const { return taps_; }
+  /// The probabilities of labels for hypotheses with noisy or exact positions.
+  const LabelModel& labels(bool noisy) const { return labels_[noisy ? 1 : 0]; }
+
+  /// Returns the loss of all labels of a hypothesis with these rows.
+  LogUnits loss(const RowList& rows, bool noisy);
+  /// Returns the evidence of the heights of all object taps.
+  LogUnits evidence(const RowList& rows);
+  /// Sets both sums of a particle by its rows.
+  void weigh(Particle& particle);
+  /// Adds the step of the latest tap to the rows of a particle; returns that in the union of its primitives.
+  LabelModel::Step add_latest(Particle& particle) const;
+
+ private:
+  bool has_heights_;
+  std::array<LabelModel, 2> labels_;  ///< exact and noisy
+  HeightModel heights_;
+  Taps taps_;
+  std::vector<LabelModel::Step> steps_;  ///< scratch, as the next
+  std::vector<std::uint16_t> holders_;
+};
+
+/// The Markov chain.
+class Mover {
+ public:
+  Mover(const Prior& prior, const SamplerSettings& settings) : prior_(prior), settings_(settings) {}
+
+  /// Proposes `times` moves, and makes those that are accepted.
+  void move(Particle& particle, int times, Likelihood& likelihood, Random& random);
+
+  /// Share of accepted moves.
+  double acceptance_rate() const {
+    return tried_ > 0 ? static_cast<double>(accepted_) / static_cast<double>(tried_) : 0.0;
+  }
+
+ private:
+  bool accept(Particle& particle, const Taps& taps, Likelihood& likelihood, Random& random);
+
+  Prior prior_;
+  SamplerSettings settings_;
+  long tried_ = 0, accepted_ = 0;  ///< moves
+  Proposal proposal_;              ///< kept to save allocations, as the next
+  Taps seen_, pushed_;             ///< taps as seen after the push of the particle, and of the proposal
+  TapRows added_;
+};
 
 /// Updates: sampler.cpp. Queries: sampler_queries.cpp. Positions are M x 2 metres.
 class Sampler {
@@ -94,27 +149,15 @@ class Sampler {
     double shift = 0.0;  ///< metres
   };
   MeanPush mean_push() const;
-  /// Share of accepted moves.
-  double acceptance_rate() const {
-    return count_.tried > 0 ? static_cast<double>(count_.accepted) / static_cast<double>(count_.tried) : 0.0;
-  }
+  double acceptance_rate() const { return mover_.acceptance_rate(); }
 
   int size() const { return static_cast<int>(particles_.size()); }
   const std::vector<Particle>& particles() const { return particles_; }
 
  private:
-  const LabelModel& labels(bool noisy) const { return labels_[noisy ? 1 : 0]; }
-  LogUnits loss(const RowList& rows, const LabelModel& labels);
-  LogUnits evidence(const RowList& rows);
-  static RowList rows_of(const Particle& particle);
-  void weigh(Particle& particle);
-  /// The step of the latest tap in the union of the primitives; adds it to their rows.
-  LabelModel::Step add_latest(Particle& particle) const;
   void resample(const std::vector<double>& weights, double sum, std::size_t count);
   void find(const Undiscovered::Covering& covering, double p_new);
-  int moves(double effective_share) const;
-  void move(Particle& particle, int times);
-  bool accept(Particle& particle, const Proposal& proposal, const Taps& taps);
+  int count_moves(double effective_share) const;
   /// Sets spans_ for these positions.
   void prepare(const PointsView& positions);
   /// Calls visit(tap, labels, step, on) for each tap of each particle with a loss.
@@ -125,27 +168,14 @@ class Sampler {
   SamplerSettings settings_;
   Random random_;
   std::uint64_t sample_seed_;
-  std::array<LabelModel, 2> labels_;  ///< exact and noisy
-  HeightModel heights_;
+  Likelihood likelihood_;
+  Mover mover_;
   Undiscovered undiscovered_;
-  Taps taps_;  ///< as made
   std::vector<Particle> particles_;
   int doubled_until_ = 0;  ///< number of taps until which there are twice as many particles
-  struct {
-    long tried = 0, accepted = 0;
-  } count_;  ///< of moves
   /// What each particle covers of the positions of the latest query, unless there was a tap since.
   std::vector<Grid::Spans> spans_;
   bool prepared_ = false;
-
-  /// What moves work with, kept to save allocations.
-  struct {
-    Proposal proposal;
-    Taps seen, pushed;
-    TapRows added;
-    std::vector<LabelModel::Step> steps;
-    std::vector<std::uint16_t> holders;
-  } scratch_;
 };
 
 }  // namespace palpate::footprints

@@ -14,12 +14,13 @@ double Sampler::mean_primitives() const {
 
 template <class Visit>
 void Sampler::for_each_label(const Visit& visit) const {
-  std::vector<LabelModel::Step> steps(static_cast<std::size_t>(taps_.length()));
+  const Taps& taps = likelihood_.taps();
+  std::vector<LabelModel::Step> steps(static_cast<std::size_t>(taps.length()));
   for (const Particle& particle : particles_) {
     if (particle.loss == 0) continue;
-    find_deepest(rows_of(particle), taps_.length(), steps.data());
-    const LabelModel& labels = this->labels(particle.hypothesis.noisy);
-    for (int i = 0; i < taps_.size(); ++i) visit(i, labels, steps[static_cast<std::size_t>(i)], taps_.on(i));
+    find_deepest(particle.list_rows(), taps.length(), steps.data());
+    const LabelModel& labels = likelihood_.labels(particle.hypothesis.noisy);
+    for (int i = 0; i < taps.size(); ++i) visit(i, labels, steps[static_cast<std::size_t>(i)], taps.on(i));
   }
 }
 
@@ -44,7 +45,8 @@ double Sampler::undiscovered_probability(double length) const {
 
 void Sampler::current_positions(Points& positions) const {
   Points sums = Points::Zero(positions.rows(), 2);
-  std::vector<int> counts(static_cast<std::size_t>(taps_.size()), 0);
+  const int taps = likelihood_.taps().size();
+  std::vector<int> counts(static_cast<std::size_t>(taps), 0);
   for (const Particle& particle : particles_) {
     const Push& push = particle.hypothesis.push;
     for (int i = 0; i < push.before; ++i) {
@@ -53,7 +55,7 @@ void Sampler::current_positions(Points& positions) const {
       ++counts[static_cast<std::size_t>(i)];
     }
   }
-  for (int i = 0; i < taps_.size(); ++i) {
+  for (int i = 0; i < taps; ++i) {
     const int count = counts[static_cast<std::size_t>(i)];
     if (2 * count > size()) positions.row(i) = sums.row(i) / count;
   }
@@ -102,7 +104,7 @@ void Sampler::probability(const PointsView& positions, VectorOut out) {
 
 void Sampler::sample(const PointsView& positions, int count, OutlineSample& out) {
   prepare(positions);
-  Random random(sample_seed_, "sample", static_cast<std::uint64_t>(taps_.size()));
+  Random random(sample_seed_, "sample", static_cast<std::uint64_t>(likelihood_.taps().size()));
   const double first = random.uniform();
   const auto drawn = [&](int k) { return std::min(size() - 1, static_cast<int>((k + first) * size() / count)); };
   out.count = count;
