@@ -125,6 +125,7 @@ class Primitives final : public Footprint {
     return sampler_.undiscovered_probability(kMinLength);
   }
 
+  /// After gp_classifier has taken over: those of the contact at which it did.
   std::vector<FootprintNumber> numbers() const override {
     std::vector<FootprintNumber> out{{"label_errors", sampler_.mean_label_errors()},
                                      {"primitives", sampler_.mean_primitives()},
