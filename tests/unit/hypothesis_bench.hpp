@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Hypotheses by the simplest definitions of what they contain, corners and foci; their primitives with an object tap;
-// and numbers by which distributions of hypotheses are compared.
+// Hypotheses by the simplest definitions: positions inside, by corners and foci; primitives with an object tap;
+// positions after a push; probabilities of labels and heights. And numbers by which distributions of hypotheses are
+// compared.
 #pragma once
 
-#include "primitives/hypothesis.hpp"
+#include "primitives/sampler.hpp"
 
 #include <palpate/footprint.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +20,47 @@
 namespace palpate::footprints {
 
 using Point = std::array<double, 2>;
+
+/// The prior of the default config.
+inline Prior::Settings default_prior(double expected = 2.0) {
+  Prior::Settings out;
+  out.area = {0.23, 0.23};
+  out.expected = expected;
+  return out;
+}
+
+/// A sampler with this prior, `moves` after each tap, and one probability of errors of both labels.
+inline Sampler sampler_of(int particles, double moves, double error, std::uint64_t seed, double noise = 0.0) {
+  SamplerSettings how;
+  how.particles = particles;
+  how.moves = how.moves_apart = moves;
+  how.label_error = how.false_contact = error;
+  how.position_noise = noise;
+  return {Prior(default_prior()), how, Random(seed, "particles test")};
+}
+
+/// Draws a standard normal number (Box and Muller 1958).
+inline double standard_normal(Random& random) {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
+  return radius * std::cos(2.0 * kPi * random.uniform());
+}
+
+/// Returns the taps at their positions after a push.
+inline std::vector<Touch> touches_after(const Push& push, std::vector<Touch> touches) {
+  using Complex = std::complex<double>;
+  const Complex origin(push.origin_x, push.origin_y);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(push.before); ++i) {
+    const Complex from(touches[i].place.x, touches[i].place.y);
+    const Complex to = origin + Complex(push.dx, push.dy) + Complex(push.cosine, push.sine) * (from - origin);
+    touches[i].place = {to.real(), to.imag()};
+  }
+  return touches;
+}
+
+/// The probability that a tap with noise of this standard deviation is made at a depth of 0 or more, metres.
+inline double probability_inside(double depth, double noise) {
+  return noise > 0.0 ? 0.5 * std::erfc(-depth / noise / std::sqrt(2.0)) : (depth >= 0.0 ? 1.0 : 0.0);
+}
 
 /// `along` and `across` from the centre, in the form's own frame.
 inline Point placed(const Form& o, double along, double across) {
@@ -47,16 +91,63 @@ inline double inside_of(const Form& o, const Point& p) {
 /// No point of a form is farther from its centre.
 inline double radius_of(const Form& form) { return std::hypot(form.a, form.b); }
 
-/// Nearer to a rim than that the two ways to say it may differ by rounding.
+/// Nearer to a rim, both definitions may differ by rounding, metres.
 constexpr double kOnTheRim = 1e-12;
 
-/// Whether a primitive holds a touch that has the label of an object.
+/// Whether a primitive contains a tap that has the label of an object.
 inline bool touched(const Primitive& primitive, const std::vector<Touch>& touches) {
   return std::any_of(touches.begin(), touches.end(),
                      [&](const Touch& one) { return one.on && primitive.contains(one.place.x, one.place.y); });
 }
 
-/// The primitives that were touched and those that were not, together not more than there is room for.
+/// The density of a height given another one, relative to any height, on a top that is level up to `slope`.
+inline double height_gain(const Touch& one, const Touch& other, double slope) {
+  const double scale = std::hypot(0.004, slope * std::hypot(one.place.x - other.place.x, one.place.y - other.place.y));
+  const double deviation = (one.height - other.height) / scale;
+  return 0.15 * 0.98 * std::exp(-0.5 * deviation * deviation) / (scale * std::sqrt(2.0 * kPi)) + 0.02;
+}
+
+/// The density of the heights relative to any heights, by the definition of HeightModel: primitive by primitive.
+/// Distances are those of the taps as made; primitives contain taps as `seen` after a push.
+inline double height_evidence(const Hypothesis& hypothesis, const std::vector<Touch>& touches,
+                              const std::vector<Touch>& seen) {
+  const auto holds = [&](const Primitive& primitive, std::size_t tap) {
+    return primitive.contains(seen[tap].place.x, seen[tap].place.y);
+  };
+  const auto nearest_before = [&](std::size_t i, const auto& counts) {
+    const Touch* out = nullptr;
+    double nearest = 1e9;
+    for (std::size_t k = 0; k < i; ++k) {
+      const double distance =
+          std::hypot(touches[i].place.x - touches[k].place.x, touches[i].place.y - touches[k].place.y);
+      if (!touches[k].on || distance >= nearest || !counts(k)) continue;
+      nearest = distance;
+      out = &touches[k];
+    }
+    return out;
+  };
+  double out = 1.0;
+  for (const Primitive& primitive : hypothesis.primitives) {
+    double level = 1.0;
+    double slope = 1.0;
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+      if (!touches[i].on || !holds(primitive, i)) continue;
+      const auto holders = std::count_if(hypothesis.primitives.begin(), hypothesis.primitives.end(),
+                                         [&](const Primitive& other) { return holds(other, i); });
+      const double part = 1.0 / static_cast<double>(holders);
+      if (const Touch* in_it = nearest_before(i, [&](std::size_t tap) { return holds(primitive, tap); })) {
+        level *= std::pow(height_gain(touches[i], *in_it, 0.05), part);
+        slope *= std::pow(height_gain(touches[i], *in_it, 0.5), part);
+      } else if (const Touch* beside = nearest_before(i, [](std::size_t) { return true; })) {
+        out *= std::pow(0.7 + 0.3 * height_gain(touches[i], *beside, 0.05), part);
+      }
+    }
+    out *= 0.5 * level + 0.3 * slope + 0.2;
+  }
+  return out;
+}
+
+/// The primitives with an object tap and those without; both together fit into one hypothesis.
 struct Parts {
   Hypothesis seen, undiscovered;
 };
@@ -67,7 +158,19 @@ inline Parts parts_of(const Hypothesis& hypothesis, const std::vector<Touch>& to
   return out;
 }
 
-/// Draws the touched primitives of the prior, up to its `most`; primitives come as often as the law of Poisson says.
+/// Whether a primitive at least this long, metres, has no object tap and overlaps none that has one.
+inline bool has_undiscovered(const Hypothesis& hypothesis, const std::vector<Touch>& touches, double length) {
+  const Parts parts = parts_of(hypothesis, touches);
+  const auto apart = [&](const Primitive& one) {
+    return std::none_of(parts.seen.primitives.begin(), parts.seen.primitives.end(),
+                        [&](const Primitive& known) { return overlap(known.form, one.form); });
+  };
+  return std::any_of(parts.undiscovered.primitives.begin(), parts.undiscovered.primitives.end(),
+                     [&](const Primitive& one) { return 2.0 * one.form.a >= length && apart(one); });
+}
+
+/// Draws the primitives of the prior with an object tap, up to its `most`. Their number without this limit is
+/// Poisson's.
 inline Hypothesis drawn_and_touched(const Prior& prior, const std::vector<Touch>& touches, Random& random) {
   const Prior::Settings& settings = prior.settings();
   for (;;) {
@@ -84,7 +187,7 @@ inline Hypothesis drawn_and_touched(const Prior& prior, const std::vector<Touch>
   }
 }
 
-/// The probabilities of 0 to `most` by the law of Poisson, of these alone.
+/// Returns the probabilities of 0 to `most` of a Poisson distribution that is cut off above.
 inline std::vector<double> poisson(double mean, int most) {
   std::vector<double> out{1.0};
   double sum = 1.0;
@@ -96,31 +199,33 @@ inline std::vector<double> poisson(double mean, int most) {
   return out;
 }
 
-/// That a sum of squares of `freedom` standard normal deviations is so large, as a standard normal deviation (Wilson
-/// and Hilferty 1931).
+/// Returns the standard normal deviation that is as improbable as this sum of squares of `freedom` standard normal
+/// deviations (Wilson and Hilferty 1931).
 inline double deviation_of_chi_square(double sum, double freedom) {
   const double spread = 2.0 / (9.0 * freedom);
   return (std::cbrt(sum / freedom) - (1.0 - spread)) / std::sqrt(spread);
 }
 
-/// The same of counts whose expectations are known. Counts that are too small go together.
+/// Returns the same for counts whose expectations are known. Neighbours are merged until each expectation is at least
+/// 20; a smaller rest at the end belongs to the last of them.
 inline double deviation_from(const std::vector<double>& expected, const std::vector<long>& counts) {
-  double sum = 0.0;
-  double cells = 0.0;
-  double a = 0.0;
-  double e = 0.0;
+  struct Cell {
+    double expected = 0.0, count = 0.0;
+  };
+  std::vector<Cell> cells(1);
+  double rest = std::accumulate(expected.begin(), expected.end(), 0.0);
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    a += static_cast<double>(counts[i]);
-    e += expected[i];
-    if (e < 20.0) continue;
-    sum += (a - e) * (a - e) / e;
-    cells += 1.0;
-    a = e = 0.0;
+    if (cells.back().expected >= 20.0 && rest >= 20.0) cells.emplace_back();
+    cells.back().expected += expected[i];
+    cells.back().count += static_cast<double>(counts[i]);
+    rest -= expected[i];
   }
-  return deviation_of_chi_square(sum, cells - 1.0);
+  double sum = 0.0;
+  for (const Cell& one : cells) sum += (one.count - one.expected) * (one.count - one.expected) / one.expected;
+  return deviation_of_chi_square(sum, static_cast<double>(cells.size()) - 1.0);
 }
 
-/// A number by which two distributions may differ, in [0, 1]; below 0 where there is none, as of a hole that is not.
+/// A number by which two distributions may differ, in [0, 1]; negative if it is undefined, as for a missing hole.
 struct Number {
   const char* name;
   double value;
@@ -131,7 +236,7 @@ inline double direction_of(const Form& form) {
   return turns - std::floor(turns);
 }
 
-/// Every number that says what a primitive is, where it false_contact and how large.
+/// The numbers of a primitive: its kind, position and size.
 inline constexpr std::size_t kNumbers = 18;
 inline std::array<Number, kNumbers> numbers_of(const Primitive& primitive, const Prior::Settings& prior) {
   const Form& form = primitive.form;
@@ -140,7 +245,7 @@ inline std::array<Number, kNumbers> numbers_of(const Primitive& primitive, const
   const auto size = [&](double half) { return std::log(2.0 * half / prior.min_width) / sizes; };
   const auto of_hole = [&](double value) { return primitive.hollow && !primitive.fitted() ? value : -1.0; };
   const bool corner = primitive.fitted() && primitive.fit == Primitive::Fit::corner;
-  // A form that is turned about by half a circle is the same, with its hole at the other corner.
+  // Half a turn changes nothing in a form, and the corner of its hole becomes the opposite one.
   const int about = form.sine < 0.0 || (form.sine == 0.0 && form.cosine < 0.0) ? -1 : 1;
   const double dx = hole.x - form.x;
   const double dy = hole.y - form.y;
@@ -170,7 +275,7 @@ inline int holes_of(const Hypothesis& hypothesis) {
                                         [](const Primitive& one) { return one.hollow; }));
 }
 
-/// Numbers of all primitives together, whatever their order.
+/// Numbers of all primitives together, in any order.
 inline std::array<Number, 4> numbers_of(const Hypothesis& hypothesis, const Prior::Settings& prior) {
   double nearest = 1e9;
   double covered = 0.0;
@@ -187,8 +292,8 @@ inline std::array<Number, 4> numbers_of(const Hypothesis& hypothesis, const Prio
            {"extent", covered / (covered + 0.02)}}};
 }
 
-/// What moves that leave a distribution as it is do to its hypotheses on average: nothing. Each hypothesis is compared
-/// with itself, so that little is needed to see more.
+/// The mean change of hypotheses by moves: 0 if the moves keep the distribution. Each hypothesis is compared with
+/// itself, so that few hypotheses show a change.
 class Drift {
  public:
   explicit Drift(const Prior::Settings& prior) : prior_(prior) {}
@@ -204,7 +309,7 @@ class Drift {
     }
   }
 
-  /// The greatest mean change in standard errors of itself, and of which sum.
+  /// The greatest mean change, in its standard errors, and the name of its sum.
   std::pair<double, std::string> deviation() const {
     std::pair<double, std::string> out{0.0, ""};
     for (std::size_t i = 0; i < kSums; ++i) {
@@ -215,7 +320,7 @@ class Drift {
 
  private:
   static constexpr std::size_t kSums = 6 + kNumbers;
-  /// Over all primitives, how many have each number and what these come to, in so far as that says something.
+  /// Sums of the numbers over all primitives.
   std::array<Number, kSums> sums(const Hypothesis& hypothesis) const {
     std::array<Number, kSums> out{};
     const auto whole = numbers_of(hypothesis, prior_);
