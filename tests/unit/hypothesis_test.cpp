@@ -9,20 +9,13 @@
 #include "support/touches.hpp"
 
 #include <map>
-#include <numeric>
 #include <tuple>
 
 namespace palpate::footprints {
 namespace {
 
-Prior::Settings common_prior() {
-  Prior::Settings out;
-  out.area = {0.23, 0.23};
-  return out;
-}
-
-TEST(Hypothesis, HoldsWhatItsPrimitivesSay) {
-  const Prior prior(common_prior());
+TEST(Hypothesis, ContainsThePositionsInItsPrimitives) {
+  const Prior prior(default_prior());
   Random random(11, "hypothesis test");
   const Points places = test::lattice(31, 31);
   int several = 0;
@@ -53,8 +46,8 @@ TEST(Hypothesis, HoldsWhatItsPrimitivesSay) {
   EXPECT_GT(hollow, 50);
 }
 
-TEST(Hypothesis, OfTwelvePrimitivesLosesTheOneThatIsTakenAwayAndCopiesAreWhole) {
-  const Prior prior(common_prior());
+TEST(Hypothesis, LosesOnlyTheRemovedPrimitiveAndIsCopiedInFull) {
+  const Prior prior(default_prior());
   Random random(12, "hypothesis test");
   ShortList<Primitive> hypothesis;
   std::vector<double> left;
@@ -74,8 +67,8 @@ TEST(Hypothesis, OfTwelvePrimitivesLosesTheOneThatIsTakenAwayAndCopiesAreWhole) 
   }
 }
 
-TEST(Hypothesis, KeepsAHoleThatFitsWhereItIsWhenAxesAreNamedAnew) {
-  const Prior prior(common_prior());
+TEST(Hypothesis, KeepsAFittedHoleWhenItsAxesAreSwapped) {
+  const Prior prior(default_prior());
   Random random(15, "hypothesis test");
   const Points places = test::lattice(61, 61);
   int corners = 0;
@@ -100,20 +93,20 @@ TEST(Hypothesis, KeepsAHoleThatFitsWhereItIsWhenAxesAreNamedAnew) {
 
 /// Priors that have little in common.
 std::vector<Prior::Settings> priors() {
-  Prior::Settings crowded = common_prior();
+  Prior::Settings crowded = default_prior();
   crowded.area = {0.12, 0.09};  // most forms do not fit
   crowded.most = 2;
   crowded.ellipses = 0.6;
-  Prior::Settings wide = common_prior();
+  Prior::Settings wide = default_prior();
   wide.area = {0.46, 0.46};
   wide.min_width = 0.03;
   wide.most_slender = 4.0;
   wide.expected = 3.5;
   wide.hole_probability = 0.7;
-  return {common_prior(), crowded, wide};
+  return {default_prior(), crowded, wide};
 }
 
-TEST(Prior, HasAsManyPrimitivesAsTheLawOfPoissonSaysUpToTheMost) {
+TEST(Prior, HasAPoissonNumberOfPrimitivesUpToItsLimit) {
   constexpr int kDraws = 200000;
   for (const Prior::Settings& settings : priors()) {
     const Prior prior(settings);
@@ -151,8 +144,13 @@ std::pair<Primitive, double> drawn_evenly(const Prior::Settings& prior, Random& 
   };
   Primitive out;
   axes(out.form);
-  out.form.x = between(0.0, prior.area.width);
-  out.form.y = between(0.0, prior.area.depth);
+  // A little more than the room of the form: weights of wide forms would vary too much over the whole area.
+  const auto centre = [&](double reach, double side) {
+    const double beyond = 0.05 * (side - 2.0 * reach);
+    return between(reach - beyond, side - reach + beyond);
+  };
+  out.form.x = centre(out.form.reach_x(), prior.area.width);
+  out.form.y = centre(out.form.reach_y(), prior.area.depth);
   out.hollow = random.uniform() < 0.5;
   density *= 0.5;
   if (!out.hollow) return {out, density};
@@ -178,7 +176,7 @@ std::pair<Primitive, double> drawn_evenly(const Prior::Settings& prior, Random& 
   return {out, density};
 }
 
-/// One of some dozens of kinds, by all that a primitive is.
+/// One of some dozens of kinds, by all numbers of a primitive.
 std::string kind_of(const Primitive& primitive, const Prior::Settings& prior) {
   const auto numbers = numbers_of(primitive, prior);
   const auto half = [&](std::size_t number, double at) { return numbers[number].value > at ? "1" : "0"; };
@@ -191,7 +189,7 @@ std::string kind_of(const Primitive& primitive, const Prior::Settings& prior) {
          half(11, 0.1) + half(13, 0.7);
 }
 
-TEST(Prior, HasADensityThatSaysHowOftenEachKindOfPrimitiveIsDrawn) {
+TEST(Prior, DrawsEachKindOfPrimitiveInProportionToItsDensity) {
   const int draws = test::brief() ? 400000 : 1000000;
   for (const Prior::Settings& settings : priors()) {
     const Prior prior(settings);
@@ -210,7 +208,7 @@ TEST(Prior, HasADensityThatSaysHowOftenEachKindOfPrimitiveIsDrawn) {
         share->squares += weight / draws * weight / draws;
       }
     }
-    EXPECT_LT(std::sqrt(all.squares), 0.02 * all.sum) << "or it would say little";
+    EXPECT_LT(std::sqrt(all.squares), 0.02 * all.sum) << "enough draws";
     int primitives = 0;
     for (int i = 0; i < draws / 4; ++i) {
       for (const Primitive& primitive : prior.draw(random).primitives) {
@@ -235,7 +233,7 @@ TEST(Prior, HasADensityThatSaysHowOftenEachKindOfPrimitiveIsDrawn) {
 }
 
 TEST(Prior, FindsRoomOnAnAreaThatIsHardlyLargerThanTheSmallestPrimitive) {
-  Prior::Settings settings = common_prior();
+  Prior::Settings settings = default_prior();
   settings.area = {0.0207, 0.0207};
   const Prior prior(settings);
   SamplerSettings how;
