@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The belief of the footprint `primitives` against what its model implies: the prior of pushes, the truth of drawn
-// desks, and an exact sum over all ways in which primitives can cover the taps.
+// The sampler against its model: the prior of pushes, the truth of drawn desks, and an exact sum over all sets of taps
+// that primitives can cover.
 #include "hypothesis_bench.hpp"
-#include "primitives/proposals.hpp"
 #include "primitives/sampler.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -10,18 +9,13 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace palpate::footprints {
 namespace {
 
 // A standard normal deviation exceeds 4.5 once in 150000 times.
 constexpr double kDeviations = 4.5;
-
-Prior::Settings prior_of_the_default() {
-  Prior::Settings out;
-  out.area = {0.23, 0.23};
-  return out;
-}
 
 /// Mean and variance of numbers that are added one by one.
 struct Moments {
@@ -38,7 +32,7 @@ struct Moments {
 };
 
 // Only the last tap has the label of an object. No push comes after it, so primitives and pushes are independent.
-TEST(FootprintModel, KeepsThePriorOfPushesAndOfNoiseUnderLabelsThatSayNothing) {
+TEST(FootprintModel, KeepsThePriorOfPushesAndNoiseWithUninformativeLabels) {
   constexpr int kTaps = 15;
   SamplerSettings how;
   how.particles = test::brief() ? 1000 : 2000;
@@ -54,7 +48,7 @@ TEST(FootprintModel, KeepsThePriorOfPushesAndOfNoiseUnderLabelsThatSayNothing) {
   Moments pushed, noisy, dx, dy, turn;
   std::vector<long> before(kTaps - 1, 0);
   for (int run = 0; run < runs; ++run) {
-    Sampler belief(Prior(prior_of_the_default()), how,
+    Sampler belief(Prior(default_prior()), how,
                    Random(static_cast<std::uint64_t>(run), "footprint model test: pushes"));
     for (const Touch& touch : touches) belief.add(touch);
     Moments of_run, noisy_of_run;
@@ -71,7 +65,7 @@ TEST(FootprintModel, KeepsThePriorOfPushesAndOfNoiseUnderLabelsThatSayNothing) {
     noisy.add(noisy_of_run.mean());
   }
   const double expected = how.push_probability * (kTaps - 1) / (1.0 + how.push_probability * (kTaps - 1));
-  // Hypotheses are doubled after the find: copies that have not moved apart yet say the same.
+  // Hypotheses are doubled after the find: copies that have not moved apart yet count once.
   const double independent = 0.5 * dx.count;
   EXPECT_NEAR(pushed.mean(), expected, kDeviations * std::sqrt(expected * (1.0 - expected) / how.particles / runs));
   EXPECT_NEAR(noisy.mean(), 0.5, kDeviations * 0.5 / std::sqrt(how.particles * runs));
@@ -99,9 +93,9 @@ INSTANTIATE_TEST_SUITE_P(Every, Calibrated,
                                          CalibrationCase{"NoisyPositions", 0.004, 800}),
                          [](const auto& one) { return one.param.name; });
 
-TEST_P(Calibrated, ProbabilitiesAreThoseOfDesksThatThePriorDraws) {
+TEST_P(Calibrated, HasTheProbabilitiesOfDesksOfThePrior) {
   constexpr std::array<int, 3> kTaps{6, 15, 30};
-  const Prior prior(prior_of_the_default());
+  const Prior prior(default_prior());
   SamplerSettings how;
   how.false_contact = 0.015;
   how.position_noise = GetParam().noise;
@@ -110,7 +104,7 @@ TEST_P(Calibrated, ProbabilitiesAreThoseOfDesksThatThePriorDraws) {
   const int runs = test::brief() ? 40 : GetParam().runs;
   std::array<Moments, kTaps.size()> difference;
   struct Bin {
-    double count = 0.0, truth = 0.0, said = 0.0;
+    double count = 0.0, truth = 0.0, predicted = 0.0;
   };
   std::array<Bin, 10> bins{};
   for (int run = 0; run < runs; ++run) {
@@ -118,45 +112,82 @@ TEST_P(Calibrated, ProbabilitiesAreThoseOfDesksThatThePriorDraws) {
     const Hypothesis desk = prior.draw(random);
     const double noise = random.uniform() < 0.5 ? how.position_noise : 0.0;
     Sampler belief(prior, how, Random(static_cast<std::uint64_t>(run), "footprint model test: belief"));
-    std::size_t asked = 0;
+    std::size_t checked = 0;
     for (int tap = 1; tap <= kTaps.back(); ++tap) {
       const Target place{0.23 * random.uniform(), 0.23 * random.uniform()};
-      const bool on = desk.contains(place.x + noise * normal(random), place.y + noise * normal(random));
+      const bool on =
+          desk.contains(place.x + noise * standard_normal(random), place.y + noise * standard_normal(random));
       const bool wrong = random.uniform() < (on ? how.label_error : how.false_contact);
       belief.add({place, 0.0, on != wrong});
-      if (tap != kTaps[asked]) continue;
-      Eigen::VectorXd said(places.rows());
-      belief.probability(places, said);
+      if (tap != kTaps[checked]) continue;
+      Eigen::VectorXd predicted(places.rows());
+      belief.probability(places, predicted);
       Moments of_run;
       for (Eigen::Index i = 0; i < places.rows(); ++i) {
         const double truth = desk.contains(places(i, 0), places(i, 1)) ? 1.0 : 0.0;
-        of_run.add(truth - said(i));
-        Bin& bin = bins[std::min<std::size_t>(9, static_cast<std::size_t>(10.0 * said(i)))];
+        of_run.add(truth - predicted(i));
+        Bin& bin = bins[std::min<std::size_t>(9, static_cast<std::size_t>(10.0 * predicted(i)))];
         bin.count += 1.0;
         bin.truth += truth;
-        bin.said += said(i);
+        bin.predicted += predicted(i);
       }
-      difference[asked++].add(of_run.mean());
+      difference[checked++].add(of_run.mean());
     }
   }
   for (std::size_t i = 0; i < kTaps.size(); ++i)
     EXPECT_NEAR(difference[i].mean(), 0.0, kDeviations * difference[i].error()) << "after " << kTaps[i] << " taps";
-  if (test::brief()) return;  // few desks say little of each bin
+  if (test::brief()) return;  // few desks give each bin few positions
   for (const Bin& bin : bins) {
     // Places of one desk go together. The largest difference of a model without faults was 0.05.
     if (bin.count < 600.0) continue;
-    EXPECT_NEAR(bin.truth / bin.count, bin.said / bin.count, 0.06);
+    EXPECT_NEAR(bin.truth / bin.count, bin.predicted / bin.count, 0.06);
   }
 }
 
-// All labels are those of objects, so each primitive with a tap inside is a known one, and nothing is approximated.
-TEST(FootprintModel, IsTheExactSumOverTheSetsOfTapsThatPrimitivesCover) {
-  constexpr std::size_t kTaps = 6;
-  constexpr std::size_t kSets = std::size_t{1} << kTaps;
-  constexpr int kMost = 7;
-  const std::vector<Touch> touches{test::touch_at(0.08, 0.09, true), test::touch_at(0.10, 0.10, true),
-                                   test::touch_at(0.15, 0.13, true), test::touch_at(0.09, 0.12, true),
-                                   test::touch_at(0.17, 0.15, true), test::touch_at(0.20, 0.04, true)};
+/// Taps with labels of objects alone: each primitive with a tap inside is a known one, and nothing is approximated.
+const std::vector<Touch> kObjectTaps{test::touch_at(0.08, 0.09, true), test::touch_at(0.10, 0.10, true),
+                                     test::touch_at(0.15, 0.13, true), test::touch_at(0.09, 0.12, true),
+                                     test::touch_at(0.17, 0.15, true), test::touch_at(0.20, 0.04, true)};
+constexpr int kCounted = 7;  ///< primitives
+
+/// Returns the probabilities of 0 to 7 primitives with a tap, and that one of them covers the last tap.
+std::pair<std::vector<double>, double> enumerated(const Prior& prior, const SamplerSettings& how, int draws) {
+  constexpr std::size_t kCount = 6;  // of the taps
+  constexpr std::size_t kSets = std::size_t{1} << kCount;
+  const auto in_set = [](std::size_t set, std::size_t tap) { return (set >> tap & 1U) != 0; };
+  // The share of primitives of the prior that cover each set of taps.
+  std::array<double, kSets> share{};
+  Random random(1, "footprint model test: sets");
+  for (int i = 0; i < draws; ++i) {
+    const Primitive primitive = prior.draw_primitive(random);
+    std::size_t set = 0;
+    for (std::size_t k = 0; k < kCount; ++k)
+      set |= primitive.contains(kObjectTaps[k].place.x, kObjectTaps[k].place.y) ? std::size_t{1} << k : 0;
+    share[set] += 1.0 / draws;
+  }
+  // Weights of the unions of n primitives with a tap each, times expected^n / n!.
+  std::array<double, kSets> of_union{};
+  of_union[0] = 1.0;
+  std::vector<double> weights(kCounted + 1, 0.0);
+  double last_covered = 0.0;
+  for (int n = 0; n <= kCounted; ++n) {
+    std::array<double, kSets> next{};
+    for (std::size_t set = 0; set < kSets; ++set) {
+      double weight = of_union[set];
+      for (std::size_t k = 0; k < kCount; ++k) weight *= in_set(set, k) ? 1.0 - how.label_error : how.false_contact;
+      weights[static_cast<std::size_t>(n)] += weight;
+      last_covered += in_set(set, kCount - 1) ? weight : 0.0;
+      for (std::size_t more = 1; more < kSets; ++more)
+        next[set | more] += of_union[set] * share[more] * prior.settings().expected / (n + 1);
+    }
+    of_union = next;
+  }
+  const double evidence = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& one : weights) one /= evidence;
+  return {weights, last_covered / evidence};
+}
+
+TEST(FootprintModel, HasTheExactProbabilityOfEachNumberOfPrimitives) {
   SamplerSettings how;
   how.particles = 1000;
   how.label_error = 0.01;
@@ -164,67 +195,34 @@ TEST(FootprintModel, IsTheExactSumOverTheSetsOfTapsThatPrimitivesCover) {
   how.heights = false;
   how.moves = 100;
   how.most_moves = 1000;
-  const Prior prior(prior_of_the_default());
-
-  // How often a primitive covers each set of taps.
-  std::array<double, kSets> share{};
-  Random random(1, "footprint model test: sets");
-  const int draws = test::brief() ? 300000 : 3000000;
-  for (int i = 0; i < draws; ++i) {
-    const Primitive primitive = prior.draw_primitive(random);
-    std::size_t set = 0;
-    for (std::size_t k = 0; k < kTaps; ++k)
-      set |= primitive.contains(touches[k].place.x, touches[k].place.y) ? std::size_t{1} << k : 0;
-    share[set] += 1.0 / draws;
-  }
-  // Weights of the unions of n primitives with a tap each, times expected^n / n!.
-  std::array<double, kSets> of_union{};
-  of_union[0] = 1.0;
-  std::vector<double> exact(kMost + 1, 0.0);
-  double evidence = 0.0;
-  double last_covered = 0.0;
-  for (int n = 0; n <= kMost; ++n) {
-    for (std::size_t set = 0; set < kSets; ++set) {
-      double weight = of_union[set];
-      for (std::size_t k = 0; k < kTaps; ++k)
-        weight *= (set >> k & 1U) != 0 ? 1.0 - how.label_error : how.false_contact;
-      exact[static_cast<std::size_t>(n)] += weight;
-      evidence += weight;
-      last_covered += (set >> (kTaps - 1) & 1U) != 0 ? weight : 0.0;
-    }
-    std::array<double, kSets> next{};
-    for (std::size_t set = 0; set < kSets; ++set) {
-      for (std::size_t more = 1; more < kSets; ++more)
-        next[set | more] += of_union[set] * share[more] * prior.settings().expected / (n + 1);
-    }
-    of_union = next;
-  }
-
-  std::vector<Moments> sampled(kMost + 1);
+  const Prior prior(default_prior());
+  const auto [of_count, last_covered] = enumerated(prior, how, test::brief() ? 300000 : 3000000);
+  std::vector<Moments> sampled(of_count.size());
   Moments covered;
   const int runs = test::brief() ? 4 : 20;
   for (int run = 0; run < runs; ++run) {
     Sampler belief(prior, how, Random(static_cast<std::uint64_t>(run), "footprint model test: enumeration"));
-    for (const Touch& touch : touches) belief.add(touch);
-    std::vector<double> shares(kMost + 1, 0.0);
+    for (const Touch& touch : kObjectTaps) belief.add(touch);
+    std::vector<double> shares(of_count.size(), 0.0);
     double last = 0.0;
     for (const Particle& one : belief.particles()) {
-      shares[static_cast<std::size_t>(std::min(one.hypothesis.primitives.size(), kMost))] += 1.0 / belief.size();
-      last += one.hypothesis.contains(touches.back().place.x, touches.back().place.y) ? 1.0 / belief.size() : 0.0;
+      shares[static_cast<std::size_t>(std::min(one.hypothesis.primitives.size(), kCounted))] += 1.0 / belief.size();
+      last +=
+          one.hypothesis.contains(kObjectTaps.back().place.x, kObjectTaps.back().place.y) ? 1.0 / belief.size() : 0.0;
     }
-    for (std::size_t n = 0; n <= kMost; ++n) sampled[n].add(shares[n]);
+    for (std::size_t n = 0; n < of_count.size(); ++n) sampled[n].add(shares[n]);
     covered.add(last);
   }
   // Chance in the draws of the prior: the rarest sets that matter are covered by one primitive in some thousand.
   const double of_draws = test::brief() ? 0.01 : 0.003;
   const double few = test::brief() ? 2.0 : 1.0;  // the error of the mean of few runs is hardly known
-  for (std::size_t n = 0; n <= kMost; ++n) {
-    EXPECT_NEAR(sampled[n].mean(), exact[n] / evidence, few * kDeviations * sampled[n].error() + of_draws) << n;
-    EXPECT_LT(sampled[n].error(), test::brief() ? 0.02 : 0.004) << "or it would say little";
+  for (std::size_t n = 0; n < of_count.size(); ++n) {
+    EXPECT_NEAR(sampled[n].mean(), of_count[n], few * kDeviations * sampled[n].error() + of_draws) << n;
+    EXPECT_LT(sampled[n].error(), test::brief() ? 0.02 : 0.004) << "enough runs";
   }
-  EXPECT_NEAR(covered.mean(), last_covered / evidence, few * kDeviations * covered.error() + of_draws);
-  EXPECT_GT(std::min(exact[1], exact[2]) / evidence, 0.05) << "the taps leave open how many primitives there are";
-  EXPECT_NEAR(last_covered / evidence, 0.5, 0.4) << "and whether the last one lies";
+  EXPECT_NEAR(covered.mean(), last_covered, few * kDeviations * covered.error() + of_draws);
+  EXPECT_GT(std::min(of_count[1], of_count[2]), 0.05) << "the taps leave open how many primitives there are";
+  EXPECT_NEAR(last_covered, 0.5, 0.4) << "and whether the last label is an error";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Moves of the belief over hypotheses leave the distribution of touched primitives unchanged, and a wrong acceptance
-// ratio of any kind of move is seen. The posterior is compared with draws of the prior in sampler_posterior_test.cpp.
+// Moves leave the distribution of primitives with an object tap unchanged, and a wrong acceptance ratio of any kind of
+// move is detected. The posterior is compared with draws of the prior in sampler_posterior_test.cpp.
 #include "primitives/proposals.hpp"
 #include "hypothesis_bench.hpp"
 #include "primitives/sampler.hpp"
@@ -9,7 +9,6 @@
 #include "support/touches.hpp"
 
 #include <array>
-#include <tuple>
 #include <utility>
 
 namespace palpate::footprints {
@@ -17,11 +16,11 @@ namespace {
 
 using Kind = Proposal::Kind;
 
-// That a standard normal deviation is above 5 happens once in three million times; each test looks at forty at most.
+// A standard normal deviation exceeds 5 once in three million times; each test compares forty at most.
 constexpr double kRare = 5.0;
 
 Prior::Settings prior_settings(int most, double side) {
-  Prior::Settings out;
+  Prior::Settings out = default_prior();
   out.area = {side, side};
   out.most = most;
   return out;
@@ -33,8 +32,8 @@ std::vector<Touch> touches_over(double side, int count) {
   return out;
 }
 
-/// Labels by turns, whatever is there.
-std::vector<Touch> by_turns(std::vector<Touch> touches) {
+/// Alternating labels.
+std::vector<Touch> with_alternating_labels(std::vector<Touch> touches) {
   for (std::size_t i = 0; i < touches.size(); ++i) touches[i].on = i % 2 == 0;
   return touches;
 }
@@ -53,8 +52,8 @@ Hypothesis after(const Proposal& proposal, Hypothesis hypothesis) {
   return hypothesis;
 }
 
-/// A kind of move whose ratio is made false, and the kind that leads back, in a prior by which most moves of the first
-/// are neither always taken nor never: what is always taken would be so as well by a ratio that is somewhat false.
+/// A kind of move with a wrong ratio, and its reverse. In this prior most moves of the kind are accepted sometimes: a
+/// move that is always accepted would be accepted with a slightly wrong ratio, too.
 struct FalseRatio {
   const char* name;
   Kind kind, back;
@@ -106,10 +105,10 @@ class Jumps : public testing::TestWithParam<FalseRatio> {
     hypothesis = proposed;
   }
 
-  const std::vector<Touch> touches_ = by_turns(touches_over(GetParam().side, 8));
+  const std::vector<Touch> touches_ = with_alternating_labels(touches_over(GetParam().side, 8));
 };
 
-TEST_P(Jumps, HaveARatioThatIsSeenToBeFalseWhereItIsSomewhatLargerOrSmaller) {
+TEST_P(Jumps, KeepThePriorOnlyWithTheRightRatio) {
   const auto [right, of] = drift(1.0);
   EXPECT_LT(right, kRare) << of;
   if (test::brief()) return;  // few hypotheses do not show it
@@ -133,7 +132,7 @@ struct Joint {
 };
 
 /// Draws labels for hypotheses and moves hypotheses by the labels, in turn (Geweke 2004). Metropolis and Hastings with
-/// likelihoods by the definition, and with what no tap has touched drawn in full.
+/// likelihoods by the definition, and with undiscovered primitives drawn in full.
 class Geweke {
  public:
   static constexpr int kTaps = 10;
@@ -152,9 +151,9 @@ class Geweke {
       Push& push = out.seen.push;
       push.before = 1 + static_cast<int>(random_.index(kTaps - 1));
       push.origin_x = push.origin_y = 0.115;
-      push.dx = 0.012 * normal(random_);
-      push.dy = 0.012 * normal(random_);
-      const double angle = 0.1 * normal(random_);
+      push.dx = 0.012 * standard_normal(random_);
+      push.dy = 0.012 * standard_normal(random_);
+      const double angle = 0.1 * standard_normal(random_);
       push.cosine = std::cos(angle);
       push.sine = std::sin(angle);
     }
@@ -206,22 +205,14 @@ class Geweke {
 
  private:
   /// The taps where they would be made after the push.
-  static std::vector<Touch> seen_touches(const Joint& one) {
-    std::vector<Touch> out = one.touches;
-    for (int i = 0; i < one.seen.push.before; ++i) {
-      Target& place = out[static_cast<std::size_t>(i)].place;
-      place = one.seen.push.now(place);
-    }
-    return out;
-  }
+  static std::vector<Touch> seen_touches(const Joint& one) { return touches_after(one.seen.push, one.touches); }
 
   double probability(const Joint& one, const Hypothesis& all, std::size_t tap) const {
     const Touch touch = seen_touches(one)[tap];
     double depth = -1.0;
     for (const Primitive& primitive : all.primitives)
       depth = std::max(depth, primitive.depth(touch.place.x, touch.place.y));
-    const double inside =
-        one.seen.noisy ? 0.5 * std::erfc(-depth / kNoise / std::sqrt(2.0)) : (depth >= 0.0 ? 1.0 : 0.0);
+    const double inside = probability_inside(depth, one.seen.noisy ? kNoise : 0.0);
     const double on = inside * (1.0 - kLabelError) + (1.0 - inside) * kFalseContact;
     return touch.on ? on : 1.0 - on;
   }
@@ -253,7 +244,7 @@ class Geweke {
   Random random_;
 };
 
-/// What moves and labels do on average to draws of the joint distribution, in standard errors.
+/// The greatest mean change of draws of the joint distribution by moves and labels, in standard errors.
 std::pair<double, std::string> drift_of_the_joint(double by, int draws) {
   Prior::Settings settings = prior_settings(12, 0.23);
   settings.expected = 3.0;
@@ -305,7 +296,7 @@ std::pair<double, std::string> drift_of_the_joint(double by, int draws) {
   return out;
 }
 
-TEST(Moves, WithPushesAndNoiseAndLabelsInTurnLeaveTheJointDistributionAsItIs) {
+TEST(Moves, KeepTheJointDistributionOfLabelsPushesAndNoise) {
   const auto [right, of] = drift_of_the_joint(1.0, test::brief() ? 1500 : 15000);
   EXPECT_LT(right, kRare) << of;
   if (test::brief()) return;  // few draws do not show a wrong ratio

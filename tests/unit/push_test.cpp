@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Things that are pushed: where they stand after, what is measured against it, and that the belief finds out as surely
-// as draws do that are weighed by all labels.
-#include "primitives/sampler.hpp"
+// Pushes: positions of objects afterwards, errors of the run, and the probability of a push by the sampler.
+#include "hypothesis_bench.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -17,7 +16,7 @@ using test::TappingBench;
 constexpr Area kDesk{0.23, 0.23};
 constexpr const char* kCylinder = "[{type: cylinder, diameter: 6 cm, height: 5 cm}]";
 
-/// Middle of all that stands on a desk.
+/// The centre of the objects.
 Target middle(const Scene& scene) {
   constexpr int kSide = 230;
   Eigen::Vector2d sum(0.0, 0.0);
@@ -34,7 +33,7 @@ Target middle(const Scene& scene) {
   return {sum(0), sum(1)};
 }
 
-TEST(Push, MovesAnObjectByItsDistanceAfterTheTapThatTheConfigNamesAndNeverAgain) {
+TEST(Push, MovesAnObjectOnceByItsDistanceAfterTheTapOfTheConfig) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const TappingBench bench(kCylinder, "{push: {after: 15, distance: 1.5 cm}}", "{type: paper}", seed);
     EXPECT_EQ(bench.scene().after(14), nullptr);
@@ -49,7 +48,7 @@ TEST(Push, MovesAnObjectByItsDistanceAfterTheTapThatTheConfigNamesAndNeverAgain)
   }
 }
 
-TEST(Push, HappensAsOftenAsItsProbabilitySaysAndNothingLeavesTheAreaOrRunsIntoAnother) {
+TEST(Push, HappensWithItsProbabilityAndKeepsObjectsApartAndOnTheArea) {
   const char* const blocks =
       "[{type: block, length: 8 cm, width: 4 cm, height: 5 cm, at: [6 cm, 6 cm]}, "
       "{type: block, length: 6 cm, width: 3 cm, height: 7 cm, at: [16 cm, 15 cm]}]";
@@ -77,8 +76,8 @@ TEST(Push, HappensAsOftenAsItsProbabilitySaysAndNothingLeavesTheAreaOrRunsIntoAn
   EXPECT_NEAR(pushes, 0.2 * kTaps, 5.0 * std::sqrt(0.2 * 0.8 * kTaps));
 }
 
-TEST(Push, IsThereForTheTapsThatComeAfterAndForTheErrorsOfTheRun) {
-  // A push farther than the object is wide: what was touched at tap 15 is bare from tap 16 on.
+TEST(Push, ChangesTheNextTapsAndTheErrorsOfTheRun) {
+  // The push is farther than the object is wide: the position of tap 15 is bare from tap 16 on.
   const TappingBench bench(kCylinder, "{push: {after: 15, distance: 7 cm}}", "{type: paper}");
   EXPECT_GT(bench.tap(0.115, 0.115, 15).height, 0.04);
   EXPECT_EQ(bench.tap(0.115, 0.115, 16).height, 0.0);
@@ -88,88 +87,83 @@ TEST(Push, IsThereForTheTapsThatComeAfterAndForTheErrorsOfTheRun) {
   run.journal.announcing = [&](const TapRecord&) { truths.push_back(run.experiment.truth()->height); };
   run.run();
   EXPECT_EQ(truths[0], truths[14]);
-  EXPECT_NE(truths[14], truths[15]) << "what is measured after tap 15 is measured against where it stands";
+  EXPECT_NE(truths[14], truths[15]) << "errors after tap 15 refer to the new position";
   EXPECT_EQ(truths[15], run.experiment.truth()->height);
 }
 
-/// Touches of a bar that stood at y = 0.09 for the first four and stands at 0.12 for the others.
-const std::vector<std::pair<Target, bool>> kLabels{{{0.08, 0.09}, true},  {{0.15, 0.09}, true},  {{0.11, 0.11}, false},
-                                                   {{0.11, 0.07}, false}, {{0.08, 0.12}, true},  {{0.14, 0.12}, true},
-                                                   {{0.11, 0.10}, false}, {{0.10, 0.14}, false}, {{0.12, 0.118}, true}};
+/// Taps of a bar that stood at y = 0.09 for the first four and stands at 0.12 for the others.
+const std::vector<Touch> kLabels{{{0.08, 0.09}, 0.0, true},  {{0.15, 0.09}, 0.0, true},  {{0.11, 0.11}, 0.0, false},
+                                 {{0.11, 0.07}, 0.0, false}, {{0.08, 0.12}, 0.0, true},  {{0.14, 0.12}, 0.0, true},
+                                 {{0.11, 0.10}, 0.0, false}, {{0.10, 0.14}, 0.0, false}, {{0.12, 0.118}, 0.0, true}};
 
-TEST(Sampler, ThinkOfAPushAsOftenAsDrawsDoThatAreWeighedByAllLabels) {
+/// The probability of no push, and of a push after each tap, by draws of the prior that are weighed by all labels.
+Eigen::VectorXd pushes_by_draws(const Prior& prior, const SamplerSettings& how) {
+  const auto taps = static_cast<int>(kLabels.size());
+  Random random(5, "push test");
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(taps);
+  constexpr int kDraws = 400000;  // a quarter as many give an error of 0.02
+  for (int i = 0; i < kDraws; ++i) {
+    const Hypothesis hypothesis = prior.draw(random);
+    Push push;
+    push.before = taps;
+    push.origin_x = push.origin_y = 0.115;
+    push.dx = 0.012 * standard_normal(random);
+    push.dy = 0.012 * standard_normal(random);
+    const double angle = 0.1 * standard_normal(random);
+    push.cosine = std::cos(angle);
+    push.sine = std::sin(angle);
+    // The hypothesis is as it is after the push: it sees each tap before the push at its position now.
+    const auto probabilities = [&](const std::vector<Touch>& touches) {
+      std::vector<double> each;
+      for (const Touch& touch : touches) {
+        const bool right = hypothesis.contains(touch.place.x, touch.place.y) == touch.on;
+        each.push_back(right ? 1.0 - how.label_error : how.label_error);
+      }
+      return each;
+    };
+    const std::vector<double> now = probabilities(kLabels), then = probabilities(touches_after(push, kLabels));
+    for (int before = 0; before < taps; ++before) {
+      double weight = before == 0 ? 1.0 : how.push_probability;
+      for (int k = 0; k < taps; ++k) weight *= (k < before ? then : now)[static_cast<std::size_t>(k)];
+      out(before) += weight;
+    }
+  }
+  return out / out.sum();
+}
+
+TEST(Sampler, HasTheProbabilityOfPushesOfWeighedDraws) {
   if (test::brief()) GTEST_SKIP() << "./check --all makes it in release";
   SamplerSettings how;
   how.particles = 2000;
   how.label_error = how.false_contact = 0.05;
   how.push_probability = 0.05;
-  how.moves = how.moves_apart = 160;  // a push is found slowly: with 40 a twentieth less of them, with 12 a fifth
+  how.moves = how.moves_apart = 160;  // pushes are found slowly: 40 moves find a twentieth less, 12 a fifth
   how.most_moves = 800;
-  Prior::Settings settings;
-  settings.area = kDesk;
-  settings.expected = 1.0;
-  settings.hole_probability = 0.05;  // few draws say much of hypotheses that fit anything
+  Prior::Settings settings = default_prior(1.0);
+  settings.hole_probability = 0.05;  // few draws have the flexible hypotheses with holes that fit all labels
   const Prior prior(settings);
-  const auto touches = static_cast<int>(kLabels.size());
-  Random random(5, "push test");
-  double evidence = 0.0;
-  double pushed = 0.0;
-  Eigen::VectorXd since = Eigen::VectorXd::Zero(touches);  // pushed after that many touches
-  constexpr int kDraws = 400000;                           // of a quarter as many the share is off by 0.02
-  for (int i = 0; i < kDraws; ++i) {
-    const Hypothesis hypothesis = prior.draw(random);
-    const auto normal = [&] {
-      return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(2.0 * kPi * random.uniform());
-    };
-    const double dx = 0.012 * normal();
-    const double dy = 0.012 * normal();
-    const double angle = 0.1 * normal();
-    // The suffix sees the hypothesis as it is, the prefix where it was: by hand, about the middle of the area.
-    std::vector<double> now, then;
-    for (const auto& [place, on] : kLabels) {
-      const double x = place.x - 0.115;
-      const double y = place.y - 0.115;
-      const Target moved{0.115 + std::cos(angle) * x - std::sin(angle) * y + dx,
-                         0.115 + std::sin(angle) * x + std::cos(angle) * y + dy};
-      now.push_back(hypothesis.contains(place.x, place.y) == on ? 1.0 - how.label_error : how.label_error);
-      then.push_back(hypothesis.contains(moved.x, moved.y) == on ? 1.0 - how.label_error : how.label_error);
-    }
-    for (int before = 0; before < touches; ++before) {
-      double weight = before == 0 ? 1.0 : how.push_probability;
-      for (int k = 0; k < touches; ++k) weight *= (k < before ? then : now)[static_cast<std::size_t>(k)];
-      evidence += weight;
-      if (before == 0) continue;
-      pushed += weight;
-      since(before) += weight;
-    }
-  }
-  pushed /= evidence;
-  since /= evidence;
-  double found = 0.0;
-  Eigen::VectorXd found_since = Eigen::VectorXd::Zero(touches);
+  const Eigen::VectorXd exact = pushes_by_draws(prior, how);
+  Eigen::VectorXd found = Eigen::VectorXd::Zero(exact.size());
+  double share = 0.0;
   constexpr int kRuns = 3;
   for (int run = 0; run < kRuns; ++run) {
     Sampler belief(prior, how, Random(40 + static_cast<std::uint64_t>(run), "push test"));
-    for (const auto& [place, on] : kLabels) belief.add({place, 0.0, on});
-    found += belief.mean_push().share / kRuns;
-    for (const Particle& one : belief.particles()) {
-      if (one.hypothesis.push) found_since(one.hypothesis.push.before) += 1.0 / (belief.size() * kRuns);
-    }
+    for (const Touch& touch : kLabels) belief.add(touch);
+    share += belief.mean_push().share / kRuns;
+    for (const Particle& one : belief.particles()) found(one.hypothesis.push.before) += 1.0 / (belief.size() * kRuns);
   }
-  EXPECT_GT(pushed, 0.2) << "the labels say something";
+  EXPECT_LT(exact(0), 0.8) << "the labels make a push probable";
+  EXPECT_NEAR(share, 1.0 - found(0), 1e-9);
   // Two runs differ by 0.01 or less.
-  EXPECT_NEAR(found, pushed, 0.03);
-  EXPECT_LT((found_since - since).cwiseAbs().maxCoeff(), 0.05)
-      << found_since.transpose() << " for " << since.transpose();
+  EXPECT_NEAR(found(0), exact(0), 0.03);
+  EXPECT_LT((found - exact).cwiseAbs().maxCoeff(), 0.05) << found.transpose() << " for " << exact.transpose();
 }
 
-TEST(Sampler, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
-  Prior::Settings settings;
-  settings.area = kDesk;
+TEST(Sampler, MovesTapsBeforeAPushAlongWithTheObject) {
   SamplerSettings how;
   how.push_probability = 0.01;
-  Sampler belief(Prior(settings), how, Random(1, "push test"));
-  // A disc of 6 cm, on a lattice of touches, then the same 1.5 cm to the right.
+  Sampler belief(Prior(default_prior()), how, Random(1, "push test"));
+  // A lattice of taps on a disc of 6 cm, then the same lattice with the disc 1.5 cm to the right.
   std::vector<Target> places;
   for (const double shift : {0.0, 0.015}) {
     for (int row = 0; row < 5; ++row) {
@@ -181,7 +175,7 @@ TEST(Sampler, SeeWhatWasTouchedBeforeAPushWhereItIsNow) {
     }
   }
   EXPECT_GT(belief.mean_push().share, 0.5);
-  // Of the labels from the 15th to the 36th each is the same wherever the disc is.
+  // The labels from the 15th to the 36th are the same for both positions of the disc.
   EXPECT_GE(belief.mean_push().before, 14.0);
   EXPECT_LE(belief.mean_push().before, 36.0);
   Points now(50, 2);
