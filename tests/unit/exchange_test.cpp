@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Exchange between particles: a particle takes over the primitives that a tap says something about, and keeps the
-// others.
+// Exchange between particles: primitives near the latest tap are replaced, and the others stay.
 #include "primitives/sampler.hpp"
 
-#include "hypothesis_bench.hpp"
 #include "support/testing.hpp"
 #include "support/touches.hpp"
 
@@ -15,10 +13,10 @@ namespace {
 
 constexpr int kMost = ShortList<Primitive>::kMost;
 
-/// Touches, and particles that see them.
-class Desk {
+/// Taps, and particles with rows for these taps.
+class ExchangeBench {
  public:
-  explicit Desk(const std::vector<Touch>& touches) {
+  explicit ExchangeBench(const std::vector<Touch>& touches) {
     for (const Touch& touch : touches) taps_.add(touch);
   }
 
@@ -38,7 +36,7 @@ class Desk {
     return footprints::exchange(from, taps_, most, to);
   }
 
-  /// That its rows are what its primitives come to.
+  /// Expects the rows of its primitives.
   void expect_rows(const Particle& one) const {
     std::vector<Form> forms;
     for (const Primitive& primitive : one.hypothesis.primitives) forms.push_back(primitive.form);
@@ -70,44 +68,44 @@ std::vector<double> lefts(const Particle& one) {
 const std::vector<Touch> kTwo{test::touch_at(0.05, 0.05, true), test::touch_at(0.30, 0.30, true),
                               test::touch_at(0.17, 0.17, false), test::touch_at(0.06, 0.06, true)};
 
-TEST(Exchange, TakesOverWhatATouchTellsOfAndKeepsWhatLiesApart) {
-  const Desk desk(kTwo);
-  const Particle from = desk.with({box(0.301, 0.30), box(0.052, 0.05), box(0.055, 0.055)});
-  Particle to = desk.with({box(0.049, 0.05), box(0.299, 0.30)});
-  ASSERT_TRUE(desk.exchange(from, to));
+TEST(Exchange, ReplacesPrimitivesNearTheTapAndKeepsThoseApart) {
+  const ExchangeBench bench(kTwo);
+  const Particle from = bench.with({box(0.301, 0.30), box(0.052, 0.05), box(0.055, 0.055)});
+  Particle to = bench.with({box(0.049, 0.05), box(0.299, 0.30)});
+  ASSERT_TRUE(bench.exchange(from, to));
   EXPECT_EQ(lefts(to), (std::vector<double>{0.299, 0.052, 0.055}));
-  desk.expect_rows(to);
-  ASSERT_TRUE(desk.exchange(desk.with({box(0.048, 0.05)}), to));
+  bench.expect_rows(to);
+  ASSERT_TRUE(bench.exchange(bench.with({box(0.048, 0.05)}), to));
   EXPECT_EQ(lefts(to), (std::vector<double>{0.299, 0.048}));
-  desk.expect_rows(to);
+  bench.expect_rows(to);
 }
 
-TEST(Exchange, IsOfAllThatGoesTogetherInEitherHypothesis) {
-  const Desk desk(kTwo);
+TEST(Exchange, IsRefusedIfAllPrimitivesBelongTogetherInOneHypothesis) {
+  const ExchangeBench bench(kTwo);
   const std::vector<Form> apart{box(0.05, 0.05), box(0.30, 0.30)};
   Form across = box(0.175, 0.175, 0.20, 0.02);
   across.turn(kPi / 4.0);
-  // One holds touches of both; between the others lies one that comes near each.
+  // One primitive contains taps of both; another one is between two and near both.
   for (const std::vector<Form>& whole :
        {std::vector<Form>{across}, {box(0.05, 0.05), box(0.17, 0.17, 0.105, 0.105), box(0.30, 0.30)}}) {
-    Particle to = desk.with(apart);
-    EXPECT_FALSE(desk.exchange(desk.with(whole), to));
-    EXPECT_EQ(lefts(to), lefts(desk.with(apart)));
-    to = desk.with(whole);
-    EXPECT_FALSE(desk.exchange(desk.with(apart), to));
-    EXPECT_EQ(lefts(to), lefts(desk.with(whole)));
+    Particle to = bench.with(apart);
+    EXPECT_FALSE(bench.exchange(bench.with(whole), to));
+    EXPECT_EQ(lefts(to), lefts(bench.with(apart)));
+    to = bench.with(whole);
+    EXPECT_FALSE(bench.exchange(bench.with(apart), to));
+    EXPECT_EQ(lefts(to), lefts(bench.with(whole)));
   }
 }
 
-TEST(Exchange, IsNotOfHypothesesThatSeeTouchesUnalikeNorOfMoreThanThereIsRoomFor) {
-  const Desk desk(kTwo);
-  const Particle to = desk.with({box(0.05, 0.05), box(0.30, 0.30)});
-  const Particle from = desk.with({box(0.05, 0.05), box(0.055, 0.055), box(0.30, 0.30)});
+TEST(Exchange, IsRefusedForDifferentPushesOrNoiseAndForTooManyPrimitives) {
+  const ExchangeBench bench(kTwo);
+  const Particle to = bench.with({box(0.05, 0.05), box(0.30, 0.30)});
+  const Particle from = bench.with({box(0.05, 0.05), box(0.055, 0.055), box(0.30, 0.30)});
   const auto takes = [&](const auto& change, int most) {
     Particle one = from;
     Particle other = to;
     change(one, other);
-    return desk.exchange(one, other, most);
+    return bench.exchange(one, other, most);
   };
   EXPECT_TRUE(takes([](Particle&, Particle&) {}, 3));
   EXPECT_FALSE(takes([](Particle&, Particle&) {}, 2));
@@ -116,7 +114,7 @@ TEST(Exchange, IsNotOfHypothesesThatSeeTouchesUnalikeNorOfMoreThanThereIsRoomFor
   EXPECT_FALSE(takes([](Particle&, Particle& other) { other.hypothesis.push.before = 1; }, 3));
 }
 
-TEST(Exchange, LeavesOfOneObjectAsManyHypothesesAsThereAreHoweverOftenAnotherIsTouched) {
+TEST(Exchange, KeepsDistinctHypothesesOfOneObjectWhileAnotherIsTapped) {
   Prior::Settings settings;
   settings.area = {0.4, 0.4};
   SamplerSettings how;
