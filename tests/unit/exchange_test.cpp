@@ -11,7 +11,7 @@
 namespace palpate::footprints {
 namespace {
 
-constexpr int kMost = ShortList<Primitive>::kMost;
+constexpr int kMostPrimitives = ShortList<Primitive>::kMost;
 
 /// Taps, and particles with rows for these taps.
 class ExchangeBench {
@@ -32,7 +32,7 @@ class ExchangeBench {
     return out;
   }
 
-  bool exchange(const Particle& from, Particle& to, int most = kMost) const {
+  bool exchange(const Particle& from, Particle& to, int most = kMostPrimitives) const {
     return footprints::exchange(from, taps_, most, to);
   }
 
@@ -50,7 +50,7 @@ class ExchangeBench {
   LabelModel exact_{0.01, 0.01, 0.0};
 };
 
-Form box(double x, double y, double a = 0.02, double b = 0.02) {
+Form box_at(double x, double y, double a = 0.02, double b = 0.02) {
   Form out;
   out.x = x;
   out.y = y;
@@ -70,24 +70,24 @@ const std::vector<Touch> kTwo{test::touch_at(0.05, 0.05, true), test::touch_at(0
 
 TEST(Exchange, ReplacesPrimitivesNearTheTapAndKeepsThoseApart) {
   const ExchangeBench bench(kTwo);
-  const Particle from = bench.with({box(0.301, 0.30), box(0.052, 0.05), box(0.055, 0.055)});
-  Particle to = bench.with({box(0.049, 0.05), box(0.299, 0.30)});
+  const Particle from = bench.with({box_at(0.301, 0.30), box_at(0.052, 0.05), box_at(0.055, 0.055)});
+  Particle to = bench.with({box_at(0.049, 0.05), box_at(0.299, 0.30)});
   ASSERT_TRUE(bench.exchange(from, to));
   EXPECT_EQ(lefts(to), (std::vector<double>{0.299, 0.052, 0.055}));
   bench.expect_rows(to);
-  ASSERT_TRUE(bench.exchange(bench.with({box(0.048, 0.05)}), to));
+  ASSERT_TRUE(bench.exchange(bench.with({box_at(0.048, 0.05)}), to));
   EXPECT_EQ(lefts(to), (std::vector<double>{0.299, 0.048}));
   bench.expect_rows(to);
 }
 
 TEST(Exchange, IsRefusedIfAllPrimitivesBelongTogetherInOneHypothesis) {
   const ExchangeBench bench(kTwo);
-  const std::vector<Form> apart{box(0.05, 0.05), box(0.30, 0.30)};
-  Form across = box(0.175, 0.175, 0.20, 0.02);
+  const std::vector<Form> apart{box_at(0.05, 0.05), box_at(0.30, 0.30)};
+  Form across = box_at(0.175, 0.175, 0.20, 0.02);
   across.turn(kPi / 4.0);
   // One primitive contains taps of both; another one is between two and near both.
   for (const std::vector<Form>& whole :
-       {std::vector<Form>{across}, {box(0.05, 0.05), box(0.17, 0.17, 0.105, 0.105), box(0.30, 0.30)}}) {
+       {std::vector<Form>{across}, {box_at(0.05, 0.05), box_at(0.17, 0.17, 0.105, 0.105), box_at(0.30, 0.30)}}) {
     Particle to = bench.with(apart);
     EXPECT_FALSE(bench.exchange(bench.with(whole), to));
     EXPECT_EQ(lefts(to), lefts(bench.with(apart)));
@@ -99,8 +99,8 @@ TEST(Exchange, IsRefusedIfAllPrimitivesBelongTogetherInOneHypothesis) {
 
 TEST(Exchange, IsRefusedForDifferentPushesOrNoiseAndForTooManyPrimitives) {
   const ExchangeBench bench(kTwo);
-  const Particle to = bench.with({box(0.05, 0.05), box(0.30, 0.30)});
-  const Particle from = bench.with({box(0.05, 0.05), box(0.055, 0.055), box(0.30, 0.30)});
+  const Particle to = bench.with({box_at(0.05, 0.05), box_at(0.30, 0.30)});
+  const Particle from = bench.with({box_at(0.05, 0.05), box_at(0.055, 0.055), box_at(0.30, 0.30)});
   const auto takes = [&](const auto& change, int most) {
     Particle one = from;
     Particle other = to;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kDeviations = 4.5;
 
 /// Mean and variance of numbers that are added one by one.
-struct Moments {
+struct SampleMoments {
   double count = 0.0, sum = 0.0, squares = 0.0;
   void add(double value) {
     count += 1.0;
@@ -45,13 +45,13 @@ TEST(FootprintModel, KeepsThePriorOfPushesAndNoiseWithUninformativeLabels) {
   std::vector<Touch> touches = test::alike_touches(kTaps, false);
   touches.back() = test::touch_at(0.11, 0.12, true);
   const int runs = test::brief() ? 6 : 60;
-  Moments pushed, noisy, dx, dy, turn;
+  SampleMoments pushed, noisy, dx, dy, turn;
   std::vector<long> before(kTaps - 1, 0);
   for (int run = 0; run < runs; ++run) {
     Sampler belief(Prior(default_prior()), how,
                    Random(static_cast<std::uint64_t>(run), "footprint model test: pushes"));
     for (const Touch& touch : touches) belief.add(touch);
-    Moments of_run, noisy_of_run;
+    SampleMoments of_run, noisy_of_run;
     for (const Particle& one : belief.particles()) {
       of_run.add(one.hypothesis.push ? 1.0 : 0.0);
       noisy_of_run.add(one.hypothesis.noisy ? 1.0 : 0.0);
@@ -102,7 +102,7 @@ TEST_P(Calibrated, HasTheProbabilitiesOfDesksOfThePrior) {
   how.heights = false;
   const Points places = test::lattice(15, 15);
   const int runs = test::brief() ? 40 : GetParam().runs;
-  std::array<Moments, kTaps.size()> difference;
+  std::array<SampleMoments, kTaps.size()> difference;
   struct Bin {
     double count = 0.0, truth = 0.0, predicted = 0.0;
   };
@@ -122,7 +122,7 @@ TEST_P(Calibrated, HasTheProbabilitiesOfDesksOfThePrior) {
       if (tap != kTaps[checked]) continue;
       Eigen::VectorXd predicted(places.rows());
       belief.probability(places, predicted);
-      Moments of_run;
+      SampleMoments of_run;
       for (Eigen::Index i = 0; i < places.rows(); ++i) {
         const double truth = desk.contains(places(i, 0), places(i, 1)) ? 1.0 : 0.0;
         of_run.add(truth - predicted(i));
@@ -197,8 +197,8 @@ TEST(FootprintModel, HasTheExactProbabilityOfEachNumberOfPrimitives) {
   how.most_moves = 1000;
   const Prior prior(default_prior());
   const auto [of_count, last_covered] = enumerated(prior, how, test::brief() ? 300000 : 3000000);
-  std::vector<Moments> sampled(of_count.size());
-  Moments covered;
+  std::vector<SampleMoments> sampled(of_count.size());
+  SampleMoments covered;
   const int runs = test::brief() ? 4 : 20;
   for (int run = 0; run < runs; ++run) {
     Sampler belief(prior, how, Random(static_cast<std::uint64_t>(run), "footprint model test: enumeration"));

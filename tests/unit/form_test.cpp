@@ -117,7 +117,7 @@ TEST(Form, OverlapsTheSameFormsInATableAsAlone) {
 }
 
 /// For each position of a grid, how many spans have it.
-std::vector<int> covered(const Grid& grid, const Primitive& primitive) {
+std::vector<int> span_counts(const Grid& grid, const Primitive& primitive) {
   Grid::Spans spans;
   grid.add_spans(primitive, spans);
   std::vector<int> out(static_cast<std::size_t>(grid.size()), 0);
@@ -138,8 +138,8 @@ TEST(Grid, HasSpansOfThePositionsInAPrimitive) {
     const Grid scattered(test::doubled(positions, 0.0));
     for (int k = 0; k < 60; ++k) {
       const Primitive primitive = prior.draw_primitive(random);
-      const std::vector<int> in_rows = covered(grid, primitive);
-      const std::vector<int> one_by_one = covered(scattered, primitive);
+      const std::vector<int> in_rows = span_counts(grid, primitive);
+      const std::vector<int> one_by_one = span_counts(scattered, primitive);
       for (Eigen::Index i = 0; i < positions.rows(); ++i) {
         const Point p{positions(i, 0), positions(i, 1)};
         const double in_form = inside_of(primitive.form, p);

@@ -95,7 +95,7 @@ inline double radius_of(const Form& form) { return std::hypot(form.a, form.b); }
 constexpr double kOnTheRim = 1e-12;
 
 /// Whether a primitive contains a tap that has the label of an object.
-inline bool touched(const Primitive& primitive, const std::vector<Touch>& touches) {
+inline bool has_object_tap(const Primitive& primitive, const std::vector<Touch>& touches) {
   return std::any_of(touches.begin(), touches.end(),
                      [&](const Touch& one) { return one.on && primitive.contains(one.place.x, one.place.y); });
 }
@@ -154,7 +154,7 @@ struct Parts {
 inline Parts parts_of(const Hypothesis& hypothesis, const std::vector<Touch>& touches) {
   Parts out;
   for (const Primitive& primitive : hypothesis.primitives)
-    (touched(primitive, touches) ? out.seen : out.undiscovered).primitives.add(primitive);
+    (has_object_tap(primitive, touches) ? out.seen : out.undiscovered).primitives.add(primitive);
   return out;
 }
 
@@ -171,7 +171,7 @@ inline bool has_undiscovered(const Hypothesis& hypothesis, const std::vector<Tou
 
 /// Draws the primitives of the prior with an object tap, up to its `most`. Their number without this limit is
 /// Poisson's.
-inline Hypothesis drawn_and_touched(const Prior& prior, const std::vector<Touch>& touches, Random& random) {
+inline Hypothesis drawn_known(const Prior& prior, const std::vector<Touch>& touches, Random& random) {
   const Prior::Settings& settings = prior.settings();
   for (;;) {
     Hypothesis out;
@@ -179,7 +179,7 @@ inline Hypothesis drawn_and_touched(const Prior& prior, const std::vector<Touch>
     double time = -std::log(1.0 - random.uniform());
     for (; time < settings.expected && !too_many; time -= std::log(1.0 - random.uniform())) {
       const Primitive primitive = prior.draw_primitive(random);
-      if (!touched(primitive, touches)) continue;
+      if (!has_object_tap(primitive, touches)) continue;
       too_many = out.primitives.size() == settings.most;
       if (!too_many) out.primitives.add(primitive);
     }

@@ -82,7 +82,7 @@ class Jumps : public testing::TestWithParam<FalseRatio> {
     Drift drift(settings);
     const int hypotheses = test::brief() ? one.hypotheses / 10 : one.hypotheses;
     for (int i = 0; i < hypotheses; ++i) {
-      const Hypothesis before = drawn_and_touched(prior, touches_, random);
+      const Hypothesis before = drawn_known(prior, touches_, random);
       Hypothesis moved = before;
       for (int k = 0; k < one.proposals; ++k) move(moved, prior, by, random);
       drift.add(before, moved);
@@ -100,7 +100,7 @@ class Jumps : public testing::TestWithParam<FalseRatio> {
     if (random.uniform() >= proposal.ratio * factor) return;
     const Hypothesis proposed = after(proposal, hypothesis);
     for (const Primitive& primitive : proposed.primitives) {
-      if (!touched(primitive, touches_)) return;
+      if (!has_object_tap(primitive, touches_)) return;
     }
     hypothesis = proposed;
   }
@@ -228,9 +228,9 @@ class Geweke {
   /// Whether each primitive is on its side.
   static bool in_order(const Joint& one) {
     const std::vector<Touch> touches = seen_touches(one);
-    const auto is_touched = [&](const Primitive& primitive) { return touched(primitive, touches); };
-    return std::all_of(one.seen.primitives.begin(), one.seen.primitives.end(), is_touched) &&
-           std::none_of(one.undiscovered.primitives.begin(), one.undiscovered.primitives.end(), is_touched);
+    const auto has_tap = [&](const Primitive& primitive) { return has_object_tap(primitive, touches); };
+    return std::all_of(one.seen.primitives.begin(), one.seen.primitives.end(), has_tap) &&
+           std::none_of(one.undiscovered.primitives.begin(), one.undiscovered.primitives.end(), has_tap);
   }
 
   /// Primitives without an object tap, of a new draw of the prior.

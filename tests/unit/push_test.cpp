@@ -13,7 +13,7 @@ namespace {
 
 using test::TappingBench;
 
-constexpr Area kDesk{0.23, 0.23};
+constexpr Area kPushArea{0.23, 0.23};
 constexpr const char* kCylinder = "[{type: cylinder, diameter: 6 cm, height: 5 cm}]";
 
 /// The centre of the objects.
@@ -23,7 +23,7 @@ Target middle(const Scene& scene) {
   int on = 0;
   for (int i = 0; i < kSide; ++i) {
     for (int j = 0; j < kSide; ++j) {
-      const Eigen::Vector2d at(kDesk.width * (i + 0.5) / kSide, kDesk.depth * (j + 0.5) / kSide);
+      const Eigen::Vector2d at(kPushArea.width * (i + 0.5) / kSide, kPushArea.depth * (j + 0.5) / kSide);
       if (!scene.on_object(scene.height(at(0), at(1)))) continue;
       sum += at;
       ++on;

@@ -55,7 +55,7 @@ TEST(Sampler, SamplesParticlesWithUndiscoveredPrimitivesThatOverlapThem) {
     Eigen::VectorXd probability(where.rows());
     belief.probability(where, probability);
     Eigen::VectorXd held = Eigen::VectorXd::Zero(where.rows());
-    Eigen::VectorXd touched = Eigen::VectorXd::Zero(where.rows());
+    Eigen::VectorXd covered = Eigen::VectorXd::Zero(where.rows());
     for (int k = 0; k < kSample; ++k) {
       const int one = k / (kSample / belief.size());
       const Hypothesis& hypothesis = belief.particles()[static_cast<std::size_t>(one)].hypothesis;
@@ -64,14 +64,14 @@ TEST(Sampler, SamplesParticlesWithUndiscoveredPrimitivesThatOverlapThem) {
         const bool has = hypothesis.contains(where(i, 0), where(i, 1));
         ASSERT_TRUE(holds || !has);
         held(i) += holds ? 1.0 / kSample : 0.0;
-        touched(i) += has ? 1.0 / kSample : 0.0;
+        covered(i) += has ? 1.0 / kSample : 0.0;
       }
     }
     // An event that is expected less often than once may happen once.
     for (Eigen::Index i = 0; i < where.rows(); ++i)
       EXPECT_LE(held(i),
                 probability(i) + 5.0 * std::sqrt(probability(i) * (1.0 - probability(i)) / kSample) + 1.0 / kSample);
-    EXPECT_GT(held.sum(), 1.01 * touched.sum()) << "some undiscovered primitives overlap known ones";
+    EXPECT_GT(held.sum(), 1.01 * covered.sum()) << "some undiscovered primitives overlap known ones";
   }
 }
 

@@ -229,7 +229,7 @@ TEST(Sampler, KeepsTheLikelihoodAndTheDensityOfEachParticle) {
       ASSERT_NEAR(from_units(one.heights), std::log(height_evidence(one.hypothesis, made, touches)), 1e-4);
       for (const Primitive& primitive : one.hypothesis.primitives) {
         ASSERT_EQ(primitive.density, prior.density(primitive));
-        ASSERT_TRUE(touched(primitive, touches));
+        ASSERT_TRUE(has_object_tap(primitive, touches));
       }
       primitives += one.hypothesis.primitives.size();
     }

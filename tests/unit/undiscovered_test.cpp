@@ -45,13 +45,13 @@ Numbers numbers_of_places(const Primitive& primitive) {
   return out;
 }
 
-struct Means {
+struct RateMeans {
   Numbers of{}, variance{};  ///< the variance is that of one draw
 };
 
 /// The expected numbers by `draws` of the prior.
-Means means_by_draws(const Prior& prior, std::size_t taps, double noise, int draws) {
-  Means out;
+RateMeans means_by_draws(const Prior& prior, std::size_t taps, double noise, int draws) {
+  RateMeans out;
   Random random(1, "undiscovered test: the prior");
   for (int i = 0; i < draws; ++i) {
     const Primitive primitive = prior.draw_primitive(random);
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(Every, UndiscoveredAfter,
 TEST_P(UndiscoveredAfter, HasTheRatesOfWeighedDrawsOfThePrior) {
   const Prior prior(default_prior(3.0));
   const int draws = test::brief() ? 50000 : 500000;
-  const Means exact = means_by_draws(prior, GetParam().touches, GetParam().noise, draws);
+  const RateMeans exact = means_by_draws(prior, GetParam().touches, GetParam().noise, draws);
   const int seeds = test::brief() ? 3 : 20;
   Numbers mean{};
   for (int seed = 0; seed < seeds; ++seed) {
@@ -150,7 +150,7 @@ TEST(Undiscovered, ContainsNoObjectTapAndBecomesRarerAroundTapsOfTheDesk) {
         before[static_cast<std::size_t>(i)] = rate(i);
       }
     }
-    const auto held = [](const Primitive& primitive) { return touched(primitive, kTouches) ? 1.0 : 0.0; };
+    const auto held = [](const Primitive& primitive) { return has_object_tap(primitive, kTouches) ? 1.0 : 0.0; };
     EXPECT_EQ(sum_over(undiscovered, held), 0.0);
   }
 }
@@ -166,7 +166,7 @@ TEST(Undiscovered, IsDrawnAtAPositionInProportionToItsWeight) {
   for (int i = 0; i < kDraws; ++i) {
     const Primitive& primitive = here.draw(random);
     ASSERT_TRUE(holds(primitive, at));
-    ASSERT_FALSE(touched(primitive, kTouches));
+    ASSERT_FALSE(has_object_tap(primitive, kTouches));
     const Numbers numbers = numbers_of_places(primitive);
     for (std::size_t k = 0; k < kCompared; ++k) drawn[k] += numbers[k] / kDraws;
   }
