@@ -192,7 +192,7 @@ TEST(LabelModel, HasTheProbabilitiesOfTheDepthInTheMiddleOfEachStep) {
 }
 
 TEST(Sampler, KeepsTheLikelihoodAndTheDensityOfEachParticle) {
-  const Prior prior(default_prior());
+  const Prior prior(default_prior(8.0));
   for (const auto& [noise, pushes] : {std::pair(0.0, 0.0), std::pair(0.004, 0.0), std::pair(0.004, 0.2)}) {
     SamplerSettings how;
     how.particles = 300;
@@ -202,7 +202,10 @@ TEST(Sampler, KeepsTheLikelihoodAndTheDensityOfEachParticle) {
     how.push_probability = pushes;
     Sampler belief(prior, how, Random(10, "particles test"));
     std::vector<Touch> made = test::disc_touches(25);
-    for (std::size_t i = 0; i < made.size(); ++i) made[i].height += 0.004 * static_cast<double>(i % 3);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      made[i].on = std::hypot(made[i].place.x - 0.115, made[i].place.y - 0.115) < 0.07;
+      made[i].height = made[i].on ? 0.05 + 0.004 * static_cast<double>(i % 3) : 0.0;
+    }
     for (const Touch& touch : made) belief.add(touch);
     int primitives = 0;
     int beside = 0;
@@ -226,15 +229,15 @@ TEST(Sampler, KeepsTheLikelihoodAndTheDensityOfEachParticle) {
         loss += labels.loss(deepest, touches[i].on);
       }
       ASSERT_EQ(one.loss, loss) << "whole numbers do not drift";
-      ASSERT_NEAR(from_units(one.heights), std::log(height_evidence(one.hypothesis, made, touches)), 1e-4);
+      ASSERT_NEAR(from_units(one.heights), std::log(height_evidence(one.hypothesis, made, touches)), 1e-5);
       for (const Primitive& primitive : one.hypothesis.primitives) {
         ASSERT_EQ(primitive.density, prior.density(primitive));
         ASSERT_TRUE(has_object_tap(primitive, touches));
       }
       primitives += one.hypothesis.primitives.size();
     }
-    EXPECT_LE(beside, 40) << "of some 20000";
-    EXPECT_DOUBLE_EQ(belief.mean_primitives(), primitives / 300.0);
+    EXPECT_LE(beside, 40) << "of some 40000";
+    EXPECT_DOUBLE_EQ(belief.mean_primitives(), primitives / (1.0 * belief.size()));
   }
 }
 
