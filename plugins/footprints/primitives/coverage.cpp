@@ -229,10 +229,10 @@ void Taps::add(const Touch& touch) {
   objects_ += touch.on ? 1 : 0;
 }
 
-void Taps::see(const Taps& made, const Push& push) {
+void Taps::set_after_push(const Taps& made, const Push& push) {
   *this = made;
   for (int i = 0; i < push.before; ++i) {
-    const Target now = push.now(made[i]);
+    const Target now = push.to_current(made[i]);
     x_[static_cast<std::size_t>(i)] = static_cast<float>(now.x);
     y_[static_cast<std::size_t>(i)] = static_cast<float>(now.y);
   }

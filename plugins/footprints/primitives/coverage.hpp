@@ -24,7 +24,7 @@ class Taps {
 
   void add(const Touch& touch);
   /// Sets these taps to `made` as they are seen after a push.
-  void see(const Taps& made, const Push& push);
+  void set_after_push(const Taps& made, const Push& push);
 
   int size() const { return size_; }
   int length() const { return static_cast<int>(x_.size()); }

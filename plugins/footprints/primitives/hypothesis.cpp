@@ -119,28 +119,28 @@ void Primitive::order_axes() {
   std::tie(side_a, side_b) = std::pair(side_b, -side_a);
 }
 
-Target Push::now(const Target& then) const {
-  const double x = then.x - origin_x;
-  const double y = then.y - origin_y;
+Target Push::to_current(const Target& original) const {
+  const double x = original.x - origin_x;
+  const double y = original.y - origin_y;
   return {origin_x + cosine * x - sine * y + dx, origin_y + sine * x + cosine * y + dy};
 }
 
-Target Push::then(const Target& now) const {
-  const double x = now.x - origin_x - dx;
-  const double y = now.y - origin_y - dy;
+Target Push::to_original(const Target& current) const {
+  const double x = current.x - origin_x - dx;
+  const double y = current.y - origin_y - dy;
   return {origin_x + cosine * x + sine * y, origin_y - sine * x + cosine * y};
 }
 
-Primitive Push::now(Primitive then) const {
-  carry(then.form, now(Target{then.form.x, then.form.y}), cosine, sine);
-  if (then.hollow) carry(then.hole, now(Target{then.hole.x, then.hole.y}), cosine, sine);
-  return then;
+Primitive Push::to_current(Primitive original) const {
+  carry(original.form, to_current(Target{original.form.x, original.form.y}), cosine, sine);
+  if (original.hollow) carry(original.hole, to_current(Target{original.hole.x, original.hole.y}), cosine, sine);
+  return original;
 }
 
-Primitive Push::then(Primitive now) const {
-  carry(now.form, then(Target{now.form.x, now.form.y}), cosine, -sine);
-  if (now.hollow) carry(now.hole, then(Target{now.hole.x, now.hole.y}), cosine, -sine);
-  return now;
+Primitive Push::to_original(Primitive current) const {
+  carry(current.form, to_original(Target{current.form.x, current.form.y}), cosine, -sine);
+  if (current.hollow) carry(current.hole, to_original(Target{current.hole.x, current.hole.y}), cosine, -sine);
+  return current;
 }
 
 Prior::Prior(const Settings& settings)
@@ -216,7 +216,7 @@ void Prior::draw_hole(Primitive& primitive, Random& random) const {
 
 Primitive Prior::draw_primitive(Random& random) const {
   Primitive out = draw_whole(random);
-  if (random.uniform() >= whole(out.form)) {
+  if (random.uniform() >= whole_probability(out.form)) {
     draw_hole(out, random);
     out.density = density(out);
   }
@@ -275,8 +275,8 @@ double Prior::density(const Primitive& primitive) const {
   const double centre = centre_density(primitive.form);
   if (!(centre > 0.0)) return 0.0;
   const double of_form = centre * family(primitive.form) * axes(primitive.form, range_);
-  if (!primitive.hollow) return of_form * whole(primitive.form);
-  const double of_hollow = of_form * (1.0 - whole(primitive.form));
+  if (!primitive.hollow) return of_form * whole_probability(primitive.form);
+  const double of_hollow = of_form * (1.0 - whole_probability(primitive.form));
   if (!(of_hollow > 0.0)) return 0.0;
   if (primitive.fitted()) return of_hollow * settings_.fitted * fitted_hole(primitive);
   const double of_hole = hole_centre_density(primitive.form, primitive.hole);

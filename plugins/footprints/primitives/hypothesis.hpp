@@ -140,12 +140,12 @@ struct Push {
   explicit operator bool() const { return before > 0; }
   double angle() const { return math::atan2(sine, cosine); }
 
-  /// The position after the push of a point of an object at `then`, and the way back.
-  Target now(const Target& then) const;
-  Target then(const Target& now) const;
+  /// Returns where a point of an object lies after the push, and the reverse.
+  Target to_current(const Target& original) const;
+  Target to_original(const Target& current) const;
   /// The same for primitives.
-  Primitive now(Primitive then) const;
-  Primitive then(Primitive now) const;
+  Primitive to_current(Primitive original) const;
+  Primitive to_original(Primitive current) const;
 };
 
 /// Primitives in no particular order, which may overlap. The objects cover the union of the primitives as it is after
@@ -196,7 +196,7 @@ class Prior {
   void draw_hole(Primitive& primitive, Random& random) const;
 
   /// The probability that a primitive of this form has no hole.
-  double whole(const Form& form) const {
+  double whole_probability(const Form& form) const {
     return form.a >= settings_.min_width ? 1.0 - settings_.hole_probability : 1.0;
   }
   /// The density of a primitive in all centres, angles, shares and logarithms of half axes, up to a factor that all

@@ -93,7 +93,7 @@ double density_about_taps(const Form& form, const Taps& taps) {
 /// Prior density of a new primitive without a hole, over the density of drawing it by draw_about_taps().
 double ratio_about_taps(const Form& form, const Prior& prior, const Taps& taps) {
   const double drawn = density_about_taps(form, taps);
-  return drawn > 0.0 ? prior.whole(form) * prior.centre_density(form) / drawn : 0.0;
+  return drawn > 0.0 ? prior.whole_probability(form) * prior.centre_density(form) / drawn : 0.0;
 }
 
 /// Draws a primitive without a hole over a random object tap; false if there is none, or the prior does not allow it.
@@ -137,7 +137,7 @@ void remove(Proposal& out, const Hypothesis& from, const Prior& prior, const Tap
 void replace(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, Random& random) {
   if (from.primitives.size() == 0) return;
   const int index = chosen(from.primitives, random);
-  Primitive& primitive = out.replace(from, index);
+  Primitive& primitive = out.change(from, index);
   if (primitive.hollow) return;
   const double before = ratio_about_taps(primitive.form, prior, taps);
   if (!(before > 0.0) || !draw_about_taps(primitive, prior, taps, random)) return;
@@ -149,7 +149,7 @@ void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& 
   if (from.primitives.size() == 0) return;
   const int index = chosen(from.primitives, random);
   if (from.primitives[index].hollow == adds || from.primitives[index].form.a < prior.settings().min_width) return;
-  Primitive& primitive = out.replace(from, index);
+  Primitive& primitive = out.change(from, index);
   if (adds) prior.draw_hole(primitive, random);
   primitive.hollow = adds;
   primitive.density = prior.density(primitive);
@@ -239,7 +239,7 @@ void change_form(Proposal& out, const Hypothesis& from, const Prior& prior, cons
                  Random& random) {
   if (from.primitives.size() == 0) return;
   const Choice choice(from.primitives, taps.size() == 0 ? Target{} : taps[taps.size() - 1], random);
-  Primitive& primitive = out.replace(from, choice.index());
+  Primitive& primitive = out.change(from, choice.index());
   const double before = primitive.density;
   const double part = primitive.hollow ? random.uniform() : 0.0;
   const Steps steps(random);
@@ -327,7 +327,7 @@ void propose_noise(Proposal& out, const Hypothesis& from) {
   out.kind = Proposal::Kind::flip_noise;
   out.ratio = 1.0;
   out.noisy = !from.noisy;
-  for (int i = 0; i < from.primitives.size(); ++i) out.replace(from, i);
+  for (int i = 0; i < from.primitives.size(); ++i) out.change(from, i);
 }
 
 void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int taps, double rate, Random& random) {
@@ -355,10 +355,10 @@ void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int
     out.ratio = density(out.push) / density(from.push);
   }
   for (int i = 0; i < from.primitives.size(); ++i) {
-    Primitive& primitive = out.replace(from, i);
+    Primitive& primitive = out.change(from, i);
     if (!moves_along) continue;
-    if (from.push) primitive = from.push.then(primitive);
-    if (out.push) primitive = out.push.now(primitive);
+    if (from.push) primitive = from.push.to_original(primitive);
+    if (out.push) primitive = out.push.to_current(primitive);
     primitive.density = prior.density(primitive);
     out.ratio *= primitive.density / from.primitives[i].density;
   }

@@ -35,7 +35,7 @@ struct Proposal {
     noisy = from.noisy;
   }
   /// Removes a primitive and returns its copy in `added`.
-  Primitive& replace(const Hypothesis& from, int primitive) {
+  Primitive& change(const Hypothesis& from, int primitive) {
     removed.add(primitive);
     return added.add(from.primitives[primitive]);
   }

@@ -210,7 +210,7 @@ void Sampler::find(const Undiscovered::Covering& covering, double p_new) {
     const double known = (1.0 - p_new) * labels.probability(step, true);
     if (random_.uniform() * (found + known) >= found) continue;
     const Primitive& primitive = particle.hypothesis.primitives.add(covering.draw(random_));
-    seen.see(taps, particle.hypothesis.push);
+    seen.set_after_push(taps, particle.hypothesis.push);
     seen.steps(primitive, labels, particle.rows.row(count));
     likelihood_.weigh(particle);
   }
@@ -280,7 +280,7 @@ void Mover::move(Particle& particle, int times, Likelihood& likelihood, Random& 
   const Taps& taps = likelihood.taps();
   const double noise = settings_.position_noise > 0.0 ? kNoiseMoves : 0.0;
   const double push = settings_.push_probability > 0.0 && taps.size() > 1 ? kPushMoves : 0.0;
-  seen_.see(taps, particle.hypothesis.push);
+  seen_.set_after_push(taps, particle.hypothesis.push);
   for (int i = 0; i < times; ++i) {
     const double which = random.uniform();
     if (which < noise) {
@@ -293,7 +293,7 @@ void Mover::move(Particle& particle, int times, Likelihood& likelihood, Random& 
     ++tried_;
     if (!(proposal_.ratio > 0.0)) continue;
     const bool pushes = proposal_.kind == Proposal::Kind::push;
-    if (pushes) pushed_.see(taps, proposal_.push);
+    if (pushes) pushed_.set_after_push(taps, proposal_.push);
     if (!accept(particle, pushes ? pushed_ : seen_, likelihood, random)) continue;
     ++accepted_;
     if (pushes) std::swap(seen_, pushed_);

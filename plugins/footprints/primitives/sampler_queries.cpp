@@ -50,7 +50,7 @@ void Sampler::current_positions(Points& positions) const {
   for (const Particle& particle : particles_) {
     const Push& push = particle.hypothesis.push;
     for (int i = 0; i < push.before; ++i) {
-      const Target now = push.now({positions(i, 0), positions(i, 1)});
+      const Target now = push.to_current({positions(i, 0), positions(i, 1)});
       sums.row(i) += Eigen::RowVector2d(now.x, now.y);
       ++counts[static_cast<std::size_t>(i)];
     }
@@ -68,7 +68,7 @@ Sampler::MeanPush Sampler::mean_push() const {
     if (!push) continue;
     double shift = 0.0;
     for (const Primitive& one : particle.hypothesis.primitives) {
-      const Target then = push.then({one.form.x, one.form.y});
+      const Target then = push.to_original({one.form.x, one.form.y});
       shift += math::hypot(one.form.x - then.x, one.form.y - then.y);
     }
     out.share += 1.0;
