@@ -182,7 +182,9 @@ TEST(LabelModel, HasTheProbabilitiesOfTheDepthInTheMiddleOfEachStep) {
         EXPECT_NEAR(labels.probability(step, on), right + wrong, 1e-12) << i;
         EXPECT_NEAR(labels.wrong(step, on), wrong / (right + wrong), 1e-12) << i;
         EXPECT_NEAR(from_units(labels.loss(step, on)), loss, 1e-6) << i;
-        EXPECT_EQ(labels.contradicts(step, on), loss > 0.5 * std::log((1.0 - kLabelError) / kLabelError)) << i;
+        const double surely_wrong =
+            on ? std::log((1.0 - kLabelError) / kFalseContact) : std::log((1.0 - kFalseContact) / kLabelError);
+        EXPECT_EQ(labels.contradicts(step, on), loss > 0.5 * surely_wrong) << i;
       }
     }
     EXPECT_EQ(labels.step(-1.0), LabelModel::kOutside);
