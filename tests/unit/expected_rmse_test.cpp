@@ -104,7 +104,7 @@ double rmse_by_the_formula(FromAbove& experiment, const ExperimentOptions& optio
   experiment.build(Quantity::height | Quantity::probability);
   const TapBelief& belief = experiment.belief();
   const bool two_part = belief.two_part();
-  const std::vector<Touch>& hits = belief.hits();
+  const std::vector<Touch>& hits = belief.log().object_contacts();
   const std::vector<Touch>& data = two_part ? hits : belief.touches();
   const auto n = static_cast<Eigen::Index>(data.size());
   Eigen::MatrixXd covariance(n, n);

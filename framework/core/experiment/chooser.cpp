@@ -25,11 +25,11 @@ Chooser::Chooser(const ExperimentOptions& options, const Candidates& candidates,
 
 bool Chooser::starting(const TapBelief& belief) const {
   if (!search_) return taps_ < initial_.size();
-  if (belief.sees_object()) return false;  // what is looked for has been seen
+  if (belief.log().prior_objects() > 0) return false;  // what is looked for has been seen
   if (taps_ >= static_cast<std::size_t>(allowed_.size())) return false;
   constexpr double kBelieved = 0.5;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (belief.touches()[i].on && belief.doubt_of(i) < kBelieved) return false;
+    if (belief.touches()[i].on && belief.outlier_probability(i) < kBelieved) return false;
   }
   return true;
 }
@@ -38,7 +38,7 @@ std::optional<int> Chooser::second_look(const TapBelief& belief) const {
   constexpr double kSure = 0.95;
   for (std::size_t i = 0; search_ && i < contacts_.size(); ++i) {
     const int place = contacts_[i];
-    if (!belief.touches()[i].on || belief.doubt_of(i) > kSure || !allowed_(place)) continue;
+    if (!belief.touches()[i].on || belief.outlier_probability(i) > kSure || !allowed_(place)) continue;
     if (std::count(contacts_.begin(), contacts_.end(), place) == 1) return place;
   }
   return std::nullopt;
@@ -49,7 +49,8 @@ void Chooser::allow(const TapBelief& belief) {
   for (const int place : failed_) allowed_(place) = false;
   if (options_.repeat == ExperimentOptions::Repeat::allow) return;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (belief.doubt_of(i) < TapBelief::kWorthALook && !belief.moved(i)) allowed_(contacts_[i]) = false;
+    if (belief.outlier_probability(i) < OutlierModel::kRetapThreshold && !belief.moved(i))
+      allowed_(contacts_[i]) = false;
   }
 }
 
@@ -111,7 +112,7 @@ void Chooser::observe(const PastTap& tap, int candidate, const std::optional<Tar
   ++taps_;
   if (pace_) {
     pace_->observe(tap, previous);
-    pace_->see_desk(belief.touches(), belief.motions());
+    pace_->see_desk(belief.touches(), belief.log().motions());
   }
   // A tap that was broken off says nothing of what is there.
   const Outcome outcome = tap.contact.outcome;

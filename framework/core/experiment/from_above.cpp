@@ -60,9 +60,9 @@ void FromAbove::observe(const PastTap& tap) {
 }
 
 void FromAbove::read(TapRecord& tap) {
-  const TapBelief::Reading reading = belief_.read(tap.contact, tap.motion);
+  const ContactLog::Reading reading = belief_.log().read(tap.contact, tap.motion);
   tap.on_object = reading.on;
-  if (belief_.systematic()) tap.corrected = reading.height;
+  if (belief_.log().has_offset()) tap.corrected = reading.height;
 }
 
 std::optional<std::string> FromAbove::stop_rule(Source source) {

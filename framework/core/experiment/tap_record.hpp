@@ -52,9 +52,9 @@ struct ModelState {
   std::optional<ProcessState> height_gp, label_gp;
   std::optional<ProcessState> surface_gp;  ///< of `surface: two_part`
   std::optional<FootprintState> footprint;
-  std::optional<Forecast> forecast;     ///< where a stop rule asks for it
-  std::optional<double> expected_rmse;  ///< metres; of a tap for observers alone: see Watch
-  std::optional<std::vector<TapBelief::SuspectedOutlier>> suspected_outliers;  ///< where contacts may lie
+  std::optional<Forecast> forecast;                                 ///< where a stop rule asks for it
+  std::optional<double> expected_rmse;                              ///< metres; of a tap for observers alone: see Watch
+  std::optional<std::vector<SuspectedOutlier>> suspected_outliers;  ///< where contacts may lie
   Errors errors;
 };
 

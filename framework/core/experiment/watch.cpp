@@ -30,7 +30,7 @@ ProcessState state_of(const TapBelief::Output& one) {
 /// `belief` has what the surface is made of.
 Forecast forecast_by(const TapBelief& belief) {
   Forecaster forecaster;
-  for (const Touch& hit : belief.hits()) forecaster.hit(hit.height);
+  for (const Touch& hit : belief.log().object_contacts()) forecaster.hit(hit.height);
   return forecaster.forecast(belief);
 }
 
@@ -56,10 +56,10 @@ void Watch::observe(const PastTap& tap, const Manner& manner, int candidate, con
   result_.count(tap);
   if (contact.outcome != Outcome::contact) return;
   touched_[static_cast<std::size_t>(candidate)] = true;
-  result_.object_taps = static_cast<int>(belief.hits().size());
-  result_.desk_taps = static_cast<int>(belief.touches().size() - belief.hits().size());
-  result_.first_hit_tap = belief.first_hit_tap();
-  result_.relabelled = belief.relabelled();
+  result_.object_taps = static_cast<int>(belief.log().object_contacts().size());
+  result_.desk_taps = static_cast<int>(belief.log().contacts().size() - belief.log().object_contacts().size());
+  result_.first_hit_tap = belief.log().first_hit_tap();
+  result_.relabelled = belief.log().relabelled();
 }
 
 void Watch::note_object(int candidate) {
@@ -75,14 +75,14 @@ void Watch::note_object(int candidate) {
 
 std::optional<Forecast> Watch::forecast(TapBelief& belief) const {
   if (!options_.stop.expected_rmse) return std::nullopt;
-  if (!belief.hits().empty()) belief.ask(belief.surface_reads());
+  if (!belief.log().object_contacts().empty()) belief.ask(belief.surface_reads());
   return forecast_by(belief);
 }
 
 std::optional<double> Watch::expected_rmse(TapBelief& belief) const {
   const Quantities reads = belief.surface_reads();
   for (TapBelief* one : {&belief, beside_.get()}) {
-    if (one == nullptr || one->hits().empty() || !one->has_models_of(reads)) continue;
+    if (one == nullptr || one->log().object_contacts().empty() || !one->has_models_of(reads)) continue;
     one->build(reads);
     return forecast_by(*one).rmse;
   }
@@ -188,8 +188,8 @@ RunResult Watch::result(TapBelief& belief) {
   if (belief.two_part()) take(belief.surface_gp(), out.surface_gp);
   if (options_.height.outlier_probability) {
     out.suspected_outliers = belief.suspected_outliers();
-    if (belief.surface_gp()) {
-      out.count(belief.factors_of_outliers());
+    if (belief.outliers() != nullptr) {
+      out.count(belief.outliers()->surface().report());
       out.diagnostics["variance_clamped"] += belief.variances_clamped();
     }
   }

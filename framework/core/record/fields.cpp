@@ -131,9 +131,9 @@ void add_footprint(Row& row, const std::optional<FootprintState>& state) {
 }
 
 /// Probabilities with two decimals; none for an empty list.
-std::optional<JsonList> list_of(const std::vector<TapBelief::SuspectedOutlier>& suspected) {
+std::optional<JsonList> list_of(const std::vector<SuspectedOutlier>& suspected) {
   std::vector<Row> rows;
-  for (const TapBelief::SuspectedOutlier& one : suspected)
+  for (const SuspectedOutlier& one : suspected)
     rows.push_back({{{"tap", std::int64_t{one.tap}}, {"probability", std::round(100.0 * one.probability) / 100.0}}});
   return rows.empty() ? std::nullopt : std::optional(list_of(rows));
 }

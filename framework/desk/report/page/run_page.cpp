@@ -79,7 +79,7 @@ static std::vector<int> relabelled(const Moment& moment) {
   return out;
 }
 
-static void to_json(Json& out, const TapBelief::SuspectedOutlier& one) {
+static void to_json(Json& out, const SuspectedOutlier& one) {
   out = {{"tap", one.tap}, {"words", doubt_words(one)}};
 }
 

@@ -267,7 +267,7 @@ class FromAboveExplained final : public Explanation {
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
       playback_.from_above().choose_next();  // which has the models take in all taps
-      for (const TapBelief::SuspectedOutlier& one : playback_.from_above().belief().suspected_outliers()) {
+      for (const SuspectedOutlier& one : playback_.from_above().belief().suspected_outliers()) {
         if (one.tap == number_) return "may be an outlier: " + doubt_words(one);
       }
       return std::string("is not suspected");

@@ -30,7 +30,7 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
   return value ? words(*value) : std::string();
 }
 
-std::string doubt_words(const TapBelief::SuspectedOutlier& one) {
+std::string doubt_words(const SuspectedOutlier& one) {
   const char* const why = 2.0 * one.by_label > one.probability
                               ? "by its position: outlines that fit the other taps have no object there"
                               : "by its height, which does not fit the heights of the other taps";

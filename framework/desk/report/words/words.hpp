@@ -32,7 +32,7 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
 
 /// What is thought of a contact that may lie, and why: "97 %, by its height", "80 %, by where it is: outlines that
 /// agree with the other taps have no object there".
-std::string doubt_words(const TapBelief::SuspectedOutlier& one);
+std::string doubt_words(const SuspectedOutlier& one);
 
 /// What is said once of a run whose truth is lost, see Playback::truth_lost(): a sentence without its full stop.
 std::string truth_lost_words(const Error& lost);

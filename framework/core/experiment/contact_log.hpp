@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// The results of all taps, and how they are read now: the height of a contact without the offset of arm and motion, and
+// whether it is on an object. Later taps may change how earlier ones are read.
+#pragma once
+
+#include "experiment/experiment_options.hpp"
+#include "experiment/systematic.hpp"
+#include "view/view.hpp"
+
+#include <palpate/scene.hpp>
+#include <palpate/types.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+/// How a tap was made.
+struct Manner {
+  bool initial = false;    ///< chosen by the initial design
+  int motion = 0;          ///< index of the backend's motion
+  double roughness = 0.0;  ///< standard deviation that this motion adds to the height, metres
+};
+
+/// Taps, and the data that models learn from: first the points of the prior view, then the contacts. A row is the index
+/// of a datum. Heights are metres above the desk.
+class ContactLog {
+ public:
+  /// `scene` must outlive the log. Throws Error for a prior view that cannot be read.
+  ContactLog(const ExperimentOptions& options, const Scene& scene);
+
+  /// How a result is read.
+  struct Reading {
+    double height = 0.0;  ///< metres, in the frame of the scene
+    bool on = false;      ///< on an object
+  };
+  /// Returns how the contact of the next tap would be read. Changes nothing.
+  Reading read(const Contact& contact, int motion) const;
+  /// Returns the estimated offset of a motion now; none unless the config has `height.offset`.
+  std::optional<Systematic::Estimate> offset(int motion) const;
+  /// Returns the variance of that estimate, which all heights share, square metres; 0 without.
+  double offset_variance() const { return offset_ ? offset_->at(seconds_).variance : 0.0; }
+  bool has_offset() const { return offset_.has_value(); }
+
+  /// Adds a tap, and reads all contacts again if offsets are estimated. `noise`: standard deviation of a height by the
+  /// most precise motion, metres.
+  void add(const Target& place, const Contact& contact, const Manner& manner, double noise);
+
+  /// Whether the label of a contact before the latest has changed since the last reset().
+  bool has_changed_labels() const { return changed_; }
+  void reset_changed_labels() { changed_ = false; }
+
+  // All taps, in their order.
+  int taps() const { return static_cast<int>(targets_.size()); }
+  int initial_taps() const { return initial_taps_; }
+  const std::vector<Target>& targets() const { return targets_; }
+
+  // The contacts, in their order, and of each the tap's number and motion.
+  const std::vector<Touch>& contacts() const { return contacts_; }
+  const std::vector<Touch>& object_contacts() const { return object_contacts_; }
+  const std::vector<int>& tap_numbers() const { return tap_numbers_; }
+  const std::vector<int>& motions() const { return motions_; }
+  std::optional<int> first_hit_tap() const;
+  /// Returns the contacts whose label differs from that at their tap, by ascending tap.
+  std::vector<Relabelled> relabelled() const;
+
+  // The data.
+  int size() const { return prior_size() + static_cast<int>(contacts_.size()); }
+  int prior_size() const { return static_cast<int>(prior_.size()); }
+  const std::vector<Sight>& prior() const { return prior_; }
+  const Touch& datum(int row) const;
+  /// Rows of the data on an object, ascending, and the number of those in the prior view.
+  const std::vector<int>& object_rows() const { return object_rows_; }
+  int prior_objects() const { return prior_objects_; }
+  /// Returns for each datum how far its height is trusted, in (0, 1]: the variance `noise`^2 over its own.
+  /// `outlier_probability`: of each contact.
+  Eigen::VectorXd trust(const Eigen::VectorXd& outlier_probability, double noise) const;
+  /// Whether any datum has another noise than the others.
+  bool has_uneven_noise() const { return uneven_; }
+
+ private:
+  void read_again();
+  void find_object_rows();
+
+  const Scene& scene_;
+  std::vector<Target> targets_;
+  int initial_taps_ = 0;
+  double seconds_ = 0.0;  ///< robot time of all taps
+  std::optional<Systematic> offset_;
+  std::vector<Sight> prior_;
+  int prior_objects_ = 0;
+  std::vector<Touch> contacts_, object_contacts_;
+  std::vector<int> object_rows_;
+  bool changed_ = false;
+  bool uneven_ = false;
+  // Of each contact.
+  std::vector<int> tap_numbers_, motions_;
+  std::vector<double> raw_heights_, begins_;  ///< above the desk as measured; robot time before the tap
+  std::vector<bool> first_labels_;            ///< only where labels may change
+  std::vector<double> shares_;                ///< variance of the most precise motion over that of its own
+};
+
+}  // namespace palpate

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Which contacts are outliers: their label may be wrong, which the footprint finds, or the height of a contact on an
+// object.
+#pragma once
+
+#include "experiment/contact_log.hpp"
+#include "experiment/gp_model.hpp"
+#include "gp/doubt.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace palpate {
+
+/// A contact that is an outlier with a probability of at least OutlierModel::kRetapThreshold.
+struct SuspectedOutlier {
+  int tap = 0;
+  double probability = 0.0;
+  double by_label = 0.0;  ///< the part due to its label, without its height
+};
+
+class OutlierModel {
+ public:
+  /// From this probability on, the place of a contact may be tapped again.
+  static constexpr double kRetapThreshold = 0.1;
+
+  /// `prior`: probability that a contact is an outlier, in (0, 1). `candidates` must outlive it.
+  OutlierModel(double prior, const Candidates& candidates) : prior_(prior), surface_(candidates) {}
+
+  /// Computes the probabilities again; returns false if they were kept, as so many contacts are known. `objects`: the
+  /// GP of the heights on objects, with all data. `label_error`: the probability of a wrong label, of each datum of the
+  /// log.
+  bool update(const ContactLog& log, const GpModel& objects, const Eigen::VectorXd& label_error);
+  /// Forgets the surface, as labels have changed.
+  void reset() { surface_.forget(); }
+
+  /// Of each contact at the latest update(); empty before.
+  const Eigen::VectorXd& probabilities() const { return probabilities_; }
+  std::vector<SuspectedOutlier> suspected(const ContactLog& log) const;
+
+  /// The surface without outliers. It has no map while is_surface() is false: then the surface is that of the GP.
+  DoubtedSurface& surface() { return surface_; }
+  const DoubtedSurface& surface() const { return surface_; }
+  bool is_surface(const GpModel& objects) const {
+    return surface_.judged() && surface_.taps() == objects.process().size();
+  }
+
+ private:
+  double prior_;
+  DoubtedSurface surface_;
+  Eigen::VectorXd probabilities_, by_label_;  ///< of each contact
+};
+
+}  // namespace palpate
