@@ -58,10 +58,11 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     : candidates_(candidates),
       context_(context),
       clock_(clock),
-      clip_(options.label.clip),
       log_(options, context.scene),
       posterior_(posterior_settings(options, log_.prior_size())),
-      heights_(make_height_gp(options, posterior_, candidates, context, false)) {
+      heights_(make_height_gp(options, posterior_, candidates, context, false),
+               options.surface == ExperimentOptions::Surface::single, context.scene.desk()),
+      label_map_(options.label.clip) {
   const HeightOptions& height = options.height;
   const LabelOptions& label = options.label;
   ProcessSettings settings{label.signal, label.noise, label.prior_mean};
@@ -72,20 +73,20 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
     // Models that are equal and stay so are two outputs of one process.
     const auto taps = static_cast<int>(options.taps);
     if (same(height.kernel.value_or(options.kernel), kernel) &&
-        height.noise / height.signal == label.noise / label.signal && !heights_.is_fitted_within(taps) &&
+        height.noise / height.signal == label.noise / label.signal && !heights_.gp().is_fitted_within(taps) &&
         !labels_->is_fitted_within(taps))
       labels_.reset();
   }
   if (joined()) {
     // By the ratio of noise to signal, the labels' noise is that of the heights.
     settings.noise = height.noise / height.signal * settings.signal;
-    heights_.add_labels(settings);
+    heights_.gp().add_labels(settings);
   }
   footprint_.emplace(options.footprint, candidates, context);
   if (footprint_->is_label_gp()) footprint_.reset();
-  if (options.surface != ExperimentOptions::Surface::two_part) return;
-  objects_.emplace(make_height_gp(options, posterior_, candidates, context, true));
-  if (height.outlier_probability) outliers_.emplace(*height.outlier_probability, candidates);
+  if (options.surface == ExperimentOptions::Surface::two_part)
+    surface_.emplace(make_height_gp(options, posterior_, candidates, context, true), height.outlier_probability,
+                     candidates, desk());
 }
 
 void TapBelief::observe(const Target& place, const Contact& contact, const Manner& manner) {
@@ -103,7 +104,8 @@ double TapBelief::outlier_probability(std::size_t contact) const {
 }
 
 int TapBelief::failed_fits() const {
-  return heights_.failed_fits() + (labels_ ? labels_->failed_fits() : 0) + (objects_ ? objects_->failed_fits() : 0);
+  return heights_.gp().failed_fits() + (labels_ ? labels_->failed_fits() : 0) +
+         (surface_ ? surface_->gp().failed_fits() : 0);
 }
 
 const OutlineSample& TapBelief::outlines() const {
@@ -147,13 +149,10 @@ void TapBelief::build(Quantities wanted) {
   const Quantities all = known(wanted);
   const PhaseClock::Scope infer(clock_, Phase::infer);
   bool more = false;
-  if (all.has(Quantity::uncertainty)) more = heights_.show(0) || more;
-  if (all.has(Quantity::weight)) more = (labels_ ? *labels_ : heights_).show(label_output()) || more;
-  if (objects_ && (all.has(Quantity::height) || all.has(Quantity::doubt))) more = objects_->show(0) || more;
-  if (objects_ && all.has(Quantity::height) && !height_asked_) {
-    height_asked_ = more = true;
-    objects_->set_stale(true);
-  }
+  if (all.has(Quantity::uncertainty)) more = heights_.gp().show(0) || more;
+  if (all.has(Quantity::weight)) more = (labels_ ? *labels_ : heights_.gp()).show(label_output()) || more;
+  if (surface_ && (all.has(Quantity::height) || all.has(Quantity::doubt)))
+    more = surface_->show(all.has(Quantity::height)) || more;
   if (footprint_ && all.has(Quantity::probability)) more = footprint_->show(all.has(Quantity::outlines)) || more;
   if (more) current_ = false;
   update();
@@ -175,29 +174,31 @@ void TapBelief::update() {
   current_ = true;
 }
 
+template <class Visit>
+void TapBelief::for_each_gp(const Visit& visit) {
+  visit(heights_.gp());
+  if (labels_) visit(*labels_);
+  if (surface_) visit(surface_->gp());
+}
+
 /// Has all models take in the contacts since, as they are read now.
 void TapBelief::add_data() {
   if (log_.has_changed_labels()) {
     log_.reset_changed_labels();
-    // Models with labels of their own begin again; of heights alone, corrections change the values.
-    if (joined()) heights_.reset();
+    // A GP of heights alone stays: only their values change.
+    if (joined()) heights_.gp().reset();
     if (labels_) labels_->reset();
-    if (objects_) objects_->reset();
-    if (outliers_) outliers_->reset();
+    if (surface_) surface_->reset();
     if (footprint_) footprint_->reset();
   }
-  heights_.add_data(log_, clock_);
-  if (labels_) labels_->add_data(log_, clock_);
-  if (objects_) objects_->add_data(log_, clock_);
+  for_each_gp([&](GpModel& gp) { gp.add_data(log_, clock_); });
   if (log_.has_offset()) {
-    heights_.set_heights(log_);
-    if (objects_) objects_->set_heights(log_);
+    heights_.gp().set_heights(log_);
+    if (surface_) surface_->gp().set_heights(log_);
   }
   if (footprint() == nullptr) return;
   footprint_->update(log_);
-  heights_.set_positions(log_, footprint_->positions());
-  if (labels_) labels_->set_positions(log_, footprint_->positions());
-  if (objects_) objects_->set_positions(log_, footprint_->positions());
+  for_each_gp([&](GpModel& gp) { gp.set_positions(log_, footprint_->positions()); });
 }
 
 /// Has the models of heights trust each contact as far as it is no outlier.
@@ -206,74 +207,35 @@ void TapBelief::find_outliers() {
   if (outliers() != nullptr) {
     Eigen::VectorXd label_error = Eigen::VectorXd::Zero(log_.size());
     if (footprint() != nullptr) footprint()->doubt(label_error);
-    if (outliers_->update(log_, *objects_, label_error)) objects_->set_stale(true);
-    probabilities = outliers_->probabilities();
+    surface_->find_outliers(log_, label_error);
+    probabilities = outliers()->probabilities();
   } else if (log_.has_uneven_noise()) {
     probabilities = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(log_.contacts().size()));
   } else {
     return;
   }
   const Eigen::VectorXd trust = log_.trust(probabilities, height_noise());
-  heights_.set_trust(log_, trust);
-  if (objects_) objects_->set_trust(log_, trust);
+  heights_.gp().set_trust(log_, trust);
+  if (surface_) surface_->gp().set_trust(log_, trust);
 }
 
 void TapBelief::update_maps() {
-  if (heights_.is_stale()) map_heights();
-  if (labels_ && labels_->is_stale()) map_labels();
-  if (!objects_ || !objects_->is_built()) return;
-  // The surface without outliers has maps of its own, so that those of the process are for the record.
-  if (height_asked_ || !outliers_are_surface()) objects_->update_maps();
-  if (objects_->is_stale() && height_asked_) map_objects();
+  if (heights_.gp().is_stale()) {
+    heights_.update_maps(taps());
+    if (joined() && label_gp()) label_map_.update(heights_.gp().process(), label_output(), taps());
+    heights_.gp().set_stale(false);
+  }
+  if (labels_ && labels_->is_stale()) {
+    labels_->update_maps();
+    label_map_.update(labels_->process(), label_output(), taps());
+    labels_->set_stale(false);
+  }
+  if (surface_) surface_->update_maps(log_);
 }
 
 TapBelief::Output TapBelief::output(const GpModel& model, int output) {
   if (!model.shows(output)) return {};
   return {&model.process(), output, model.last_fit()};
-}
-
-void TapBelief::map_heights() {
-  heights_.update_maps();
-  const Process& process = heights_.process();
-  process.read_relative_variance(uncertainty_);
-  process.read_variance(0, variance_);
-  require_finite(variance_, "the variance of the height GP", taps());  // and with it u
-  if (!two_part()) map_surface(process);
-  if (joined() && heights_.shows(label_output())) map_labels();
-  heights_.set_stale(false);
-}
-
-void TapBelief::map_labels() {
-  if (labels_) labels_->update_maps();
-  labels().process().read_mean(label_output(), weight_mean_);
-  require_finite(weight_mean_, "the weight w", taps());
-  const auto clipped = weight_mean_.cwiseMax(0.0).cwiseMin(1.0);
-  if (clip_) weight_ = clipped;
-  if (!footprint_) probability_ = clipped;
-  if (labels_) labels_->set_stale(false);
-}
-
-void TapBelief::map_objects() {
-  const Process& process = objects_->process();
-  if (outliers_are_surface()) {
-    DoubtedSurface& surface = outliers_->surface();
-    surface.read_mean(process, height_mean_);
-    height_mean_.array() += desk();
-    surface.read_variance(process, object_variance_);
-  } else {
-    map_surface(process);
-    process.read_variance(0, object_variance_);
-  }
-  object_variance_.array() += log_.offset_variance();
-  require_finite(height_mean_, "the height", taps());
-  require_finite(object_variance_, "the variance of the height", taps());
-  objects_->set_stale(false);
-}
-
-void TapBelief::map_surface(const Process& process) {
-  process.read_mean(0, height_mean_);
-  height_mean_.array() += desk();
-  require_finite(height_mean_, "the height", taps());
 }
 
 const Eigen::VectorXd& TapBelief::kept(const Eigen::VectorXd& map) const {
@@ -283,32 +245,18 @@ const Eigen::VectorXd& TapBelief::kept(const Eigen::VectorXd& map) const {
 }
 
 Quantities TapBelief::predictable(Quantities wanted) const {
-  if (!outliers_) return wanted;
+  if (!surface_ || !surface_->has_outliers()) return wanted;
   Quantities out;
   if (wanted.has(Quantity::height)) out = out | Quantity::doubt;
   if (wanted.has(Quantity::probability)) out = out | Quantity::probability;
   return out;
 }
 
-Prediction TapBelief::predict_without_outliers(int candidate) const {
-  if (!current_) throw std::logic_error("a height is predicted by a belief that is older than the last tap");
-  DoubtedSurface::Height height;
-  if (outliers_are_surface()) {
-    height = outliers_->surface().at(objects_->process(), candidate);
-  } else {
-    Eigen::VectorXd map;
-    objects_->process().read_mean(0, map);
-    height.mean = map(candidate);
-    objects_->process().read_variance(0, map);
-    height.variance = map(candidate);
-  }
-  return {height.mean + desk(), std::sqrt(height.variance + log_.offset_variance()), {}};
-}
-
 Prediction TapBelief::predict(int candidate, Quantities wanted) const {
-  // Whether there are maps or not, a prediction is the same to the last bit.
-  Prediction out = outliers_ ? predict_without_outliers(candidate)
-                             : Prediction{height_mean()(candidate), std::sqrt(height_variance()(candidate)), {}};
+  if (!current_) throw std::logic_error("a height is predicted by a belief that is older than the last tap");
+  Prediction out = surface_ && surface_->has_outliers()
+                       ? surface_->predict(candidate, log_)
+                       : Prediction{height_mean()(candidate), std::sqrt(height_variance()(candidate)), {}};
   if (wanted.has(Quantity::probability)) out.probability = probability()(candidate);
   return out;
 }

@@ -9,8 +9,9 @@
 #include "experiment/experiment_options.hpp"
 #include "experiment/footprint_model.hpp"
 #include "experiment/gp_model.hpp"
-#include "experiment/outlier_model.hpp"
+#include "experiment/height_model.hpp"
 #include "experiment/phases.hpp"
+#include "experiment/surface_model.hpp"
 #include "gp/candidates.hpp"
 
 #include <palpate/backend.hpp>
@@ -67,21 +68,23 @@ class TapBelief final : public Belief {
   int initial_taps() const override { return log_.initial_taps(); }
   const std::vector<Target>& targets() const override { return log_.targets(); }
   const std::vector<Touch>& touches() const override { return log_.contacts(); }
-  const Eigen::VectorXd& uncertainty() const override { return kept(uncertainty_); }
-  const Eigen::VectorXd& weight() const override { return kept(clip_ ? weight_ : weight_mean_); }
+  const Eigen::VectorXd& uncertainty() const override { return kept(heights_.uncertainty()); }
+  const Eigen::VectorXd& weight() const override { return kept(label_map_.weight()); }
   const Eigen::VectorXd& probability() const override {
-    return kept(footprint_ ? footprint_->probability() : probability_);
+    return kept(footprint_ ? footprint_->probability() : label_map_.clipped());
   }
   const OutlineSample& outlines() const override;
-  const Eigen::VectorXd& height_mean() const override { return kept(height_mean_); }
-  const Eigen::VectorXd& height_variance() const override { return kept(two_part() ? object_variance_ : variance_); }
+  const Eigen::VectorXd& height_mean() const override { return kept(surface_ ? surface_->mean() : heights_.mean()); }
+  const Eigen::VectorXd& height_variance() const override {
+    return kept(surface_ ? surface_->variance() : heights_.variance());
+  }
 
   /// Variance of the height GP, all taps seen, square metres: height_variance() unless the surface is two_part.
   /// There where the uncertainty is.
-  const Eigen::VectorXd& all_taps_variance() const { return kept(variance_); }
+  const Eigen::VectorXd& all_taps_variance() const { return kept(heights_.variance()); }
 
   /// The mean of the label GP as it comes, whatever `label.clip` says.
-  const Eigen::VectorXd& weight_mean() const { return kept(weight_mean_); }
+  const Eigen::VectorXd& weight_mean() const { return kept(label_map_.mean()); }
 
   /// One output of a process.
   struct Output {
@@ -93,17 +96,17 @@ class TapBelief final : public Belief {
   /// The processes as far as they were built, null if nothing has asked for them. u comes from the height GP,
   /// height_mean() and height_variance() from the surface GP: the same one for `surface: single`, that of the taps
   /// on an object for `two_part`.
-  Output height_gp() const { return output(heights_, 0); }
-  Output label_gp() const { return output(labels(), label_output()); }
-  Output surface_gp() const { return output(surface(), 0); }
-  bool two_part() const { return objects_.has_value(); }
+  Output height_gp() const { return output(heights_.gp(), 0); }
+  Output label_gp() const { return output(label_model(), label_output()); }
+  Output surface_gp() const { return output(surface_model(), 0); }
+  bool two_part() const { return surface_.has_value(); }
   /// Whether the probability is the weight, clipped: then what is shown of the outline is w, else p.
   bool footprint_is_weight() const { return !footprint_; }
   /// The footprint, if it is not the weight and was asked for; else null.
   const Footprint* footprint() const { return footprint_ && footprint_->is_shown() ? &footprint_->plugin() : nullptr; }
 
   /// The outlier model of `height.outlier_probability`; null without, or while no height was asked for.
-  const OutlierModel* outliers() const { return outliers_ && objects_->is_built() ? &*outliers_ : nullptr; }
+  const OutlierModel* outliers() const { return surface_ ? surface_->outliers() : nullptr; }
   /// The contacts that are probably outliers; none without an outlier model.
   std::vector<SuspectedOutlier> suspected_outliers() const;
   /// The probability that a contact is an outlier; 0 without an outlier model.
@@ -114,7 +117,7 @@ class TapBelief final : public Belief {
     return footprint_ && footprint_->has_moved(log_.prior_size() + static_cast<int>(contact));
   }
   /// Variances of the map of heights that rounding has taken below 0.
-  int variances_clamped() const { return outliers_are_surface() ? outliers_->surface().variances_clamped() : 0; }
+  int variances_clamped() const { return surface_ ? surface_->variances_clamped() : 0; }
 
   /// Fits that found nothing better and kept the old values.
   int failed_fits() const;
@@ -123,7 +126,7 @@ class TapBelief final : public Belief {
   double desk() const { return context_.scene.desk(); }
 
   /// Standard deviation of the noise of one tap's height, metres.
-  double height_noise() const { return surface().noise(); }
+  double height_noise() const { return surface_model().noise(); }
 
   /// Of a candidate: the height, and the probability if that is among the `wanted`. What predictable() says of these
   /// was asked for: where contacts are doubted, a height at one place needs no map.
@@ -133,38 +136,30 @@ class TapBelief final : public Belief {
  private:
   Quantities known(Quantities asked) const;
   bool joined() const { return !labels_; }
-  const GpModel& labels() const { return labels_ ? *labels_ : heights_; }
+  const GpModel& label_model() const { return labels_ ? *labels_ : heights_.gp(); }
   int label_output() const { return labels_ ? 0 : 1; }
-  const GpModel& surface() const { return objects_ ? *objects_ : heights_; }
+  const GpModel& surface_model() const { return surface_ ? surface_->gp() : heights_.gp(); }
   static Output output(const GpModel& model, int output);
+  /// Calls visit(gp) for each GP, built or not.
+  template <class Visit>
+  void for_each_gp(const Visit& visit);
   void add_data();
   void find_outliers();
   void update_maps();
-  void map_heights();
-  void map_labels();
-  void map_objects();
-  void map_surface(const Process& process);
-  Prediction predict_without_outliers(int candidate) const;
-  /// Whether the surface is that without outliers, else that of the process.
-  bool outliers_are_surface() const { return outliers() != nullptr && outliers_->is_surface(*objects_); }
   const Eigen::VectorXd& kept(const Eigen::VectorXd& map) const;
 
   const Candidates& candidates_;
   const Context& context_;
   PhaseClock& clock_;
-  bool clip_;
   ContactLog log_;
   PosteriorSettings posterior_;
-  GpModel heights_;
-  std::optional<GpModel> labels_;   ///< none: output 1 of heights_
-  std::optional<GpModel> objects_;  ///< heights on objects, for `surface: two_part`
-  std::optional<OutlierModel> outliers_;
+  HeightModel heights_;
+  std::optional<GpModel> labels_;  ///< none: output 1 of heights_
+  LabelMap label_map_;
+  std::optional<SurfaceModel> surface_;      ///< none: the surface is the mean of heights_
   std::optional<FootprintModel> footprint_;  ///< none: the weight, clipped
   Quantities asked_;
-  bool current_ = true;        ///< update() has seen all taps
-  bool height_asked_ = false;  ///< of objects_, and not only which contacts are outliers
-  /// Empty until somebody asks for them.
-  Eigen::VectorXd uncertainty_, variance_, height_mean_, object_variance_, weight_mean_, weight_, probability_;
+  bool current_ = true;  ///< update() has seen all taps
 };
 
 }  // namespace palpate
