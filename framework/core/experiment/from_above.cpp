@@ -4,7 +4,9 @@
 #include "config/relation.hpp"
 #include "experiment/policy.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace palpate {
@@ -18,13 +20,14 @@ FromAbove::FromAbove(const ExperimentOptions& options, const PluginFactory& fact
                       : grid_by_count(scene_->area(), static_cast<int>(*options.candidates.count))),
       belief_(options_, candidates_, context_, clock_),
       chooser_(options_, candidates_, context_),
+      plan_(make_plan()),
       watch_(options_, candidates_, context_, backend_->scene_is_truth()) {}
 
 void FromAbove::update() {
   belief_.update();
   const PhaseClock::Scope log(clock_, Phase::log);
   if (watch_.counts().taps == 0) return;
-  belief_.ask(backend_->reads());
+  belief_.ask(plan_.reads(Stage::second_tap));
   backend_->show(belief_);
 }
 
@@ -33,7 +36,7 @@ std::optional<TapRecord> FromAbove::choose_next(const Wish* wish) {
   {
     const PhaseClock::Scope acquire(clock_, Phase::acquire);
     const bool starting = chooser_.starting(belief_);
-    belief_.ask(reads_for(wish != nullptr ? Source::caller : starting ? Source::initial : Source::acquisition));
+    belief_.ask(plan_.reads(wish != nullptr ? Source::caller : starting ? Source::initial : Source::acquisition));
     const Wish recalled{{}, recalled_};
     if (!has_scores() && wish == nullptr && !starting) {
       if (!recalled_) return std::nullopt;
@@ -67,7 +70,7 @@ void FromAbove::read(TapRecord& tap) {
 
 std::optional<std::string> FromAbove::stop_rule(Source source) {
   if (chooser_.starting(belief_)) return std::nullopt;
-  belief_.ask(reads_for(source));
+  belief_.ask(plan_.reads(source));
   const StopOptions& stop = options_.stop;
   const auto deviation = [&] { return std::sqrt(belief_.all_taps_variance().maxCoeff<Eigen::PropagateNaN>()); };
   if (stop.max_standard_deviation && satisfies(deviation(), Relation::at_most, *stop.max_standard_deviation))
@@ -79,8 +82,8 @@ std::optional<std::string> FromAbove::stop_rule(Source source) {
 void FromAbove::resume(const std::vector<PastTap>& past) {
   Quantities read;
   for (const PastTap& tap : past) {
-    read = read | reads_for(tap.of_caller() ? Source::caller : tap.source);
-    if (tap.source == Source::fallback) read = read | Chooser::kFallbackReads;
+    read = read | plan_.reads(tap.of_caller() ? Source::caller : tap.source);
+    if (tap.source == Source::fallback) read = read | plan_.reads(Stage::first_fallback);
     // Who is doubted depends on who was, once there are many; a fit on what was taken off the heights at its tap.
     if (options_.height.outlier_probability || options_.height.offset) belief_.ask(read);
     observe(tap);
@@ -88,34 +91,38 @@ void FromAbove::resume(const std::vector<PastTap>& past) {
   belief_.ask(read);
 }
 
-Quantities FromAbove::reads_for(Source source) const {
-  Quantities out = belief_.predictable(backend_->expects() | chooser_.predicts());
-  if (options_.height.outlier_probability) out = out | Quantity::doubt;
-  if (source == Source::initial) return out;
-  if (options_.stop.max_standard_deviation) out = out | Quantity::uncertainty;
-  if (source == Source::caller) return out;
-  out = out | chooser_.reads();
-  if (source == Source::fallback) out = out | Chooser::kFallbackReads;
-  return out;
+ReadPlan FromAbove::make_plan() const {
+  ReadPlan plan;
+  plan.add("acquisition " + options_.acquisition.type, chooser_.reads(), Stage::first_acquisition_tap);
+  if (chooser_.may_fall_back())
+    plan.add("fallback uncertainty, from its first use on", Chooser::kFallbackReads, Stage::first_fallback);
+  if (options_.height.outlier_probability) plan.add("height.outlier_probability", Quantity::doubt, Stage::first_tap);
+  if (options_.stop.max_standard_deviation)
+    plan.add("stop.max_standard_deviation", Quantity::uncertainty, Stage::first_scored_tap);
+  if (options_.stop.expected_rmse) plan.add("stop.expected_rmse", belief_.surface_reads(), Stage::first_object_contact);
+  // The choice of a motion is an option of the backend.
+  const std::string backend = "backend " + options_.backend.type;
+  plan.add(backend, belief_.predictable(backend_->expects() | chooser_.predicts()), Stage::first_tap);
+  plan.add(backend, backend_->reads(), Stage::second_tap);
+  return plan;
 }
 
 std::vector<ModelReader> FromAbove::readers() const {
   std::vector<ModelReader> out;
-  const auto add = [&](Quantities reads, const std::string& who) {
-    for (const std::string& model : belief_.models_of(reads)) out.push_back({model, who});
-  };
-  add(chooser_.reads(), "acquisition " + options_.acquisition.type);
-  if (chooser_.may_fall_back()) add(Chooser::kFallbackReads, "fallback uncertainty, from its first use on");
-  if (options_.height.outlier_probability) add(Quantity::doubt, "height.outlier_probability");
-  if (options_.stop.max_standard_deviation) add(Quantity::uncertainty, "stop.max_standard_deviation");
-  if (options_.stop.expected_rmse) add(belief_.surface_reads(), "stop.expected_rmse");
-  add(backend_->reads() | belief_.predictable(backend_->expects()), "backend " + options_.backend.type);
+  for (const ReadPlan::Reader& one : plan_.readers()) {
+    for (const std::string& model : belief_.models_of(one.reads)) {
+      const bool is_known = std::any_of(out.begin(), out.end(), [&](const ModelReader& known) {
+        return known.who == one.name && known.model == model;
+      });
+      if (!is_known) out.push_back({model, one.name});
+    }
+  }
   return out;
 }
 
 Eigen::VectorXd FromAbove::scores() {
   if (!has_scores()) return Eigen::VectorXd::Zero(candidates_.size());
-  belief_.ask(reads_for(Source::acquisition));
+  belief_.ask(plan_.reads(Source::acquisition));
   return chooser_.scores(belief_);
 }
 

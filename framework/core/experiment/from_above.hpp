@@ -4,6 +4,7 @@
 
 #include "experiment/chooser.hpp"
 #include "experiment/experiment.hpp"
+#include "experiment/read_plan.hpp"
 #include "experiment/tap_belief.hpp"
 #include "experiment/watch.hpp"
 
@@ -50,9 +51,7 @@ class FromAbove final : public Experiment {
   void update() override;
   std::optional<std::string> stop_rule(Source source) override;
   void read(TapRecord& tap) override;
-  /// What a tap of this source reads of the belief: strategy, stop rules and backend. What a forecast reads is asked
-  /// for by itself, from the first hit on.
-  Quantities reads_for(Source source) const;
+  ReadPlan make_plan() const;
   Manner manner_of(const PastTap& tap) const {
     return {tap.source == Source::initial, tap.motion, chooser_.roughness(tap.motion)};
   }
@@ -60,6 +59,7 @@ class FromAbove final : public Experiment {
   Candidates candidates_;
   TapBelief belief_;
   Chooser chooser_;
+  ReadPlan plan_;
   Watch watch_;
 };
 
