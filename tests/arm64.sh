@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Builds palpate for 64-bit ARM with a cross compiler and tests it under emulation: the files of Debian 12 for arm64 are
-# unpacked by mmdebstrap, and programs run in qemu. Unit, contract and stability tests, then runs that are compared with
-# those of the release build, tap by tap, then packages. Needs root, mmdebstrap, g++-aarch64-linux-gnu, qemu-user-static,
+# unpacked by mmdebstrap, and programs run in qemu. Unit, contract and stability tests in their short forms
+# (PALPATE_BRIEF), then runs that are compared with those of the release build, tap by tap, then packages. Needs root, mmdebstrap, g++-aarch64-linux-gnu, qemu-user-static,
 # dpkg-dev and file, a network, 4 GB in the build folder, and an hour.
 #   sh tests/arm64.sh [--seeds N] [build | test | compare | packages]...
 # N seeds of paper and default are compared, 20 unless said. Without further words, all four.
@@ -130,7 +130,7 @@ for step in $steps; do
         echo "arm64: $suite tests" >&2
         # One part per core.
         (cd "$build/tests" && seq 0 $((cores - 1)) | PATH="$folder/bin:$PATH" xargs -P "$cores" -I PART \
-          env GTEST_TOTAL_SHARDS="$cores" GTEST_SHARD_INDEX=PART "./${suite}_tests" --gtest_brief=1 --gtest_filter="-$not_emulated")
+          env PALPATE_BRIEF=1 GTEST_TOTAL_SHARDS="$cores" GTEST_SHARD_INDEX=PART "./${suite}_tests" --gtest_brief=1 --gtest_filter="-$not_emulated")
       done
       ;;
     compare)
