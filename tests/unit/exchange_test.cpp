@@ -97,7 +97,7 @@ TEST(Exchange, IsRefusedIfAllPrimitivesBelongTogetherInOneHypothesis) {
   }
 }
 
-TEST(Exchange, IsRefusedForDifferentPushesOrNoiseAndForTooManyPrimitives) {
+TEST(Exchange, IsRefusedIfEitherHasAPushForAnotherNoiseAndTooManyPrimitives) {
   const ExchangeBench bench(kTwo);
   const Particle to = bench.with({box_at(0.05, 0.05), box_at(0.30, 0.30)});
   const Particle from = bench.with({box_at(0.05, 0.05), box_at(0.055, 0.055), box_at(0.30, 0.30)});

@@ -32,7 +32,7 @@ struct SampleMoments {
 };
 
 // Only the last tap has the label of an object. No push comes after it, so primitives and pushes are independent.
-TEST(FootprintModel, KeepsThePriorOfPushesAndNoiseWithUninformativeLabels) {
+TEST(SamplerModel, KeepsThePriorOfPushesAndNoiseWithUninformativeLabels) {
   constexpr int kTaps = 15;
   SamplerSettings how;
   how.particles = test::brief() ? 1000 : 2000;
@@ -187,7 +187,7 @@ std::pair<std::vector<double>, double> enumerated(const Prior& prior, const Samp
   return {weights, last_covered / evidence};
 }
 
-TEST(FootprintModel, HasTheExactProbabilityOfEachNumberOfPrimitives) {
+TEST(SamplerModel, HasTheExactProbabilityOfEachNumberOfPrimitives) {
   SamplerSettings how;
   how.particles = 1000;
   how.label_error = 0.01;

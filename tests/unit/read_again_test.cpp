@@ -114,5 +114,27 @@ TEST(ReadAgain, AResumedRunGoesOnAsTheUnbrokenOne) {
   }
 }
 
+TEST(Outliers, KeepTheirProbabilitiesAfterAHundredContactsOnAnObjectAndLaterContactsAreTrusted) {
+  Reader one({"height.offset=none", "footprint=gp_regression", "taps=120"});
+  one.belief.ask(Quantity::height);
+  // A plate of 5 cm with a contact at 10 cm among the first hundred, and another among the next twenty.
+  constexpr std::size_t kEarly = 44;
+  constexpr std::size_t kLate = 110;
+  Eigen::VectorXd early;
+  for (std::size_t i = 0; i < 120; ++i) {
+    const Target place{0.02 + 0.015 * static_cast<double>(i % 12), 0.02 + 0.018 * static_cast<double>(i / 12)};
+    one.belief.observe(place, contact_at(i == kEarly || i == kLate ? 0.10 : 0.05));
+    if (i != 99) continue;
+    one.belief.update();
+    early = one.belief.outliers()->probabilities();
+  }
+  one.belief.update();
+  EXPECT_GT(early(kEarly), 0.9);
+  EXPECT_EQ(one.belief.outliers()->probabilities().head(100), early);
+  EXPECT_EQ(one.belief.outlier_probability(kLate), 0.0);
+  ASSERT_EQ(one.belief.suspected_outliers().size(), 1U);
+  EXPECT_EQ(one.belief.suspected_outliers().front().tap, static_cast<int>(kEarly) + 1);
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -37,9 +37,8 @@ struct PosteriorCase {
   /// Whether draws are weighed by the approximation of the sampler: undiscovered primitives are independent of known
   /// ones. A tap of the desk in both counts twice, and an object tap near a noisy rim is in a known primitive.
   bool approximate;
-  /// Largest difference of the exact posterior from the approximation: 0.009, 0.008 with noise, 0.0014 for one object,
-  /// and 0.097 for a noisy rim alone, which is compared with the approximation therefore. For that one: steps of the
-  /// depth.
+  /// Allowed for the approximation, whose largest error is 0.009, 0.008 with noise, and 0.0014 for one object. A noisy
+  /// rim alone has 0.097, so it is compared with the approximation; this then allows for the steps of the depth.
   double allowance;
   int draws;  ///< more for informative labels, with which few draws agree
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Calibration of the probability that an object is undiscovered: of all desks with 5 %, 5 % have one. Desks are drawn
 // from the prior and tapped at the least certain position, with label errors and position noise as the model has them.
-// Heights are simpler than in the model: level tops and 1 mm of noise, for 4 mm, slopes, free tops and 2 % of errors.
+// Heights are simpler than in the model: all tops are level, and the noise is 1 mm. The model has 4 mm, slopes, free
+// tops and 2 % of errors.
 #include "hypothesis_bench.hpp"
 #include "primitives/sampler.hpp"
 #include "support/sanitizers.hpp"

@@ -42,10 +42,6 @@ ContactLog::Reading ContactLog::read(const Contact& contact, int motion) const {
   return {height, scene_.on_object(height) && height - scene_.desk() > unsure};
 }
 
-std::optional<Systematic::Estimate> ContactLog::offset(int motion) const {
-  return offset_ ? std::optional(offset_->at(seconds_, motion)) : std::nullopt;
-}
-
 void ContactLog::add(const Target& place, const Contact& contact, const Manner& manner, double noise) {
   targets_.push_back(place);
   initial_taps_ += manner.initial ? 1 : 0;

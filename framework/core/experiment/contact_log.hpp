@@ -12,7 +12,6 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -39,17 +38,16 @@ class ContactLog {
   };
   /// Returns how the contact of the next tap would be read. Changes nothing.
   Reading read(const Contact& contact, int motion) const;
-  /// Returns the estimated offset of a motion now; none unless the config has `height.offset`.
-  std::optional<Systematic::Estimate> offset(int motion) const;
-  /// Returns the variance of that estimate, which all heights share, square metres; 0 without.
-  double offset_variance() const { return offset_ ? offset_->at(seconds_).variance : 0.0; }
+  /// Whether the config estimates the offset of arm and motions (`height.offset`).
   bool has_offset() const { return offset_.has_value(); }
+  /// Returns the variance of that estimate now, which all heights share, square metres; 0 without.
+  double offset_variance() const { return offset_ ? offset_->at(seconds_).variance : 0.0; }
 
   /// Adds a tap, and reads all contacts again if offsets are estimated. `noise`: standard deviation of a height by the
   /// most precise motion, metres.
   void add(const Target& place, const Contact& contact, const Manner& manner, double noise);
 
-  /// Whether the label of a contact before the latest has changed since the last reset().
+  /// Whether the label of a contact before the latest has changed since reset_changed_labels().
   bool has_changed_labels() const { return changed_; }
   void reset_changed_labels() { changed_ = false; }
 
@@ -75,8 +73,9 @@ class ContactLog {
   /// Rows of the data on an object, ascending, and the number of those in the prior view.
   const std::vector<int>& object_rows() const { return object_rows_; }
   int prior_objects() const { return prior_objects_; }
-  /// Returns for each datum how far its height is trusted, in (0, 1]: the variance `noise`^2 over its own.
-  /// `outlier_probability`: of each contact.
+  /// Returns for each datum how far its height is trusted, in (0, 1]: `noise`^2 over the variance of its own noise, and
+  /// of a contact times 1 - `outlier_probability` (of each contact). Both factors come in tenths, and a contact has
+  /// 0.001 at least.
   Eigen::VectorXd trust(const Eigen::VectorXd& outlier_probability, double noise) const;
   /// Whether any datum has another noise than the others.
   bool has_uneven_noise() const { return uneven_; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/gp_model.hpp"
 
+#include "config/tree.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>

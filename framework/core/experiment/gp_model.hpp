@@ -10,6 +10,7 @@
 
 #include <palpate/plugin.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -29,7 +30,7 @@ class GpModel {
   GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const ProcessSettings& settings,
           const PosteriorSettings& posterior, const Candidates& candidates, const Context& context);
 
-  /// Adds a second output, the labels.
+  /// Adds a second output, the labels. Only before show().
   void add_labels(const ProcessSettings& settings) { outputs_.push_back(settings); }
 
   /// Whether a fit is due after any of the first `taps` contacts.

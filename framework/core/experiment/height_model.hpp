@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The GP of the heights of all contacts and that of their labels, with their maps over the candidates.
+// The GP of the heights of all contacts, and its maps over the candidates; the map of the labels.
 #pragma once
 
 #include "experiment/gp_model.hpp"

@@ -17,7 +17,7 @@ double tempered(double probability) {
 
 }  // namespace
 
-bool OutlierModel::update(const ContactLog& log, const GpModel& objects, const Eigen::VectorXd& label_error) {
+bool OutlierModel::update(const ContactLog& log, const GpModel& objects, const Footprint* footprint) {
   // The cost grows with the cube of the contacts on an object. With so many, the surface is so well known that an
   // outlier hardly matters: later contacts are trusted, and earlier ones keep their probabilities.
   constexpr std::size_t kMostContacts = 100;
@@ -30,6 +30,8 @@ bool OutlierModel::update(const ContactLog& log, const GpModel& objects, const E
     }
     return false;
   }
+  Eigen::VectorXd label_error = Eigen::VectorXd::Zero(log.size());
+  if (footprint != nullptr) footprint->doubt(label_error);
   by_label_ = label_error.tail(contacts);
   probabilities_ = by_label_;
   // Points of the prior view are no outliers, only less exact.

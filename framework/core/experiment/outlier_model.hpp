@@ -7,9 +7,10 @@
 #include "experiment/gp_model.hpp"
 #include "gp/doubt.hpp"
 
+#include <palpate/footprint.hpp>
+
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <vector>
 
 namespace palpate {
@@ -30,9 +31,9 @@ class OutlierModel {
   OutlierModel(double prior, const Candidates& candidates) : prior_(prior), surface_(candidates) {}
 
   /// Computes the probabilities again; returns false if they were kept, as so many contacts are known. `objects`: the
-  /// GP of the heights on objects, with all data. `label_error`: the probability of a wrong label, of each datum of the
-  /// log.
-  bool update(const ContactLog& log, const GpModel& objects, const Eigen::VectorXd& label_error);
+  /// GP of the heights on objects, built and with all data. `footprint`: knows the probabilities of wrong labels; null:
+  /// all labels are right.
+  bool update(const ContactLog& log, const GpModel& objects, const Footprint* footprint);
   /// Forgets the surface, as labels have changed.
   void reset() { surface_.forget(); }
 

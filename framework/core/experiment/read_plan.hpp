@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Who reads which quantities of the belief, and from when: fixed before the first tap. No other model is built for the
-// choice of taps.
+// The readers of the belief: which quantities each reads, and from which tap on. The plan is fixed before the first
+// tap; no other model is built for the choice of taps.
 #pragma once
 
 #include "experiment/tap_record.hpp"

@@ -29,8 +29,8 @@ void SurfaceModel::reset() {
   if (outliers_) outliers_->reset();
 }
 
-void SurfaceModel::find_outliers(const ContactLog& log, const Eigen::VectorXd& label_error) {
-  if (outliers_->update(log, gp_, label_error)) gp_.set_stale(true);
+void SurfaceModel::find_outliers(const ContactLog& log, const Footprint* footprint) {
+  if (outliers_->update(log, gp_, footprint)) gp_.set_stale(true);
 }
 
 void SurfaceModel::update_maps(const ContactLog& log) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The surface of `surface: two_part`: the heights of contacts on an object, without outliers. Where no object is, the
-// surface is the desk, which the footprint says.
+// The surface of `surface: two_part`: the GP of the heights on objects, without outliers. Where the footprint has no
+// object, the surface is the desk.
 #pragma once
 
 #include "experiment/gp_model.hpp"
@@ -31,8 +31,9 @@ class SurfaceModel {
   /// Whether the config has an outlier model; and that model, null without or before show().
   bool has_outliers() const { return outliers_.has_value(); }
   const OutlierModel* outliers() const { return outliers_ && gp_.is_built() ? &*outliers_ : nullptr; }
-  /// Computes outliers again. `label_error`: the probability of a wrong label, of each datum of the log.
-  void find_outliers(const ContactLog& log, const Eigen::VectorXd& label_error);
+  /// Computes outliers again, of the data that the GP has; outliers() must not be null. `footprint`: of wrong labels,
+  /// may be null.
+  void find_outliers(const ContactLog& log, const Footprint* footprint);
 
   /// Brings the maps up to date. Throws Error for values that are not finite.
   void update_maps(const ContactLog& log);
@@ -40,6 +41,7 @@ class SurfaceModel {
   const Eigen::VectorXd& mean() const { return mean_; }
   const Eigen::VectorXd& variance() const { return variance_; }
   /// Returns mean and standard deviation at a candidate without any map, equal to those of the maps to the last bit.
+  /// Only after show().
   Prediction predict(int candidate, const ContactLog& log) const;
   /// Number of variances of the map that rounding has taken below 0.
   int variances_clamped() const { return is_without_outliers() ? outliers_->surface().variances_clamped() : 0; }

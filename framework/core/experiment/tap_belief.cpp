@@ -2,9 +2,6 @@
 #include "experiment/tap_belief.hpp"
 
 #include "config/tree.hpp"
-#include "experiment/policy.hpp"
-
-#include <palpate/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -205,9 +202,7 @@ void TapBelief::add_data() {
 void TapBelief::find_outliers() {
   Eigen::VectorXd probabilities;
   if (outliers() != nullptr) {
-    Eigen::VectorXd label_error = Eigen::VectorXd::Zero(log_.size());
-    if (footprint() != nullptr) footprint()->doubt(label_error);
-    surface_->find_outliers(log_, label_error);
+    surface_->find_outliers(log_, footprint());
     probabilities = outliers()->probabilities();
   } else if (log_.has_uneven_noise()) {
     probabilities = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(log_.contacts().size()));

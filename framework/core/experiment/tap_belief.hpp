@@ -105,7 +105,8 @@ class TapBelief final : public Belief {
   /// The footprint, if it is not the weight and was asked for; else null.
   const Footprint* footprint() const { return footprint_ && footprint_->is_shown() ? &footprint_->plugin() : nullptr; }
 
-  /// The outlier model of `height.outlier_probability`; null without, or while no height was asked for.
+  /// The outlier model of `height.outlier_probability` with `surface: two_part`; null without, and before its GP is
+  /// built.
   const OutlierModel* outliers() const { return surface_ ? surface_->outliers() : nullptr; }
   /// The contacts that are probably outliers; none without an outlier model.
   std::vector<SuspectedOutlier> suspected_outliers() const;

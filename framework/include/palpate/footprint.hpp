@@ -43,8 +43,8 @@ class Footprint {
   /// set of places may be kept for the next call.
   virtual void probability(const PointsView& places, VectorOut out) = 0;
 
-  /// Some of the outlines that the probability is the mean of, over `places`, M x 2 metres, without objects apart from
-  /// all known ones; leaves `out` empty where there are none.
+  /// Some of the outlines that the probability is the mean of, over `places`, M x 2 metres. Objects that overlap no
+  /// known one are left out. Leaves `out` empty where there are none.
   virtual void sample(const PointsView& /*places*/, OutlineSample& out) const { out = {}; }
 
   /// The probability that the label of each touch so far is wrong, in [0, 1], in their order; `out` has as many values.

@@ -161,8 +161,8 @@ struct Hypothesis {
 };
 
 /// The probability of primitives before any tap: a Poisson process of `expected` primitives, cut off above `most`. Each
-/// lies wholly on the area, at a uniform position. Angle and logarithms of the half axes are uniform within the bounds,
-/// of which that of length to width holds for forms, not for free holes. Push and noise: sampler.hpp.
+/// lies wholly on the area, at a uniform position. Angle and logarithms of the half axes are uniform within the bounds.
+/// `most_slender` holds for forms, not for free holes. Priors of push and noise: sampler.hpp.
 /// Most ellipses are nearly round: the logarithm of the short half axis is uniform, the long one up to 6 % longer. Only
 /// primitives twice as long as `min_width` have holes. A free hole has its centre on the primitive, and half axes from
 /// half of `min_width` to the long half axis of the primitive. A fitted hole takes a tenth to nine tenths of the axes,

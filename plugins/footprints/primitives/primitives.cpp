@@ -43,7 +43,9 @@ struct PrimitivesOptions : LaplaceOptions {
             .at_least(0)
             .at_most(0.9));
     fields.real(label_error_probability,
-                Field("label_error_probability", "probability that the label of a contact is wrong")
+                Field("label_error_probability",
+                      "probability that a contact with an object is labelled as desk, and the default of "
+                      "false_contact_probability")
                     .at_least(1e-6)
                     .at_most(0.4));
     fields.real(false_contact_probability, Field("false_contact_probability",
@@ -66,8 +68,8 @@ struct PrimitivesOptions : LaplaceOptions {
         Field(
             "max_contradictions",
             "maximum number of unexpected wrong labels, averaged over the particles. Above this maximum, gp_classifier "
-            "replaces the primitives. As many are expected as label_error_probability and false_contact_probability "
-            "say")
+            "replaces the primitives. Expected: label_error_probability per contact labelled as object, and "
+            "false_contact_probability per contact labelled as desk")
             .above(0));
     fields.integer(particles, Field("particles",
                                     "number of particles. A particle is one hypothesis of the outlines. The number is "
@@ -125,7 +127,7 @@ class Primitives final : public Footprint {
     return sampler_.undiscovered_probability(kMinLength);
   }
 
-  /// After gp_classifier has taken over: those of the contact at which it did.
+  /// After gp_classifier has replaced the primitives, the numbers stay those of that contact.
   std::vector<FootprintNumber> numbers() const override {
     std::vector<FootprintNumber> out{{"label_errors", sampler_.mean_label_errors()},
                                      {"primitives", sampler_.mean_primitives()},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -57,7 +58,7 @@ bool exchange(const Particle& from, const Taps& taps, int most, Particle& to) {
       return !are_close(form(one), form(other)) && !share_object(row(one), row(other), taps);
     };
     const auto joining = std::stable_partition(rest.begin(), rest.end(), stays);
-    exchanged.insert(exchanged.end(), joining, rest.end());
+    std::copy(joining, rest.end(), std::back_inserter(exchanged));
     rest.erase(joining, rest.end());
   }
   const auto of_side = [](std::size_t side) { return [side](const Member& one) { return one.side == side; }; };
@@ -230,8 +231,8 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
     while (cumulative < wanted && from + 1 < weights.size()) cumulative += weights[++from];
     ++copies[from];
   }
-  // Places of particles that are not drawn, by whether these are noisy, the first ones last. There are as many as
-  // further copies, and particles that have to move to the front.
+  // Indices of particles that are not drawn, by whether these are noisy, the first ones last. As many are free as there
+  // are further copies and particles that have to move to the front.
   std::array<std::vector<std::size_t>, 2> free;
   for (std::size_t i = count; i-- > 0;) {
     if (copies[i] == 0) free[particles_[i].hypothesis.noisy ? 1 : 0].push_back(i);

@@ -124,7 +124,8 @@ class Sampler {
   /// Updates the particles by a tap. Returns the probability of its label before the tap.
   double add(const Touch& touch);
 
-  /// Queries keep what the next one about the same positions needs, so they must not run at the same time.
+  // Queries must not run at the same time: they keep what the next one about the same positions needs.
+
   /// Sets `out` to the probability that each position is on an object.
   void probability(const PointsView& positions, VectorOut out);
   /// Draws `count` hypotheses, a multiple of 64, from the particles and the undiscovered primitives that overlap them.

@@ -17,9 +17,9 @@ using LogUnits = std::int64_t;
 LogUnits to_units(double logarithm);
 inline double from_units(LogUnits units) { return static_cast<double>(units) * 0x1p-20; }
 
-/// The probability of the label of a tap, given its depth in a hypothesis. The depth is that in the deepest primitive.
-/// It is not exact where two rims are within the noise, of two primitives or of one that is thin: the first are deeper,
-/// the second less deep (no error was seen in the calibration with 4 mm of noise).
+/// The probability of the label of a tap, given its depth in a hypothesis: the depth in the deepest primitive. With two
+/// rims within the noise this is an approximation. The union of two primitives is deeper there, and a thin primitive
+/// less deep. No error was seen in the calibration with 4 mm of noise.
 class LabelModel {
  public:
   /// `label_error`: probability that a tap of an object has the label of the desk. `false_contact`: probability that a

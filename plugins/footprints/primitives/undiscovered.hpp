@@ -41,9 +41,11 @@ class Undiscovered {
 
   /// Updates the weights by a tap, where it was made. Each draw is weighed as if no other primitive could explain the
   /// label. If a known primitive contains a tap of the desk as well, the weights become too small: probabilities change
-  /// by 0.01 or less, and by 0.1 if a noisy rim is all that is known. One process serves exact and noisy hypotheses,
-  /// with the labels of noisy ones if there are any: its expected number then is 0.012 smaller (0.026 at most in 40
-  /// scenes of 40 taps), a factor that the odds of noise omit.
+  /// by 0.01 or less, and by 0.1 if a noisy rim is all that is known.
+  ///
+  /// One process serves exact and noisy hypotheses. With position noise, `labels` is that of noisy ones; the expected
+  /// number of primitives then is 0.012 smaller on average (0.026 at most in 40 scenes of 40 taps). The odds of noisy
+  /// against exact positions should have the factor exp(this difference), and omit it.
   void add(const Touch& touch, const LabelModel& labels);
 
   /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from those

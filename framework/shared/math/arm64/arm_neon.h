@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Stands before the compiler's header of the same name, and keeps Eigen from fusing multiplications with additions on
-// ARM. So products of vectors and matrices round as on x86-64, and runs on both make the same taps.
+// ARM. So products with a vector have the bytes of x86-64. Products of two matrices round alike, but add in another
+// order.
 //
 // Eigen 3.4 has two places that fuse: pmadd() in Eigen/src/Core/arch/NEON/PacketMath.h, where the compiler says that it
-// can, and products of two matrices in GeneralBlockPanelKernel.h beside it, by the two intrinsics below. Highway, whose
-// loops fuse on every processor, uses neither.
+// can, and products of two matrices in GeneralBlockPanelKernel.h beside it, by the two intrinsics below. Highway uses
+// neither; its loops fuse, as on x86-64 with AVX2.
 #pragma once
 
 #include_next <arm_neon.h>
 
 #undef __ARM_FEATURE_FMA
+#undef vfmaq_n_f64
+#undef vfmaq_laneq_f64
 #define vfmaq_n_f64(sum, vector, number) vaddq_f64(sum, vmulq_n_f64(vector, number))
 #define vfmaq_laneq_f64(sum, vector, other, lane) vaddq_f64(sum, vmulq_laneq_f64(vector, other, lane))
