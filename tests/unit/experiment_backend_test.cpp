@@ -44,9 +44,9 @@ TEST(ShownBelief, HasTheTapThatWasJustMade) {
   const std::vector<double> heights{0.0, 0.09, 0.05, 0.07};
   int shown = 0;
   const auto backend = four_taps();
+  backend->read = Quantity::height;
   Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
   const FromAbove& experiment = prepared.experiment;
-  backend->read = Quantity::height;
   backend->reading = [&](const Belief& belief) {
     ++shown;
     ASSERT_EQ(belief.taps(), shown);
