@@ -79,9 +79,7 @@ static std::vector<int> relabelled(const Moment& moment) {
   return out;
 }
 
-static void to_json(Json& out, const SuspectedOutlier& one) {
-  out = {{"tap", one.tap}, {"words", doubt_words(one)}};
-}
+static void to_json(Json& out, const SuspectedOutlier& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
 static void to_json(Json& out, const Moment& moment) {
   const RunResult& result = moment.result;
