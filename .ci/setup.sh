@@ -125,9 +125,8 @@ build() {
     # Minutes of one core, and space, for everything, for ./check, for ./palpate build, and for the first ./palpate run.
     case "$preset $*" in
       'release ') whole=25 disk='900 MB' ;;
-      *' palpate_hostile '*) whole=25 disk='1.9 GB' ;;
+      *' fuzz_tests '*) whole=25 disk='1.9 GB' ;;
       *' palpate_everyday') whole=10 disk='1.1 GB' ;;
-      *' palpate_hostile') whole=6 disk='800 MB' ;;
       *' palpate_complete '*) whole=8 disk='700 MB' ;;
       *) whole=8 disk='200 MB' ;;
     esac
