@@ -184,7 +184,7 @@ TEST_F(SetUp, IsNotHeldUpByTestsThatRun) {
                        here().string() + "/lock'");
   const Ended ended = script_ended("check", "--no-install");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(text_of(here() / "lock"), "free\nfree\n");
+  EXPECT_EQ(text_of(here() / "lock"), "free\n");
 }
 
 TEST_F(SetUp, WithoutSudoItSaysWhatToPaste) {
