@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What kernels made of kernels share: their parts, and whose parameters are whose.
+// Common part of kernels that combine other kernels.
 #pragma once
 
 #include <palpate/kernel.hpp>
@@ -21,12 +21,13 @@ struct PartsOptions : Options {
   }
 };
 
-/// A kernel of parts; parameters are named kernels.0.length_scale, in the order of the parts. `Join` says how parts
-/// make a whole:
-///     static constexpr double kNothing;          the whole of no part
-///     static void apply(whole, part);            takes the covariances of one more part into those of the parts before
-///     static void join_slopes(before, own, whole, part);   the same of the slopes of the parts before, and of its own,
-///                                                a matrix a parameter; `whole` is that before apply()
+/// A kernel of several parts. Its parameters are named kernels.0.length_scale, in the order of the parts. `Join`
+/// defines the combination:
+///     static constexpr double kNothing;          result without parts
+///     static void apply(whole, part);            combines the covariances of a part with those of the previous parts
+///     static void join_slopes(before, own, whole, part);   the same for derivatives, one matrix per parameter:
+/// `before`
+///                                                of the previous parts, `own` of the part; `whole` precedes apply()
 template <class Join>
 class Composed : public Kernel {
  public:
@@ -88,7 +89,8 @@ class Composed : public Kernel {
   }
 
  protected:
-  /// Takes all parts but the first into `out`, which has that one; fill(part, j, own) says what column j is of one.
+  /// Combines all parts except the first with `out`, which contains the first. fill(part, j, own) computes column j of
+  /// a part.
   template <class Fill>
   void join_others(MatrixOut out, const Fill& fill) const {
     Eigen::VectorXd own(out.rows());
@@ -103,7 +105,7 @@ class Composed : public Kernel {
   std::vector<std::shared_ptr<Kernel>> parts_;
 
  private:
-  std::vector<Eigen::Index> counts_;  ///< of the parameters of each
+  std::vector<Eigen::Index> counts_;  ///< number of parameters of each part
 };
 
 }  // namespace palpate::kernels

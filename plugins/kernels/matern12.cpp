@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Matern kernel with nu = 1/2, the exponential: k = exp(-r) (Rasmussen and Williams 2006, section 4.2).
-#include "stationary.hpp"
+#include "stationary/stationary.hpp"
 
 namespace palpate::kernels {
 
@@ -13,7 +13,7 @@ struct Matern12Shape : PlainShape {
     take_exponentials(z);
   }
   void slopes(Numbers z, Numbers slope) const {
-    // At r = 0 the slope by the length scale, g r^2, is 0; the bound keeps g finite there.
+    // At r = 0 the derivative by the length scale, g r^2, is 0; the bound keeps g finite.
     slope = 1.0 / z.sqrt().max(1e-150);
     values(z);
     slope *= z;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A product of kernels: heights are alike only where every part says so, for example one part for each axis.
+// Product of kernels: heights are correlated only if every factor correlates them, for example one factor per axis.
 #include "composed.hpp"
 
 namespace palpate::kernels {
@@ -11,8 +11,8 @@ struct Multiply {
   static void apply(Whole whole, const Part& part) {
     whole *= part;
   }
-  /// The slopes of this part times the values of those before it, and theirs times its value: no division, so that a
-  /// value of 0 does no harm.
+  /// Derivatives of a product: those of this part times the previous values, and the previous ones times this value.
+  /// Without division, values of 0 cause no error.
   template <class Slopes, class Own>
   static void join_slopes(Slopes before, Own& own, const MatrixOut& whole, const Eigen::MatrixXd& part) {
     const Eigen::Index m = whole.cols();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rational quadratic kernel, k = (1 + t)^-alpha, t = r^2 / (2 alpha): a mixture of squared exponentials over all
 // length scales (Rasmussen and Williams 2006, equation 4.19).
-#include "stationary.hpp"
+#include "stationary/stationary.hpp"
 
 namespace palpate::kernels {
 
@@ -48,7 +48,7 @@ class RationalQuadraticShape {
   }
 
  private:
-  /// t, finite also where the quotient is not: with a small alpha the kernel is not yet 0 there.
+  /// Returns t with an upper bound, because with a small alpha the kernel is not yet 0 where the quotient overflows.
   double bounded_t(double r2) const { return std::min(r2 / (2.0 * alpha_), 1e300); }
 
   double alpha_;

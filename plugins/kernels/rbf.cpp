@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The squared-exponential kernel of the paper, k = exp(-r^2 / 2) (Sun and Min 2021, section III).
-#include "stationary.hpp"
+#include "stationary/stationary.hpp"
 
 namespace palpate::kernels {
 

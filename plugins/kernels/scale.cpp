@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A kernel times a constant: the share that it has in a sum.
+// Kernel times a constant, for example as a term of a sum.
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sum of kernels: surfaces that add up, for example a broad swell and fine texture.
+// Sum of kernels, for a surface that is a sum of surfaces, for example a broad swell and fine texture.
 #include "composed.hpp"
 
 namespace palpate::kernels {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cap of a ball, at most half of it.
+// Cap of a sphere, at most a hemisphere.
 #include "solid.hpp"
 
 namespace palpate::shapes {
@@ -20,7 +20,7 @@ class Dome final : public Round {
       : Dome(o, (o.diameter * o.diameter / 4 + o.height * o.height) / (2 * o.height)) {}
 
   double support(const Vector3d& direction) const override {
-    // Where the ball reaches furthest at a point below the plane 0, the cap does so at its rim.
+    // If the support point of the sphere is below the plane 0, that of the cap is on its rim.
     const double length = direction.norm();
     const double centre = height_ - ball_;
     if (centre * length + ball_ * direction.z() < 0.0) return disk_support(direction, rim_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "prism.hpp"
+#include "prism/prism.hpp"
 
 namespace palpate::shapes {
 

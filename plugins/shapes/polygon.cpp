@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "prism.hpp"
+#include "prism/prism.hpp"
 
 #include <algorithm>
 #include <string>
@@ -16,7 +16,7 @@ bool within_box(const Point& a, const Point& b, const Point& p) {
          p[1] <= std::max(a[1], b[1]);
 }
 
-/// Whether two segments have a point in common.
+/// Returns whether two segments have a common point.
 bool meet(const Point& a, const Point& b, const Point& c, const Point& d) {
   const double c_side = cross(a, b, c);
   const double d_side = cross(a, b, d);
@@ -28,7 +28,7 @@ bool meet(const Point& a, const Point& b, const Point& c, const Point& d) {
          (a_side == 0 && within_box(c, d, a)) || (b_side == 0 && within_box(c, d, b));
 }
 
-/// Edge `i` folds back onto itself at its end.
+/// Returns whether edge `i` folds back onto itself at its end.
 bool folds(const Outline& outline, std::size_t i) {
   const Point& a = outline[i];
   const Point& b = next(outline, i);
@@ -36,11 +36,11 @@ bool folds(const Outline& outline, std::size_t i) {
   return cross(a, b, c) == 0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0;
 }
 
-/// Of a corner or an edge: counted from 1, as people do.
+/// Returns the number of a corner or an edge in messages, counted from 1.
 std::string number(std::size_t i) { return std::to_string(i + 1); }
 
-/// Why `outline` is not that of a solid: too few points, two edges that meet where they should not, no extent. Empty if
-/// it is.
+/// Returns an error text if `outline` is not the outline of a solid: too few points, crossing edges, or no area; else
+/// an empty string.
 std::string trouble_of_outline(const Outline& outline) {
   constexpr std::size_t kMostPoints = 2000;
   const std::size_t n = outline.size();
@@ -64,7 +64,7 @@ std::string trouble_of_outline(const Outline& outline) {
   return {};
 }
 
-/// Why `hole` is not within `outline`, both without trouble of their own; empty if it is.
+/// Returns an error text if `hole` is not inside `outline`, both valid outlines; else an empty string.
 std::string trouble_of_hole(const Outline& outline, const Outline& hole) {
   for (std::size_t i = 0; i < hole.size(); ++i) {
     for (std::size_t j = 0; j < outline.size(); ++j) {

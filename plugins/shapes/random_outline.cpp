@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// An object that nobody drew, for judging a strategy on what it was not developed on: a smooth random outline, lobed
-// and bent, under a smooth random top.
-#include "prism.hpp"
+// Object with a random smooth outline, lobed and bent, and a random smooth top. It tests strategies on objects for
+// which they were not developed.
+#include "prism/prism.hpp"
 
 #include <palpate/math.hpp>
 
@@ -34,15 +34,15 @@ struct RandomOutlineOptions : Options {
 };
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
-constexpr double kLowestTop = 0.015;   ///< metres: well above what counts as desk
-constexpr double kCore = 0.01;         ///< metres: radius of a disk that every outline has within
-constexpr double kClear = 1e-9;        ///< metres: a line that has come in is in so far behind
-constexpr std::size_t kCorners = 240;  ///< edges of 2 mm at 14 cm
+constexpr double kLowestTop = 0.015;   ///< metres, clearly above the height that counts as desk
+constexpr double kCore = 0.01;         ///< metres, radius of a disk within every outline
+constexpr double kClear = 1e-9;        ///< metres after an entry within which a line is not tested for its exit
+constexpr std::size_t kCorners = 240;  ///< edges are 2 mm long at a length of 14 cm
 
-/// Uniform between the two.
+/// Returns a uniform random number between two limits.
 double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
 
-/// Left, right, low and high of the rectangle around an outline.
+/// Returns left, right, lower and upper end of the rectangle around an outline.
 std::array<double, 4> bounds(const Outline& outline) {
   std::array<double, 4> out{kInfinity, -kInfinity, kInfinity, -kInfinity};
   for (const Point& p : outline) {
@@ -51,8 +51,8 @@ std::array<double, 4> bounds(const Outline& outline) {
   return out;
 }
 
-/// A star around the origin, which is what has a radius for every angle: its logarithm is a short Fourier series with
-/// falling amplitudes. Stretched along the first coordinate.
+/// Returns a star-shaped outline around the origin, stretched along x. The logarithm of its radius as a function of the
+/// angle is a short Fourier series with decreasing amplitudes.
 Outline star(double roughness, Random& random) {
   constexpr int kLobes = 5;
   std::array<double, kLobes + 1> amplitude{}, phase{};
@@ -72,8 +72,8 @@ Outline star(double roughness, Random& random) {
   return out;
 }
 
-/// Bends the first axis into an arc of a circle. One to one, so that edges of a star do not come to cross: no point
-/// lies as far to the side as the circle's centre, and the arc is less than a turn.
+/// Bends the x axis to an arc of a circle. Edges of a star do not cross afterwards, because the map is injective: no
+/// point is as far from the axis as the circle's centre, and the arc is less than a full circle.
 void bend(Outline& outline, Random& random) {
   const auto [left, right, low, high] = bounds(outline);
   const double most = std::min(0.75 / std::max(-low, high), 0.3 * kTurn / std::max(-left, right));
@@ -85,7 +85,7 @@ void bend(Outline& outline, Random& random) {
   }
 }
 
-/// Makes the longer side of the rectangle around it as long as said, and lie along.
+/// Scales an outline so that the longer side of its rectangle has this length, and turns it along x.
 void scale(Outline& outline, double length) {
   const auto [left, right, low, high] = bounds(outline);
   const bool across = high - low > right - left;
@@ -93,7 +93,8 @@ void scale(Outline& outline, double length) {
   for (Point& p : outline) p = across ? Point{factor * p[1], -factor * p[0]} : Point{factor * p[0], factor * p[1]};
 }
 
-/// Around the origin. What has no core is drawn again, tamer each time: a bent ellipse of that stretch has one.
+/// Draws an outline around the origin. One without a core is drawn again with less roughness; a bent ellipse always has
+/// a core.
 Outline random_outline(const RandomOutlineOptions& o, Random& random) {
   for (double roughness = o.roughness;; roughness *= 0.9) {
     Outline out = star(roughness, random);
@@ -123,7 +124,7 @@ class RandomOutline final : public Shape {
     if (between.empty()) return kInfinity;
     const auto [begin, end] = between;
     const Point direction{line.direction.x(), line.direction.y()};
-    // So near to the vertical it passes all heights over one place.
+    // A nearly vertical line intersects the top at one position.
     if (std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) {
       const double height = top(line.origin.x() + begin * direction[0], line.origin.y() + begin * direction[1]);
       if (line.direction.z() > 0.0) return height > 0.0 ? begin : kInfinity;
@@ -148,7 +149,7 @@ class RandomOutline final : public Shape {
       while (from < end) {
         const double in = change(line, from, end, 1.0);
         if (!(in < end)) break;
-        // Where it comes out: looked for a little behind, or where it came in would be found again.
+        // The search for the exit starts a little later, because it would find the entry again.
         const double out = std::min(end, change(line, in + kClear, end, -1.0));
         if (out > in) all.push_back({in, out});
         from = out + kClear;
@@ -157,7 +158,7 @@ class RandomOutline final : public Shape {
     return joined(std::move(all));
   }
 
-  /// Across the wave the top is straight, so that no point reaches farther than one on the outline does.
+  /// The top is straight perpendicular to the wave, so the support point is on the outline.
   double support(const Vector3d& direction) const override {
     const double up = std::max(0.0, direction.z());
     const Point rise{direction.x() + up * slope_[0], direction.y() + up * slope_[1]};
@@ -170,7 +171,7 @@ class RandomOutline final : public Shape {
       const Point& b = next(outline_, i);
       const double before = phase(a[0], a[1]);
       most = std::max(most, reach(a[0], a[1], before));
-      // Between the corners it is most where it neither rises nor falls, on the side of a crest.
+      // Between two corners, a maximum is where the derivative vanishes on the crest's side.
       const double turn = phase(b[0], b[1]) - before;
       const double sine = (rise[0] * (b[0] - a[0]) + rise[1] * (b[1] - a[1])) / (up * swell_ * turn);
       if (!(std::abs(sine) <= 1.0)) continue;
@@ -188,7 +189,7 @@ class RandomOutline final : public Shape {
       : outline_(random_outline(o, random)), middle_(o.height), relief_(o.height - kLowestTop) {
     double farthest = 0.0;
     for (const Point& p : outline_) farthest = std::max(farthest, math::hypot(p[0], p[1]));
-    // Together no more than the relief: the top stays above kLowestTop.
+    // Slope and wave together are at most the relief, so the top stays above kLowestTop.
     const double steepness = between(0.1, 0.6, random) * relief_ / farthest;
     swell_ = between(0.1, 0.4, random) * relief_;
     const double uphill = kTurn * random.uniform();
@@ -199,11 +200,11 @@ class RandomOutline final : public Shape {
     phase_ = kTurn * random.uniform();
   }
 
-  /// Of the wave of the top.
+  /// Returns the phase of the top's wave, radians.
   double phase(double s, double t) const { return wave_[0] * s + wave_[1] * t + phase_; }
 
-  /// Where the line, seen from above, is within the outline: between the first and the second crossing, the third and
-  /// the fourth, ...
+  /// Returns the parts of the line that are above the outline, as seen from above: between crossings 1 and 2, 3 and 4,
+  /// and so on.
   std::vector<Stretch> seen_from_above(const Line& line) const {
     std::array<double, kCorners> crossings{};
     std::size_t count = 0;
@@ -215,9 +216,9 @@ class RandomOutline final : public Shape {
     return out;
   }
 
-  /// Where the line, within the outline between the two, is first not above the top (`sign` 1) or not below it (-1);
-  /// infinity if nowhere. Each step goes to where a parabola with the greatest curvature of all is down, so that none
-  /// goes too far; behind a crossing of the top they are as quick as Newton's.
+  /// Returns the first point in [from, to] where the line is not above the top (`sign` 1) or not below it (-1), or
+  /// infinity. The line must be within the outline there. Each step goes to the root of a parabola with the largest
+  /// curvature of the top. So no step passes the crossing, and near it the steps converge as Newton's.
   double change(const Line& line, double from, double to, double sign) const {
     const Vector3d& u = line.direction;
     const double rate = wave_[0] * u.x() + wave_[1] * u.y();

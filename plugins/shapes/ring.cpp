@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Not convex, but a cylinder less a cylinder: the same intervals.
+// Cylinder minus cylinder: not convex, but computed from the same intervals.
 #include "solid.hpp"
 
 namespace palpate::shapes {
@@ -29,7 +29,7 @@ class Ring final : public Round {
     Interval solid = inside(line);
     Interval hole;
     inner_.clip(line, hole);
-    // Through the hole a line goes on to the wall behind it, or to the desk.
+    // A line through the hole continues to the wall behind it, or to the desk.
     if (!solid.empty() && solid.begin > hole.begin) solid.begin = std::max(solid.begin, hole.end);
     return solid.first();
   }

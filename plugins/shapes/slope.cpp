@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A block whose top rises along its length: the paper's object II.
+// Block whose top rises along its length: the paper's object II.
 #include "solid.hpp"
 
 namespace palpate::shapes {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A block whose top is a wave along its length, the paper's object I: closed form when upright, critical points and
-// bisection when tilted.
+// Block whose top is a wave along its length: the paper's object I. Intersections are in closed form for vertical
+// lines. For other lines they are found between critical points, by bisection and Newton's method.
 #include <palpate/math.hpp>
 
 #include "solid.hpp"
@@ -83,18 +83,18 @@ class Wave final : public Shape {
  private:
   double height_at(double s) const { return o_.height + o_.amplitude * math::cos(2.0 * kPi * s / o_.period); }
 
-  /// How high the point at x of the line is above the top.
+  /// Returns the height above the top of the line's point at x.
   double clearance(const Line& line, double x) const {
     return line.origin.z() + x * line.direction.z() - height_at(line.origin.x() + x * line.direction.x());
   }
 
-  /// The first x after `from` where the clearance may turn from falling to rising or back. Its slope along the line is
-  /// u_z + A k u_s sin(k s), so that it turns where sin(k s) = -u_z / (A k u_s): at two places in each period.
+  /// Returns the first x after `from` where the slope of the clearance may change its sign. The slope along the line is
+  /// u_z + A k u_s sin(k s), so sin(k s) = -u_z / (A k u_s) there: two positions per period.
   double next_turn(const Line& line, double from) const {
     const double along = line.direction.x();
     const double steepest = o_.amplitude * k_ * along;
     if (!(std::abs(line.direction.z()) < std::abs(steepest))) return kInfinity;
-    // With the phase counted along the line.
+    // The phase is counted along the line.
     const double turn = std::copysign(1.0, along) * math::asin(-line.direction.z() / steepest);
     const double rate = k_ * std::abs(along);
     const double phase = std::copysign(1.0, along) * k_ * line.origin.x() + rate * from;
@@ -103,7 +103,7 @@ class Wave final : public Shape {
     return from + (std::min(after(turn), after(kPi - turn)) - phase) / rate;
   }
 
-  /// Where the clearance, which falls or rises between two turns, is 0: halving steps beside Newton's.
+  /// Returns the zero of the clearance between two turns, where it is monotonic, by bisection and Newton's method.
   double crossing(const Line& line, double above, double below) const {
     double x = 0.5 * (above + below);
     for (int i = 0; i < 100 && std::abs(below - above) > 1e-16; ++i) {
@@ -118,12 +118,12 @@ class Wave final : public Shape {
     return x;
   }
 
-  /// The largest along * s + up * z over the outline in the plane of length and height.
+  /// Returns the largest along * s + up * z over the outline in the plane of length and height.
   double profile_support(double along, double up) const {
     const double bottom = std::abs(along) * half_length_;
     if (up <= 0.0) return bottom;
     double best = bottom + up * height_at(half_length_);
-    // On the top it is largest at an end or where along = up A k sin(k s), on the crest that lies furthest that way.
+    // On the top, the maximum is at an end, or where along = up A k sin(k s) on the farthest crest in that direction.
     if (std::abs(along) > up * o_.amplitude * k_) return best;
     const double phase = o_.amplitude > 0.0 ? math::asin(along / (up * o_.amplitude * k_)) : 0.0;
     double s = std::abs(phase) / k_;

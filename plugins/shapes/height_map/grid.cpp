@@ -40,7 +40,7 @@ void check_size(const std::string& file, std::uint64_t rows, std::uint64_t colum
   if (rows < 2 || columns < 2 || rows > most || columns > most / rows) refuse_size(file, rows, columns);
 }
 
-/// Without the blanks around it.
+/// Returns `text` without surrounding blanks.
 std::string_view stripped(std::string_view text) {
   constexpr const char* kBlanks = " \t\r\n";
   const std::size_t begin = text.find_first_not_of(kBlanks);
@@ -80,7 +80,7 @@ Grid from_csv(std::string bytes, const std::string& file) {
   return Eigen::Map<Grid>(values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
 }
 
-/// Types of NPY without their byte order.
+/// Number types of NPY, without their byte order.
 constexpr std::array<std::pair<const char*, BinaryNumber>, 10> kScalars{{{"f4", binary_number<float>()},
                                                                          {"f8", binary_number<double>()},
                                                                          {"i1", binary_number<std::int8_t>()},
@@ -92,7 +92,7 @@ constexpr std::array<std::pair<const char*, BinaryNumber>, 10> kScalars{{{"f4", 
                                                                          {"i8", binary_number<std::int64_t>()},
                                                                          {"u8", binary_number<std::uint64_t>()}}};
 
-/// None for a type that is not read.
+/// Returns null for an unsupported type.
 const BinaryNumber* scalar_named(const std::string& type) {
   if (type.empty() || std::string_view("<>|=").find(type.front()) == std::string_view::npos) return nullptr;
   const auto* const found = std::find_if(kScalars.begin(), kScalars.end(),
@@ -127,7 +127,7 @@ Grid from_npy(const std::string& bytes, const std::string& file) {
 
 #ifdef PALPATE_PNG
 
-/// What libpng reads from, and what it said.
+/// Input of libpng, and its error message.
 struct Source {
   std::string_view rest;
   std::string reason;
@@ -145,7 +145,8 @@ void note(png_structp png, png_const_charp reason) {
   png_longjmp(png, 1);
 }
 
-/// Fills `out`; false where libpng gave up, which leaps out of here: nothing that needs a destructor may live in it.
+/// Decodes into `out`. Returns false after an error of libpng, which leaves the function by longjmp. So no local
+/// variable may need a destructor.
 bool decode(png_structp png, png_infop info, Source& source, Grid& out, std::vector<png_byte>& row, bool& is_grey,
             const std::string& file) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Heights on a grid, from a file: a table of numbers, an array of NumPy or an image.
+// Reader for heights on a grid: a CSV table, a NumPy array or an image.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,18 +10,18 @@ namespace palpate::shapes {
 
 constexpr Eigen::Index kMostNodes = 4'000'000;
 
-/// Values as the file has them, the row that an image shows at its top first.
+/// Values in the order of the file. The first row is the top of an image.
 using Grid = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Reads `bytes` as the ending of `file` tells:
+/// Reads `bytes` in the format of the extension of `file`:
 ///
-/// - .csv: a row of numbers a line, with commas between them; a byte order mark and blank lines at the end are no part;
-/// - .npy: an array of two dimensions, of whole numbers of 8 to 64 bits or of single or double precision
-///   (numpy.lib.format, versions 1 to 3);
-/// - .png: grey levels of 8 or 16 bits, as they are, 0 to 255 or 65535.
+/// - .csv: one row of numbers per line, separated by commas; a byte order mark and blank lines at the end are ignored;
+/// - .npy: a two-dimensional array of integers of 8 to 64 bits, or of single or double precision (numpy.lib.format,
+///   versions 1 to 3);
+/// - .png: grey levels of 8 or 16 bits, unscaled, 0 to 255 or 65535.
 ///
-/// Throws Error, its `where` the file: another format, damaged, rows of different lengths, less than 2 x 2 or more than
-/// kMostNodes values, one that is negative or not finite, none above 0.
+/// Throws Error with the file as its place: another format, damaged file, rows of different lengths, fewer than 2 x 2
+/// or more than kMostNodes values, a negative or infinite value, or no value above 0.
 Grid read_grid(const std::string& bytes, const std::string& file);
 
 }  // namespace palpate::shapes

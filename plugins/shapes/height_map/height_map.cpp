@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An object as heights on a grid: what a depth camera, a profilometer or a terrain's table holds. Between the nodes it
-// is flat triangles, two a cell, so that where a line meets it is exact up to rounding.
+// Object of heights on a grid, for example from a depth camera, a profilometer or a terrain model. Each cell has two
+// flat triangles, so intersections with lines are exact up to rounding.
 #include "grid.hpp"
 #include "shapes/mesh/options.hpp"
 
@@ -48,7 +48,8 @@ class HeightMap final : public Shape {
   using Options = HeightMapOptions;
   HeightMap(const Options& options, const Context&) : spacing_(options.spacing) {
     const Grid all = read_grid(read_file(options.file, options.checksum), options.file);
-    // Rows and columns of zeros around the object are the desk's, but for the ones to which it slopes down.
+    // Rows and columns of zeros around the object belong to the desk, except for the nearest ones, to which the object
+    // slopes.
     const auto [first_row, rows] = range_of(all.rowwise().maxCoeff() > 0.0);
     const auto [first_column, columns] = range_of((all.colwise().maxCoeff() > 0.0).transpose());
     heights_ = options.unit * all.block(first_row, first_column, rows, columns).colwise().reverse();
@@ -89,7 +90,8 @@ class HeightMap final : public Shape {
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  /// From one before the first that holds to one behind the last, as far as there are any: the first, and how many.
+  /// Returns a range as first index and length: from one before the first true entry to one after the last, if these
+  /// exist.
   template <class Holds>
   static std::pair<Index, Index> range_of(const Holds& holds) {
     Index first = holds.size();
@@ -107,8 +109,8 @@ class HeightMap final : public Shape {
   double x_of(Index column) const { return spacing_ * static_cast<double>(column) - half_length_; }
   double y_of(Index row) const { return spacing_ * static_cast<double>(row) - half_width_; }
 
-  /// The height over a place within the rectangle: linear in each of the two triangles of a cell, which the diagonal
-  /// from its upper left to its lower right divides.
+  /// Returns the height at a position within the rectangle. It is linear in each of the two triangles of a cell, which
+  /// the diagonal from its upper left to its lower right corner separates.
   double height(double x, double y) const {
     const auto cell = [&](double place, Index count) {
       return std::clamp<Index>(static_cast<Index>(std::floor(place)), 0, count - 2);
@@ -129,7 +131,7 @@ class HeightMap final : public Shape {
     return corner + (1.0 - u) * (left - corner) + (1.0 - v) * (right - corner);
   }
 
-  /// The part of the line over the rectangle and between the desk and the highest node; none where it misses that.
+  /// Returns the part of the line above the rectangle, between the desk and the highest node; nullopt if there is none.
   std::optional<Stretch> clipped(const Line& line) const {
     Stretch out{-kInfinity, kInfinity};
     const std::array<double, 3> low{-half_length_, -half_width_, 0.0};
@@ -149,7 +151,8 @@ class HeightMap final : public Shape {
     return out.begin <= out.end ? std::optional(out) : std::nullopt;
   }
 
-  /// The places within `part` at which the line passes from one triangle to the next, in their order, with both ends.
+  /// Returns the positions within `part` where the line changes from one triangle to the next, in order, with both
+  /// ends.
   std::vector<double> crossings(const Line& line, const Stretch& part) const {
     std::vector<double> out{part.begin, part.end};
     const auto add = [&](double place, double slope) {
@@ -167,13 +170,13 @@ class HeightMap final : public Shape {
     const double along_y = line.direction.y() / spacing_;
     add(x, along_x);
     add(y, along_y);
-    add(x + y, along_x + along_y);  // the diagonals
+    add(x + y, along_x + along_y);  // diagonals
     std::sort(out.begin(), out.end());
     return out;
   }
 
-  /// Calls visit(stretch) for the parts of the line within the solid, in their order, as long as it returns true. How
-  /// far the line is below the surface is linear between two crossings.
+  /// Calls visit(stretch) for each part of the line inside the solid, in order, until it returns false. The depth of
+  /// the line below the surface is linear between two crossings.
   template <class Visit>
   void visit(const Line& line, const Visit& visit) const {
     const std::optional<Stretch> part = clipped(line);
@@ -191,7 +194,7 @@ class HeightMap final : public Shape {
     for (const double at : crossings(line, *part)) {
       const Place now = look(at);
       if (before) {
-        // One triangle is between them, and where that lies on the desk there is no object, whatever rounding says.
+        // Both crossings bound one triangle. If it is on the desk there is no object, despite rounding errors.
         const bool has_object = height_at((before->at + now.at) / 2) > 0.0;
         const bool was_in = before->depth >= 0.0;
         const bool is_in = now.depth >= 0.0;
@@ -215,7 +218,7 @@ class HeightMap final : public Shape {
   }
 
   double spacing_;
-  Grid heights_;  ///< metres; a row from the near side to the far one, along x
+  Grid heights_;  ///< metres; rows along x, from the near side to the far side
   double highest_ = 0.0, half_length_ = 0.0, half_width_ = 0.0;
 };
 

@@ -41,7 +41,7 @@ constexpr const char* kExportAgain = "export it again";
       "reduce their number");
 }
 
-/// What a file names beside itself is not there.
+/// Hides all other files from assimp, such as the materials of an OBJ.
 class NoOtherFiles final : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -50,7 +50,7 @@ class NoOtherFiles final : public Assimp::IOSystem {
   void Close(Assimp::IOStream*) override {}
 };
 
-/// "stl", "obj" or "ply".
+/// Returns "stl", "obj" or "ply", from the extension.
 std::string format_of(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -61,8 +61,8 @@ std::string format_of(const std::string& file) {
               "export it as .stl, .obj or .ply");
 }
 
-/// An STL tells by its length, or by its last word, whether it is complete; assimp reads what is there, and no more
-/// than that. In a binary one bytes may follow, and the words of a text may be in capitals.
+/// Checks that an STL is complete, by its length or its last word, because assimp reads incomplete files without an
+/// error. Removes bytes after a binary STL, and converts text to lower case, as assimp expects.
 void make_stl_plain(std::string& bytes, const std::string& file) {
   constexpr std::size_t kHeader = 84;
   constexpr std::size_t kTriangle = 50;
@@ -84,7 +84,7 @@ void make_stl_plain(std::string& bytes, const std::string& file) {
   }
 }
 
-/// How many lines end in `text`, whichever of CR, LF and CRLF does that.
+/// Returns the number of line ends in `text`, which may be CR, LF or CRLF.
 std::size_t line_ends(std::string_view text) {
   std::size_t out = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -93,8 +93,8 @@ std::size_t line_ends(std::string_view text) {
   return out;
 }
 
-/// A PLY tells in its header how many rows follow; where some are missing, assimp repeats the last, or worse. To assimp
-/// CR, LF and CRLF each end a line.
+/// Checks that a PLY has as many rows as its header states, because assimp repeats the last row or fails otherwise.
+/// Like assimp it accepts CR, LF and CRLF as line ends.
 void check_ply(const std::string& bytes, const std::string& file) {
   const std::string_view last = "end_header";
   std::size_t header = bytes.find(last, 1);
@@ -114,13 +114,13 @@ void check_ply(const std::string& bytes, const std::string& file) {
     words >> word >> name >> count;
     if (word == "format") text = name == "ascii";
     if (word != "element") continue;
-    // Nine digits: more rows than the longest file that is read has bytes need ten.
+    // Nine digits suffice: the largest accepted file has fewer than 10^9 bytes.
     if (count.empty() || count.size() > 9 || count.find_first_not_of("0123456789") != std::string::npos)
       throw Error(file, "its header does not give the number of rows of '" + name + "'", kExportAgain);
     rows += std::stoul(count);
   }
   const std::string_view body = std::string_view(bytes).substr(header + last.size());
-  // The last row may lack its line break, the line end_header has one. A row of bytes has one at least.
+  // The last row may lack its line end, but the header's line has one. A binary row has at least one byte.
   const std::size_t there =
       text ? line_ends(body) - (body.empty() || (body.back() != '\n' && body.back() != '\r') ? 0 : 1) : body.size();
   if (there < rows) throw Error(file, "is cut short: its header announces more rows than there are", kExportAgain);
@@ -128,7 +128,7 @@ void check_ply(const std::string& bytes, const std::string& file) {
 
 Soup triangles_by_assimp(const std::string& bytes, const std::string& file, const std::string& format) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new NoOtherFiles);  // which the importer deletes
+  importer.SetIOHandler(new NoOtherFiles);  // owned by the importer
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, format.c_str());
   if (scene == nullptr) {
     std::string reason = importer.GetErrorString();
@@ -140,7 +140,7 @@ Soup triangles_by_assimp(const std::string& bytes, const std::string& file, cons
     const aiMesh& mesh = *scene->mMeshes[m];
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // a point or a line has no surface
+      if (face.mNumIndices != 3) continue;  // points and lines have no surface
       if (out.size() == 3 * kMostTriangles) refuse_number(file, kMostTriangles + 1);
       for (unsigned i = 0; i < 3; ++i) {
         if (face.mIndices[i] >= mesh.mNumVertices)
@@ -167,9 +167,10 @@ void limit(int resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
-/// Far more than assimp needs for any sound file of so many bytes; what would take more is told by `out_of_memory`.
+/// Limits the memory to far more than assimp needs for any valid file of `bytes` bytes. `out_of_memory` is called when
+/// the limit is reached.
 void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*out_of_memory)()) {
-#ifndef PALPATE_SANITIZED  // for a sanitizer's own memory has terabytes of addresses, of which it takes more at will
+#ifndef PALPATE_SANITIZED  // a sanitizer reserves terabytes of addresses for its own memory
   std::size_t pages = 0;
   std::istringstream(read_bounded("/proc/self/statm", kMostSystemBytes, Origin::user).text) >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 512'000'000 + 64 * bytes);
@@ -179,15 +180,15 @@ void limit_memory([[maybe_unused]] std::size_t bytes, [[maybe_unused]] void (*ou
 
 const ChildProcess::Say* say_in_child = nullptr;
 
-/// In the process of its own: answers 'T' and the triangles, or 'E', reason and hint. Returns the exit status.
+/// Runs in the child process. Writes 'T' and the triangles, or 'E', reason and hint. Returns the exit status.
 int answer(const ChildProcess::Say& say, const std::string& bytes, const std::string& file, const std::string& format) {
   limit(RLIMIT_CORE, 0);
-  // Sound meshes of 13 and 55 MB take 0.3 and 0.5 s; 102 bytes kept assimp busy for as long as they were let.
+  // Valid meshes of 13 and 55 MB take 0.3 and 0.5 s; a broken file of 102 bytes kept assimp busy without end.
   const rlim_t seconds = 1 + bytes.size() / 250'000;
   limit(RLIMIT_CPU, seconds);
-  alarm(static_cast<unsigned>(12 * seconds));  // and where it waits for ever
+  alarm(static_cast<unsigned>(12 * seconds));  // for waits without CPU time
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // a failed assertion of assimp would be a second line
+  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // assertions of assimp would print a second line
   say_in_child = &say;
   limit_memory(bytes.size(), [] {
     (*say_in_child)("Eneeds more memory than any valid file of its size\nexport it again");
@@ -211,13 +212,13 @@ Soup import_triangles(std::string bytes, const std::string& file) {
   if (format == "ply") bytes = plain_ply(std::move(bytes), {"vertex", "face", "tristrips"});
   if (format == "ply") check_ply(bytes, file);
   if (format == "obj") drop_byte_order_mark(bytes);
-  // On some broken files assimp 5.2 crashes, aborts or never ends, which must not befall the experiment.
+  // On some broken files assimp 5.2 crashes, aborts or never ends, so it runs in a child process.
   const std::unique_ptr<ChildProcess> reader =
       ChildProcess::fork([&](const ChildProcess::Say& say) { return answer(say, bytes, file, format); });
   if (!reader)
     throw Error(file, std::string("cannot start a child process to read it: ") + std::strerror(errno), "",
                 Error::Kind::run);
-  reader->wait();  // which it sees to itself that is not for ever
+  reader->wait();  // ends, because the child limits its own time
   const std::string& said = reader->said();
   const int status = reader->status();
   if (status != 0 || said.empty()) {

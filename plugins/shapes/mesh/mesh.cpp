@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Objects from a file of triangles. The file is read when the config is resolved, for its hash, and when the scene is
-// built. Where a line first meets the surface, Embree finds: this is its only user.
+// Objects from a file of triangles. The file is read twice: for its checksum when the config is resolved, and when the
+// scene is built. Embree finds the first intersection with a line; no other file uses it.
 #include "triangles.hpp"
 
 #include <palpate/error.hpp>
@@ -43,7 +43,7 @@ class Mesh final : public Shape {
     device_.reset(rtcNewDevice("threads=1,verbose=0"), rtcReleaseDevice);
     check_embree();
     scene_.reset(rtcNewScene(device_.get()), rtcReleaseScene);
-    // Else a line could slip through between two triangles.
+    // Without this flag a line could pass between two adjacent triangles.
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -62,18 +62,18 @@ class Mesh final : public Shape {
     check_embree();
   }
 
-  /// Which triangle is met is found in single precision around the middle of the mesh, within 1e-6 of its size; where
-  /// on that triangle is computed in double precision.
+  /// The triangle is found in single precision relative to the centre of the mesh, within 1e-6 of its size. The
+  /// position on it is computed in double precision.
   double first_intersection(const Line& line) const override {
     const RTCRayHit ray = cast(line, 0.0F);
     return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : meeting(line, ray.hit.primID).at;
   }
 
-  /// Parts of a mesh may reach into each other: inside is where more surfaces were entered than left. Where the order
-  /// of corners does not tell which is which, each second meeting leads out.
+  /// Parts of a mesh may overlap, so a point is inside where more surfaces were entered than left. If the triangles are
+  /// not oriented consistently, entries and exits alternate.
   std::vector<Stretch> intervals(const Line& line) const override {
     std::call_once(looked_at_, [this] { oriented_ = is_oriented(); });
-    // Triangles that share an edge are met within rounding of each other: one step lies over all of them.
+    // Adjacent triangles are hit within rounding of each other; a step passes over all of them.
     const auto step = static_cast<float>(4e-6 * radius_);
     std::vector<Meeting> met;
     int balance = 0;
@@ -88,7 +88,7 @@ class Mesh final : public Shape {
     int depth = 0;
     for (const Meeting& one : met) {
       const bool was = depth != 0;
-      // Not balanced where a step has passed over one side of a wedge.
+      // The balance is not 0 if a step passed over one side of a wedge.
       depth = oriented_ && balance == 0 ? depth + (one.enters ? 1 : -1) : 1 - depth;
       if (!was) out.push_back({one.at, one.at});
       if (depth == 0) out.back().end = one.at;
@@ -97,7 +97,7 @@ class Mesh final : public Shape {
     return out;
   }
 
-  /// Without looking at all points: the box around a few tells whether one of them can be the best.
+  /// Boxes around groups of points avoid the test of most points.
   double support(const Vector3d& direction) const override {
     const std::vector<Vector3d>& points = mesh_.points;
     double best = direction.dot(points.front());
@@ -114,8 +114,8 @@ class Mesh final : public Shape {
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  /// What a ray meets first that begins where the line enters a ball around the mesh, so that its numbers are small,
-  /// and `from` behind that.
+  /// Returns the first hit of a ray. The ray starts where the line enters a sphere around the mesh, which keeps its
+  /// numbers small, and ignores hits closer than `from`.
   RTCRayHit cast(const Line& line, float from) const {
     const double begin = (centre_ - line.origin).dot(line.direction) - radius_;
     const Eigen::Vector3f origin = (line.origin + begin * line.direction - centre_).cast<float>();
@@ -134,7 +134,7 @@ class Mesh final : public Shape {
     return ray;
   }
 
-  /// Whether each edge is passed as often one way as the other.
+  /// Returns whether each edge occurs equally often in both directions.
   bool is_oriented() const {
     std::vector<std::uint64_t> forth, back;
     for (const auto& triangle : mesh_.corners) {
@@ -152,7 +152,7 @@ class Mesh final : public Shape {
 
   struct Meeting {
     double at;
-    bool enters;  ///< if corners are numbered counter-clockwise, seen from outside
+    bool enters;  ///< for corners in counter-clockwise order, seen from outside
   };
   Meeting meeting(const Line& line, unsigned number) const {
     const auto& triangle = mesh_.corners[number];
@@ -160,7 +160,7 @@ class Mesh final : public Shape {
     const Vector3d b = mesh_.points[triangle[1]] - line.origin;
     const Vector3d c = mesh_.points[triangle[2]] - line.origin;
     const Vector3d normal = (b - a).cross(c - a);
-    // A triangle along the line, a wall, has no single point on it, but the hit lies between its ends.
+    // A triangle parallel to the line has no unique intersection; the result is clamped to its ends.
     const auto [least, most] = std::minmax({a.dot(line.direction), b.dot(line.direction), c.dot(line.direction)});
     const double slope = normal.dot(line.direction);
     return {slope == 0.0 ? least : std::clamp(normal.dot(a) / slope, least, most), slope < 0.0};
@@ -176,9 +176,9 @@ class Mesh final : public Shape {
   static constexpr std::size_t kFew = 64;
 
   Triangles mesh_;
-  std::vector<Box> boxes_;  ///< around each kFew points that follow one another
+  std::vector<Box> boxes_;  ///< around each group of kFew consecutive points
   Vector3d centre_;
-  double radius_;  ///< of a ball around all points
+  double radius_;  ///< radius of a sphere around all points
   mutable std::once_flag looked_at_;
   mutable bool oriented_ = false;
   std::shared_ptr<RTCDeviceTy> device_;

@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 128 bits of XXH3 as 32 hex digits.
+/// Returns 128 bits of XXH3 as 32 hex digits.
 std::string checksum_of(const std::string& bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-/// Where the file lies: a shipped config names its mesh as configs/..., which without a checkout around is beside the
-/// configs that were installed with this library, <prefix>/lib/palpate/shape/mesh.so.
+/// Returns the path of a file. Shipped configs name meshes as configs/... . Without a checkout, these are beside the
+/// installed configs, relative to this library: <prefix>/lib/palpate/shape/mesh.so.
 fs::path place_of(const std::string& file) {
   std::error_code none;
   Dl_info self{};
@@ -37,11 +37,7 @@ fs::path place_of(const std::string& file) {
   return fs::is_regular_file(installed, none) ? installed : fs::path(file);
 }
 
-}  // namespace
-
-namespace {
-
-/// Throws Error, its `where` the file.
+/// Throws Error with the file as its place.
 std::string bytes_of(const std::string& file) {
   Reading reading = read_bounded(place_of(file), kMostMeshBytes, Origin::user);
   if (reading.kind == Reading::Kind::absent) {
@@ -63,7 +59,7 @@ std::string read_file(const std::string& file, const std::string& checksum) {
   std::string bytes;
   try {
     bytes = bytes_of(file);
-  } catch (const Error& trouble) {  // which has the place of the file, but not of who names it
+  } catch (const Error& trouble) {  // whose place is the file; the field is added here
     throw Error("file", trouble.what(), {}, trouble.kind());
   }
   const std::string found = checksum_of(bytes);
@@ -72,7 +68,7 @@ std::string read_file(const std::string& file, const std::string& checksum) {
 }
 
 void list_checksum(const std::string& file, std::string& checksum, Fields& fields) {
-  // So that the id of a run follows the content of the file, and a run is not carried on with another.
+  // The checksum makes the id of a run depend on the content, and prevents a resume with another file.
   std::string trouble;
   try {
     if (!file.empty()) checksum = checksum_of(bytes_of(file));
@@ -80,7 +76,7 @@ void list_checksum(const std::string& file, std::string& checksum, Fields& field
     trouble = error.what();
   }
   fields.text(checksum, Field("checksum", "checksum of the file content; not given: computed from the file"));
-  // A record has the checksum, and is read without the file.
+  // A record has the checksum, so the file is not needed to read it.
   fields.require(trouble.empty() || !checksum.empty(), "file", trouble);
 }
 

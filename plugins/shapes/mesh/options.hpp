@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a config says of an object that comes from a file, and the bytes of that.
+// Options of shapes from a file, and reading of the file.
 #pragma once
 
 #include <palpate/options.hpp>
@@ -20,13 +20,13 @@ struct MeshOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// Lists `checksum`, that of the content of `file`, which the field `file` named: so that the id of a run follows it.
-/// Where a config has none, that of the file as it is; a file that cannot be read is then refused at the field `file`.
-/// Where it has one, the file is needed only when the shape is built: records are read without it.
+/// Lists `checksum` of the content of `file`, so that the id of a run depends on it. `file` must be listed before. If
+/// the config has no checksum, it is computed; an unreadable file is then an error at the field `file`. If the config
+/// has one, the file is needed only when the shape is created, so records are read without it.
 void list_checksum(const std::string& file, std::string& checksum, Fields& fields);
 
-/// Returns the whole file. Throws Error, its `where` "file": missing, not readable, no regular file, empty, or larger
-/// than 500 MB; or "checksum": the content has another than `checksum`.
+/// Returns the content of the file. Throws Error with place "file" if it is missing, unreadable, not a regular file,
+/// empty, or larger than 500 MB. Throws Error with place "checksum" if the content has another checksum.
 std::string read_file(const std::string& file, const std::string& checksum);
 
 }  // namespace palpate::shapes

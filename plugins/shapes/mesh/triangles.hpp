@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the bytes of a file to a surface of triangles that share their corners, checked to be one.
+// Reading and checking of triangle surfaces.
 #pragma once
 
 #include "options.hpp"
@@ -16,25 +16,26 @@ namespace palpate::shapes {
 
 constexpr std::size_t kMostTriangles = 5'000'000;
 
-/// Corners in the units of the file, three a triangle, single precision as assimp reads them.
+/// Three corners per triangle in the units of the file, single precision as read by assimp.
 using Soup = std::vector<std::array<float, 3>>;
 
-/// By assimp, of which import.cpp is the only user. Reads STL, OBJ or PLY, told apart by the ending of `file`; faces of
-/// more than three corners are divided. Reads no other file, such as the materials of an OBJ. Works in a process of its
-/// own, which a broken file may kill. Throws Error, its `where` the file: another format, cut short, not to be
-/// understood, no triangle, too many.
+/// Reads STL, OBJ or PLY, depending on the extension of `file`, by assimp. Faces with more than three corners are
+/// divided. Other files, such as the materials of an OBJ, are not read. A child process does the work, because broken
+/// files may crash assimp. Throws Error with the file as its place: another format, truncated, invalid, without
+/// triangles, or with too many.
 Soup import_triangles(std::string bytes, const std::string& file);
 
-/// In metres, in the frame of Shape: resting on the plane 0, the rectangle around the outline centred.
+/// Triangles in metres, in the frame of Shape: the lowest point is at height 0, the rectangle around the outline is
+/// centred.
 struct Triangles {
   std::vector<Eigen::Vector3d> points;
-  std::vector<std::array<std::uint32_t, 3>> corners;  ///< numbers of points
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< indices of points
 };
 
-/// Reads a surface, joins its equal points and moves it into place. Throws Error, its `where` the file: what
-/// read_file() and import_triangles() throw; a coordinate that is not finite, larger than 2 m, smaller than 1 mm, or so
-/// far from the origin of the file that single precision is coarser than 1e-6 m; triangles without area or there twice
-/// and, unless allowed, holes: edges of one triangle only.
+/// Reads a surface, merges equal points and moves it into place. Throws Error, its place the file, in these cases:
+/// errors of read_file() and import_triangles(); coordinates that are not finite; a size above 2 m or below 1 mm; a
+/// distance from the origin at which single precision is coarser than 1e-6 m; triangles without area or listed twice;
+/// and, unless allowed, holes, that is, edges of only one triangle.
 Triangles read_surface(const MeshOptions& options);
 
 }  // namespace palpate::shapes

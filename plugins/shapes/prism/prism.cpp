@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "prism.hpp"
+#include "shapes/prism/prism.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,21 +29,21 @@ double Prism::top(double s, double t) const {
 }
 
 double Prism::first_intersection(const Line& line) const {
-  // Between the planes of top and bottom.
+  // Interval between the planes of top and bottom.
   Interval between;
   between.clip(line.origin.z(), line.direction.z(), 0.0, height_);
   if (between.empty()) return kInfinity;
   const double enters = between.begin;
   const Point direction{line.direction.x(), line.direction.y()};
-  // Far beyond the outline before a line so near to the vertical has passed the height.
+  // A nearly vertical line leaves the outline only far beyond the height of the prism.
   if (std::abs(direction[0]) + std::abs(direction[1]) < 1e-12) {
     const double s = line.origin.x() + enters * direction[0];
     const double t = line.origin.y() + enters * direction[1];
     if (top(s, t) == height_) return enters;
     return kInfinity;
   }
-  // Seen from above, each crossing leads in or out. In where the line comes between the planes: that is the hit; else
-  // the first wall before it has left them.
+  // Each crossing, as seen from above, enters or leaves the outline. If the line is inside when it enters the slab
+  // between both planes, this is the intersection; otherwise it is the first wall within the slab.
   bool inside = false;
   double wall = kInfinity;
   const auto visit = [&](double x) {

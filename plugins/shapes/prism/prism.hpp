@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Polygons raised to a height: any outline without crossings, with at most one hole.
+// Prisms over polygons: any outline without crossings, with at most one hole.
 #pragma once
 
-#include "solid.hpp"
+#include "shapes/solid.hpp"
 
 #include <array>
 #include <vector>
@@ -10,14 +10,14 @@
 namespace palpate::shapes {
 
 using Point = std::array<double, 2>;
-/// Corners in their order, either way round; the last edge leads back to the first corner.
+/// Corners in order, in either direction. The last edge leads to the first corner.
 using Outline = std::vector<Point>;
 
-/// The corner behind corner `i`.
+/// Returns the corner after corner `i`.
 inline const Point& next(const Outline& outline, std::size_t i) { return outline[i + 1 == outline.size() ? 0 : i + 1]; }
 
-/// Calls visit(x) for every x at which the line `origin + x * direction`, seen from above, crosses the outline. A line
-/// through a corner crosses either of its edges or none: the side of a corner is computed once for both.
+/// Calls visit(x) for each x at which the line `origin + x * direction`, seen from above, crosses the outline. A line
+/// through a corner crosses exactly one of its edges or none, because the side of a corner is computed once for both.
 template <class Visit>
 void visit_crossings(const Outline& outline, const Point& origin, const Point& direction, const Visit& visit) {
   const double squared = direction[0] * direction[0] + direction[1] * direction[1];
@@ -43,7 +43,7 @@ bool contains(const Outline& outline, const Point& point);
 
 class Prism : public Shape {
  public:
-  /// `hole` may be empty. The bounding rectangle of `outline` is moved to the origin.
+  /// `hole` may be empty. The centre of the rectangle around `outline` becomes the origin.
   Prism(Outline outline, Outline hole, double height);
 
   double top(double s, double t) const final;
@@ -56,7 +56,7 @@ class Prism : public Shape {
   double height_;
 };
 
-/// What an L and a T share: two bars of one thickness.
+/// Options of L and T: two bars of equal thickness.
 struct BarsOptions : Options {
   double length = 0.14;
   double width = 0.1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What the stationary kernels share: length scales, and a covariance that is a function of the scaled distance.
+// Common part of the stationary kernels: length scales, and covariance as a function of the scaled distance.
 #pragma once
 
-#include "kernels/pairs.hpp"
+#include "kernels/stationary/pairs.hpp"
 
 #include <palpate/kernel.hpp>
 #include <palpate/math.hpp>
@@ -34,33 +34,32 @@ struct StationaryOptions : Options {
   }
 };
 
-/// Some numbers of a matrix that follow each other, at most kBlock.
+/// Consecutive numbers of a matrix, at most kBlock.
 using Numbers = Eigen::Map<Eigen::ArrayXd>;
 constexpr Eigen::Index kBlock = 256;
-/// As many numbers aside, on the stack.
+/// Temporary numbers on the stack, at most kBlock.
 using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
 
-/// e^x of each, in place.
+/// Replaces each number x by e^x.
 inline void take_exponentials(Numbers numbers) { math::exp(numbers.data(), numbers.size(), numbers.data()); }
 
 /// A kernel of unit variance, k(a, b) = f(z) with z = kScale (((a_x - b_x) / l_x)^2 + ((a_y - b_y) / l_y)^2).
 ///
-/// `Shape` is f and its parameters beyond the length scales, of which there may be none. Below, r^2 is z / kScale:
+/// `Shape` defines f and its parameters other than the length scales. Below, r^2 is z / kScale:
 ///     using Options;                             derived from StationaryOptions
 ///     static constexpr double kScale;
-///     static constexpr double kFarthest;         squares of scaled distances end here, so that none is infinite and no
-///                                                product with a covariance near 0 is no number
+///     static constexpr double kFarthest;         upper limit of squared scaled distances, to avoid infinity and NaN
 ///     explicit Shape(const Options&);
 ///     void values(Numbers z) const;              z -> f, in place; r^2 up to 2 kFarthest
 ///     void slopes(Numbers z, Numbers slope) const;            z -> f, in place; slope = -2 df / d(r^2)
 ///     std::vector<KernelParameter> parameters() const;
 ///     void set_parameters(values);
-///     static constexpr bool kOwn;                one parameter beyond the length scales, or none, and of that
+///     static constexpr bool kOwn;                whether there is one parameter other than length scales; if so:
 ///     void own_slopes(z, k, Numbers slope) const;             dk / d log parameter
 ///     static constexpr bool kSeparable;          f(a + b) = f(a) f(b)
-///     static constexpr bool kSlopes;             f has two derivatives by r everywhere, and of these
-///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; its limit at r = 0, where the slope is
-///                                                finite, too
+///     static constexpr bool kSlopes;             whether f has two derivatives by r everywhere; if so:
+///     void bends(Numbers z) const;               z -> -d^2 f / dr^2, in place; at r = 0 its limit, where slopes() must
+///                                                be finite, too
 template <class Shape>
 class Stationary final : public Kernel {
  public:
@@ -122,7 +121,8 @@ class Stationary final : public Kernel {
   }
 
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
-    const Eigen::Index next = b.rows() * slopes.outerStride();  // from the slopes by a parameter to those by the next
+    const Eigen::Index next =
+        b.rows() * slopes.outerStride();  // from the derivatives by one parameter to those by the next
     const Pairs both = of_both_axes(a, b);
     for_blocks(a.rows(), b.rows(), {&value, &slopes}, [&](Eigen::Index first, Eigen::Index count) {
       Numbers k(place(value, first), count);
@@ -147,8 +147,8 @@ class Stationary final : public Kernel {
  private:
   Eigen::Index axes() const { return per_axis_ ? 2 : 1; }
 
-  /// Calls use(first, count) for all pairs of n places with m others, some at a time. Pairs are counted column by
-  /// column, and those of a call follow each other in all of `outs`, from place(out, first) on.
+  /// Calls use(first, count) for blocks of the pairs of n positions with m others, in column order. The numbers of a
+  /// block are contiguous in all of `outs`, starting at place(out, first).
   template <class Use>
   static void for_blocks(Eigen::Index n, Eigen::Index m, std::initializer_list<const MatrixOut*> outs, const Use& use) {
     const bool gapless =
@@ -162,7 +162,7 @@ class Stationary final : public Kernel {
     return out.data() + pair / out.rows() * out.outerStride() + pair % out.rows();
   }
 
-  /// Of a length scale so small that it has no reciprocal, the largest number.
+  /// Returns the reciprocal of a length scale, or the largest number if the reciprocal overflows.
   static double per_length(double scale) { return std::min(1.0 / scale, std::numeric_limits<double>::max()); }
 
   Pairs of_both_axes(const PointsView& a, const PointsView& b) const {
@@ -187,10 +187,10 @@ class Stationary final : public Kernel {
   bool per_axis_;
 };
 
-/// The part of a shape that has no parameters of its own.
+/// Base of shapes without parameters of their own.
 struct PlainShape {
   using Options = StationaryOptions;
-  /// Exponentials of it, and of its root, are the smallest that there are: as good as 0 also times this.
+  /// Exponentials of this value and of its root underflow to 0, also after multiplication by it.
   static constexpr double kFarthest = 1e8;
   static constexpr bool kSeparable = false;
   static constexpr bool kOwn = false;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/pairs.hpp"
+#include "kernels/stationary/pairs.hpp"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/pairs.cpp"
+#define HWY_TARGET_INCLUDE "kernels/stationary/pairs.cpp"
 #include "math/highway.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -13,8 +13,8 @@ namespace {
 
 namespace hn = math::HWY_NAMESPACE::hn;
 
-/// The pairs of the places from number `from` to `to` with one of the others, as many at a time as `reals` has lanes.
-/// Returns the number of the first place that is left.
+/// Computes pairs of the positions [from, to) with one of the others, in vectors of `reals`. Returns the first position
+/// that is left.
 template <class Reals>
 HWY_INLINE std::ptrdiff_t squared_distances_by_lanes(Reals reals, const Pairs& pairs, std::ptrdiff_t other,
                                                      std::ptrdiff_t from, std::ptrdiff_t to, double most, double scale,
