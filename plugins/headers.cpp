@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-// Nothing: it is there for the headers that are compiled with it, once for all shipped plugins.
+// Empty source file for the precompiled headers of the shipped plugins.

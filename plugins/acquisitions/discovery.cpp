@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From any side, tap where most is expected to come of it, in metres of the mean distance: a piece that nobody has
-// touched yet is found, or the surface that is believed is known better.
+// Acquisition for taps from any side: expected gain in metres of mean surface distance, from the discovery of untouched
+// parts or from smaller uncertainty of the known surface.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -31,7 +31,7 @@ class Discovery final : public Acquisition {
   double prior_scale() const override { return 0.001; }
 
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
-    constexpr double kUsual = 0.3;  // metres
+    constexpr double kUsual = 0.3;  // metres, usual path length
     out = belief.expected_discovery() + belief.std_reduction();
     if (options_.travel_cost_exponent > 0.0)
       out.array() /= (belief.way().array() / kUsual).max(0.1).pow(options_.travel_cost_exponent);

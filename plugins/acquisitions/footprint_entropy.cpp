@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Outline information: the entropy of the footprint, bits. A tap there tells most about whether the place is on an
-// object; where the footprint is a belief over whole outlines, that is the edge of what is not settled.
+// Entropy of the footprint in bits. It is largest where the presence of an object is least certain. With a footprint
+// over whole outlines, this is at uncertain edges.
 #include <palpate/acquisition.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>

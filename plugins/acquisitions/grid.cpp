@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Control: tap the cell centres of a coarse lattice one after the other, row by row, then those of a finer one.
+// Baseline: centres of the cells of a coarse lattice, row by row, then of lattices with twice as many points per side.
 #include <palpate/acquisition.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
@@ -28,7 +28,8 @@ class GridSearch final : public Acquisition {
   GridSearch(const Options& options, const Context&) : count_(options.count) {}
 
   Quantities reads() const override { return {}; }
-  /// 1 at the place that is due, falling to 0 at the area's far corner: the candidate nearest to it wins.
+  /// Returns 1 at the next point, decreasing to 0 at the area's far corner. The nearest candidate has the highest
+  /// score.
   void score(const Belief& belief, VectorOut out) const override {
     const Area area = belief.area();
     const auto [x, y] = due(belief.taps() - belief.initial_taps(), area);
@@ -39,7 +40,7 @@ class GridSearch final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 
  private:
-  /// The place of tap number `n`, counted from 0 after the initial taps.
+  /// Returns the position of tap `n`, counted from 0 after the initial taps.
   Target due(std::int64_t n, const Area& area) const {
     std::int64_t side = count_;
     while (n >= side * side) {

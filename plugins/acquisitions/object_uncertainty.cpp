@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Uncertainty of the height where an object is: the standard deviation, relative to the prior, weighted by the
-// footprint's probability. The paper weighs the variance; beside the entropy of an outline that one fades too soon.
+// Standard deviation of the height relative to the prior, times the probability of an object. The paper uses the
+// variance, which decreases too fast compared with the entropy of an outline.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

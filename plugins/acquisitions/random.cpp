@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Control: tap anywhere. Scores are uniform in (0, 1), so the best of them is a uniform draw from the candidates.
+// Baseline: scores are uniform in (0, 1), so the best candidate is a uniform draw.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -17,7 +17,7 @@ class RandomSearch final : public Acquisition {
   double prior_scale() const override { return 0.0; }
 
  private:
-  /// A stream a tap: the score stays a pure function of the belief, and a resumed run draws the same.
+  /// Draws from one stream per tap. So scores are a pure function of the belief, and a resumed run draws the same ones.
   void draw(int taps, VectorOut out) const {
     Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(taps));
     for (double& one : out) one = random.uniform() + 0x1.0p-54;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A score times a factor: a part's share in a sum.
+// Score of another acquisition times a factor, for example its weight in a sum.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

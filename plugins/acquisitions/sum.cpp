@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sum of scores: what several strategies want at once.
+// Sum of the scores of several acquisitions.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

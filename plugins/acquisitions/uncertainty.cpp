@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tap where the height is least known: score = u, the posterior variance (Yi et al., IROS 2016; the paper's rival).
-// From any side: along the normal of the surface where it is least known (after Caccamo et al., RIL 2016: GPAtlasRRT).
+// Relative posterior variance u of the height (Yi et al., IROS 2016; compared in the paper). For taps from any side:
+// variance of the surface along its normal (after Caccamo et al., RIL 2016: GPAtlasRRT).
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -18,7 +18,7 @@ class Uncertainty final : public Acquisition {
   void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
     constexpr double kAlong = 0.999;
     const double most = belief.deviation().maxCoeff();
-    const double scale = most > 0.0 ? 1.0 / most : 0.0;  // so that scores are of the size that ties are judged by
+    const double scale = most > 0.0 ? 1.0 / most : 0.0;  // scales scores to 1, as the tie tolerance expects
     out = (belief.incidence_cosine().array() > kAlong).select((scale * belief.deviation().array()).square(), 0.0);
   }
   double prior_scale() const override { return 1.0; }

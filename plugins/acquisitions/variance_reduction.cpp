@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A look ahead: how much less uncertain the outline is expected to be after a tap there, in all places together. The
-// entropy of a place says how little is known of it; what that place tells of the others is in the outlines alone.
+// Expected reduction of the footprint's total variance by one tap. The entropy of a position measures only its own
+// uncertainty. The sampled outlines also show how much a tap determines other positions.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -14,12 +14,12 @@
 #define HWY_TARGET_INCLUDE "acquisitions/variance_reduction.cpp"
 #include "math/highway.hpp"
 
-// Compiled for each set of instructions, since most of the work is the counting of bits, for which some have one.
+// Compiled for each instruction set, because most of the time is bit counting, for which some have an instruction.
 HWY_BEFORE_NAMESPACE();
 namespace palpate::acquisitions::HWY_NAMESPACE {
 namespace {
 
-/// How many bits of `here` are set as well in each of some others: `words` words each, one after the other.
+/// Counts the common bits of `here` and each of `count` other rows of `words` words.
 void count_common(const std::uint64_t* here, std::ptrdiff_t words, const std::uint64_t* others, std::ptrdiff_t count,
                   int* out) {
   for (std::ptrdiff_t i = 0; i < count; ++i, others += words) {
@@ -38,18 +38,18 @@ namespace palpate::acquisitions {
 
 namespace {
 
-/// A place a column, an outline a bit: whether the outline holds the place.
+/// One column per position, one bit per outline: whether the outline covers the position.
 using Words = Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic>;
 using Counts = Eigen::Array<int, Eigen::Dynamic, 1>;
 
-/// How many outlines hold each of some places, and `here` as well.
+/// Returns for each position the number of outlines that cover it and are set in `here`.
 Counts common(const std::uint64_t* here, const Words& holds) {
   Counts out(holds.cols());
   PALPATE_DISPATCH(count_common)(here, holds.rows(), holds.data(), holds.cols(), out.data());
   return out;
 }
 
-/// At most so many, evenly among all.
+/// Returns at most `most` elements, evenly spaced.
 std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
   const std::size_t step = (all.size() + most - 1) / most;
   std::vector<int> out;
@@ -59,17 +59,17 @@ std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
 
 }  // namespace
 
-/// With n of S outlines that hold a place c, the square that is expected of the error there, if p is shown, is
-/// n (S - n) / S^2. Of these n_x hold x and n_xc both: a tap at x tells whether x is held, and then the square is less
-/// by
-///     (n_xc - n_x n_c / S)^2 / (n_x (S - n_x))     (what a covariance takes off a variance),
-/// whichever it is. Summed up over all places it is an extent, as is what a tap is expected to find that nobody has
-/// touched; the score is the sum of both over the largest such sum: 1 where most is learnt.
+/// Let S outlines be sampled, of which n cover a position c. The expected squared error there is n (S - n) / S^2 if p
+/// is used. Let n_x of them cover a position x, and n_xc both. A tap at x shows whether x is covered. On average it
+/// reduces the squared error at c by
+///     (n_xc - n_x n_c / S)^2 / (n_x (S - n_x))     (the reduction of a variance by a covariance).
+/// The sum over all positions is an area, like the expected area of new objects. The score is the sum of both, divided
+/// by the largest such sum, so that its maximum is 1.
 ///
-/// On a larger desk, where more things may be, to find them comes first: otherwise the last of them are found late, or
-/// never, while each known outline is settled to the millimetre. There something new is worth more by as much as the
-/// sides of the desk are longer, and where most is to be found the score goes up to that, so that it is heard beside
-/// others that know of outlines alone. What that brings and costs: framework/docs/clutter.md.
+/// On larger desks more objects are possible, and the weight of new objects grows with the side length. Otherwise the
+/// last objects would be found late or never, while known outlines are refined to the millimetre. The largest score
+/// grows by the same factor, so that it keeps its weight in sums with other acquisitions. Benefits and costs:
+/// framework/docs/clutter.md.
 struct ForesightOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {
@@ -91,7 +91,7 @@ class VarianceReduction final : public Acquisition {
   void score(const Belief& belief, VectorOut out) const override {
     const OutlineSample& sample = belief.outlines();
     if (sample.count == 0) {
-      // Nothing is known of how places go together: each tells of itself.
+      // Without sampled outlines a tap is informative about its own position only.
       out = belief.probability().array() * (1.0 - belief.probability().array());
       return divide_by(out.maxCoeff(), out);
     }
@@ -105,21 +105,21 @@ class VarianceReduction final : public Acquisition {
   double prior_scale() const override { return 1.0; }
 
  private:
-  static constexpr double kUsualSide = 0.23;  // metres, of the desk that `new_object_weight` is for
+  static constexpr double kUsualSide = 0.23;  // metres, side of the area for which `new_object_weight` is stated
 
   static void divide_by(double most, VectorOut out) {
     if (most > 0.0) out /= most;
   }
 
-  /// Adds what is settled of what is known, and returns the most of it.
+  /// Adds the reductions for known outlines to `out` and returns the largest one.
   static double look_ahead(const OutlineSample& sample, double extent_of_place, VectorOut out) {
     const std::vector<std::uint64_t> all(static_cast<std::size_t>(sample.holds.rows()), ~std::uint64_t{0});
     const Counts held = common(all.data(), sample.holds);
-    std::vector<int> open;  // places that are not settled
+    std::vector<int> open;  // positions with uncertain coverage
     for (int i = 0; i < held.size(); ++i) {
       if (held(i) > 0 && held(i) < sample.count) open.push_back(i);
     }
-    // On a fine grid a part of the places tells as well as all, and one in some is tapped as well as all.
+    // On a fine grid, a part of the positions and of the taps is sufficient.
     constexpr std::size_t kPlaces = 128;
     constexpr std::size_t kTaps = 512;
     const std::vector<int> places = some_of(open, kPlaces);

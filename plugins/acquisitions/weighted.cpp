@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's exploration function: e(x) = u(x) w(x) (Sun and Min 2021, section III), with w as it comes from the
-// label GP. Its prior mean and its clipping are options of that process: `label: {prior_mean, clip}`.
+// The paper's exploration function e(x) = u(x) w(x) (Sun and Min 2021, section III), with w from the label GP. Prior
+// mean and clipping of w are options of that GP: `label: {prior_mean, clip}`.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -15,7 +15,7 @@ class Weighted final : public Acquisition {
   void score(const Belief& belief, VectorOut out) const override {
     out = belief.uncertainty().cwiseProduct(belief.weight());
   }
-  /// u is 1 before any tap and w is a probability in the model's mind.
+  /// Before any tap u is 1, and w is a probability.
   double prior_scale() const override { return 1.0; }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// No arm: whoever runs the experiment makes the taps and tells what came of them, as Experiment of the Python module
-// does. Of the scene only the area and the desk count, and the objects where they are said to be true. CallersRun reads
+// Backend without an arm: the caller's program makes the taps and reports the results, for example through Experiment
+// of the Python module. Area and desk of the scene apply; its objects only if `scene_is_truth` is set. CallersRun reads
 // the options.
 #include <palpate/backend.hpp>
 #include <palpate/error.hpp>
@@ -10,7 +10,7 @@
 
 namespace palpate::backends {
 
-/// The defaults are those of the tapping motion.
+/// Defaults equal those of the tapping motion.
 struct CallerOptions : Options {
   double hover = 0.135;
   double overrun = 0.03;
@@ -44,11 +44,11 @@ class Caller final : public Backend {
   using Options = CallerOptions;
   Caller(const Options& options, const Context&) : scene_is_truth_(options.scene_is_truth) {}
 
-  /// Nobody asks: see CallersRun.
+  /// Never called in a run by a caller, see CallersRun.
   Contact tap(const TapRequest&) override {
     throw Error("", "makes no taps: the caller's program does", "use ask() and tell() in Python", Error::Kind::run);
   }
-  /// What is at the caller's end, only he knows.
+  /// The scene of the caller is unknown, so taps count as not repeatable.
   bool repeatable() const override { return false; }
   bool scene_is_truth() const override { return scene_is_truth_; }
 

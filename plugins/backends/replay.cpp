@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Answers from a record instead of a robot: a former run, or any table of contacts that has the same columns. A dense
-// scan of a real object, recorded once, becomes a bench for strategies.
+// Backend that returns recorded taps: those of a former run, or of any table with the same columns. A dense scan of a
+// real object can serve as a benchmark of strategies.
 #include "answers/answer.hpp"
 #include "reading/reading.hpp"
 
@@ -51,14 +51,14 @@ struct Recorded {
 };
 
 Outcome outcome_of(const std::string& name, const std::string& where) {
-  // In the order of Outcome.
+  // kNames is in the order of Outcome.
   constexpr const char* kNames[] = {"contact", "no_contact", "unreachable", "timeout", "aborted", "unknown"};
   const auto* const found = std::find(std::begin(kNames), std::end(kNames), name);
   if (found == std::end(kNames)) throw Error(where, "unknown outcome '" + name + "'");
   return static_cast<Outcome>(found - std::begin(kNames));
 }
 
-/// Text as palpate wrote it: before what a spreadsheet would compute stands an apostrophe.
+/// Removes the apostrophe that palpate writes before text that a spreadsheet would evaluate.
 std::string unguarded(const std::string& cell) {
   const std::size_t begin = cell.find_first_not_of("' \t\r\n");
   const bool guarded =
@@ -66,7 +66,7 @@ std::string unguarded(const std::string& cell) {
   return guarded ? cell.substr(1) : cell;
 }
 
-/// The rows of a CSV file by column name; only what a contact needs.
+/// Rows of a CSV file by column name, with the columns of a contact.
 class Table {
  public:
   explicit Table(const std::string& file) : file_(file) {
@@ -99,21 +99,21 @@ class Table {
     return found == columns_.end() ? std::string() : unguarded(cells_[found->second]);
   }
 
-  /// The number in a cell; `absent` where the column or the cell is empty.
+  /// Returns the number in a cell, or `absent` if the column does not exist or the cell is empty.
   double number(const std::string& column, double absent) const {
     const std::string cell = text(column);
     if (cell.empty()) return absent;
     const char* const end = cell.data() + cell.size();
     double value = 0.0;
     const char* begin = std::find_if(cell.data(), end, [](char c) { return c == '\0' || !std::strchr(" \t\r\n", c); });
-    if (end - begin > 1 && begin[0] == '+' && begin[1] != '-') ++begin;  // from_chars() takes no plus
-    const auto read = std::from_chars(begin, end, value);  // with a point, whatever the locale of the caller
+    if (end - begin > 1 && begin[0] == '+' && begin[1] != '-') ++begin;  // from_chars() accepts no plus sign
+    const auto read = std::from_chars(begin, end, value);                // independent of the locale
     if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
       throw Error(where(), column + ": '" + cell + "' is not a number", "write it without a unit, such as 0.012");
     return value;
   }
 
-  /// The same, where it counts something.
+  /// Returns a number of at least 0 without decimals.
   int count(const std::string& column) const {
     const double value = number(column, 0.0);
     if (value < 0.0 || value > std::numeric_limits<int>::max() || value != std::floor(value))
@@ -122,7 +122,8 @@ class Table {
   }
 
  private:
-  /// False at the end of the file. A cell in quotes may hold commas, line ends and, doubled, quotes.
+  /// Reads one row; returns false at the end of the file. A quoted cell may contain commas, line ends and doubled
+  /// quotes.
   bool read_row() {
     if (in_.peek() == std::istringstream::traits_type::eof()) return false;
     line_ = next_line_;
@@ -150,8 +151,8 @@ class Table {
   std::istringstream in_;
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string> cells_;
-  int line_ = 1;       ///< where the row begins
-  int next_line_ = 1;  ///< where the next one does
+  int line_ = 1;       ///< first line of the row
+  int next_line_ = 1;  ///< first line of the next row
 };
 
 std::vector<Recorded> read_record(const std::string& path) {
@@ -186,7 +187,7 @@ class Replay final : public Backend {
 
   Replay(const Options& options, const Context&) : options_(options), taps_(read_record(options.record)) {}
 
-  /// The tap of the same number if it was at this place, else the nearest one within the tolerance.
+  /// Returns the tap with the same number if it is within the tolerance, else the nearest tap within the tolerance.
   Contact tap(const TapRequest& request) override {
     const Recorded* best = nullptr;
     double least = options_.tolerance;

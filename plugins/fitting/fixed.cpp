@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's fitting: none. The hyperparameters of the config stay.
+// The paper's fitting: the hyperparameters of the config stay.
 #include <palpate/fitting.hpp>
 #include <palpate/plugin.hpp>
 

@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Keeps SIGPIPE from this thread, and from the program, while it writes to a pipe that may have no reader.
+/// Blocks SIGPIPE for this thread while it writes to a pipe whose reader may have ended.
 class NoSigpipe {
  public:
   NoSigpipe() {
@@ -48,23 +48,23 @@ class NoSigpipe {
   sigset_t before_{};
 };
 
-/// Waits for `events` of a descriptor, but not past a glance; whether there are any.
+/// Waits for `events` of a descriptor until `until`, but at most for kGlance. Returns whether an event occurred.
 bool glance(const Descriptor& descriptor, short events, Clock::time_point until) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
-                    std::chrono::milliseconds(1);  // rounded up, else the last one would be a busy loop
+                    std::chrono::milliseconds(1);  // rounded up to avoid a busy loop at the end
   const auto wait = std::clamp(left, std::chrono::milliseconds(0), kGlance);
   pollfd one{descriptor.number(), events, 0};
   return ::poll(&one, 1, until <= Clock::now() ? 0 : static_cast<int>(wait.count())) > 0;
 }
 
-/// All of this machine that have not ended, as they are now, and who is the parent of each.
+/// Returns process id and parent id of all running processes of this machine.
 std::vector<std::pair<pid_t, pid_t>> processes() {
   std::vector<std::pair<pid_t, pid_t>> out;
   for (const std::filesystem::path& folder : list_folder("/proc")) {
     const std::string name = folder.filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const std::string line = read_bounded(folder / "stat", kMostSystemBytes, Origin::user).text;
-    // PID (NAME) STATE PARENT ..., where the name may hold anything.
+    // Format: PID (NAME) STATE PARENT ...; NAME may contain any character.
     const std::size_t behind = line.rfind(')');
     if (behind == std::string::npos || behind + 4 > line.size()) continue;
     if (line[behind + 2] == 'Z' || line[behind + 2] == 'X') continue;
@@ -83,10 +83,10 @@ bool carries(pid_t pid, const std::string& mark) {
 
 Child::Child(Program program, const std::string& diary, const Descriptor& kept) : diary_(diary) {
   static std::atomic<int> count{0};
-  // Each plugin with programs has a count of its own, and its address is none of another's.
+  // Each plugin has its own copy of this counter, whose address is unique in the process.
   const auto whose = reinterpret_cast<std::uintptr_t>(&count);
   mark_ = "PALPATE_PROGRAM=" + std::to_string(::getpid()) + "." + std::to_string(whose) + "." + std::to_string(++count);
-  // From now on the processes that a program leaves behind become this one's children.
+  // Orphaned descendants of the program become children of this process from now on.
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::optional<Pipe> in = open_pipe();
   std::optional<Pipe> out = open_pipe();
@@ -108,7 +108,7 @@ Child::~Child() {
     ::kill(-pid_, SIGTERM);
     wait_for_end();
   }
-  // Before it is reaped, so that the number of the group is still its own: what it started must not outlive it either.
+  // The group is killed before the program is reaped, as long as its process id cannot be reused.
   end_kin();
   diary_.trim();
 }
@@ -124,7 +124,7 @@ Child::Heard Child::send(const std::string& text, const Patience& patience) {
     if (errno != EAGAIN && errno != EINTR) return Heard::ended;
     if (patience.broken_off()) return Heard::interrupted;
     if (Clock::now() >= patience.until) return Heard::late;
-    // A program may answer while it reads: its pipe must not be full when it wants to go on.
+    // The program may write while it reads, so its output is read here to keep its pipe from filling up.
     pollfd ends[]{{input_.number(), POLLOUT, 0}, {output_.number(), POLLIN, 0}};
     ::poll(ends, heard_.size() < kMostHeard ? 2 : 1, static_cast<int>(kGlance.count()));
     if ((ends[1].revents & POLLIN) != 0) read_some();
@@ -141,11 +141,11 @@ ssize_t Child::read_some() {
 
 std::optional<Child::Heard> Child::hear_more(const Patience& patience) {
   if (patience.broken_off()) return Heard::interrupted;
-  // Asked before the look at the pipe: what it said before it ended is then already in there.
+  // Checked before the pipe is read. After an end of the program all its output is then already in the pipe.
   const bool over = gone();
   if (glance(output_, POLLIN, over ? Clock::now() : patience.until)) {
     if (read_some() == 0) return Heard::ended;
-  } else if (over) {  // and what it started holds the pipe open
+  } else if (over) {  // a descendant keeps the pipe open
     return Heard::ended;
   } else if (Clock::now() >= patience.until) {
     return Heard::late;
@@ -195,7 +195,8 @@ std::string Child::fate() {
   return words.empty() ? how : how + ", its last output: " + shown(words);
 }
 
-/// Whether it ended; it is not reaped yet. An error means that somebody else has: SIGCHLD is ignored.
+/// Returns whether the program has ended; it is not reaped yet. An error means that another part of the process reaped
+/// it, because SIGCHLD is ignored.
 bool Child::gone() const {
   siginfo_t info{};
   return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT | WNOHANG) != 0 || info.si_pid != 0;
@@ -211,8 +212,8 @@ bool Child::wait_for_end() {
   return true;
 }
 
-/// What there is of it now. To be called before the program is asked to end: whoever it leaves behind without the mark
-/// is known by then.
+/// Adds the present descendants of the program to kin_. Called before the program is asked to end, so that descendants
+/// without the mark are known when their parents end.
 void Child::find_kin() {
   const auto all = processes();
   kin_.insert(pid_);
@@ -226,12 +227,12 @@ void Child::find_kin() {
   }
 }
 
-/// Ends, with SIGKILL, the program, which has not been reaped yet, its group, and all of its kin, and reaps what of
-/// that is a child of this process.
+/// Kills the program, its group and all descendants with SIGKILL, and reaps those that are children of this process.
+/// The program must not have been reaped.
 void Child::end_kin() {
-  // Again and again, until none is left: who is ended may just have started another, and whose parent is ended becomes
-  // a child of this process. By then any other of a number that was found is a stranger. A process may take a while to
-  // end, in a driver that does not let go even for ever.
+  // The loop repeats until no descendant is left. A killed process may just have started another one, and orphans
+  // become children of this process. A recorded process id counts only with such a parent, because ids are reused. A
+  // process in a blocked driver may never end, so the number of passes is limited.
   constexpr int kLooks = 2000;
   for (int i = 0; i < kLooks; ++i) {
     find_kin();

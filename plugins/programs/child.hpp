@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A program under way, spoken to in lines or in bytes. It knows nothing of taps.
+// A running program that is controlled by lines or bytes over pipes. Independent of taps.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -16,43 +16,44 @@
 
 namespace palpate::programs {
 
-/// A child process with pipes to its stdin and from its stdout, in a process group of its own, so that Ctrl-C in a
-/// terminal reaches only the program that decides what follows from it. It inherits the environment and the working
-/// directory, and of open files the three standard ones and at most one more.
+/// Child process with pipes to its stdin and from its stdout. It is in its own process group, so that Ctrl-C in a
+/// terminal reaches only palpate. It inherits the environment, the working directory, the three standard files and at
+/// most one more.
 ///
-/// It is spawned as every program is, and for the rest no ChildProcess: it is spoken to while it runs, its lines must
-/// not fill the memory, its stderr outlives this process, and it is asked to end before it is killed. Above all it is
-/// not reaped before all that it started is dead: until then its number is that of their group, and nobody else's.
+/// The class differs from ChildProcess in several ways: communication during the run, limited line length, a stderr
+/// file that outlives this process, and a request to end before a kill. The program is reaped only after all its
+/// descendants have ended. Until then its process id, which is that of the group, cannot be reused.
 class Child {
  public:
-  /// A longer line is refused: a program that never ends its line must not fill the memory.
+  /// Longest accepted line in bytes, so that a missing line end cannot fill the memory.
   static constexpr std::size_t kLongestLine = 65536;
-  /// So much is taken of its stdout while it is written to; what it says beyond that waits.
+  /// Largest amount of output in bytes that is buffered during a send; more stays in the pipe.
   static constexpr std::size_t kMostHeard = std::size_t{64} << 20;
-  /// How long a program may take for each step of its end: by itself, and after SIGTERM.
+  /// Time limit of each step of the end: after closing stdin, and after SIGTERM.
   static constexpr std::chrono::milliseconds kGrace{1000};
 
   enum class Heard { line, ended, late, interrupted, too_long };
 
-  /// Starts `program`. Its stderr is appended to `diary`, or dropped if that is empty. It inherits `kept` (may be none)
-  /// as the file after the standard ones. Throws Error when it cannot be started.
+  /// Starts `program`. Its stderr is appended to the file `diary`, or dropped if the name is empty. The program
+  /// inherits the descriptor `kept`, if any. Throws Error if the start fails.
   Child(Program program, const std::string& diary, const Descriptor& kept);
-  /// Closes its stdin, which asks it to end, and waits for kGrace; then SIGTERM to its group; then SIGKILL to all that
-  /// it started, wherever that has gone. Afterwards nothing of it is left.
+  /// Closes stdin, which asks the program to end, and waits for kGrace; then sends SIGTERM to the group, and finally
+  /// SIGKILL to all descendants. No process of the program remains.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Writes `text`, and keeps what it says meanwhile; Heard::line when all of it is in the pipe, Heard::ended when
-  /// nobody reads.
+  /// Writes `text` and buffers output that arrives meanwhile. Returns Heard::line after all is written, Heard::ended if
+  /// the program does not read any more.
   Heard send(const std::string& text, const Patience& patience);
-  /// Takes the next line of its stdout, without the line end. With `ended`, `too_long` and `late`, what there is of it.
+  /// Takes the next line of stdout, without its line end. After `ended`, `too_long` and `late`, `line` is the
+  /// incomplete rest.
   Heard hear(std::string& line, const Patience& patience);
-  /// Takes the next `count` bytes of its stdout; Heard::line when they are there. With `ended` and `late`, what there
-  /// is of them, which stays to be taken.
+  /// Takes the next `count` bytes of stdout and returns Heard::line. After `ended` and `late`, `bytes` is the
+  /// incomplete rest, which also stays in the buffer.
   Heard hear(std::string& bytes, std::size_t count, const Patience& patience);
-  /// How it ended, for people: "ended with exit status 3, its last words: ...". Waits up to kGrace for that; "closed
-  /// its stdin or stdout" if it is still there.
+  /// Returns a text about the end: "ended with exit status 3, its last output: ...". Waits up to kGrace for the end.
+  /// Returns "closed its stdin or stdout" if the program still runs.
   std::string fate();
 
   pid_t pid() const { return pid_; }
@@ -60,22 +61,21 @@ class Child {
  private:
   bool gone() const;
   bool wait_for_end();
-  /// Reads what is in the pipe from its stdout, as read() returns it.
+  /// Reads available output into the buffer; returns the result of read().
   ssize_t read_some();
-  /// Waits for more of its stdout; none when there is, or when a glance brought nothing.
+  /// Waits for more output. Returns nullopt if there was some, or after kGlance without any.
   std::optional<Heard> hear_more(const Patience& patience);
 
-  // All that the program started, and what those started, however far away they have gone: into a group or a session of
-  // their own, or left behind by whoever started them.
+  // Descendants of the program: all processes that it or they started, even in other groups or sessions, or orphaned.
   void find_kin();
   void end_kin();
 
   Diary diary_;
-  std::string mark_;     ///< NAME=VALUE of its environment, which those that it starts inherit
-  std::set<pid_t> kin_;  ///< those that were found, itself too
-  Descriptor input_;     ///< we write
-  Descriptor output_;    ///< we read
-  std::string heard_;    ///< and not yet taken
+  std::string mark_;     ///< NAME=VALUE in the environment, inherited by all descendants
+  std::set<pid_t> kin_;  ///< known descendants and the program itself
+  Descriptor input_;     ///< write end of stdin
+  Descriptor output_;    ///< read end of stdout
+  std::string heard_;    ///< output that is not taken yet
   pid_t pid_ = -1;
 };
 

@@ -45,7 +45,7 @@ void keep_copy(const std::string& file, const std::string& text) {
   if (!write_all(open_recorded(file, O_WRONLY | O_TRUNC), text)) fail(file, "cannot be written");
 }
 
-// An empty name stands for a file that stays empty: there is nothing to cut out, and there are no words.
+// An empty name stands for an empty file, without anything to cut.
 Diary::Diary(const std::string& file) : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)) {
   begin_ = size();
   const std::string note = read(kFirst, kFirst + kNoteLength);
@@ -59,10 +59,10 @@ void Diary::trim() {
   if (end <= noted + 2 * kLast) return;
   const std::string last = read(end - kLast, end);
   left_out_ += end - kLast - noted;
-  // What the program writes now is lost between the two, or comes to stand before the note: no more than that.
+  // Output during this call is lost or appears before the note.
   left_out_ += std::max<off_t>(0, size() - end);
   if (::ftruncate(file_.number(), kFirst) != 0) return;
-  write_all(file_, note_of(left_out_) + last);  // a full disk costs words of a program, no tap
+  write_all(file_, note_of(left_out_) + last);  // on a full disk only output of the program is lost
   begin_ = std::min(begin_, kFirst);
 }
 
@@ -85,7 +85,7 @@ std::string Diary::read(off_t begin, off_t end) const {
 
 Descriptor locked(const std::string& file, const Patience& patience) {
   Descriptor lock = open_recorded(file, O_RDWR);
-  // Asked again and again: a wait in the kernel could not be broken off.
+  // The lock is polled, because a blocking wait cannot be interrupted.
   while (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) fail(file, "cannot be locked");
     if (patience.broken_off() || std::chrono::steady_clock::now() >= patience.until) return {};
@@ -95,7 +95,7 @@ Descriptor locked(const std::string& file, const Patience& patience) {
 }
 
 void note_holder(const Descriptor& lock, pid_t holder) {
-  // A note that cannot be written costs the next one a number in a message, no more.
+  // A failure only makes the process id in a later message unknown.
   if (::ftruncate(lock.number(), 0) == 0) write_all(lock, std::to_string(holder) + '\n');
 }
 

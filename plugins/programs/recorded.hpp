@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Files that this plugin keeps beside the program's own record: what the program said on its stderr, and the lock by
-// which only one of them at a time moves what a run moves. Nothing is written through a link: a record from somebody
-// else may hold one, to a file of this user.
+// Files that a plugin keeps in the record of a run: stderr of a program, and the lock that lets only one program at a
+// time move an arm. Symbolic links are not followed, because a record from another person may contain a link to a file
+// of this user.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -14,13 +14,13 @@
 
 namespace palpate::programs {
 
-/// Throws Error (kind `run`): what cannot be done, in words, and why, as errno has it.
+/// Throws Error (kind `run`) with `what` and the text of errno.
 [[noreturn]] void fail(const std::string& where, const std::string& what);
 
-/// How often a wait looks whether the user wants to stop.
+/// Interval in which waits check for an interruption.
 constexpr std::chrono::milliseconds kGlance{20};
 
-/// Until when to wait, and what breaks the wait off.
+/// End of a wait, and its interruption by the user.
 struct Patience {
   std::chrono::steady_clock::time_point until;
   const std::atomic<bool>* interrupted = nullptr;  ///< may be null
@@ -28,23 +28,23 @@ struct Patience {
   bool broken_off() const { return interrupted != nullptr && interrupted->load(); }
 };
 
-/// What a program says on its stderr, its beginning and its end, however much it says: a file that it appends to by
-/// itself, so that nothing is lost and nothing waits when this process is gone. Where it grows beyond what is kept, the
-/// middle is cut out, and a line there says how much that was.
+/// The stderr of a program, limited to its beginning and its end. The program appends to the file by itself, so nothing
+/// is lost if this process ends. Beyond the limits the middle is removed, and a line with the number of removed bytes
+/// replaces it.
 class Diary {
  public:
-  static constexpr off_t kFirst = off_t{256} * 1024;  ///< bytes that are kept of the beginning
-  static constexpr off_t kLast = off_t{256} * 1024;   ///< and of the end, at least
+  static constexpr off_t kFirst = off_t{256} * 1024;  ///< bytes kept of the beginning
+  static constexpr off_t kLast = off_t{256} * 1024;   ///< least number of bytes kept of the end
 
-  /// Opens or makes `file`, which may hold what an earlier program said; an empty name keeps nothing. Throws Error.
+  /// Opens or creates `file`, which may contain output of earlier programs. An empty name keeps nothing. Throws Error.
   explicit Diary(const std::string& file);
 
   const Descriptor& descriptor() const { return file_; }
 
-  /// Cuts the middle out if need be. To be called every now and then: in between it grows as it is written.
+  /// Removes the middle if necessary. Must be called regularly; the file grows between calls.
   void trim();
 
-  /// The last line with text since this was made.
+  /// Returns the last line with text since construction.
   std::string last_words() const;
 
  private:
@@ -52,21 +52,21 @@ class Diary {
   std::string read(off_t begin, off_t end) const;
 
   Descriptor file_;
-  off_t begin_ = 0;         ///< what others wrote into it before
-  long long left_out_ = 0;  ///< bytes
+  off_t begin_ = 0;         ///< size of the file at construction
+  long long left_out_ = 0;  ///< bytes removed so far
 };
 
-/// Writes `text` into `file`, over what was there. Throws Error.
+/// Replaces the content of `file` by `text`. Throws Error.
 void keep_copy(const std::string& file, const std::string& text);
 
-/// Makes `file` if need be and locks it, once no program holds it any more; none if one still does when the patience is
-/// over. The program that inherits it holds it until that and all that it started and that kept its files are gone,
-/// whatever becomes of this process. Throws Error if `file` cannot be made or locked.
+/// Creates and locks `file`. Returns an empty descriptor if another program holds the lock until the end of `patience`.
+/// A program that inherits the descriptor keeps the lock until it and all descendants with the descriptor have ended,
+/// even if this process ends. Throws Error if `file` cannot be created or locked.
 Descriptor locked(const std::string& file, const Patience& patience);
 
-/// Notes who holds the lock from now on, for the next one that finds it held.
+/// Writes the process id of the lock's holder, for messages of later attempts.
 void note_holder(const Descriptor& lock, pid_t holder);
-/// The process that was noted last in `file`, "?" if none is.
+/// Returns the process id in `file`, or "?".
 std::string noted_holder(const std::string& file);
 
 }  // namespace palpate::programs

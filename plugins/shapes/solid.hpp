@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the shapes share: options, and the part of a line that lies in a convex set. A solid bounded by half-spaces
-// and a quadric meets a line in the intersection of their intervals, so that the first hit is exact up to rounding.
+// Common part of shapes: options, and intersection of a line with a convex set. A solid bounded by half-spaces and a
+// quadric intersects a line in the intersection of their intervals, exact up to rounding.
 #pragma once
 
 #include <palpate/math.hpp>
@@ -15,13 +15,13 @@ namespace palpate::shapes {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The part of a line that lies in a convex set; empty when begin > end.
+/// Interval of a line within a convex set; empty if begin > end.
 struct Interval {
   double begin = -kInfinity;
   double end = kInfinity;
 
   bool empty() const { return begin > end; }
-  /// Its begin; infinity when empty.
+  /// Returns the begin, or infinity if the interval is empty.
   double first() const {
     if (empty()) return kInfinity;
     return begin;
@@ -39,19 +39,19 @@ struct Interval {
     }
   }
 
-  /// Keeps what lies between two parallel planes: low <= origin + slope * x <= high.
+  /// Keeps the part between two parallel planes: low <= origin + slope * x <= high.
   void clip(double origin, double slope, double low, double high) {
     clip(slope, high - origin);
     clip(-slope, origin - low);
   }
 };
 
-/// The option of all that has one height.
+/// Lists the option `height` of shapes with one height.
 inline void list_height(double& height, Fields& fields) {
   fields.real(height, Field("height", "height of the top above the desk, without tilt").in(Unit::metre).above(0));
 }
 
-/// The options of what is round, seen from above.
+/// Options of shapes with a round outline.
 struct RoundOptions : Options {
   double diameter, height;
   RoundOptions(double across, double up) : diameter(across), height(up) {}
@@ -62,7 +62,7 @@ struct RoundOptions : Options {
   }
 };
 
-/// The options of what has three extents.
+/// Options of shapes with length, width and height.
 struct ExtentOptions : Options {
   double length, width, height;
   ExtentOptions(double along, double across, double up) : length(along), width(across), height(up) {}
@@ -76,17 +76,17 @@ struct ExtentOptions : Options {
 
 using Eigen::Vector3d;
 
-/// The points with sum of weights * (p - centre)^2 <= level: a ball, a cylinder, an ellipsoid or, with a negative
-/// weight along z, a double cone.
+/// Points with (sum of weights * (p - centre)^2) <= level: a sphere, a cylinder, an ellipsoid, or a double cone if the
+/// weight along z is negative.
 struct Quadric {
   Vector3d weights;
   Vector3d centre;
   double level;
 
-  /// Where the line is within, of a double cone within the lower half.
+  /// Clips an interval to the inside of the quadric; for a double cone, to the inside of its lower half.
   void clip(const Line& line, Interval& interval) const {
     const Vector3d& u = line.direction;
-    // From the point of the line that is nearest to the centre, so that nothing cancels for a line from afar.
+    // Computed relative to the line's point nearest to the centre, which avoids cancellation for distant lines.
     const double shift = (centre - line.origin).dot(u);
     const Vector3d from = line.origin + shift * u - centre;
     const Vector3d weighted = weights.cwiseProduct(u);
@@ -101,7 +101,7 @@ struct Quadric {
     const double one = c / q;
     const double other = a == 0.0 ? std::copysign(kInfinity, q) : q / a;
     if (a < 0.0) {
-      // A steep line is within both halves of a double cone, above the upper root and below the lower.
+      // A steep line is inside both halves of a double cone, above the upper root and below the lower one.
       if (u.z() < 0.0) {
         interval.begin = std::max(interval.begin, std::max(one, other) + shift);
       } else {
@@ -114,8 +114,8 @@ struct Quadric {
   }
 
  private:
-  /// b and the discriminant are 0: a line that runs within or without for ever, one that touches, or a steep one
-  /// through the apex of a double cone, below which it is within.
+  /// Clips if b and the discriminant are 0. The line is entirely inside or outside, touches the quadric, or is steep
+  /// through the apex of a double cone and inside below it.
   static void clip_double_root(double a, double c, bool down, double shift, Interval& interval) {
     if (a == 0.0 && c > 0.0) interval.clear();
     if (a == 0.0) return;
@@ -124,12 +124,12 @@ struct Quadric {
   }
 };
 
-/// The largest product of a direction with a point of the disk of this radius around the axis, in the plane 0.
+/// Returns the largest scalar product of a direction and a point of the disk in the plane 0 around the axis.
 inline double disk_support(const Vector3d& direction, double radius) {
   return radius * math::hypot(direction.x(), direction.y());
 }
 
-/// A quadric between the plane 0 and a height.
+/// Quadric between the plane 0 and a height.
 class Round : public Shape {
  public:
   Round(const Quadric& quadric, double height) : quadric_(quadric), height_(height) {}

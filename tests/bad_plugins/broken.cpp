@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A kernel library that is broken in one way a build: CMakeLists.txt defines which. The kernel itself is sound.
+// A kernel library with one defect per build, selected in CMakeLists.txt. The kernel itself is correct.
 #ifdef OTHER_ALIGNMENT
-// Stands for what -mavx512f would do, on any machine and in any preset.
+// Has the effect of -mavx512f on any machine and in any preset.
 #define EIGEN_MAX_ALIGN_BYTES 128
 #endif
 #include <palpate/kernel.hpp>
@@ -15,10 +15,10 @@
 
 namespace broken {
 
-/// Comes from nowhere: a library that calls it cannot be loaded.
+/// Undefined function: a library that calls it cannot be loaded.
 double defined_nowhere();
 
-/// An exception whose code lives in this library.
+/// Exception type whose code is in this library.
 struct OwnException final : std::exception {
   const char* what() const noexcept override { return "an exception of its own"; }
 };
@@ -71,7 +71,7 @@ class Kernel final : public palpate::Kernel {
 };
 
 #if defined(NO_SYMBOL)
-// Used, so that the class is compiled all the same.
+// Referenced so that the class is compiled in all builds.
 std::string unused(const palpate::Context& context) { return Kernel({}, context).parameters().empty() ? "" : "x"; }
 #elif defined(WRONG_MAGIC) || defined(OTHER_ABI)
 constexpr palpate::PluginManifest changed() {
@@ -80,7 +80,7 @@ constexpr palpate::PluginManifest changed() {
   manifest.magic[0] = 'P';
 #else
   manifest.abi += 41;
-  // A host that reads on behind another ABI number gets what it deserves.
+  // Invalid content after another ABI number, which the host must not read.
   manifest.stamp = nullptr;
 #endif
   return manifest;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A backend that would connect to something whenever it is built: it then adds a line to the file that PALPATE_BUILT
-// names, and waits for that of PALPATE_AWAITED to be there. It comes from any side but from where x is large, and what
-// it taps is said to be the scene.
+// Backend that simulates a connection when it is created. It appends a line to the file in PALPATE_BUILT and waits for
+// the file in PALPATE_AWAITED. It can tap from any side except where x is large, and its scene counts as the truth.
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
 
@@ -18,7 +17,7 @@ class Backend final : public palpate::Backend {
   Backend(const Options&, const palpate::Context&) {
     if (const char* const file = std::getenv("PALPATE_BUILT")) std::ofstream(file, std::ios::app) << "built\n";
     const char* const awaited = std::getenv("PALPATE_AWAITED");
-    // Between two looks, not for an outcome: the test says when.
+    // Sleep between two checks; the test decides when to continue.
     while (awaited != nullptr && !std::ifstream(awaited)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A backend that takes its process down in its fifth tap, in the way that is asked for: what a sweep must survive.
+// Backend that ends its process in the fifth tap, in the requested way; a sweep must survive it.
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
 
@@ -29,7 +29,7 @@ class Backend final : public palpate::Backend {
 
   palpate::Contact tap(const palpate::TapRequest& request) override {
     if (request.number == 5 && way_ == Options::Way::crash) {
-      std::signal(SIGSEGV, SIG_DFL);  // not a sanitizer's
+      std::signal(SIGSEGV, SIG_DFL);  // without the handler of a sanitizer
       std::raise(SIGSEGV);
     }
     if (request.number == 5 && way_ == Options::Way::kill) std::raise(SIGKILL);

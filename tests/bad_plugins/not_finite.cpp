@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A sound plugin of each kind, but for one function, which the option `spoils` names: it gives what `by` says instead
-// of a finite number. CMakeLists.txt defines the kind.
+// A correct plugin of each kind, except for the function in the option `spoils`: it returns the value of `by` instead
+// of a finite number. CMakeLists.txt selects the kind.
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
 #include <palpate/fitting.hpp>
@@ -25,7 +25,7 @@ struct Options : palpate::Options {
   }
 };
 
-/// What the functions of a kind share.
+/// Common part of all kinds.
 class Spoilt {
  public:
   explicit Spoilt(const Options& options)
@@ -35,7 +35,7 @@ class Spoilt {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   bool is(const char* function) const { return name_ == function; }
-  /// `sound`, unless `function` is the one that is spoilt.
+  /// Returns `sound`, unless `function` is spoilt.
   double number(const char* function, double sound) const { return is(function) ? value_ : sound; }
   double bad() const { return value_; }
   template <class Values>
@@ -210,14 +210,14 @@ class Backend final : public palpate::Backend, Spoilt {
 PALPATE_PLUGIN(palpate::Backend, Backend, PLUGIN_NAME, "gives what is not finite")
 
 #elif defined(SHAPE)
-/// A cube of 8 cm.
+/// Cube of 8 cm.
 class Shape final : public palpate::Shape, Spoilt {
  public:
   using Options = broken::Options;
   Shape(const Options& options, const palpate::Context&) : Spoilt(options) {}
   double first_intersection(const palpate::Line& line) const override {
     const palpate::Stretch in = within(line);
-    // Infinity is what a line has that misses.
+    // Infinity is a valid result for a line without intersection.
     if (is("first_intersection")) return std::isnan(bad()) ? bad() : -bad();
     return in.begin < in.end ? in.begin : kInfinity;
   }

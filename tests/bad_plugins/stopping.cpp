@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A backend of a robot that stands still after its fifth tap until somebody has seen to it, as a fault of safety does:
-// the next process finds it mended. Meanwhile it shows what is believed.
+// Backend of a robot that stops after its fifth tap until a person has checked it, as after a safety fault. The next
+// process finds it repaired. It also displays the belief.
 #include <palpate/backend.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An acquisition or a footprint that can be loaded and made, and throws when it is used: what the run must survive in
-// good order.
+// Acquisition or footprint that loads correctly and throws when used. The run must end in good order.
 #include <palpate/acquisition.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>

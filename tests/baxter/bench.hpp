@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tests of the driver start from: the place and the tool of configs/backend/fake_baxter.yaml, a sound robot.
+// Common input of the driver's tests: scene pose and tool of configs/backend/fake_baxter.yaml, and a sound robot.
 #pragma once
 
 #include "baxter/path.hpp"
@@ -10,7 +10,7 @@
 
 namespace palpate::baxter::test {
 
-/// As configs/backend/fake_baxter.yaml has them.
+/// Returns the options of configs/backend/fake_baxter.yaml.
 inline BaxterOptions fake_options() {
   BaxterOptions out;
   out.motion.type = tapping::MotionOptions::Type::continuous;
@@ -30,7 +30,7 @@ inline BaxterOptions fake_options() {
 
 constexpr Target kMiddle{0.115, 0.115};  ///< of the area
 
-/// A planner over them with the program's own inverse kinematics.
+/// A planner for these options with palpate's own inverse kinematics.
 class PlannerBench {
  public:
   explicit PlannerBench(const BaxterOptions& options = fake_options())
@@ -40,23 +40,23 @@ class PlannerBench {
   PlannerBench(const PlannerBench&) = delete;
   PlannerBench& operator=(const PlannerBench&) = delete;
 
-  /// Joints with the tool upright and its tip there, in the frame of the scene.
+  /// Returns joints with the tool upright and its tip at this position of the scene.
   Joints at(double x, double y, double z) const { return arm.solve(planner.pose({x, y}, z), untucked()).value(); }
 
-  /// The way down there from the height of travel.
+  /// Returns the path straight down at `place` from the height of travel.
   Path down(const Target& place) const { return planner.column(place, kMiddle, 0.135, -0.02, 0.03); }
 
   Arm arm;
   Planner planner;
 };
 
-/// What a robot says with which nothing is wrong, at protocol time `now`, its arm at `joints`.
+/// Returns a snapshot without any fault, at protocol time `now`, with the arm at `joints`.
 inline Snapshot sound(double now, const Joints& joints) {
   Snapshot out;
   out.now = now;
-  out.joints = JointReading{{now, now + 5.0}, joints};  // its clock is another
+  out.joints = JointReading{{now, now + 5.0}, joints};  // the robot's clock differs
   const Pose gripper = Arm({0.0, 0.0, 0.025}).tip(joints);
-  // No sensor says the same twice.
+  // A real sensor never repeats a value exactly.
   const long period = std::lround(100.0 * now);
   out.endpoint =
       EndpointReading{{now, now + 5.0, period}, gripper, {0.3, -0.2, 1.0 + 0.1 * std::sin(1000.0 * now)}, period};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The robot's body in this process, led by hand: what tests of it, and of what drives it, start from.
+// The simulated robot's body in this process under direct control, for tests of the body and of its users.
 #pragma once
 
 #include "baxter/body_robot.hpp"
@@ -13,7 +13,7 @@
 
 namespace palpate::test {
 
-/// The objects and effects of configs/scene/object_i_arm.yaml, as YAML.
+/// Objects and effects of configs/scene/object_i_arm.yaml, as YAML.
 constexpr const char* kObjectI =
     "[{type: wave, length: 16 cm, width: 6 cm, height: 9 cm, amplitude: 2 cm, period: 8 cm, at: [11.5 cm, 11.5 cm], "
     "rotation: 90 deg}]";
@@ -22,10 +22,10 @@ constexpr const char* kQuiet = "{stiffness: {object: 1500 N/m}, force_noise: {de
 constexpr const char* kLikeBaxter =
     "{stiffness: {object: 1500 N/m}, joint_lag: {delay: 350 ms}, force_noise: {deviation: 1.5 N}}";
 
-/// Tool and place of configs/backend/fake_baxter.yaml.
+/// Returns tool and scene pose of configs/backend/fake_baxter.yaml.
 inline fake_baxter::BodyOptions fake_options() { return baxter::test::body_options(baxter::test::fake_options()); }
 
-/// A desk of 23 cm by 23 cm with these objects, a YAML list, and effects, a YAML map.
+/// Returns a desk of 23 cm by 23 cm with `objects` (a YAML list) and `effects` (a YAML map).
 inline std::unique_ptr<const Scene> scene_of(const std::string& objects, const std::string& effects,
                                              std::uint64_t seed = 1) {
   const std::string area = "area: {width: 23 cm, depth: 23 cm}";
@@ -37,7 +37,7 @@ class BodyBench {
  public:
   using Change = std::function<void(fake_baxter::BodyOptions&)>;
 
-  /// On scene_of() these.
+  /// Creates a robot over scene_of(objects, effects).
   explicit BodyBench(const std::string& objects = kObjectI, const std::string& effects = kLikeBaxter,
                      const Change& change = nullptr)
       : BodyBench(objects, effects, changed(change)) {}
@@ -48,7 +48,7 @@ class BodyBench {
         body(*scene, options),
         target(body.joints()) {}
 
-  /// Lets something go wrong, as its words on the command line have it.
+  /// Injects a fault, written as on the command line.
   void inject(const std::string& fault, const std::string& at = "start") {
     body.inject(fake_baxter::parse_fault(fault), fake_baxter::parse_trigger(at));
   }
@@ -56,7 +56,7 @@ class BodyBench {
   Eigen::Vector3d force() const { return body.said().endpoint->force; }
   bool reflex() const { return body.mode() == fake_baxter::Body::Mode::reflex; }
 
-  /// Lets time pass with set-points at `target`, or without any.
+  /// Simulates `seconds` with set-points at `target`. Outside of hold() no set-points are sent.
   void hold(double seconds) {
     periods(seconds, [&] { body.command(target); });
   }
@@ -64,7 +64,7 @@ class BodyBench {
     periods(seconds, [] {});
   }
 
-  /// Leads the set-point straight to a place of the scene, metres and m/s, until `stop` holds.
+  /// Moves the set-point along a line to a position of the scene (metres, m/s), until `stop` is true.
   template <class Stop>
   void lead(const Eigen::Vector3d& goal, double speed, const Stop& stop) {
     baxter::Pose pose = tool.tip(target);
@@ -81,7 +81,7 @@ class BodyBench {
     lead(goal, speed, [] { return false; });
   }
 
-  /// Puts the set-point there at once.
+  /// Moves the set-point to `goal` at once.
   void jump(const Eigen::Vector3d& goal) {
     baxter::Pose pose = tool.tip(target);
     aim(frame * goal, pose);
@@ -89,7 +89,7 @@ class BodyBench {
 
   std::unique_ptr<const Scene> scene;
   baxter::Arm tool;
-  Eigen::Isometry3d frame;  ///< of the scene, in `base`
+  Eigen::Isometry3d frame;  ///< of the scene's frame in `base`
   fake_baxter::Body body;
   baxter::Joints target;
 

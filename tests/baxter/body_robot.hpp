@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The robot of the tests in the same process and without ROS: time goes on when somebody waits for it.
+// The simulated robot in this process and without ROS. Its time advances while a caller waits for it.
 #pragma once
 
 #include "baxter/bench.hpp"
@@ -25,8 +25,8 @@ inline BodyOptions body_options(const BaxterOptions& options) {
   return out;
 }
 
-/// Whether what lies within `reach` (m) of a place differs by less than that: what the tool finds beside an edge is
-/// another question.
+/// Returns whether all heights within `reach` (m) of a position differ by less than `reach` from its own height. Taps
+/// near edges are a separate subject.
 inline bool is_even(const Scene& scene, const Target& place, double reach) {
   const double here = scene.height(place.x, place.y);
   for (int side = 0; side < 8; ++side) {
@@ -73,12 +73,13 @@ class BodyRobot final : public Robot {
 
   Body body;
   std::vector<Joints> commands;
-  std::vector<double> commanded;                                            ///< when, seconds
-  std::vector<double> heights;                                              ///< of the tip after every period
-  std::function<void()> every_period;                                       ///< called then
-  std::function<std::optional<Joints>(const Pose&, const Joints&)> answer;  ///< instead of what is right
-  std::function<void(Snapshot&)> spoil;                                     ///< changes what is heard
-  std::function<double()> late;                                             ///< s by which a wait ends too late
+  std::vector<double> commanded;       ///< s, times of the commands
+  std::vector<double> heights;         ///< m, height of the tip after each period
+  std::function<void()> every_period;  ///< called after each period
+  std::function<std::optional<Joints>(const Pose&, const Joints&)>
+      answer;                            ///< replaces the correct answer of inverse kinematics
+  std::function<void(Snapshot&)> spoil;  ///< changes a snapshot before it is returned
+  std::function<double()> late;          ///< s by which a wait ends late
   int asked = 0;
 
  private:
@@ -101,7 +102,7 @@ class BodyRobot final : public Robot {
     if (spoil) spoil(heard_);
   }
 
-  /// Who sends what, and of a second sender what that says after every message of the robot: that nothing is felt.
+  /// Records the senders. A second sender follows each message of the robot with one of a robot without forces.
   void hear_second() {
     const fake_baxter::Fault* fault = body.active(FaultKind::second_sender);
     const std::string second = fault != nullptr ? fault->text : "";

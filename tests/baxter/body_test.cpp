@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The robot of the tests is itself tested: against closed forms, and against what is known of a real Baxter.
+// Tests of the simulated robot, against closed forms and against published properties of a real Baxter.
 #include "body_bench.hpp"
 
 #include <palpate/error.hpp>
@@ -32,7 +32,7 @@ TEST(FakeBody, TrailsItsSetPointInEveryJointByAThirdOfASecondTimesTheSpeed) {
     bench.target.array() += speed * Body::kPeriod;
     bench.hold(Body::kPeriod);
   }
-  // The set-point is a staircase: half a step of it is the arm's by chance.
+  // The set-point is a staircase, so the lag varies by half a step.
   const baxter::Joints lag = bench.target - bench.body.joints();
   for (double one : lag) EXPECT_NEAR(one, speed * Body::kLag, speed * Body::kPeriod);
   const Said said = bench.body.said();
@@ -82,7 +82,7 @@ TEST(FakeBody, PressesByItsStiffnessTimesTheDepth) {
   bench.hold(3.0);
   EXPECT_NEAR(bench.body.tip().z(), -0.005, 1e-5);
   EXPECT_NEAR(bench.body.pressing(), 1500 * 0.005, 0.02);
-  // The bias follows the pose, which is another one now.
+  // The bias depends on the pose, which has changed.
   EXPECT_NEAR(bench.force().z() - zero, -7.5, 1.0) << "pressed upwards it falls";
 }
 
@@ -171,7 +171,8 @@ TEST(FakeBody, AnEmergencyStopNeedsItsButtonReleasedThenAResetAndThenEnable) {
   EXPECT_EQ(bench.body.mode(), Body::Mode::following);
 }
 
-/// What a robot says of itself: its first letters, in small where it is not so; the button and the source as numbers.
+/// Returns the state as text: an upper-case letter per set flag and a lower-case one per unset flag, then button and
+/// source as numbers.
 std::string told(const State& state) {
   return fmt::format("{}{}{}{} {} {}", state.ready ? "R" : "r", state.enabled ? "E" : "e", state.stopped ? "S" : "s",
                      state.error ? "X" : "x", static_cast<int>(state.estop_button),

@@ -17,22 +17,22 @@ namespace {
 
 using palpate::test::shared_host;
 
-constexpr double kSpikes = 0.01;     // of the readings
-constexpr double kStalls = 0.03;     // of the periods
+constexpr double kSpikes = 0.01;     // fraction of the readings
+constexpr double kStalls = 0.03;     // fraction of the periods
 constexpr double kSpike = 9.0;       // N
 constexpr double kStall = 0.05;      // s
-constexpr double kTouched = 0.5;     // N of true force from which on a tap has touched
-constexpr double kEven = 0.012;      // m around a place: springs that sag put the tip up to 5 mm beside it
-constexpr double kAfterwards = 3.0;  // s after which an arm that is left alone stands
+constexpr double kTouched = 0.5;     // N of true force from which a tap counts as a touch
+constexpr double kEven = 0.012;      // m around a position; sagging springs displace the tip by up to 5 mm
+constexpr double kAfterwards = 3.0;  // s after which an arm without commands is at rest
 
-/// Of the same kind whatever was measured: digits are left out.
+/// Returns the kind of a reason: the reason without digits.
 std::string kind_of(const std::string& reason) {
   std::string out = reason.substr(0, reason.find(';'));
   out.erase(std::remove_if(out.begin(), out.end(), [](char c) { return c >= '0' && c <= '9'; }), out.end());
   return out;
 }
 
-/// A run until something ends it.
+/// One run, until a tap ends it.
 class Session {
  public:
   Session(const Condition& condition, const Scene& scene, std::uint64_t seed)
@@ -57,7 +57,7 @@ class Session {
     };
   }
 
-  /// Whether the run goes on.
+  /// Makes a tap. Returns whether the run continues.
   bool tap(Tally& tally) {
     TapRequest request;
     request.number = ++taps_;
@@ -107,7 +107,7 @@ class Session {
   }
 
   void spike(EndpointReading& reading) {
-    if (reading.received == spiked_at_) return;  // once for every message
+    if (reading.received == spiked_at_) return;  // once per message
     spiked_at_ = reading.received;
     if (random_.uniform() < kSpikes) reading.force.z() += random_.uniform() < 0.5 ? kSpike : -kSpike;
   }
@@ -125,9 +125,9 @@ class Session {
   BodyRobot robot_;
   Tapper tapper_;
   int taps_ = 0;
-  double peak_ = 0.0;  ///< N, of this tap
+  double peak_ = 0.0;  ///< N, in this tap
   double spiked_at_ = -1.0;
-  std::optional<double> touched_at_;  ///< s, of this tap
+  std::optional<double> touched_at_;  ///< s, in this tap
   double pressed_until_ = 0.0;        ///< s
   std::optional<Target> previous_;
 };

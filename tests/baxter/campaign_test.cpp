@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the driver promises with its shipped settings, on every arm of the tests: no contact that is none, none of a
-// hundred lost, no more than the arm's own reflex allows. PALPATE_CAMPAIGN=TAPS taps so often on each arm instead of
-// the few times of every day: tests/robot_campaign.sh.
+// Promises of the driver with its shipped settings on every simulated arm: no false contact, at most one lost contact
+// in a hundred, and no force above the arm's reflex. PALPATE_CAMPAIGN=TAPS sets the number of taps per arm instead of
+// the everyday number: tests/robot_campaign.sh.
 #include "baxter/campaign.hpp"
 #include "fake_baxter/mujoco.hpp"
 #include "support/sanitizers.hpp"
@@ -38,15 +38,15 @@ std::string name_of(Type arm) {
   return arm == Type::springs ? "Springs" : "Mujoco";
 }
 
-/// N/m from which on a tap must end safely, and no more. Joints without masses and springs press on by all of their
-/// lag, however hard that is.
+/// Stiffness in N/m above which a tap must only end safely. Joints without masses and springs press on by all of their
+/// lag, whatever the stiffness.
 double hard_from(Type arm) { return arm == Type::lagged ? 5000 : 50000; }
 
-/// The campaign's taps on an arm, or `daily`.
+/// Returns the number of taps on an arm: that of the campaign, or `daily`.
 int taps_of(Type arm, int daily) {
   if (const char* taps = std::getenv("PALPATE_CAMPAIGN")) return std::atoi(taps);
   if (palpate::test::kSanitized) daily = std::max(6, daily / 8);
-  return arm == Type::mujoco ? daily / 6 : daily;  // which takes seconds a tap
+  return arm == Type::mujoco ? daily / 6 : daily;  // MuJoCo takes seconds per tap
 }
 
 void report(const std::string& what, const Tally& tally) {
@@ -70,8 +70,8 @@ class Campaign : public testing::TestWithParam<Type> {
 };
 
 TEST_P(Campaign, HasNoPhantomsLosesNoContactsAndStaysBelowTheReflex) {
-  // Each quarter of the taps on another object, each quarter of those without trouble, with either and with both;
-  // friction goes around once more slowly.
+  // Each quarter of the taps has another stiffness. Each quarter of those has no disturbance, one of two, or both. The
+  // friction changes more slowly.
   constexpr int kCells = 16;
   const int taps = std::max(1, (taps_of(GetParam(), 48) + kCells - 1) / kCells);
   Tally yielding;
@@ -116,9 +116,8 @@ TEST_P(Campaign, RunsThirtyTapsOnSoftAndOnHardThings) {
   }
 }
 
-/// A condition under which a robot with Rethink's springs taps: the object's stiffness in N/m, either a delay or a
-/// jitter of every message and a time constant of the force's filter in seconds, and how much the force's zero changes,
-/// N/m.
+/// Condition of a robot with Rethink's springs: stiffness of the object in N/m, delay or jitter of every message in s,
+/// time constant of the force's filter in s, and change of the force's zero in N/m.
 struct Trouble {
   double stiffness = 20000.0;
   double delay = 0.0;
@@ -126,7 +125,7 @@ struct Trouble {
   double filter = 0.0;
   double drift = 0.0;
 
-  /// Up to these no robot may be rejected.
+  /// Returns whether the condition is so mild that no robot may be rejected.
   bool is_common() const { return delay <= 0.04 && jitter <= 0.04 && filter <= 0.1; }
 };
 
@@ -151,7 +150,7 @@ const std::vector<Trouble>& extremes() {
   return all;
 }
 
-/// The next points of a Sobol sequence.
+/// Generates the points of a Sobol sequence.
 class Troubles {
  public:
   Trouble next() {
@@ -189,7 +188,7 @@ std::string name_of(const Trouble& trouble) {
                      trouble.drift);
 }
 
-/// s per tap of this robot without trouble, at the speed that configs/backend/baxter.yaml asks for.
+/// s per tap of this robot without disturbance at the speed in configs/backend/baxter.yaml.
 constexpr double kUntroubled = 16.5;
 
 TEST(ForceBound, HoldsUnderDelaysFiltersAndDriftsOnSoftAndHardThings) {
@@ -202,7 +201,8 @@ TEST(ForceBound, HoldsUnderDelaysFiltersAndDriftsOnSoftAndHardThings) {
   Troubles troubles;
   for (int taps = 0; taps < in_between; taps += kOneRun) {
     const Trouble next = troubles.next();
-    // The time of a tap depends on where it falls: eight of one condition took 28 to 39 s each, 40 took 34.
+    // The duration of a tap depends on its position: eight taps under one condition took 28 to 39 s each, 40 took 34 s
+    // on average.
     const bool many = wanted != nullptr && next.is_common();
     all.emplace_back(next, many ? at_extremes : std::min(kOneRun, in_between));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tap after which the tool hangs on to what it touched, by a spring that pulls: a handle, tape, a magnet.
+// Taps after which a spring holds the tool at the contact, like a handle, tape or a magnet.
 #include "baxter/body_bench.hpp"
 #include "baxter/tapper_bench.hpp"
 
@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using MotionType = tapping::MotionOptions::Type;
 
-/// An arm with springs over a hard desk, and what came of its taps.
+/// An arm with springs over a hard desk, and the results of its taps.
 class HardDesk {
  public:
   explicit HardDesk(double friction, const BaxterOptions& options = fake_options())
@@ -54,8 +54,8 @@ class HardDesk {
 
  public:
   test::BodyRobot robot;
-  int reflexes = 0;   ///< of the arm's own
-  double pull = 0.0;  ///< N, the most that held the tool
+  int reflexes = 0;   ///< number of the firmware's reflexes
+  double pull = 0.0;  ///< N, largest force that held the tool
 
  private:
   Tapper tapper_;
@@ -67,7 +67,8 @@ TEST(ACaughtTool, IsHeldWhereItIsAndToldAndNotPulledAgainstTheReflex) {
   for (const double friction : {0.0, 0.2, 0.4}) {       // Nm
     for (const double stiffness : {3000.0, 20000.0}) {  // N/m
       HardDesk bench(friction);
-      ASSERT_EQ(bench.tap({0.06, 0.03}).outcome, Outcome::contact);  // which shows what robot it is
+      ASSERT_EQ(bench.tap({0.06, 0.03}).outcome,
+                Outcome::contact);  // from which the driver learns the robot's properties
       bench.robot.body.inject({FaultKind::caught, stiffness, {}});
       const double begin = bench.robot.body.now();
       const Contact contact = bench.tap(kOnDesk);
@@ -135,7 +136,8 @@ TEST(ACaughtTool, IsNoticedBeforeTheReflexHoweverSoftlyItIsHeld) {
 }
 
 TEST(AnArmThatIsFree, IsNotHeldByTheFrictionOfItsJoints) {
-  for (const Target& place : {Target{0.02, 0.21}, Target{0.21, 0.02}}) {  // where they rub most and least
+  for (const Target& place :
+       {Target{0.02, 0.21}, Target{0.21, 0.02}}) {  // positions with the most and the least friction
     HardDesk bench(0.4);
     for (int tap = 0; tap < 2; ++tap) {
       const Contact contact = bench.tap(place);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Anything at any moment: random faults in random motions, and what must hold whatever happens. A failure names its
-// seed; PALPATE_CHAOS=first:count runs other seeds than the few of every day.
+// Random faults at random moments of random motions, and the invariants of the driver. A failure prints its seed;
+// PALPATE_CHAOS=first:count runs other seeds than the everyday ones.
 #include "baxter/body_robot.hpp"
 #include "baxter/tapper.hpp"
 
@@ -22,25 +22,24 @@ using Motion = tapping::MotionOptions::Type;
 
 constexpr double kPeriod = Body::kPeriod;
 
-/// What may happen, and which of the rules it leaves.
+/// A kind of event, and the invariants that still hold.
 struct Kind {
   const char* name;
-  std::optional<FaultKind> fault;  ///< none: somebody presses Ctrl-C, or nothing happens at all
-  double least, most;              ///< of its amount
-  double noticed;                  ///< s after which nothing may be sent; infinite where sending is right
-  bool may_press;                  ///< 16 N cannot be kept: see below
-  double aside;                    ///< m by which the tip may go sideways while it is low
-  bool misleads;                   ///< the driver is told wrong joints, and cannot know where the tip is
+  std::optional<FaultKind> fault;  ///< nullopt: Ctrl-C, or no event
+  double least, most;              ///< range of the amount
+  double noticed;                  ///< s after which nothing may be sent; infinity if sending is correct
+  bool may_press;                  ///< whether more than 16 N are possible: see below
+  double aside;                    ///< m by which the tip may move sideways while it is low
+  bool misleads;                   ///< whether the driver receives wrong joints and cannot know the tip's position
 };
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Where nothing may be sent the arm goes on for the robot's own 0.2 s to the last set-point, a lag of 0.35 s ahead of
-// it, and at a contact presses on by that: at 2 cm/s up to 7 mm or 10 N beyond the threshold. Where the force is not
-// what it is (a bias below the threshold), it ends no descent. There
-// the firmware's reflex is the only bound. Of commands that are heard again the arm catches up with those in between,
-// the joints one by one; from 0.015 rad off, which passes for a settled error, that may be 15 mm to the side.
-// Held where it was measured, an arm of the usual speed ratio of 0.3 comes back from its lag joint by joint, too: 5 mm.
+// After the last set-point the arm continues for 0.2 s towards it, which is a lag of 0.35 s ahead. At a contact it
+// presses on by this distance: at 2 cm/s up to 7 mm or 10 N beyond the threshold. If the force is wrong (a bias below
+// the threshold), it ends no descent, and only the firmware's reflex limits the force. After lost commands the joints
+// catch up one by one. From a distance of 0.015 rad, which counts as a settled error, the tip may move 15 mm sideways.
+// An arm that is held at its measured joints, with the usual speed ratio of 0.3, also returns joint by joint: 5 mm.
 constexpr double kBent = 0.006;
 const Kind kKinds[] = {
     {"nothing", {}, 0, 0, kNever, false, kBent, false},
@@ -64,7 +63,7 @@ const Kind kKinds[] = {
     {"freeze_clock", FaultKind::freeze_clock, 0, 0, 0.0, true, kBent, false},
 };
 
-/// One seed's motion, place, fault and moment.
+/// One seed's motion, position, fault and moment.
 class Chaos {
  public:
   explicit Chaos(std::uint64_t seed)
@@ -83,7 +82,7 @@ class Chaos {
     interrupted_ = false;
     if (robot_.body.faulty() && !repair()) return;
     tap(false);
-    // At 10 cm/s (adaptive_hover) a joint would turn too fast near one corner.
+    // At 10 cm/s (adaptive_hover) a joint would rotate too fast near one corner.
     EXPECT_TRUE(last_.outcome == Outcome::contact || last_.outcome == Outcome::unreachable)
         << "the tap after: " << last_.reason;
   }
@@ -144,12 +143,12 @@ class Chaos {
     EXPECT_EQ(last_.reason.empty(), last_.outcome == Outcome::contact);
     EXPECT_NE(last_.outcome, Outcome::unknown);
     EXPECT_TRUE(!last_.ends_run || last_.outcome == Outcome::aborted);
-    // A bounded speed has as much more time as it takes, at least 1 mm/s; travel and raising take 30 s beyond it.
+    // A limited speed extends the timeout accordingly, for at least 1 mm/s. Travel and rise take up to 30 s more.
     const double way = options_.motion.hover + options_.motion.overrun;
     const double bounded = way / Reaction::kSlowestFirst - way / options_.motion.speed;
     EXPECT_LT(robot_.body.now() - begin, options_.motion.timeout + bounded + 30.0);
     if (last_.outcome == Outcome::contact && !robot_.body.faulty()) {
-      // Paper and two_stage find where the force has passed its threshold: the object has given way by that.
+      // Paper and two_stage measure where the force exceeds its threshold, after the object has yielded.
       const double give = options_.motion.type == Motion::continuous ? 0.0 : 10.0 / 1500.0;
       EXPECT_LT(last_.height, truth + 0.003);
       EXPECT_GT(last_.height, truth - give - 0.003);
@@ -157,7 +156,7 @@ class Chaos {
     expect_standstill();
   }
 
-  /// Nobody sends any more: what is left is the lag of what was sent last.
+  /// After the last command, the arm moves only by the remaining lag.
   void expect_standstill() {
     for (int i = 0; i < 200; ++i) step_alone();
     const Eigen::Vector3d at = robot_.body.tip();
@@ -170,7 +169,7 @@ class Chaos {
     robot_.body.step();
   }
 
-  /// What a person does after a fault; false if it lasts.
+  /// Repairs the fault as a person would. Returns false if it persists.
   bool repair() {
     if (kind_.fault == FaultKind::squish || kind_.fault == FaultKind::bias) return true;
     if (kind_.fault == FaultKind::drop_commands) return robot_.body.active(FaultKind::drop_commands) == nullptr;
@@ -193,13 +192,13 @@ class Chaos {
     if (joints) heard_ = joints->position;
     if (!kind_.may_press && robot_.body.pressing() >= Body::kReflex) ADD_FAILURE() << robot_.body.pressing() << " N";
     if (!kind_.misleads) expect_place(tip);
-    // After all looking: what begins now is seen in the next period.
+    // A fault that begins now is visible in the next period.
     if (++period_ == moment_ && happening_) begin_fault();
   }
 
   void expect_sound(const Joints& command) {
     if (!command.allFinite()) ADD_FAILURE() << "a set-point that is no number";
-    // What was measured at a contact, or what was planned for that height: the joints trail unevenly.
+    // Either the measured joints at a contact, or the plan for that height; joints trail by different amounts.
     const bool back = (command - heard_).cwiseAbs().maxCoeff() < (kind_.misleads ? 0.05 : 0.02);
     if (sent_ && !back && (command - *sent_).cwiseAbs().maxCoeff() > 0.005) {
       ADD_FAILURE() << "a set-point jumped by " << (command - *sent_).cwiseAbs().maxCoeff() << " rad, "
@@ -247,9 +246,9 @@ class Chaos {
   bool happening_ = false;
   double amount_ = 0.0, begun_ = kNever;
   std::size_t looked_at_ = 0;
-  Joints heard_;  ///< what the driver has heard last
+  Joints heard_;  ///< joints that the driver read last
   std::optional<Joints> sent_;
-  std::optional<Eigen::Vector3d> low_;  ///< where it came below the height of travel
+  std::optional<Eigen::Vector3d> low_;  ///< position where the tip fell below the height of travel
 };
 
 TEST(Chaos, KeepsItsRulesWhateverHappensWhenever) {
@@ -268,10 +267,10 @@ TEST(Chaos, KeepsItsRulesWhateverHappensWhenever) {
 }
 
 TEST(ATap, ComesDownOnlyWhereItWasSentWhenCommandsWereLostOnTheWay) {
-  // The robot stands still where it lost them, for example just short of the goal: that is no arrival.
+  // The robot rests where the commands were lost, for example near the goal, which must not count as arrival.
   for (int moment = 90; moment < 200; moment += 4) {
     test::BodyOptions body = test::body_options(test::fake_options());
-    // At the shipped 0.3 the joints catch up one by one with what was lost, which bends the way by itself.
+    // With the shipped ratio of 0.3 the joints catch up one by one, which bends the path by itself.
     body.speed_ratio = 1.0;
     BodyRobot robot(wave_scene(), body);
     Tapper tapper(test::fake_options(), wave_scene(), robot, nullptr, [](const std::string&) {});

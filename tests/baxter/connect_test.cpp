@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The way to a Baxter over a real ROS network: what is missing is told in one line within five seconds, and nothing is
-// left behind.
+// Connection to a Baxter over a real ROS network: missing parts are reported in one line within five seconds, and
+// nothing remains afterwards.
 #include "baxter/ros/connect.hpp"
 
 #include "elsewhere.hpp"
@@ -39,7 +39,7 @@ std::vector<std::string> with(std::vector<std::string> environment, const std::v
   return environment;
 }
 
-/// What connect() has to say where it must not succeed, and that it says it in time.
+/// Returns the error of connect(), and checks that it comes in time.
 std::string refusal(const std::vector<std::string>& environment, const Wishes& wishes = {}) {
   const Elsewhere result = elsewhere(environment, [&] {
     connect(wishes);
@@ -55,10 +55,10 @@ std::string refusal_of(const std::string& master, const std::vector<std::string>
   return refusal(with(with(kNoRos, {"ROS_MASTER_URI=" + master}), more));
 }
 
-/// A TCP port of this machine at which somebody listens who is no ROS master.
+/// A TCP port of this machine with a listener that is not a ROS master.
 class Stranger {
  public:
-  /// `guests`: connections so many that the next packet is dropped.
+  /// `guests`: number of open connections, so that further packets are dropped.
   explicit Stranger(int backlog, int guests = 0)
       : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), address_(address_of(free_port())) {
     if (bind(socket_, reinterpret_cast<const sockaddr*>(&address_), sizeof address_) != 0 ||
@@ -85,12 +85,12 @@ class Stranger {
   std::vector<int> guests_;
 };
 
-/// To one process, and never to the many that a number below 1 stands for.
+/// Sends a signal to one process. Numbers below 1 would address many processes.
 void send(int signal, int pid) {
   if (pid > 1) kill(pid, signal);
 }
 
-/// The robot, at the speed of real time.
+/// Returns the command line of a robot in real time.
 std::vector<std::string> in_real_time(const std::vector<std::string>& more = {}) {
   return with({object_i(), "backend=fake_baxter", "scene=object_i_arm"}, more);
 }
@@ -293,8 +293,8 @@ TEST(Connect, ABagThatCannotBeWrittenIsAnErrorAtOnce) {
                                    HasSubstr("356d9dd237ce73b2667da9235f541933")));
 }
 
-// roscpp's thread of connections ends the program when it meets a header or a closed connection of what is just being
-// given up (ros_comm, issues 1939 and 2032).
+// roscpp's connection thread crashes if it receives a header or a closed connection for an object that is being
+// destroyed (ros_comm, issues 1939 and 2032).
 TEST(AConnection, IsGivenUpAgainAndAgainWithoutEndingTheProgram) {
   RobotLab lab(in_real_time());
   const char* times = std::getenv("PALPATE_CONNECTIONS");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shipped default on an arm of the tests with masses and springs, beside the simulator with the same noise; and the
-// simulator by what `calibrate` makes of taps of that arm. PALPATE_CAMPAIGN=TAPS takes 15 seeds instead of two.
+// The shipped default on a simulated arm with masses and springs, compared with the simulator with the same noise, and
+// with the simulator after `calibrate`. PALPATE_CAMPAIGN=TAPS runs 15 seeds instead of two.
 #include "baxter/body_bench.hpp"
 #include "baxter/campaign.hpp"
 #include "calibrate/calibrate.hpp"
@@ -35,8 +35,7 @@ const std::string kPose = ", pose_noise: {lateral: 2 mm, vertical: 1 mm}}";
 bool at_length() { return std::getenv("PALPATE_CAMPAIGN") != nullptr; }
 int seeds() { return at_length() ? 15 : 2; }
 
-/// The driver with its shipped settings on an arm of rigid bodies and springs, whose tip is not quite where the joints
-/// say.
+/// The driver with its shipped settings on an arm of rigid bodies and springs, with an error of the tip's position.
 class ArmBackend final : public Backend {
  public:
   ArmBackend(std::unique_ptr<const Scene> scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {
@@ -53,7 +52,7 @@ class ArmBackend final : public Backend {
     off.target.x = std::clamp(request.target.x + kLateral * normal(), 0.0, area.width);
     off.target.y = std::clamp(request.target.y + kLateral * normal(), 0.0, area.depth);
     Contact contact = tapper_->tap(off);
-    if (contact.ends_run) {  // somebody has looked, and carries on
+    if (contact.ends_run) {  // a person has checked the robot and continues
       contact.ends_run = false;
       begin();
     }

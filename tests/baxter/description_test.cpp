@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the robot takes to be fixed to its flange, read of its own description.
+// Mass of the tool in the robot's URDF.
 #include "baxter/description.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 namespace palpate::baxter {
 namespace {
 
-/// Of baxter.urdf, with a fragment as Rethink's gripper plugins add it.
+/// Part of baxter.urdf, with a fragment in the form of Rethink's gripper plugins.
 constexpr const char* kArm = R"(<?xml version="1.0" ?>
 <!-- <link name="left_hand"><inertial><mass value="99"/></inertial></link> -->
 <robot name="baxter" xmlns:xacro="http://www.ros.org/wiki/xacro">

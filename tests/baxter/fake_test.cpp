@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The robot of the tests on a real ROS network.
+// Tests of the simulated robot on a real ROS network.
 #include "robot_lab.hpp"
 #include "robot_words.hpp"
 #include "support/programs.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The lines of what the probe heard: "sender topic size count rate", by the first three.
+/// A line of the probe's output, "sender topic size count rate", by its first three words.
 struct Heard {
   long count;
   double rate;
@@ -41,7 +41,7 @@ std::map<std::string, Heard> heard(const RobotLab& lab, const std::string& secon
 }
 
 TEST(FakeRobot, ItsMessagesAreThoseOfARealRobotByTheirMd5Sums) {
-  // As published by Rethink: in code generated from its definitions by others, too.
+  // Published by Rethink, and equal in code that others generated from its definitions.
   using namespace baxter_core_msgs;
   const std::pair<const char*, const char*> sums[] = {
       {ros::message_traits::md5sum<EndpointState>(), "44bea01d596ff699fa1447bec34167ac"},
@@ -59,7 +59,7 @@ TEST(FakeRobot, ItsMessagesAreThoseOfARealRobotByTheirMd5Sums) {
 TEST(FakeRobot, PublishesItsStreamsAtTheirRatesFromTwoNodes) {
   RobotLab lab(robot_words());
   const auto streams = heard(lab, "10");
-  // In the robot's own time; of a queue of one message some may be lost on a busy machine.
+  // Rates are in the robot's time. With a queue of one message, some may be lost on a busy machine.
   const auto expect_rate = [&](const std::string& name, double rate) {
     ASSERT_EQ(streams.count(name), 1U) << name;
     EXPECT_GT(streams.at(name).rate, 0.7 * rate) << name;
@@ -87,10 +87,10 @@ TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
   RobotLab lab;
   std::vector<std::string> words = robot_words();
   words.back() = "20";
-  // A driver may lose the processor for a while where other tests run; to be gone it takes longer here.
+  // A driver may lose the processor for a while when other tests run, so the robot waits longer here.
   words.insert(words.end(), {"--patience", "1"});
   lab.start_robot(words);
-  // 5 ms late each time are 100 ms of the robot's time at this rate, if that did not wait.
+  // A lateness of 5 ms is 100 ms of robot time at this rate, if the robot did not wait.
   EXPECT_EQ(lab.probe({"drive", "5", "0.005"}).out, "late 0\n");
   EXPECT_TRUE(eventually([&] { return lab.trace().back().at("mode") == "timed_out"; })) << "nobody drives any more";
   lab.end_robot();
@@ -103,7 +103,7 @@ TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
   ASSERT_GT(last, first + 400);
   for (std::size_t row = first; row <= last; ++row) {
     EXPECT_EQ(trace[row].at("mode"), "following") << row;
-    // Ahead by two periods at most, but where the robot had waited for long.
+    // At most two periods ahead, unless the robot had waited for long.
     if (row > first + 3) {
       EXPECT_GT(commands(row), commands(row - 4)) << row;
     }
@@ -138,7 +138,7 @@ TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
   EXPECT_THAT(refusal({robot_words().front()}), HasSubstr("add backend=fake_baxter"));
 }
 
-/// The processes that have this one for a parent.
+/// Returns the child processes of `pid`.
 std::vector<long> children_of(long pid) {
   const std::string id = std::to_string(pid);
   std::istringstream words(text_of("/proc/" + id + "/task/" + id + "/children"));

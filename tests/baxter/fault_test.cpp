@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything that goes wrong with the robot of the tests, and the state in which that leaves the arm, the record and
-// the program.
+// All faults of the simulated robot, and the resulting state of arm, record and program.
 #include "robot_lab.hpp"
 #include "robot_words.hpp"
 #include "support/programs.hpp"
@@ -21,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
 
-/// Looks until the robot has gone on for two seconds of its time after the last command, or is gone.
+/// Waits until two seconds of robot time have passed since the last command, or the robot has ended.
 void await_standstill(RobotLab& lab) {
   eventually([&] {
     if (!lab.robot().running()) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a master of ROS answers, which may be anybody: read without a network.
+// Parsing of a ROS master's answers, which may come from any program, without a network.
 #include "baxter/ros/graph.hpp"
 
 #include <gmock/gmock.h>
@@ -56,7 +56,7 @@ TEST(AnswerOfAMaster, ThatIsNestedTooDeeplyIsRefusedBeforeItIsRead) {
 }
 
 TEST(AnswerOfAMaster, WhoseNamesHideHowDeepItIsIsRefused) {
-  // The library takes the next name, wherever that is, for the member's: each of these brings it one level further in.
+  // The library takes the next name anywhere as the member's: each of these would nest it one level deeper.
   const std::string hollow = value("<struct><member></member></struct>") + "<name>a</name>";
   const std::string closing = value("<struct><member><name></value></name></member></struct>");
   std::string flat;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is heard of a robot beside where its arm is: what others left on it, what is mounted on it, and whether silence
-// is its own or this computer's.
+// Messages of a robot other than its position: settings of other programs, mounted tool, and causes of silence.
 #include "baxter/ros/connect.hpp"
 
 #include "elsewhere.hpp"
@@ -26,13 +25,13 @@ using baxter::Robot;
 using baxter::Setting;
 using baxter::Snapshot;
 
-/// Reads until `holds` of what was read, for five minutes at most, which only what hangs takes.
+/// Reads until `holds` is true for a snapshot, for at most five minutes.
 template <class Condition>
 Snapshot read_until(Robot& robot, const Condition& holds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   Snapshot out = robot.read();
   while (!holds(out) && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));  // between two looks, not for an outcome
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));  // interval between two checks
     out = robot.read();
   }
   return out;
@@ -48,7 +47,7 @@ std::string words(const Snapshot& seen) {
                      seen.avoidance->objects, seen.end_effector.product, seen.end_effector.mass.value_or(-1.0));
 }
 
-/// What is heard of a robot that was started so, once all that it should bring has come.
+/// Returns a text about a robot started with these arguments, once `complete` is true.
 template <class Condition>
 std::string heard_of(const std::vector<std::string>& robot, const Condition& complete) {
   RobotLab lab(robot_words(robot));
@@ -105,7 +104,7 @@ TEST(Heard, SilenceOfThisComputerIsToldFromThatOfTheRobot) {
     const pid_t sleeper = fork();
     if (sleeper == 0) {
       kill(self, SIGSTOP);
-      usleep(300'000);  // the stop itself
+      usleep(300'000);  // duration of the stop
       kill(self, SIGCONT);
       _exit(0);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The arms of the tests' robot: against closed forms, against what is known of a real Baxter, and against one another.
+// Tests of the simulated arms: against closed forms, against published properties of a real Baxter, and against each
+// other.
 #include "baxter/body_bench.hpp"
 #include "fake_baxter/dynamics.hpp"
 #include "fake_baxter/mujoco.hpp"
@@ -20,11 +21,11 @@ using Type = MechanicsOptions::Type;
 
 const Eigen::Vector2d kMiddle(0.115, 0.115);
 
-/// This arm, its tip there above the desk.
+/// Selects an arm and the height of its tip above the desk.
 BodyBench::Change with(const MechanicsOptions& mechanics, double above = 0.15) {
   return [=](BodyOptions& out) {
     out.mechanics = mechanics;
-    out.speed_ratio = 1.0;  // what is asked of the joints is what they are given
+    out.speed_ratio = 1.0;  // so that the speed ratio does not limit the joints
     out.start_at = Eigen::Vector3d(kMiddle.x(), kMiddle.y(), above);
   };
 }
@@ -49,7 +50,7 @@ TEST(TheArmWithMasses, EndsWhereTheDriversKinematicsHaveIt) {
   for (int i = 0; i < 100; ++i) {
     const Joints joints = posture(random);
     EXPECT_LT((dynamics.tip(joints) - arm.tip(joints).position).norm(), 1e-12);
-    for (int joint = 0; joint < 7; ++joint) {  // by central differences
+    for (int joint = 0; joint < 7; ++joint) {  // central differences
       const Joints little = 1e-5 * Joints::Unit(joint);
       const Eigen::Vector3d way = (arm.tip(joints + little).position - arm.tip(joints - little).position) / 2e-5;
       EXPECT_LT((dynamics.jacobian(joints).col(joint).head<3>() - way).norm(), 1e-9);
@@ -58,7 +59,7 @@ TEST(TheArmWithMasses, EndsWhereTheDriversKinematicsHaveIt) {
 }
 
 TEST(TheArmWithMasses, KeepsItsEnergyWhenNothingActsOnItButItsWeight) {
-  // Kinetic energy by its inertia, and the work of its weight: one is lost to the other.
+  // Kinetic energy from the inertia, and work of gravity: their sum is constant.
   const fake_baxter::Dynamics dynamics({0, 0, 0.15});
   Random random(2, "test");
   for (int i = 0; i < 20; ++i) {
@@ -68,7 +69,7 @@ TEST(TheArmWithMasses, KeepsItsEnergyWhenNothingActsOnItButItsWeight) {
     const double begin = 0.5 * speed.dot(dynamics.inertia(joints) * speed);
     double work = 0.0;
     constexpr double kStep = 1e-4;
-    for (int step = 0; step < 1000; ++step) {  // the midpoint rule
+    for (int step = 0; step < 1000; ++step) {  // midpoint rule
       const Joints before = joints;
       const Joints half = speed + kStep / 2 * dynamics.acceleration(joints, speed, Joints::Zero());
       const Joints middle = joints + kStep / 2 * speed;
@@ -106,13 +107,13 @@ TEST(TheArmWithSprings, TrailsItsSetPointInFlightAsARealOne) {
   }
 }
 
-/// A touch that is guarded by the true force: down until it is above 6 N, then the measured joints.
+/// A touch guarded by the true force: descent until 6 N, then the measured joints.
 struct Touch {
   double peak = 0.0;    ///< N
-  double depth = 0.0;   ///< m, the most
+  double depth = 0.0;   ///< m, largest
   double height = 0.0;  ///< m, at the end
   double force = 0.0;   ///< N, at the end
-  double felt = 0.0;    ///< N, more than before
+  double felt = 0.0;    ///< N, increase of the measured force
 };
 
 Touch touch(const MechanicsOptions& mechanics, double stiffness, double speed) {
@@ -182,7 +183,7 @@ TEST_F(MujocoTwin, TouchesWithTheSameForces) {
         const Touch theirs = touch({Type::mujoco, friction, 0.0}, stiffness, speed);
         const std::string where = std::to_string(stiffness) + " N/m at " + std::to_string(speed) + " m/s, " +
                                   std::to_string(friction) + " Nm";
-        // MuJoCo's friction yields a little; its contact, too.
+        // MuJoCo's friction and contact yield slightly.
         EXPECT_NEAR(ours.peak, theirs.peak, 0.03 * theirs.peak) << where;
         EXPECT_NEAR(ours.depth, theirs.depth, 0.03 * theirs.depth) << where;
         EXPECT_NEAR(ours.force, theirs.force, 0.03 * theirs.force) << where;

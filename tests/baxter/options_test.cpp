@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options with which no arm should be started.
+// Rejection of options that are unsafe for an arm.
 #include "baxter/options.hpp"
 #include "support/filled.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What is said of a motion and more, beside what must be said; "" for nothing.
+/// Returns the error for these options of motion, with the mandatory ones added; empty if they are accepted.
 std::string refusal(const std::string& motion, const std::string& more = "") {
   try {
     palpate::test::filled<BaxterOptions>(

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the arm's joints have its end, and the ways that are planned for it: where the tip goes between the planned
-// poses, and what is refused.
+// Forward kinematics and planned paths: positions of the tip between planned poses, and rejected paths.
 #include "baxter/bench.hpp"
 
 #include <palpate/error.hpp>
@@ -23,8 +22,8 @@ struct Reference {
   double rotation[4];  ///< x, y, z, w
 };
 
-/// left_gripper at 2.5 cm from left_hand in `base`, by KDL from baxter.urdf; the untucked one agrees to 4 um with what
-/// Rethink's own simulator printed.
+/// left_gripper at 2.5 cm from left_hand in `base`, by KDL from baxter.urdf. The untucked pose agrees to 4 um with the
+/// output of Rethink's simulator.
 constexpr Reference kReferences[] = {
     {"zero",
      {0, 0, 0, 0, 0, 0, 0},
@@ -68,7 +67,7 @@ TEST(Places, OfTheSceneGoToTheRobotsFrameAndBack) {
   const Arm arm(Eigen::Vector3d::Zero());
   const Planner planner(place, arm, nullptr);
   const Pose pose = planner.pose({0.03, 0.07}, 0.05);
-  // A quarter turn takes x to y and y to -x.
+  // A quarter turn maps x to y and y to -x.
   EXPECT_TRUE(pose.position.isApprox(Eigen::Vector3d(0.5 - 0.07, 0.1 + 0.03, -0.15), 1e-12)) << pose.position;
   EXPECT_TRUE(planner.to_scene(pose.position).isApprox(Eigen::Vector3d(0.03, 0.07, 0.05), 1e-12));
   EXPECT_TRUE((pose.rotation * Eigen::Vector3d::UnitZ()).isApprox(-Eigen::Vector3d::UnitZ(), 1e-12)) << "straight down";
@@ -100,7 +99,7 @@ TEST(Columns, AreRefusedWhereAJointWouldTurnTooFastAndOutOfReach) {
   };
   EXPECT_EQ(refused(kMiddle, 0.03), "");
   EXPECT_THAT(refused(kMiddle, 3.0), testing::StartsWith("a joint would have to turn faster than 0.4 rad/s"));
-  EXPECT_THAT(refused({0.7, 0.0}, 0.03),  // 1.2 m before the robot
+  EXPECT_THAT(refused({0.7, 0.0}, 0.03),  // 1.2 m in front of the robot
               testing::StartsWith("no joint position within the limits puts the tool upright at ("));
 }
 
@@ -150,7 +149,7 @@ TEST(Lines, AreRefusedWhereTheArmWouldSwingOverToAnotherPosture) {
   const PlannerBench bench;
   const Joints to = bench.down(kMiddle).front();
   Joints other = to;
-  other(6) = to(6) > 0.0 ? to(6) - 5.8 : to(6) + 5.8;  // nearly the same hand, turned all the way round
+  other(6) = to(6) > 0.0 ? to(6) - 5.8 : to(6) + 5.8;  // nearly the same hand, after a full turn
   EXPECT_THROW(bench.planner.line(other, to), NoPath);
 }
 
@@ -178,7 +177,7 @@ TEST(AdvancingOnAPath, KeepsToTheSpeedOfTheTipAndOfTheJoints) {
       const double next = line.advance(along, speed, 0.01);
       ASSERT_GT(next, along);
       EXPECT_LE(next - along, speed * 0.01 + 1e-12);
-      // Where a segment ends, the next may be a little steeper.
+      // After the end of a segment the next one may be slightly steeper.
       EXPECT_LE((line.at(next) - last).cwiseAbs().maxCoeff(), 1.2 * kJointSpeed * 0.01);
       last = line.at(next);
       along = next;

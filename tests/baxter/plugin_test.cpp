@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The plugin in a process of its own, as the program has it: loaded, made, destroyed, made again.
+// The plugin in a child process as in the program: loaded, created, destroyed, created again.
 #include "children/arm_lock.hpp"
 #include "elsewhere.hpp"
 #include "record/tap_row.hpp"
@@ -47,7 +47,7 @@ TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
     return told + "left " + std::to_string(threads());
   });
   EXPECT_EQ(process.status, 0);
-  // What is left is the test's own thread and roscpp's, which live as long as the process.
+  // The test's own thread and roscpp's threads remain until the process ends.
   const Elsewhere roscpp_alone = elsewhere(lab.environment(), [&] {
     const PluginHost host({plugin_folder()});
     make<Backend>(host, "baxter", kOptions).reset();

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kPeriod = 0.01;
 
-/// An axis that follows a ramp of `way` metres at `speed` with a lag and, either way, a delay; from rest to rest. At
-/// rest it is off by `begin`, and by `end`.
+/// Returns a motion of an axis along a ramp of `way` metres at `speed`, from rest to rest, with a lag and a delay in
+/// each direction. At rest its error is `begin`, then `end`.
 std::vector<Reaction::Step> motion(double lag, double delay, double way, double speed, double begin, double end) {
   backends::Arm axis(JointLag{lag, 0.0}, kPeriod, 0.0);
   std::vector<Reaction::Step> out;
@@ -49,8 +49,8 @@ TEST(Reaction, LearnsNothingFromAShortWay) {
 
 constexpr double kRigid = 1e9;  // N/m
 
-/// A descent at `speed` onto something of stiffness `object` at height 0, by springs of `stiffness`, noticed `late`
-/// seconds after the force was at `threshold`.
+/// Returns a descent at `speed` onto an object of stiffness `object` at height 0, with springs of `stiffness`. The
+/// detection is `late` seconds after the force has reached `threshold`.
 std::vector<Reaction::Period> contact(double speed, double stiffness, double threshold, double late,
                                       double object = kRigid) {
   std::vector<Reaction::Period> out;
@@ -67,7 +67,7 @@ TEST(Reaction, MeasuresByPositionsHowLateAContactIsNoticed) {
     for (const double late : {0.05, 0.1, 0.25}) {
       Reaction reaction;
       for (int i = 0; i < 10; ++i) reaction.learn_noticing(contact(speed, 4000.0, 5.0, late), 0.0, 5.0, 4000.0);
-      // What is assumed before: 0.04 s, with a deviation of 0.095 s.
+      // Initial assumption: 0.04 s with a standard deviation of 0.095 s.
       const double of_one = 1.0 / std::pow(0.7 / (4000.0 * speed), 2);
       const double first = 1.0 / std::pow(0.095, 2);
       const double weights = 10.0 * of_one + first;
@@ -81,7 +81,7 @@ TEST(Reaction, IsNoShorterThanTheTruthWhateverNoiseMakesOfSoftAndHardContacts) {
   constexpr double kLate = 0.15;
   Random random(1, "speeds");
   backends::Normal normal(Random(1, "noise"));
-  for (const double noise : {0.5, 0.7, 0.9}) {  // N at the notice
+  for (const double noise : {0.5, 0.7, 0.9}) {  // N at the detection
     for (const double object : {500.0, 1500.0, kRigid}) {
       int shorter = 0;
       int longer = 0;

@@ -18,20 +18,20 @@ namespace palpate::test {
 namespace {
 
 constexpr int kAttempts = 5;
-constexpr double kPatience = 300.0;  // s for a program to come up or to end: only what hangs takes them
+constexpr double kPatience = 300.0;  // s until a program must have started or ended
 constexpr const char* kTrace = "trace.csv";
 
-/// The master at a port of this machine, and how long it is given for an answer.
+/// The master at a port of this machine, and the deadline of its answers.
 baxter::Master master_at(int port) { return baxter::Master(baxter::look_up("127.0.0.1", port, {})); }
 baxter::Deadline soon() { return baxter::Steady::now() + std::chrono::seconds(5); }
 
-/// Looks again and again until `holds` or the program has ended; another process's progress is announced to nobody.
+/// Polls until `holds` is true or the program has ended, because the progress of another process causes no event.
 template <class Condition>
 bool comes_up(const Child& child, const Condition& holds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
   while (child.running() && std::chrono::steady_clock::now() < end) {
     if (holds()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // between two looks, not for an outcome
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // interval between two checks
   }
   return false;
 }
@@ -42,8 +42,8 @@ std::filesystem::path fake_baxter_file() { return program_file().parent_path() /
 std::filesystem::path probe_file() { return program_file().parent_path() / "tests/fake_baxter/baxter_probe"; }
 
 RobotLab::RobotLab(const std::vector<std::string>& robot) {
-  // A robot has a computer of its own, and its driver rightly stops where the other one is too busy to hear it: what
-  // this test starts goes before what else this machine does, where that is allowed.
+  // A real robot has its own computer, and its driver rightly stops if this one is too busy. So the programs of this
+  // test get a higher priority, if permitted.
   ::setpriority(PRIO_PROCESS, 0, -10);
   int attempts = 1;
   while (!start_master()) {
@@ -63,7 +63,7 @@ bool RobotLab::start_master() {
   port_ = free_port();
   master_ = start({"/usr/bin/python3", "/usr/bin/rosmaster", "--core", "-p", std::to_string(port_),
                    "--master-logger-level", "fatal"});
-  // Another master may have taken the port meanwhile, and would answer, too: it must be this one.
+  // Another master may have taken the port meanwhile and would also answer, so the process is compared.
   return comes_up(*master_, [&] {
     try {
       return master_at(port_).greet(soon()) == master_->pid();
@@ -102,14 +102,14 @@ void RobotLab::start_robot(const std::vector<std::string>& words) {
 
 Ended RobotLab::end_robot() {
   robot_->signal(SIGTERM);
-  // Moved out first, so that it is gone whatever a test did with it before.
+  // Moved out first, so that robot_ is empty also after an exception.
   const std::unique_ptr<Child> robot = std::move(robot_);
   return robot->wait(kPatience);
 }
 
 std::vector<Cells> RobotLab::trace() const {
   const std::string text = text_of(folder() / kTrace);
-  return csv_rows(text.substr(0, text.find_last_of('\n') + 1));  // a robot still there may be writing a row
+  return csv_rows(text.substr(0, text.find_last_of('\n') + 1));  // a running robot may be writing a row
 }
 
 std::unique_ptr<Child> RobotLab::start(const std::vector<std::string>& words) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whole runs on the robot of the tests, over a real master: what is reconstructed, and what is left when the program is
-// killed, interrupted, or somebody has to see to the robot.
+// Whole runs on the simulated robot with a real master: reconstruction, and state after kills, interruptions and faults
+// that need a person.
 #include "robot_lab.hpp"
 #include "robot_words.hpp"
 #include "support/parts.hpp"
@@ -37,10 +37,10 @@ namespace fs = std::filesystem;
 
 fs::path run_of(const RobotLab& lab) { return only_run(lab.folder() / "runs"); }
 
-/// What became of the taps of the only run.
+/// Returns the outcomes of all taps in the only run.
 std::vector<std::string> outcomes(const RobotLab& lab) { return fields(results(run_of(lab)), "outcome"); }
 
-/// palpate, which must come to a good end.
+/// Runs palpate, which must succeed.
 void palpate_does(const RobotLab& lab, const std::vector<std::string>& words, double limit = 300.0) {
   const Ended ended = lab.palpate(words, limit);
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
@@ -48,7 +48,7 @@ void palpate_does(const RobotLab& lab, const std::vector<std::string>& words, do
 
 std::vector<std::string> resume_words(const RobotLab& lab) { return {"resume", run_of(lab).string(), "--quiet"}; }
 
-/// A file of a run, wherever below `runs` it is; "" if there is none yet.
+/// Returns the path of a file in any folder below `runs`, or an empty path.
 fs::path found(const fs::path& runs, const char* name) {
   std::error_code none;
   for (const auto& entry : fs::recursive_directory_iterator(runs, none)) {
@@ -57,19 +57,19 @@ fs::path found(const fs::path& runs, const char* name) {
   return {};
 }
 
-/// The announcements and taps of the only run, so far.
+/// Returns the number of announcements and taps in the only run so far.
 long lines(const RobotLab& lab) {
   const fs::path log = found(lab.folder() / "runs", "record.jsonl");
   const std::string text = log.empty() ? "" : test::lasting_part_of(log.parent_path());
   return std::count(text.begin(), text.end(), '\n');
 }
 
-/// Looks until that has so many; another process writes it.
+/// Waits until the run has this number of lines; another process writes them.
 bool logged(const RobotLab& lab, long wanted) {
   return eventually([&] { return lines(lab) >= wanted; });
 }
 
-/// Looks until the robot's tip has come below `height` (m).
+/// Waits until the robot's tip is below `height` (m).
 bool low(const RobotLab& lab, double height) {
   return eventually([&] {
     const std::vector<Cells> trace = lab.trace();
@@ -79,7 +79,7 @@ bool low(const RobotLab& lab, double height) {
 
 double last_height(const RobotLab& lab) { return std::stod(lab.trace().back().at("z")); }
 
-/// Set-points that the robot has had, once a second of its time has passed in which more would have shown.
+/// Returns the number of received set-points after one more second of robot time, in which further ones would appear.
 int commanded(const RobotLab& lab) {
   const auto rows = [&] { return lab.trace().size(); };
   const std::size_t before = rows();
@@ -87,8 +87,8 @@ int commanded(const RobotLab& lab) {
   return std::stoi(lab.trace().back().at("commands"));
 }
 
-/// Root of the mean squared error of the height mean over the places that truly lie on the object, as rmse_height_m is
-/// defined; `truth` is a surface.csv with the truth.
+/// Returns the RMSE of the height mean over positions that truly are on an object, as rmse_height_m is defined. `truth`
+/// is a surface.csv with the truth.
 double rmse_height(const fs::path& surface, const fs::path& truth) {
   const std::vector<Cells> cells = csv_rows(text_of(surface));
   const std::vector<Cells> known = csv_rows(text_of(truth));
@@ -137,7 +137,7 @@ TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffectsAndIsRepla
 TEST(RobotRun, WorksInRealTimeAsWell) {
   if (kThreadSanitized) GTEST_SKIP() << "ten times slower, it does not keep up with a robot's 100 messages a second";
   RobotLab lab;
-  // Low, and above the desk, where the first tap of this seed goes: it takes seconds.
+  // The tip starts low over the desk at the first tap's position; that tap takes seconds.
   lab.start_robot({object_i(), "backend=fake_baxter", "scene=object_i_arm", "--start-at", "0.04,0.07,0.07"});
   palpate_does(lab, run_words(1, {"motion.hover=6cm"}));
   EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
@@ -177,7 +177,7 @@ TEST(RobotRun, KilledInATapLeavesTheArmHoldingAndIsResumedWithTheTapUnknown) {
   EXPECT_THAT(outcomes(lab), ElementsAre("contact", "unknown", "contact", "contact"));
 }
 
-/// How often the tip came down from the height of travel, by the robot's own account.
+/// Returns the number of descents from the height of travel in the robot's trace.
 int descents(const RobotLab& lab) {
   int out = 0;
   bool up = false;
@@ -203,11 +203,11 @@ TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
   for (int i = 0; i < kills; ++i) {
     const long before = lines(lab);
     const std::unique_ptr<Child> program = lab.start_palpate(next_words());
-    // A quarter of the kills comes at any moment of the start, the others in or between taps.
+    // A quarter of the kills occurs at any moment of the start, the others during or between taps.
     if (random.uniform() > 0.25) {
       ASSERT_TRUE(logged(lab, before + 1 + (i % 2))) << program->err();
     }
-    // The very subject is a kill at a moment that nothing announces.
+    // The kill must occur at a moment without any event.
     std::this_thread::sleep_for(std::chrono::microseconds(static_cast<int>(random.uniform() * 1'000'000)));
     ASSERT_TRUE(program->running()) << "it was to be killed, not to end: " << program->err();
     program->signal(SIGKILL);
@@ -233,7 +233,7 @@ TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
 }
 
 TEST(RobotRun, InterruptedOrWithItsTerminalClosedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
-  // A terminal that is closed may say it twice.
+  // A closed terminal may send the signal twice.
   for (const std::vector<int>& signals : {std::vector<int>{SIGINT}, {SIGHUP, SIGHUP}}) {
     const RobotLab lab(robot_words());
     const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
@@ -304,7 +304,7 @@ TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
 
 TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
   RobotLab lab(robot_words());
-  const std::unique_ptr<Child> first = lab.start_palpate(run_words(40));  // ended once the others were refused
+  const std::unique_ptr<Child> first = lab.start_palpate(run_words(40));  // ended after the others were rejected
   ASSERT_TRUE(logged(lab, 1));
   const Ended second = lab.palpate(run_words(2, {"seed=2"}));
   EXPECT_EQ(second.status, 75);
@@ -315,7 +315,7 @@ TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
   EXPECT_THAT(sweep.err, StartsWith("job 0: " + lab.environment().front() + ": the arm left of http://"));
   EXPECT_THAT(sweep.out, HasSubstr("stopped for the reason above; correct it, then run: palpate resume "));
   EXPECT_THAT(sweep.out, Not(HasSubstr("--retry-failed"))) << "no job has failed";
-  // Another machine has locks of its own, and so has another name of the robot.
+  // Another machine has its own locks, as has another name of the robot.
   std::string master = lab.environment().front();
   master.replace(master.find("127.0.0.1"), 9, "localhost");
   std::vector<std::string> words{"/usr/bin/env", master, program_file().string()};
@@ -323,7 +323,7 @@ TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
   const Ended third = Child(words, lab.folder(), lab.environment()).wait();
   EXPECT_EQ(third.status, 1);
   EXPECT_THAT(third.err, HasSubstr("joint_command: another palpate moves this arm, the node /palpate_"));
-  palpate_does(lab, run_words(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"}));  // which moves nothing
+  palpate_does(lab, run_words(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"}));  // a dry run moves nothing
   first->signal(SIGINT);
   const Ended ended = first->wait();
   EXPECT_EQ(ended.status, 130) << ended.err;

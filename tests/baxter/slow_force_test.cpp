@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Taps of a robot that renews its force seldom, of one that becomes too slow on the way, and of what is very soft.
+// Taps of robots that rarely renew their force or become too slow during a tap, and taps of very soft objects.
 #include "baxter/body_bench.hpp"
 #include "baxter/tapper_bench.hpp"
 
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr double kHard = 20000.0;  // N/m
 
-/// An arm with springs over a bare desk of this stiffness, and how hard and how long it presses.
+/// An arm with springs over a bare desk of this stiffness, with its forces and times.
 class Desk {
  public:
   explicit Desk(double stiffness, const BaxterOptions& options = fake_options())
@@ -62,8 +62,8 @@ class Desk {
   std::string notes;
   test::BodyRobot robot;
   Tapper tapper;
-  double peak = 0.0;    ///< N, of this tap
-  double lowest = 1.0;  ///< m, the tip in this tap
+  double peak = 0.0;    ///< N, in this tap
+  double lowest = 1.0;  ///< m, lowest tip in this tap
   std::optional<double> touched;
 };
 
@@ -83,11 +83,10 @@ TEST(AForce, ThatIsRenewedTwentyOrTenTimesASecondIsTappedWith) {
   }
 }
 
-// Nothing was measured yet, and so the arm comes down as slowly as its renewals ask for, and not at the least speed of
-// an arm that was measured.
+// Without measurements the arm descends as slowly as its renewals require, not at the least speed of a measured arm.
 TEST(AForce, ThatIsRenewedEightOrTenTimesASecondIsExpectedWithinTheBoundAtTheFirstTap) {
   BaxterOptions options = fake_options();
-  options.scene_pose.corner[0] = 0.4;  // 8.4 kN/m: stiffer than any place of a usual area
+  options.scene_pose.corner[0] = 0.4;  // 8.4 kN/m, stiffer than any position of a usual area
   for (const int every : {10, 12}) {
     Desk desk(kHard, options);
     desk.inject(fmt::format("slow_force={}", every));
@@ -105,7 +104,7 @@ TEST(AForce, ThatIsRenewedEightOrTenTimesASecondIsExpectedWithinTheBoundAtTheFir
 TEST(ARobot, ThatMayBeTooSlowIsRejectedBeforeItsFirstTapWithWhatIsAssumed) {
   BaxterOptions options = fake_options();
   options.scene_pose.corner[0] = 0.36;
-  options.scene_pose.corner[1] = 0.2;  // stiffer still
+  options.scene_pose.corner[1] = 0.2;  // even stiffer
   Desk desk(kHard, options);
   desk.inject("slow_force=10");
   desk.inject("jitter=0.07");
@@ -174,7 +173,7 @@ TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigu
   options.motion.threshold = 10.0;
   Desk desk(kHard, options);
   ASSERT_EQ(desk.tap().outcome, Outcome::contact);
-  // The first in the list that has begun counts.
+  // The first active fault in the list counts.
   for (const auto& [delay, height] : {std::pair{0.27, 0.06}, {0.18, 0.08}, {0.09, 0.1}}) {
     desk.robot.body.inject({FaultKind::delay, delay, {}}, {1, height});
   }
@@ -188,7 +187,7 @@ TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigu
 
 TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThan25SecondsAndToldOrFound) {
   for (const double stiffness : {250.0, 300.0, 400.0}) {
-    // A floor far below the desk: only the force ends the descent.
+    // The floor is far below the desk, so only the force ends the descent.
     BaxterOptions options = fake_options();
     options.motion.overrun = 0.1;
     Desk desk(stiffness, options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Streams of the tests' robot that come late, in bursts or too seldom, and what else may be wrong with what they carry.
+// Streams of the simulated robot that are late, in bursts or rare, and other faults of their contents.
 #include "body_bench.hpp"
 #include "fake_baxter/delivery.hpp"
 
@@ -12,7 +12,7 @@ using fake_baxter::Body;
 using fake_baxter::Delivery;
 using fake_baxter::Said;
 
-/// A second of what arrives, by the period in which it does.
+/// Returns the messages of one second by the period of their arrival.
 std::vector<std::vector<Said>> second(BodyBench& bench) {
   Delivery delivery;
   std::vector<std::vector<Said>> out;
@@ -97,7 +97,7 @@ TEST(FakeBody, OneReadingInAHundredHasASpikeOfNineNewtonsAsThoughItWerePressedUp
 }
 
 TEST(FakeBody, InMotionItsForceIsOffAgainstTheMotionAndSidewaysAndAtRestItIsNot) {
-  // The bias by the pose is the same in both: what is left is the fault's.
+  // The bias of the pose is equal in both, so the difference is the fault.
   BodyBench sound(kBare, kQuiet);
   BodyBench faulty(kBare, kQuiet);
   faulty.inject("moving_force=4");
@@ -137,7 +137,7 @@ TEST(FakeBody, TheEffortsOfItsJointsHaveThePowerWithWhichItPresses) {
   EXPECT_EQ(bench.body.said().effort.norm(), 0.0);
   bench.lead({0.115, 0.115, -0.005}, 0.02);
   bench.hold(3.0);
-  // Of any small motion the work of the joints is that of the tip against what it presses on.
+  // For a small motion, the work of the joints equals that of the contact force.
   const Said said = bench.body.said();
   const baxter::Joints joints = bench.body.joints();
   for (int i = 0; i < 7; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Readings are counted, not looks: streams that are slow, and a driver that is, or that did not get to listen.
+// New readings count, not reads: slow streams, a slow driver, and a driver that could not receive.
 #include "baxter/ros/pulse.hpp"
 #include "baxter/watch_bench.hpp"
 
@@ -31,7 +31,7 @@ TEST(AForce, ThatIsLookedAtAgainIsStillOneReading) {
   }
 }
 
-/// Looks every `period` seconds, for three seconds, at streams that come so often a second; what stopped that, if any.
+/// Reads every `period` seconds for three seconds streams of these rates (Hz). Returns the first fault, if any.
 std::optional<Fault> looked(double period, double joints, double endpoint, bool simulated = false) {
   Rules rules;
   for (int i = 0; i * period < 3.0; ++i) {
@@ -73,7 +73,7 @@ TEST(AGap, OfTheDriversOwnIsNotBlamedOnTheNetwork) {
   Rules rules;
   ASSERT_THAT(rules.at(1.0), IsNothing());
   Snapshot seen = sound(1.0, pose());
-  seen.now = 1.15;  // nobody looked, and nobody received
+  seen.now = 1.15;  // without reads and reception
   EXPECT_THAT(rules.look(seen, kInside), IsFault("this computer could not serve the arm for 0.15 s", Then::silence));
 
   Rules receiving;

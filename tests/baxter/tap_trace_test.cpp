@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Records descents of the robot of the tests under what is dangerous, with the verdict that follows from the truth;
-// with PALPATE_WRITE_TRACES=FOLDER into files there, as tests/data/guarded_taps holds them.
+// Records descents of the simulated robot under dangerous conditions, with the verdict from the truth.
+// PALPATE_WRITE_TRACES=FOLDER writes them as in tests/data/guarded_taps.
 #include "support/tap_trace.hpp"
 #include "baxter/body_bench.hpp"
 #include "baxter/campaign.hpp"
@@ -22,7 +22,7 @@ using palpate::test::TapTrace;
 struct Case {
   const char* name;
   const char* what;
-  double stiffness;  ///< of the object, N/m
+  double stiffness;  ///< N/m, object
   std::vector<fake_baxter::Fault> faults;
   TapTrace::Verdict verdict = TapTrace::Verdict::contact;
 };
@@ -59,14 +59,14 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-constexpr Target kPlace{0.03, 0.03};  // of the bare desk
-constexpr double kTared = 0.6;        // s of rest before the descent that are kept
-constexpr double kAfter = 0.5;        // s after the stop
-constexpr double kDeeper = 0.05;      // m that a desk lies below where it is expected, where nothing must be touched
-constexpr double kGoesOn = 0.07;      // s for which joints that are stopped go on
+constexpr Target kPlace{0.03, 0.03};  // on the bare desk
+constexpr double kTared = 0.6;        // s of rest before the descent that are recorded
+constexpr double kAfter = 0.5;        // s after the stop that are recorded
+constexpr double kDeeper = 0.05;      // m by which the desk is lower than expected in tests without a contact
+constexpr double kGoesOn = 0.07;      // s for which stopped joints move on
 constexpr double kLimit = 16.0;       // N
 
-/// The second tap on the bare desk at a place: the first shows the driver what robot it has.
+/// Records the second tap on the bare desk at a position, because the first shows the driver the robot's properties.
 TapTrace record(const Case& one) {
   const auto scene =
       palpate::test::scene_of(palpate::test::kBare, fmt::format("{{stiffness: {{object: {} N/m}}}}", one.stiffness));
@@ -95,7 +95,7 @@ TapTrace record(const Case& one) {
     touched = -1.0;
     EXPECT_EQ(tapper.tap(request).outcome, contact ? Outcome::contact : Outcome::no_contact) << one.name;
   }
-  // The descent ends where the arm was lowest; before it the arm rested.
+  // The descent ends at the lowest position of the arm; before it the arm rested.
   const auto lower = [](const TapTrace::Row& a, const TapTrace::Row& b) { return a.height < b.height; };
   const auto lowest = std::min_element(rows.begin(), rows.end(), lower);
   const double top = options.motion.hover;
@@ -113,7 +113,7 @@ TapTrace record(const Case& one) {
   const auto at = [&](double time) {
     return std::find_if(rows.begin(), rows.end(), [=](const auto& row) { return row.time >= time; })->height;
   };
-  // As fast as it came down in the second before the touch, or two before the end.
+  // Speed in the second before the touch, or two seconds before the end.
   const double late = contact ? touched : lowest->time - 2.0;
   const double speed = at(late - 1.0) - at(late);
   const double springs = arm.vertical_stiffness(robot.body.joints());
@@ -124,7 +124,7 @@ TapTrace record(const Case& one) {
       "{{type: continuous, speed: {:.1f} mm/s, threshold: 5 N, tare: 500 ms, hover: 13.5 cm, overrun: 2 cm}}",
       1e3 * speed);
   if (!contact) {
-    // Not before it is within 2 mm of the floor, and before it goes up again.
+    // Not before the tip is within 2 mm of the floor, and before it rises.
     const double floor = -options.motion.overrun;
     const auto near = [=](const TapTrace::Row& row) { return row.height < floor + 0.002; };
     out.not_before = std::find_if(begin, rows.end(), near)->time - begin->time;
@@ -135,14 +135,14 @@ TapTrace record(const Case& one) {
   return out;
 }
 
-/// What the robot says, period by period, during one tap on the bare, hard desk with this fault; the truth beside it.
+/// Messages of the robot per period during one tap on the bare, hard desk with this fault, and the truth.
 struct Watched {
   std::vector<TapTrace::Row> rows;
-  std::vector<double> told;      ///< N, by the robot, whoever else sends
-  std::vector<double> pressing;  ///< N, true; negative where something pulls
+  std::vector<double> told;      ///< N, published by the robot itself
+  std::vector<double> pressing;  ///< N, true; negative for a pull
   std::vector<bool> faulty;      ///< whether the fault has begun
   Contact contact;
-  double stopped = 0.0;  ///< s, when the driver sent the set-point that it then kept, or sent nothing more
+  double stopped = 0.0;  ///< s, time of the last new set-point
 };
 
 Watched watch_tap(const fake_baxter::Fault& fault, const fake_baxter::Trigger& trigger) {
@@ -175,7 +175,8 @@ Watched watch_tap(const fake_baxter::Fault& fault, const fake_baxter::Trigger& t
   return out;
 }
 
-/// The rows from `before` seconds before row `begin` to `after` seconds after row `end`, their times from 0 on.
+/// Copies the rows from `before` seconds before row `begin` to `after` seconds after row `end`, with times starting at
+/// 0.
 std::size_t cut(TapTrace& trace, const Watched& watched, std::size_t begin, double before, std::size_t end,
                 double after) {
   const auto period = tapping::GuardedTap::kPeriod;
@@ -191,7 +192,7 @@ std::size_t cut(TapTrace& trace, const Watched& watched, std::size_t begin, doub
   return first;
 }
 
-/// The driver itself stopped that motion as the verdict says.
+/// Expects that the driver stopped the motion within the times of the verdict.
 void expect_in_time(const TapTrace& trace, const Watched& watched, std::size_t first) {
   const double stopped = watched.stopped - watched.rows[first].time;
   EXPECT_GE(stopped, trace.not_before) << trace.what;
@@ -203,7 +204,7 @@ std::size_t begin_of(const Watched& watched) {
   return static_cast<std::size_t>(found - watched.faulty.begin());
 }
 
-/// A fault that begins just above a hard desk, and what it must be noticed after, s.
+/// Records a fault that begins just above a hard desk and must be noticed within `noticed` seconds.
 TapTrace record_fault(const Watched& watched, const char* what, double noticed) {
   TapTrace out;
   out.what = what;
@@ -216,20 +217,20 @@ TapTrace record_fault(const Watched& watched, const char* what, double noticed) 
   return out;
 }
 
-/// The force stays the same to the last digit, though messages go on, from just above a hard desk on.
+/// Records a force that is constant to the last digit from just above a hard desk on, while messages continue.
 TapTrace record_frozen() {
   return record_fault(watch_tap({FaultKind::freeze_endpoint, 0.0, {}}, {1, 0.0002}),
                       "the force is frozen just above a hard desk, its messages go on", 0.15);
 }
 
-/// After each message of the robot comes one of another node, which feels nothing.
+/// Records a second node without forces that sends after each message of the robot.
 TapTrace record_second_sender() {
   return record_fault(watch_tap({FaultKind::second_sender, 0.0, "endpoint"}, {1, 0.0002}),
                       "from just above a hard desk on another node sends a calm force after each message of the robot",
                       0.5);
 }
 
-/// The tool hangs on to what it touched, and the arm goes up.
+/// Records a rise while the tool is caught.
 TapTrace record_caught() {
   const Watched watched = watch_tap({FaultKind::caught, 3000.0, {}}, {});
   TapTrace out;
@@ -250,7 +251,7 @@ TapTrace record_caught() {
   return out;
 }
 
-/// The file of that name holds what was recorded now, as far as its digits go; with PALPATE_WRITE_TRACES it is written.
+/// Expects that the stored file equals the recorded trace to its precision. With PALPATE_WRITE_TRACES it is written.
 void expect_stored(const TapTrace& trace, const std::string& name) {
   if (const char* folder = std::getenv("PALPATE_WRITE_TRACES")) {
     return write_trace(trace, std::filesystem::path(folder) / (name + ".csv"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The driver and a robot in the same process, over the paper's object I.
+// The driver and a simulated robot in this process, over the paper's object I.
 #pragma once
 
 #include "baxter/body_robot.hpp"
@@ -24,31 +24,31 @@ inline const Target kOnDesk{0.03, 0.03};
 template <class Options>
 using Change = std::function<void(Options&)>;
 
-/// fake_options() with a change.
+/// Returns fake_options() with a change.
 inline BaxterOptions with(const Change<BaxterOptions>& change) {
   BaxterOptions out = fake_options();
   change(out);
   return out;
 }
 
-/// A calibration tap there.
+/// Adds a calibration tap at a position.
 inline void calibrate(BaxterOptions& options, double x, double y) {
   options.calibration.emplace();
   options.calibration->at[0] = x;
   options.calibration->at[1] = y;
 }
 
-/// The robot finds the joints.
+/// Returns options with the robot's inverse kinematics.
 inline BaxterOptions asking() {
   return with([](BaxterOptions& o) { o.inverse_kinematics = BaxterOptions::InverseKinematics::robot; });
 }
 
-/// What it says where nobody answers it.
+/// Inverse kinematics service that does not answer.
 inline std::optional<Joints> silent_service(const Pose&, const Joints&) {
   throw Error("", "IKService did not answer", {}, Error::Kind::run);
 }
 
-/// The driver, which goes by `options`, taps with a robot as fake_options() has it but for `change`; the test looks on.
+/// The driver with `options` and a robot with fake_options() and `change`, both observed by the test.
 class TapperBench {
  public:
   explicit TapperBench(const BaxterOptions& options = fake_options(), const Change<BodyOptions>& change = nullptr)
@@ -61,7 +61,7 @@ class TapperBench {
     previous_ = place;
     return tapper_.tap(request);
   }
-  /// A contact there, whose height is so near to that of the scene.
+  /// Taps and expects a contact whose height is within `within` of the scene's.
   Contact touch(const Target& place, double within = 0.002) {
     const Contact out = tap(place);
     EXPECT_EQ(out.outcome, Outcome::contact) << out.reason;
@@ -74,7 +74,7 @@ class TapperBench {
   void check() { tapper_.check(); }
   std::string learnt_sign() const { return tapper_.learnt_sign(); }
   double tip() const { return robot.body.tip().z(); }
-  /// Another program, or somebody's hand, has the arm for five seconds.
+  /// Moves the arm for five seconds, as another program or a hand would.
   void lead_away(const Joints& joints) {
     for (int i = 0; i < 500; ++i) {
       robot.body.command(joints);

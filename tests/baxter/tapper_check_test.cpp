@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What must be right before anything moves, and where joints come from if the robot is asked for them.
+// Checks before any motion, and inverse kinematics by the robot.
 #include "baxter/tapper_bench.hpp"
 
 #include <palpate/error.hpp>
@@ -45,7 +45,7 @@ TEST(TheRobotsInverseKinematics, IsNotBelieved) {
   const std::function<Answer(const Pose&, const Joints&)> answers[] = {
       [](const Pose&, const Joints&) { return Answer(); },
       [](const Pose&, const Joints&) { return Answer(Joints::Constant(std::nan(""))); },
-      [&](const Pose& pose, const Joints& seed) {  // another place
+      [&](const Pose& pose, const Joints& seed) {  // another position
         return gripper.solve({pose.position + Eigen::Vector3d(0, 0, 0.002), pose.rotation}, seed);
       },
       [&](const Pose& pose, const Joints& seed) {  // beyond a limit
@@ -72,7 +72,7 @@ TEST(TheRobotsInverseKinematics, EndsTheRunBeforeAnythingMovesWhenItDoesNotAnswe
   EXPECT_TRUE(bench.robot.commands.empty());
 }
 
-/// What is to be said, on one line, before anything is sent; "" where nothing is wrong.
+/// Expects this one-line error before any set-point, or none if `reason` is empty.
 void expect_check(Bench& bench, const std::string& reason) {
   std::string said;
   try {

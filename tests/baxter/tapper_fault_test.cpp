@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes wrong in a tap, and in which state that leaves the arm.
+// Faults in a tap, and the resulting state of the arm.
 #include "baxter/body_bench.hpp"
 #include "baxter/tapper_bench.hpp"
 #include "baxter/troubles.hpp"
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 TEST(ATap, InterruptedIsAbortedAndTheArmRaised) {
-  for (const double at : {0.13, 0.12, 0.1095}) {  // on the way down, and pressing
+  for (const double at : {0.13, 0.12, 0.1095}) {  // during the descent, and while pressing
     Bench bench;
     bench.robot.every_period = [&] {
       if (bench.tip() < at) bench.interrupted = true;
@@ -50,7 +50,7 @@ void expect_safe(const palpate::test::Trouble& trouble, fake_baxter::MechanicsOp
   bench.check();
   ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
   bench.robot.body.inject(fake_baxter::parse_fault(trouble.fault),
-                          {1, 0.125});  // on the way down to the object at 11 cm
+                          {1, 0.125});  // during the descent to the object at 11 cm
   double since = 0.0;
   double lowest = 1.0;
   bench.robot.every_period = [&] {
@@ -64,7 +64,7 @@ void expect_safe(const palpate::test::Trouble& trouble, fake_baxter::MechanicsOp
   EXPECT_THAT(contact.reason, HasSubstr(trouble.reason));
   EXPECT_EQ(contact.ends_run, trouble.ends_run);
   EXPECT_LT(took, trouble.ends_run ? 5.0 : 10.0);
-  // What the arm does when nobody sends anything any more is the firmware's: nothing.
+  // Without set-points the firmware does not move the arm.
   const double left_at = bench.tip();
   for (int i = 0; i < 300; ++i) bench.robot.body.step();
   EXPECT_NEAR(bench.tip(), left_at, 0.005) << "it stands";
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(OnTheWayDown, TroubleInATap, testing::ValuesIn(palpate:
                          [](const auto& trouble) { return name_of(trouble.param); });
 
 TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedBeforeItCanJump) {
-  for (const double filter : {0.0, 0.1, 0.2}) {  // of the force, s: the later a contact is noticed the slower it is
+  for (const double filter : {0.0, 0.1, 0.2}) {  // s, filter of the force: a late detection makes the descent slow
     Bench bench(fake_options(),
                 [](test::BodyOptions& body) { body.mechanics.type = fake_baxter::MechanicsOptions::Type::springs; });
     if (filter > 0.0) bench.robot.body.inject({FaultKind::wrench_filter, filter, {}});
@@ -118,7 +118,7 @@ TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
   std::size_t sent = 0;
   bench.robot.every_period = [&] {
     if (!bench.robot.body.faulty()) return;
-    if (pressed == 0.0) pressed = bench.robot.body.now() + 0.2;  // 0.1 s until it is noticed
+    if (pressed == 0.0) pressed = bench.robot.body.now() + 0.2;  // 0.1 s until the detection
     if (sent == 0 && bench.robot.body.now() >= pressed) {
       bench.robot.body.inject({FaultKind::estop, 1000.0, {}});
       sent = bench.robot.commands.size();
@@ -190,7 +190,7 @@ TEST(AFault, RaisesTheArmWithoutTheRobotsInverseKinematics) {
   EXPECT_NEAR(bench.tip(), kHover, 0.01);
 }
 
-/// N with which an arm with springs presses at most on 8 kN/m, where this goes wrong when it has pressed with 2 N.
+/// Returns the largest force in N of an arm with springs on 8 kN/m, with a fault that begins at 2 N.
 double hardest_press(const char* fault, std::string& reason) {
   const auto scene = palpate::test::scene_of("[]", "{stiffness: {object: 8000 N/m}}");
   test::BodyOptions body = test::body_options(fake_options());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One tap after the other on a robot in the same process: what is measured, where the arm goes, how hard it presses.
+// Consecutive taps on a robot in this process: measured heights, path of the arm, contact forces.
 #include "baxter/tapper_bench.hpp"
 
 #include <palpate/error.hpp>
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using Type = tapping::MotionOptions::Type;
 
-/// A robot whose tip is there at the start.
+/// Puts the tip of the robot at this position at the start.
 test::Change<test::BodyOptions> starts(const Eigen::Vector3d& at) {
   return [at](test::BodyOptions& body) { body.start_at = at; };
 }
@@ -43,7 +43,7 @@ TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
     EXPECT_GE(contact.peak.value(), 5.0);
     EXPECT_LT(contact.peak.value(), Body::kReflex);
     EXPECT_GT(contact.seconds, 2.0);
-    // The first taps say little of how late a contact is noticed, since what they touch is soft.
+    // The first taps are slow, because a soft object shows little about the delay of a detection.
     EXPECT_LT(contact.seconds, tap < 4 ? 32.0 : 24.0) << tap;
     EXPECT_EQ(contact.reason, "");
   }
@@ -60,14 +60,13 @@ TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
   }));
   bench.check();
   const auto seconds = [&](int motion) {
-    // The first one comes from anywhere; the others are over their place already, and show how early they are noticed.
+    // The first tap starts elsewhere. The others start above their position and improve the known delay of a detection.
     for (int i = 0; i < 5; ++i) bench.tap(kOnDesk, motion);
     const Contact contact = bench.tap(kOnDesk, motion);
     EXPECT_EQ(contact.outcome, Outcome::contact);
     return contact.seconds;
   };
-  // What is made at 0.5 cm/s and at 1 cm/s: 13.5 cm down, a centimetre before each of two rests, the first of the way
-  // up.
+  // Parts at 0.5 cm/s and at 1 cm/s: 13.5 cm down, one centimetre before each of two rests, and the start of the rise.
   EXPECT_NEAR(seconds(0) - seconds(1), 15.5 / 0.5 - 15.5 / 1.0, 1.5);
 }
 
@@ -76,7 +75,7 @@ TEST(ATap, CanBeMadeInEveryMotion) {
     Bench bench(with([&](BaxterOptions& o) { o.motion.type = type; }));
     double hardest = 0.0;
     bench.robot.every_period = [&] { hardest = std::max(hardest, bench.robot.body.pressing()); };
-    // Where the arm rests, the object has given way by the force over 1500 N/m.
+    // The object yields by the force divided by 1500 N/m.
     for (const Target& place : {kOnObject, kOnDesk}) bench.touch(place, type == Type::continuous ? 0.002 : 0.01);
     EXPECT_LT(hardest, Body::kReflex) << "the firmware never had to stop it";
   }
@@ -148,8 +147,7 @@ TEST(ATap, OutOfReachMovesNothing) {
 }
 
 TEST(ATap, ThatMeetsNothingEndsAboveTheFloor) {
-  Bench bench(
-      with([](BaxterOptions& o) { o.scene_pose.height += 0.1; }));  // the desk lies lower than the config has it
+  Bench bench(with([](BaxterOptions& o) { o.scene_pose.height += 0.1; }));  // the desk is lower than in the config
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::no_contact);
   EXPECT_FALSE(contact.ends_run);
@@ -162,7 +160,7 @@ TEST(ACalibrationTap, PutsTheZeroWhereTheDeskIs) {
     calibrate(o, 0.02, 0.02);
   }));
   bench.touch(kOnObject);
-  bench.touch(kOnDesk);  // once is enough
+  bench.touch(kOnDesk);  // one calibration is sufficient
 }
 
 TEST(ACalibrationTap, EndsTheRunWhereTheDeskIsNotNearWhereTheConfigHasIt) {
@@ -186,7 +184,7 @@ TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {
     const Contact falls = tapped(false);
     const Contact rises = tapped(true);
     ASSERT_EQ(rises.outcome, Outcome::contact) << rises.reason;
-    // But for the first reading, which was made before it was turned.
+    // The first reading preceded the change of the sign.
     EXPECT_NEAR(rises.height, falls.height, 0.003);
     EXPECT_NEAR(rises.force, falls.force, 3.0);
   }
@@ -194,7 +192,7 @@ TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {
 
 TEST(ACalibrationTap, LearnsTheSignOfTheForceAndComesDownGently) {
   for (const double sign : {1.0, -1.0}) {
-    Bench bench(with([](BaxterOptions& o) { calibrate(o, 0.02, 0.02); }));  // which says nothing of force_sign
+    Bench bench(with([](BaxterOptions& o) { calibrate(o, 0.02, 0.02); }));  // without force_sign in the options
     bench.robot.spoil = [&](Snapshot& seen) { seen.endpoint->force.z() *= sign; };
     double hardest = 0.0;
     bench.robot.every_period = [&] {
@@ -219,21 +217,22 @@ TEST(ForceSign, IsLearntWithACalibrationTapAndElseThatOfOtherProgramsUnlessTheCo
 
 TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
   Bench bench(with([](BaxterOptions& o) { o.motion.type = Type::two_stage; }));
-  // The springs have another zero after the first contact: beside the force of the second it would be too much.
+  // After the first contact the springs have another zero. Together with the second contact's force it would be too
+  // much.
   bool touched = false;
   bool over = false;
   bench.robot.spoil = [&](Snapshot& seen) {
     const double height = bench.robot.body.tip().z();
     touched = touched || height < -0.003;
     over = over || (touched && height > 0.005);
-    const double trembles = 0.1 * std::sin(1000.0 * seen.now);  // no sensor says the same twice
+    const double trembles = 0.1 * std::sin(1000.0 * seen.now);  // a real sensor never repeats a value exactly
     seen.endpoint->force = {over && height < 0.05 ? 13.0 : 0.0, 0.0, trembles - bench.robot.body.pressing()};
   };
   const Contact contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
 }
 
-/// The force reads `offset` newtons more at 2 cm/s downwards, as much less upwards, and at most twice that.
+/// Adds `offset` newtons to the force at 2 cm/s downwards, the negative upwards, at most twice that.
 std::function<void(Snapshot&)> moves(double offset, const Bench& bench) {
   return [=, &bench, last = 0.0, at = 0.0, speed = 0.0](Snapshot& seen) mutable {
     const double height = bench.tip();
@@ -258,7 +257,7 @@ TEST(ATap, EndsWithAWayUpNoFasterThanAForceThatDependsOnTheSpeedAllows) {
     Bench bench;
     if (offset > 0.0) bench.robot.spoil = moves(offset, bench);
     double last = 0.0;
-    double fastest = 0.0;  // m/s upwards, clear of the desk and of the rest above
+    double fastest = 0.0;  // m/s upwards, away from the desk and from the rest
     bench.robot.every_period = [&] {
       const double height = bench.tip();
       if (height > 0.03 && height < 0.1) fastest = std::max(fastest, (height - last) / 0.01);
@@ -270,7 +269,7 @@ TEST(ATap, EndsWithAWayUpNoFasterThanAForceThatDependsOnTheSpeedAllows) {
   }
 }
 
-/// Of a hundred readings of the force one is 9 N off, and then nothing new comes for so many periods.
+/// Makes one reading of the force in a hundred 9 N wrong; then no new one arrives for `stalled` periods.
 std::function<void(Snapshot&)> spikes(int stalled, const Bench& bench) {
   return [=, &bench, held = std::optional<EndpointReading>(), left = 0,
           random = Random(5, "spikes")](Snapshot& seen) mutable {
@@ -291,7 +290,7 @@ TEST(ATap, IsNotFooledByOneLoudReadingThatStaysTheLatest) {
   for (int i = 0; i < 40; ++i) {
     const Target place{0.02 + 0.01 * (i % 20), i % 2 == 0 ? 0.02 : 0.115};
     const Contact contact = bench.tap(place);
-    if (contact.outcome != Outcome::contact) continue;  // one that was not believed is no lie
+    if (contact.outcome != Outcome::contact) continue;  // a rejected contact is not wrong
     ASSERT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.004) << "tap " << i;
   }
 }

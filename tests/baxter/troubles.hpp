@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes wrong in a tap, and what is to come of it: in one process and over ROS.
+// Faults in a tap and their expected consequences, for tests in one process and over ROS.
 #pragma once
 
 #include <ostream>
@@ -9,9 +9,9 @@ namespace palpate::test {
 
 struct Trouble {
   const char* name;
-  const char* fault;    ///< as the robot of the tests takes it
-  const char* reason;   ///< of the tap
-  bool raised = false;  ///< the arm, to the height of travel; else it stays where it is
+  const char* fault;    ///< as on fake_baxter's command line
+  const char* reason;   ///< expected reason of the tap
+  bool raised = false;  ///< whether the arm rises to the height of travel
   bool ends_run = true;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What RViz is shown.
+// Messages for RViz.
 #include "baxter/ros/connect.hpp"
 
 #include "elsewhere.hpp"
@@ -31,7 +31,8 @@ using ::testing::StartsWith;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-/// The corner at (0.5, 0.1, -0.2) of the robot's base, turned by a right angle: x of the scene is y of the base.
+/// A view with the scene's corner at (0.5, 0.1, -0.2) in the robot's base, rotated by 90 degrees: x of the scene is y
+/// of the base.
 std::unique_ptr<View> turned_view(baxter::Robot& robot) {
   baxter::ScenePoseOptions place;
   place.corner[0] = 0.5;
@@ -41,7 +42,7 @@ std::unique_ptr<View> turned_view(baxter::Robot& robot) {
   return baxter::make_view(robot, place, {0.3, 0.2}, 0.01);
 }
 
-/// What somebody sees who comes late; "nothing" if a message does not come in 20 s.
+/// Returns the latched message as a late subscriber receives it; "nothing" if none arrives within 20 s.
 template <class Message>
 std::string seen_late(const std::string& topic, const std::function<std::string(const Message&)>& tell) {
   ros::CallbackQueue queue;
@@ -80,7 +81,7 @@ std::string told(const PointCloud2& cloud) {
   return text;
 }
 
-/// What comes, late, of what is shown.
+/// Returns the message that a late subscriber receives after `show`.
 template <class Message>
 std::string seen(const RobotLab& lab, const std::string& topic, const std::function<void(View&)>& show) {
   return elsewhere(lab.environment(),
@@ -106,7 +107,7 @@ TEST(Shown, AreTheAreaTheTapsOnAndOffTheObjectAndTheNextAboveTheDeskInTheRobotsF
     view.target({0.1, 0.0});
     view.contacts({{{0.1, 0.0}, 0.07, false}});
     view.target({0.2, 0.0});
-    view.contacts({{{0.1, 0.0}, 0.07, true}, {{0.2, 0.0}, 0.0, false}});  // the first is read again
+    view.contacts({{{0.1, 0.0}, 0.07, true}, {{0.2, 0.0}, 0.0, false}});  // the first contact was changed
     view.target({0.0, 0.1});
   };
   EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", show),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What tests of the rules look at: an arm 10 cm above the middle of its area.
+// Common input for tests of the safety rules: an arm 10 cm above the middle of its area.
 #pragma once
 
 #include "baxter/bench.hpp"
@@ -21,14 +21,14 @@ using Spoil = std::function<void(Snapshot&)>;
 
 inline const Workspace kSpace{0.23, 0.23, -0.03, 0.435};
 inline const Eigen::Vector3d kInside(0.1, 0.1, 0.1);
-inline const Eigen::Vector3d kZero(0.3, -0.2, 1.0);  ///< about the force of sound()
+inline const Eigen::Vector3d kZero(0.3, -0.2, 1.0);  ///< approximate force of sound()
 
 inline Joints pose() {
   static const Joints joints = PlannerBench().at(0.1, 0.1, 0.1);
   return joints;
 }
 
-/// The rules, and what they find of a robot that is sound but for what `spoil` does.
+/// The rules, applied to a sound robot that `spoil` changes.
 class Rules : public Watch {
  public:
   Rules() : Watch(kSpace, 14.0) {}
@@ -41,7 +41,7 @@ class Rules : public Watch {
 };
 
 MATCHER(IsNothing, "") { return !arg.has_value(); }
-/// A fault for which these words stand, after which so much may still be done.
+/// Matches a fault whose reason contains these words and that allows this action.
 MATCHER_P2(IsFault, words, then, "") {
   return arg && arg->then == then &&
          testing::ExplainMatchResult(testing::HasSubstr(words), arg->reason, result_listener);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rules that count readings of the force: how often it is another, whether it is frozen, whether something holds
-// the tool. Each begins with what a robot says, message by message, whose force is known.
+// Rules that count readings of the force: rate of renewal, frozen force, caught tool. Each test defines the messages of
+// a robot with known forces.
 #include "baxter/watch_bench.hpp"
 
 #include <gmock/gmock.h>
@@ -20,12 +20,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using Then = Fault::Then;
 
-/// A robot that sends a force `messages` times a period of 10 ms, of which the driver sees the last.
+/// A robot that sends `messages` forces per period of 10 ms, of which the driver sees the last.
 class Sender {
  public:
   explicit Sender(int messages = 1) : messages_(messages) {}
 
-  /// One period, in which the force along z is `force(number)` of each message; the fault that the rules find.
+  /// Simulates one period with force `force(number)` along z in each message. Returns the fault, if any.
   std::optional<Fault> send(Rules& rules, const std::function<double(long)>& force) {
     for (int i = 0; i < messages_; ++i) {
       EndpointReading next = *test::sound(now_, test::pose()).endpoint;
@@ -37,13 +37,13 @@ class Sender {
     now_ += 0.01;
     return fault;
   }
-  /// The same until a fault, for so many periods at most.
+  /// Simulates up to `periods` periods, until a fault.
   std::optional<Fault> send(Rules& rules, int periods, const std::function<double(long)>& force) {
     std::optional<Fault> fault;
     for (taken_ = 0; taken_ < periods && !fault; ++taken_) fault = send(rules, force);
     return fault;
   }
-  int taken() const { return taken_; }  ///< periods of the latest send()
+  int taken() const { return taken_; }  ///< periods of the last send()
   long sent() const { return sent_; }
 
  private:
@@ -54,14 +54,14 @@ class Sender {
   std::optional<EndpointReading> latest_;
 };
 
-/// Of a robot that estimates the force once in `every` messages: noise that no two of its estimates have in common.
+/// Returns the force of a robot that estimates it once per `every` messages; no two estimates are equal.
 std::function<double(long)> renewed(int every) {
   return [every](long number) { return 0.1 * std::sin(1.0 + 1000.0 * static_cast<double>(number / every)); };
 }
 
 TEST(AFrozenForce, IsNoticedAfterTenOfTheTimesInWhichTheRobotRenewsItOrFourThatTakeATenthOfASecond) {
   for (const auto& [every, messages, periods] :
-       {std::tuple{1, 1, 10}, {1, 5, 2}, {3, 2, 10}, {5, 1, 20}}) {  // 100, 500, 67 and 20 renewals a second
+       {std::tuple{1, 1, 10}, {1, 5, 2}, {3, 2, 10}, {5, 1, 20}}) {  // 100, 500, 67 and 20 renewals per second
     Rules rules;
     Sender robot(messages);
     ASSERT_THAT(robot.send(rules, 120, renewed(every)), IsNothing()) << every;
@@ -116,14 +116,14 @@ TEST(AForce, ThatIsRenewedLessThanHalfAsOftenAsBeforeIsToldWithHowOften) {
 }
 
 TEST(AForce, ThatComesInBurstsIsCountedByTheMessageAndNotByTheLook) {
-  // Of five messages that come at once the last is seen; each has a force of its own.
+  // The driver sees the last of five messages that arrive at once; each has its own force.
   Rules rules;
   Sender robot(5);
   EXPECT_THAT(robot.send(rules, 300, renewed(1)), IsNothing());
 }
 
-/// An arm that goes up by `step` m a period with a force that is a function of the period, in newtons of a press;
-/// `sign` as of Watch::Rise.
+/// Simulates an arm that rises by `step` m per period with a force `press` in newtons as a function of the period.
+/// `sign`: see Watch::Rise.
 std::optional<Fault> rising(double sign, const Watch::Rise& rise, const std::function<double(int)>& press,
                             double step = 0.001) {
   Rules rules;

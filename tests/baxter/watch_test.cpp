@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every rule under which the arm may move: just kept, and just broken.
+// Every safety rule, at a value that just satisfies it and at one that just breaks it.
 #include "baxter/watch_bench.hpp"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ using Button = StateReading::Button;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// One thing that is wrong with a robot, and what is to be said and done about it.
+/// A defect of a robot, with the expected message and action.
 struct Wrong {
   const char* name;
   Spoil spoil;
@@ -178,7 +178,7 @@ TEST(ASoundRobot, BreaksNoRule) {
 TEST(ASoundRobot, MayHaveAnotherClockThatGoesALittleFasterAndForgetACollisionStream) {
   Rules rules;
   for (double now = 1.0; now < 4.0 * 3600.0; now += 1.0) {
-    rules.begin();  // it is looked at once a second, between motions
+    rules.begin();  // read once per second, between motions
     ASSERT_THAT(rules.at(now,
                          [&](Snapshot& s) {
                            s.joints->stamp = s.endpoint->stamp = 12345.0 + 0.9999 * now;  // 1.4 s in four hours
@@ -189,7 +189,7 @@ TEST(ASoundRobot, MayHaveAnotherClockThatGoesALittleFasterAndForgetACollisionStr
   }
 }
 
-/// Lets the stream of collisions come every `period` seconds and then no more; whether that was noticed in two seconds.
+/// Simulates collision messages every `period` seconds that stop. Returns whether this was noticed within two seconds.
 bool noticed_silence_of_collisions(double period) {
   Rules rules;
   double last = 1.0;
@@ -230,7 +230,7 @@ TEST(AForce, StopsAfterThreeReadingsBeyondTheLimitAndSidewaysHalfAsMuchAgain) {
   }
 }
 
-/// Whether a force on top of the zero, by the period, stops an arm within so many of them.
+/// Returns whether a force, added to the zero as a function of the period, stops an arm within `periods` periods.
 bool stopped(Watch::Zero zero, int periods, const std::function<Eigen::Vector3d(int)>& force) {
   Rules rules;
   rules.set_tare(kZero, zero);
@@ -270,8 +270,8 @@ TEST(TheWorkspace, EndsTenCentimetresBesideTheAreaAndAtFloorAndCeiling) {
   EXPECT_NE(kSpace.breach({0.1, 0.1, kNaN}), "");
 }
 
-/// Sends a ramp of joint s1 at `speed` (rad/s) while the arm is where `follows` says (s) it was sent to; when that was
-/// noticed, in words in which this stands, or 0.
+/// Simulates a ramp of joint s1 at `speed` (rad/s) while the arm is where it was sent at time `follows` (s). Returns
+/// when a fault that contains `words` occurred, or 0.
 double noticed(double speed, const std::function<double(double now)>& follows, const char* words = "") {
   Rules rules;
   for (double now = 0.0; now < 4.0; now += 0.01) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Whether the robot may move: what /robot/set_super_* and the emergency stop do, as /robot/state tells it.
+// State machine of the simulated robot's brakes: effects of /robot/set_super_* and of the emergency stop on
+// /robot/state.
 #pragma once
 
 #include "baxter/robot.hpp"
 
 namespace palpate::fake_baxter {
 
-/// The state machine of the robot's brakes, as Rethink's comments on AssemblyState and its RobotEnable have it.
+/// Implements Rethink's comments on AssemblyState and the behaviour of its RobotEnable.
 class Assembly {
  public:
   using State = baxter::StateReading;
@@ -15,28 +16,28 @@ class Assembly {
 
   const State& state() const { return state_; }
 
-  /// Has no effect while the robot is stopped, and cannot enable an arm that is `tucked`.
+  /// Enables or disables the robot. Without effect while the robot is stopped; a `tucked` arm cannot be enabled.
   void enable(bool wanted, bool tucked) {
     if (!wanted) set_enabled(false);
     if (wanted && !state_.stopped && !tucked) set_enabled(true);
   }
 
-  /// The stop of the software: whoever else than the button stops the robot, the button is then "unknown".
+  /// Stops the robot by software. For every stop without the button, its state is "unknown".
   void stop() { halt(State::Button::unknown, State::Source::unknown); }
 
   void press() { halt(State::Button::pressed, State::Source::user); }
   void release() { state_.estop_button = State::Button::released; }
 
-  /// A fault of a joint, which stops the robot.
+  /// Simulates a joint fault, which stops the robot.
   void fail() {
     halt(State::Button::unknown, State::Source::fault);
     state_.error = true;
   }
 
-  /// A component has an error that stops nothing and that no reset clears.
+  /// Sets an error of a component that stops nothing and that no reset clears.
   void complain() { state_.error = complaint_ = true; }
 
-  /// Clears what stopped the robot and leaves it disabled; refused while the button is pressed.
+  /// Clears a stop and leaves the robot disabled. Without effect while the button is pressed.
   void reset() {
     if (state_.estop_button == State::Button::pressed) return;
     state_ = State{};
@@ -44,7 +45,7 @@ class Assembly {
   }
 
  private:
-  /// Ready is who is enabled and need not home its joints, which this one never needs.
+  /// An enabled robot is ready, because the simulated joints need no homing.
   void set_enabled(bool enabled) { state_.ready = state_.enabled = enabled; }
 
   void halt(State::Button button, State::Source source) {

@@ -12,20 +12,20 @@
 namespace palpate::fake_baxter {
 namespace {
 
-constexpr double kForceNoise = 1.5;       // N, where it has no noise
-constexpr double kLeastNoise = 0.01;      // N: a real sensor never says the same twice
+constexpr double kForceNoise = 1.5;       // N, if the scene has no force noise
+constexpr double kLeastNoise = 0.01;      // N: a real sensor never repeats a value exactly
 constexpr double kBias = 2.0;             // N, standard deviation of the bias
-constexpr double kBiasByJoints = 2.0;     // N/rad, of how it depends on each joint
-constexpr double kTuckedShoulder = -1.6;  // rad: with left_s1 below it the robot refuses to be enabled
-constexpr double kAbove = 0.03;           // m, of the start
-constexpr double kMoving = 0.01;          // m/s from which the force of a motion is at its full
-constexpr double kAvoidanceRate = 10.0;   // Hz; not known of a real one
-constexpr double kSlack = 1e-9;           // of times that are sums of periods, s
+constexpr double kBiasByJoints = 2.0;     // N/rad, standard deviation of the bias per joint angle
+constexpr double kTuckedShoulder = -1.6;  // rad: below this left_s1 the robot cannot be enabled
+constexpr double kAbove = 0.03;           // m above the height of travel at the start
+constexpr double kMoving = 0.01;          // m/s from which the force of motion is complete
+constexpr double kAvoidanceRate = 10.0;   // Hz; unknown for a real robot
+constexpr double kSlack = 1e-9;           // s, tolerance for sums of periods
 
-/// Greatest speed of each joint, rad/s.
+/// Largest speed of each joint, rad/s.
 Joints greatest_speed() { return (Joints() << 1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0).finished(); }
 
-/// Whether a stream of this rate, Hz, has a message in this period.
+/// Returns whether a stream of this rate (Hz) has a message in this period.
 bool due(long period, double rate) {
   const auto so_far = [&](long periods) {
     return std::floor(static_cast<double>(periods) * Body::kPeriod * rate + kSlack);
@@ -163,7 +163,7 @@ void Body::begin(Armed& armed) {
   }
 }
 
-/// There at once.
+/// Moves the arm to `joints` at once.
 void Body::stand(const Joints& joints) {
   target_ = joints;
   mechanics_->put(joints);
@@ -193,7 +193,7 @@ Body::Mode Body::choose_mode() const {
   return now() - commanded_ > timeout_ + kSlack ? Mode::timed_out : Mode::following;
 }
 
-/// The arm stays where it is: at once by the brakes, else as its joints come to rest there.
+/// Holds the arm at its position, at once with brakes, else after its joints have come to rest.
 void Body::hold(bool brakes) {
   reference_ = mechanics_->holding();
   if (brakes) mechanics_->brake();
@@ -208,8 +208,8 @@ void Body::follow() {
   hang();
 }
 
-/// A tool that is caught hangs, where it touched, by a spring that only pulls: the arm gives way to that by the springs
-/// in its joints, at once, whatever its mechanics.
+/// Simulates a caught tool: a spring at the height of the contact that only pulls. The springs in the joints yield to
+/// it immediately, independently of the mechanics.
 void Body::hang() {
   arm_ = mechanics_->state();
   const Fault* caught = active(FaultKind::caught);
@@ -225,7 +225,8 @@ void Body::hang() {
   arm_.pressing = -pull;
 }
 
-/// An arm that is left pressing is held again and again, and let go in between for as long as it takes to feel that.
+/// Simulates the firmware's reflex. While the arm keeps pressing it is held repeatedly, and released in between for the
+/// time of a new detection.
 void Body::feel_reflex() {
   if (now() < held_until_ + kLetGo - kSlack) return;
   if (!assembly_.state().enabled || std::abs(pressing()) <= kReflex) return;
@@ -253,14 +254,14 @@ void Body::measure() {
   if (slow == nullptr || periods_ % std::lround(slow->amount) == 0) endpoint_.force = force;
 }
 
-/// What faults make of the force that is estimated.
+/// Applies faults to the estimated force.
 void Body::spoil(Eigen::Vector3d& force) {
   if (const Fault* bias = active(FaultKind::bias)) force.z() -= bias->amount;
   if (const Fault* spikes = active(FaultKind::spikes)) {
     if (spikes_.uniform() < spikes->amount) force.z() -= kSpike;
   }
   if (const Fault* moving = active(FaultKind::moving_force)) {
-    // Friction in the joints: an arm on its way down feels as though something pressed it upwards.
+    // Joint friction: during a descent the force seems to press the tool upwards.
     const Eigen::Vector3d way = endpoint_speed_ / std::max(kMoving, endpoint_speed_.norm());
     force += moving->amount * (way + way.z() * Eigen::Vector3d(0.5, -0.3, 0.0));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The robot of the tests without ROS: a left arm of Baxter's over a scene, 100 times a second of its own time. It draws
-// all noise from a seed: equal commands at equal times bring equal readings.
+// The simulated robot without ROS: a left arm of Baxter in a scene, 100 periods per second of its time. All noise comes
+// from a seed, so equal commands at equal times give equal readings.
 #pragma once
 
 #include "baxter/kinematics.hpp"
@@ -22,31 +22,31 @@
 namespace palpate::fake_baxter {
 
 using baxter::untucked;
-/// Tucked, as a real arm reads: left_s1 is beyond the limit of its description.
+/// Returns the tucked posture of a real arm, where left_s1 exceeds the limit of the URDF.
 const Joints& tucked();
 
 struct BodyOptions {
   baxter::ToolOptions tool;
   baxter::ScenePoseOptions scene_pose;
-  double hover = 0.135;    ///< of travel, metres above the desk
-  std::uint64_t seed = 1;  ///< of all noise
-  /// Of the tip, straight down, in the scene's frame; else 3 cm above the height of travel, over the middle of the
-  /// area.
+  double hover = 0.135;    ///< height of travel above the desk, metres
+  std::uint64_t seed = 1;  ///< seed of all noise
+  /// Initial position of the tip, pointing down, in the scene's frame. Default: 3 cm above the height of travel, over
+  /// the middle of the area.
   std::optional<Eigen::Vector3d> start_at;
   double begin = 100.0;  ///< time at the start, seconds
   MechanicsOptions mechanics;
-  /// What another program has left behind: the robot keeps both until somebody sets them again.
+  /// Settings that another program left on the robot; it keeps them until they are set again.
   double speed_ratio = 0.3;
   double command_timeout = 0.2;  ///< s
 };
 
-/// What the robot says at the end of a period; a stream that is silent is absent. `received` is when it is said.
+/// Messages of the robot at the end of a period; a silent stream is absent. `received` is the time of sending.
 struct Said {
   std::optional<baxter::JointReading> joints;
-  Joints speed = Joints::Zero();   ///< of the joints, rad/s
-  Joints effort = Joints::Zero();  ///< of the joints, Nm: with which they press, without gravity
+  Joints speed = Joints::Zero();   ///< joints, rad/s
+  Joints effort = Joints::Zero();  ///< joints, Nm, without gravity
   std::optional<baxter::EndpointReading> endpoint;
-  Eigen::Vector3d tip_speed = Eigen::Vector3d::Zero();  ///< of left_gripper, m/s
+  Eigen::Vector3d tip_speed = Eigen::Vector3d::Zero();  ///< left_gripper, m/s
   std::optional<baxter::StateReading> state;
   std::optional<baxter::CollisionReading> collision;
   std::optional<baxter::AvoidanceReading> avoidance;
@@ -54,61 +54,63 @@ struct Said {
 
 /// The arm and its firmware.
 ///
-/// The arm itself is its mechanics' (mechanics.hpp). The published force is what they feel, turned around, with a bias
-/// that depends on the pose and with noise (scene.effects.force_noise, 1.5 N if absent): it falls along z when
-/// something presses the tool upwards, as five programs for Baxter by three authors have it.
+/// The motion of the arm is computed by its mechanics (mechanics.hpp). The published force is the negative of the
+/// mechanics' force, plus a bias that depends on the pose, plus noise (scene.effects.force_noise, default 1.5 N). It
+/// falls along z when an object presses the tool upwards, as five public programs for Baxter by three authors expect.
 class Body {
  public:
   static constexpr double kPeriod = Mechanics::kPeriod;
   static constexpr double kReflex = 16.0;  ///< N, above which the firmware holds the arm
   static constexpr double kSpike = 9.0;    ///< N, of the fault `spikes`
-  static constexpr double kHeld = 2.0;     ///< s, for so long
-  static constexpr double kLetGo = 0.1;    ///< s for which it then goes on at least; not known of a real one
+  static constexpr double kHeld = 2.0;     ///< s of a hold
+  static constexpr double kLetGo = 0.1;    ///< s of motion after a hold, at least; unknown for a real robot
   static constexpr double kLag = Mechanics::kLag;
 
   enum class Mode { following, timed_out, reflex, stopped, disabled };
 
-  /// `scene` must outlive it. Throws Error if the arm cannot stand where it should start.
+  /// `scene` must outlive the object. Throws Error if the arm cannot reach its initial position.
   Body(const Scene& scene, const BodyOptions& options);
 
-  /// Takes a set-point for all joints, radians, which arrives after what the faults `delay` and `jitter` say; values
+  /// Takes a set-point for all joints, radians. It arrives after the delays of the faults `delay` and `jitter`. Values
   /// that are not finite are ignored.
   void command(const Joints& target);
-  /// For how long a set-point is followed, seconds; and the share of their greatest speed at which the joints go after
-  /// it, clamped to 0 to 1. What is not finite is ignored.
+  /// Set for how many seconds a set-point is followed, and the fraction of the largest joint speeds, clamped to [0, 1].
+  /// Values that are not finite are ignored.
   void set_command_timeout(double seconds);
   void set_speed_ratio(double ratio);
   void enable(bool wanted);
   void stop() { assembly_.stop(); }
   void reset() { assembly_.reset(); }
 
-  /// Lets something go wrong from `trigger` on.
+  /// Injects a fault that begins at `trigger`.
   void inject(const Fault& fault, const Trigger& trigger = {});
-  /// Somebody frees a tool that is caught.
+  /// Frees a caught tool.
   void release();
-  /// The fault of this kind if it has begun, else null.
+  /// Returns the fault of this kind if it has begun, else null.
   const Fault* active(FaultKind kind) const;
-  /// Its amount, 0 if it has not begun.
+  /// Returns the amount of a fault, 0 if it has not begun.
   double amount(FaultKind kind) const;
-  /// Whether any has begun.
+  /// Returns whether any fault has begun.
   bool faulty() const;
 
-  /// One period.
+  /// Simulates one period.
   void step();
 
   double now() const;
   Said said() const;
 
-  /// What is so, whatever is said.
+  /// True state of the robot, independent of its messages.
   Mode mode() const { return mode_; }
-  Joints joints() const { return arm().position; }                     ///< with what the arm gives way
-  const Joints& set_point() const { return reference_; }               ///< that the joints follow
+  Joints joints() const { return arm().position; }                     ///< including deflection
+  const Joints& set_point() const { return reference_; }               ///< followed by the joints
   Eigen::Vector3d tip() const { return in_scene(joints()); }           ///< in the scene's frame, metres
   double set_point_height() const { return in_scene(reference_)(2); }  ///< of the tip, in the scene's frame, metres
   const ArmState& arm() const { return arm_; }
-  double pressing() const { return arm().pressing; }    ///< N, upwards on the tool; negative where it is caught
-  long commands() const { return commands_; }           ///< received so far
-  double latest_command() const { return commanded_; }  ///< its time; before any, the distant past
+  double pressing() const { return arm().pressing; }  ///< N, upwards on the tool; negative if the tool is caught
+  long commands() const { return commands_; }         ///< number of received commands
+  double latest_command() const {
+    return commanded_;
+  }  ///< s, time of the last command; before the first, a time far in the past
   double command_timeout() const { return timeout_; }
   double speed_ratio() const { return speed_ratio_; }
 
@@ -116,8 +118,8 @@ class Body {
   struct Armed {
     Fault fault;
     Trigger trigger;
-    int descents;                 ///< through the trigger's height so far
-    std::optional<double> since;  ///< when it began
+    int descents;                 ///< number of descents through the trigger's height so far
+    std::optional<double> since;  ///< s, begin of the fault
   };
 
   Eigen::Vector3d in_scene(const Joints& joints) const;
@@ -136,14 +138,14 @@ class Body {
 
   const Scene& scene_;
   Ground ground_;
-  baxter::Arm tool_;     ///< its tip is the tool's
+  baxter::Arm tool_;     ///< its tip is that of the tool
   baxter::Arm gripper_;  ///< its tip is left_gripper
   std::uint64_t seed_;
   double begin_;
   std::unique_ptr<Mechanics> mechanics_;
   Dynamics dynamics_;
-  ArmState arm_;                  ///< of the mechanics, and what hangs on to the tool
-  std::optional<double> anchor_;  ///< height in the scene from which that pulls, m; none where nothing does
+  ArmState arm_;                  ///< state of the mechanics, including the effect of a caught tool
+  std::optional<double> anchor_;  ///< m, height in the scene at which a caught tool is fixed
   double noise_;                  ///< N
   backends::Normal normal_;
   Random spikes_;
@@ -158,21 +160,21 @@ class Body {
   double speed_ratio_;
   double commanded_ = -1e9;
   long commands_ = 0;
-  Joints target_;     ///< of the latest command
-  Joints reference_;  ///< what the joints follow
+  Joints target_;     ///< last command
+  Joints reference_;  ///< set-point that the joints follow
   double held_until_ = -1e9;
   struct Sent {
     Joints target;
     double arrives;  ///< s
   };
-  Network network_;  ///< from the driver
+  Network network_;  ///< network from the driver
   std::deque<Sent> sent_;
   baxter::EndpointReading endpoint_;
-  std::optional<Eigen::Vector3d> filtered_;  ///< N, behind the fault `wrench_filter`
+  std::optional<Eigen::Vector3d> filtered_;  ///< N, after the fault `wrench_filter`
   Eigen::Vector3d endpoint_speed_ = Eigen::Vector3d::Zero();
 };
 
-/// As it stands in a trace: "following", "timed_out", ...
+/// Returns the mode as written in a trace: "following", "timed_out", ...
 const char* name_of(Body::Mode mode);
 
 }  // namespace palpate::fake_baxter

@@ -31,7 +31,7 @@ namespace {
 
 constexpr int kPatience = 10'000;  // ms
 
-/// Reads the next stamp; false when the other end is gone.
+/// Receives the next stamp. Returns false if the other end has closed.
 bool told(double& stamp) {
   const ssize_t size = ::recv(STDIN_FILENO, &stamp, sizeof stamp, MSG_WAITALL);
   return size == static_cast<ssize_t>(sizeof stamp);
@@ -49,7 +49,7 @@ void publish_gripper(const ros::Publisher& publisher, double stamp) {
 
 using Act = std::function<void(double stamp)>;
 
-/// Publishes what `fill` makes of a message and a stamp.
+/// Returns a function that publishes a message, filled by `fill` with a stamp.
 template <class Message, class Fill>
 Act publish(ros::NodeHandle& node, const char* topic, const Fill& fill) {
   const ros::Publisher publisher = node.advertise<Message>(topic, 1);
@@ -60,7 +60,7 @@ Act publish(ros::NodeHandle& node, const char* topic, const Fill& fill) {
   };
 }
 
-/// What a robot says on one of its streams that stands and feels nothing.
+/// Returns a publisher of one stream of a robot at rest without forces.
 Act second_sender(const std::string& stream, ros::NodeHandle& node) {
   using namespace baxter_core_msgs;
   const auto calm = [](auto& message, double stamp) { message.header.stamp.fromSec(stamp); };
@@ -92,14 +92,14 @@ Act second_sender(const std::string& stream, ros::NodeHandle& node) {
   });
 }
 
-/// Of the node.
+/// Returns the name of the node.
 std::string name_of(const std::string& role) {
   if (role == "end_effector") return "end_effector_publisher";
   if (role.rfind("second_sender=", 0) == 0) return "second_robot";
   return "other_program_" + role.substr(0, role.find('='));
 }
 
-/// What to do whenever it is told to, with the stamp.
+/// Returns the action of a role, called with each received stamp.
 Act publisher_of(const std::string& role, ros::NodeHandle& node) {
   if (role == "end_effector") {
     const ros::Publisher publisher = node.advertise<sensor_msgs::JointState>("/robot/joint_states", 1);
@@ -129,7 +129,7 @@ Companion::Companion(const std::string& role) {
   if (pid_ < 0) throw Error("", "cannot fork");
   if (pid_ == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(1);  // it was gone before the line above
+    if (::getppid() != parent) ::_exit(1);  // the parent ended before prctl()
     ::dup2(ends[1], STDIN_FILENO);
     ::execv(words[0], words);
     ::_exit(127);
@@ -139,7 +139,7 @@ Companion::Companion(const std::string& role) {
 }
 
 Companion::~Companion() {
-  ::close(socket_);  // upon which it unregisters its node and ends
+  ::close(socket_);  // the process then unregisters its node and ends
   ::waitpid(pid_, nullptr, 0);
 }
 
@@ -156,7 +156,8 @@ void Companion::wait_until_up() {
 }
 
 int serve_companion(const std::string& role) {
-  // A signal to the whole group is the robot's to answer; when that ends, so does this, and unregisters its node.
+  // Signals to the process group are handled by the robot. When the robot ends, this process unregisters its node and
+  // ends, too.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   double stamp = 0.0;

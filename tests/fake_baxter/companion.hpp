@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Other nodes beside the robot's own. A process has one node, so each is this program once more; it says something
-// whenever the robot's process tells it to, and ends with that process however that ends.
+// Additional nodes beside the robot's own. A process has only one node, so each runs in another process of this
+// program. It publishes when the robot's process requests it, and ends with the robot's process.
 #pragma once
 
 #include <string>
 
 namespace palpate::fake_baxter {
 
-/// A process with a node of its own. Make it before ROS and before any thread.
+/// A process with its own node. Must be created before ROS starts and before any thread.
 class Companion {
  public:
-  /// `role`: "end_effector", which publishes the gripper's joint on /robot/joint_states; "second_sender=state",
-  /// which publishes /robot/state of a healthy robot, or likewise endpoint, joints, collision, avoidance: what one says
-  /// that stands and feels nothing; "set_speed_ratio=0.03" or "joint_command_timeout=0.02", a program that
-  /// has set that of the left arm, latched. Its node begins at the first tell(). Throws Error.
+  /// `role` is one of:
+  /// - "end_effector": publishes the gripper's joint on /robot/joint_states;
+  /// - "second_sender=state": publishes /robot/state of a healthy robot; likewise endpoint, joints, collision and
+  ///   avoidance, of a robot at rest without forces;
+  /// - "set_speed_ratio=0.03" or "joint_command_timeout=0.02": a program that has set this of the left arm, latched.
+  /// The node starts with the first tell(). Throws Error.
   explicit Companion(const std::string& role);
   ~Companion();
   Companion(const Companion&) = delete;
   Companion& operator=(const Companion&) = delete;
 
-  /// Publish now, with this stamp (s). Never waits; what a busy companion has not taken is dropped.
+  /// Requests a message with this stamp (s). Never waits; requests that a busy process has not read are dropped.
   void tell(double stamp);
-  /// Waits until it has its node. Throws Error after ten seconds.
+  /// Waits until the node has started. Throws Error after ten seconds.
   void wait_until_up();
 
  private:
@@ -29,7 +31,7 @@ class Companion {
   int pid_ = -1;
 };
 
-/// The other process: what the program does with `--companion ROLE`. Returns its exit status.
+/// Main function of the other process, for `--companion ROLE`. Returns the exit status.
 int serve_companion(const std::string& role);
 
 }  // namespace palpate::fake_baxter

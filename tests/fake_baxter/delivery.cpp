@@ -7,7 +7,7 @@
 namespace palpate::fake_baxter {
 namespace {
 
-constexpr double kSlack = 1e-9;  // of times that are sums of periods, s
+constexpr double kSlack = 1e-9;  // s, tolerance for sums of periods
 
 template <class Reading>
 void arrive(std::optional<Reading>& reading, double now) {

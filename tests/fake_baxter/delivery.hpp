@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The way from the robot to who listens, on which what it says may be held up.
+// Delivery of the robot's messages to subscribers, with simulated delays.
 #pragma once
 
 #include "fake_baxter/body.hpp"
@@ -11,9 +11,9 @@ namespace palpate::fake_baxter {
 
 class Delivery {
  public:
-  /// Returns what arrives in this period, in the order in which it was said. Without a fault that is what is said in
-  /// it; `delay` and `jitter` hold each message up, `stall` and `bursts` all of them. `received` is the time of
-  /// arrival, stamps are as they were. Call it once per period.
+  /// Returns the messages that arrive in this period, in the order of sending. Without a fault these are the messages
+  /// of the period. The faults `delay` and `jitter` delay single messages, `stall` and `bursts` all of them. `received`
+  /// becomes the time of arrival; stamps are unchanged. Must be called once per period.
   std::vector<Said> take(const Body& body);
 
  private:
@@ -23,7 +23,7 @@ class Delivery {
   };
   std::vector<Sent> waiting_;
   Network network_{Random(1, "fake_baxter/said")};
-  double latest_ = 0.0;  ///< when something arrived, s
+  double latest_ = 0.0;  ///< s, time of the last arrival
 };
 
 }  // namespace palpate::fake_baxter

@@ -25,7 +25,7 @@ KDL::RigidBodyInertia body(const Link& link) {
                                KDL::RotationalInertia(i[0], i[1], i[2], i[3], i[4], i[5]));
 }
 
-/// KDL turns a joint before the fixed part of its segment, whose end is the frame of the segment's inertia.
+/// KDL rotates a joint before the fixed part of its segment. The inertia belongs to the frame at the segment's end.
 KDL::Chain heavy_arm(const Eigen::Vector3d& tip) {
   KDL::Chain out;
   out.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), frame(kMount) * frame(kSteps[0])));

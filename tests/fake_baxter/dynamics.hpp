@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The left arm as rigid bodies that KDL moves.
+// Rigid-body dynamics of the left arm, by KDL.
 #pragma once
 
 #include "baxter/robot.hpp"
@@ -10,7 +10,8 @@ namespace palpate::fake_baxter {
 
 using baxter::Joints;
 
-/// With the tool's tip there in the frame left_hand, metres. Not to be shared: the solvers keep what they work with.
+/// `tip`: position of the tool's tip in the frame left_hand, metres. Not thread-safe, because the solvers have internal
+/// state.
 class Dynamics {
  public:
   explicit Dynamics(const Eigen::Vector3d& tip);
@@ -21,15 +22,15 @@ class Dynamics {
   using Inertia = Eigen::Matrix<double, 7, 7>;
   using Jacobian = Eigen::Matrix<double, 6, 7>;
 
-  /// Torques that carry the arm at rest, Nm.
+  /// Returns the joint torques that hold the arm at rest, Nm.
   Joints weight(const Joints& joints) const;
-  /// kg m^2.
+  /// Returns the inertia matrix, kg m^2.
   Inertia inertia(const Joints& joints) const;
-  /// With these torques on the joints, and nothing else but the weight, rad/s^2.
+  /// Returns the joint accelerations under these torques and gravity, rad/s^2.
   Joints acceleration(const Joints& joints, const Joints& speed, const Joints& torques) const;
-  /// Of the tip, in `base`: m/rad, then rad/rad.
+  /// Returns the Jacobian of the tip in `base`: rows in m/rad, then rad/rad.
   Jacobian jacobian(const Joints& joints) const;
-  /// Where the tip is in `base`, metres.
+  /// Returns the position of the tip in `base`, metres.
   Eigen::Vector3d tip(const Joints& joints) const;
 
  private:

@@ -28,7 +28,7 @@ struct Known {
   Takes takes = Takes::nothing;
   double amount = 0.0;
   const char* text = "";
-  double least = -kAny, most = kAny;  ///< of amount
+  double least = -kAny, most = kAny;  ///< range of amount
 };
 
 constexpr Known kKnown[] = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What may go wrong with the robot of the tests, and when.
+// Faults of the simulated robot, and the conditions that start them.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace palpate::fake_baxter {
 
-/// A fault, with the name that it has on the command line; what each does is told by describe_faults().
+/// Kinds of faults, with their names on the command line. describe_faults() explains them.
 enum class FaultKind {
   estop,
   stop,
@@ -51,29 +51,29 @@ enum class FaultKind {
   die
 };
 
-/// A fault as asked for.
+/// A requested fault.
 struct Fault {
   FaultKind kind;
-  double amount = 0.0;  ///< VALUE, or its default, where it is a number
-  std::string text;     ///< VALUE where it is none
+  double amount = 0.0;  ///< VALUE or its default, if it is a number
+  std::string text;     ///< VALUE, if it is a text
 };
 
-/// Reads NAME or NAME=VALUE. Throws Error for a name that there is not, and for a value that does not fit.
+/// Parses NAME or NAME=VALUE. Throws Error for an unknown name or an invalid value.
 Fault parse_fault(const std::string& words);
 
-/// All of them with what they do, a line each. Those marked * hold from the start, whenever they are asked to begin.
+/// Returns a list of all faults, one line each. Those marked * hold from the start, independently of their trigger.
 std::string describe_faults();
 
-/// Whether it is of those that hold from the start, whenever they are asked to begin.
+/// Returns whether faults of this kind hold from the start, independently of their trigger.
 bool starts_with_robot(FaultKind kind);
 
-/// When a fault begins: at the start, or when the tip comes down through a height.
+/// Begin of a fault: the start, or a descent of the tip through a height.
 struct Trigger {
-  int descent = 0;      ///< 0: at the start; else on this one of the times that it comes through
-  double height = 0.0;  ///< above the desk, metres
+  int descent = 0;      ///< 0: at the start; else number of the descent
+  double height = 0.0;  ///< m above the desk
 };
 
-/// Reads `start` or DESCENT:HEIGHT, for example `2:8cm`. Throws Error.
+/// Parses `start` or DESCENT:HEIGHT, for example `2:8cm`. Throws Error.
 Trigger parse_trigger(const std::string& words);
 
 }  // namespace palpate::fake_baxter

@@ -44,7 +44,7 @@ bool InverseKinematics::answer(Call::Request& request, Call::Response& response)
   std::unique_lock<std::mutex> lock(mutex_);
   const Now now = now_;
   lock.unlock();
-  // Being late is what was asked for.
+  // The fault ik_slow delays the answer.
   for (double waited = 0.0; waited < now.slow && !stopping_; waited += 0.01) ros::WallDuration(0.01).sleep();
   for (std::size_t i = 0; i < request.pose_stamp.size(); ++i) {
     const bool user = request.seed_mode != Call::Request::SEED_CURRENT && i < request.seed_angles.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The robot's IKService, in a thread of its own: a slow answer holds up nothing else.
+// IKService of the simulated robot. It runs in its own thread, so that a slow answer delays nothing else.
 #pragma once
 
 #include "baxter/kinematics.hpp"
@@ -15,22 +15,21 @@
 
 namespace palpate::fake_baxter {
 
-/// `joints` with those of the left arm that are among the names.
+/// Returns `joints` with the values of those left-arm joints that are in `names`.
 baxter::Joints overlaid(baxter::Joints joints, const std::vector<std::string>& names,
                         const std::vector<double>& values);
 
 class InverseKinematics {
  public:
-  /// What it answers from.
+  /// Input of the answers.
   struct Now {
-    baxter::Joints joints =
-        baxter::untucked();  ///< where they are; a solution is looked for from there, or from others
-    bool invalid = false;    ///< it says that there is no solution
-    double slow = 0.0;       ///< seconds of real time before an answer
+    baxter::Joints joints = baxter::untucked();  ///< current joints, from which the search starts
+    bool invalid = false;                        ///< whether the service reports that there is no solution
+    double slow = 0.0;                           ///< s of real time before an answer
   };
 
-  /// Advertises the service; poses are those of the tip of `arm`, left_gripper, in the frame `base`. `arm` must outlive
-  /// it and have no other user that solves. Needs a node.
+  /// Advertises the service for poses of the tip of `arm` (left_gripper) in the frame `base`. `arm` must outlive the
+  /// object, and no other code may call its solve(). Needs a running node.
   explicit InverseKinematics(const baxter::Arm& arm);
   ~InverseKinematics();
 

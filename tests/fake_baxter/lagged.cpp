@@ -40,7 +40,7 @@ void Lagged::advance(const Joints& reference) {
   state_.velocity = (state_.position - before) / kPeriod;
 }
 
-/// Where the tip is under what it presses on.
+/// Computes position and forces of the tip under contact.
 void Lagged::touch() {
   const double pressed = std::max(0.0, -ground_.clearance(dynamics_.tip(unloaded_)));
   state_.pressing = pressed / (object_give_ + arm_give_);

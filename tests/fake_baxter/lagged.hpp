@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An arm without mass: every joint follows its reference with a lag, and what it presses on is a spring.
+// Arm without mass: every joint follows its reference with a lag, and contacts are springs.
 #pragma once
 
 #include "fake_baxter/dynamics.hpp"
@@ -10,9 +10,9 @@
 
 namespace palpate::fake_baxter {
 
-/// The lag is scene.effects.joint_lag, 0.35 s if absent. The tip presses on whatever the scene has below it as on a
-/// spring (scene.effects.stiffness.object, 1500 N/m if absent); if the arm gives way, too (stiffness.arm), the joints
-/// show it. What it feels is that force, exactly.
+/// The lag is scene.effects.joint_lag, default 0.35 s. The scene below the tip is a spring
+/// (scene.effects.stiffness.object, default 1500 N/m). With stiffness.arm the joints deflect, too. The measured force
+/// is exact.
 class Lagged final : public Mechanics {
  public:
   Lagged(const Ground& ground, const Eigen::Vector3d& tip);
@@ -31,7 +31,7 @@ class Lagged final : public Mechanics {
   double object_give_;  ///< m/N
   double arm_give_;     ///< m/N
   std::vector<backends::Arm> joints_;
-  Joints unloaded_;  ///< where the joints would be if the arm did not give way
+  Joints unloaded_;  ///< joints without deflection
 };
 
 }  // namespace palpate::fake_baxter

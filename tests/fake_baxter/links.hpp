@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the links of Baxter's left arm weigh: the numbers of Rethink's baxter.urdf 1.2.0. Where its joints are is in
-// baxter/kinematics.hpp.
+// Masses and inertias of the links of Baxter's left arm, from Rethink's baxter.urdf 1.2.0. The positions of its joints
+// are in baxter/kinematics.hpp.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,15 +9,15 @@
 
 namespace palpate::fake_baxter {
 
-/// A rigid body, in the frame of the joint that it turns with: metres, kilograms.
+/// A rigid body in the frame of the joint that rotates it: metres, kilograms.
 struct Link {
   const char* name;
   double mass;
   double centre[3];   ///< of mass
-  double inertia[6];  ///< about the centre: xx, yy, zz, xy, xz, yz, kg m^2
+  double inertia[6];  ///< about the centre of mass: xx, yy, zz, xy, xz, yz, kg m^2
 };
 
-/// From the shoulder to the wrist: the link that each joint turns.
+/// Links from the shoulder to the wrist, one per joint.
 constexpr std::array<Link, 7> kLinks = {{
     {"upper_shoulder",
      5.70044,
@@ -49,13 +49,13 @@ constexpr std::array<Link, 7> kLinks = {{
      {0.00025289155, 0.0002688601, 0.0003074118, 0.00000575311, -0.00000159345, -0.00000519818}},
 }};
 
-/// In the frame left_hand, which is fixed to the wrist.
+/// Hand, in the frame left_hand, which is fixed to the wrist.
 constexpr Link kHandLink = {"hand",
                             0.19125,
                             {0.01093, 0.00042, -0.01532},
                             {0.00017588, 0.00021166377, 0.00023745397, 0.00000147073, 0.0000243633, 0.00000172689}};
 
-/// What is fixed to the flange: a rod from there to the tip, in the frame left_hand.
+/// Returns the tool: a rod from the flange to the tip, in the frame left_hand.
 Link tool_link(const Eigen::Vector3d& tip);
 
 }  // namespace palpate::fake_baxter

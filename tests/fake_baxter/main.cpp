@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// fake_baxter CONFIG [KEY=VALUE ...]: the robot of an experiment, on the ROS network that ROS_MASTER_URI names.
+// fake_baxter CONFIG [KEY=VALUE ...]: simulates the robot of an experiment on the ROS network of ROS_MASTER_URI.
 #include "config/compose.hpp"
 #include "fake_baxter/node.hpp"
 #include "plugin/host.hpp"
@@ -19,14 +19,14 @@
 namespace palpate::fake_baxter {
 namespace {
 
-constexpr std::uint32_t kBurst = 100;  ///< messages of one stream that may come at once
+constexpr std::uint32_t kBurst = 100;  ///< queue length in messages per stream for faults that send bursts
 
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void on_signal(int) { stop = true; }
 
-/// The options of the backend baxter, whether or not its plugin is there.
+/// Provides the options of the backend baxter even if its plugin is not built.
 class WithBaxter final : public PluginSource {
  public:
   explicit WithBaxter(const PluginHost& host) : host_(host) {}
@@ -71,7 +71,7 @@ BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter
   return out;
 }
 
-/// The role of the node that a fault brings along; "" for none.
+/// Returns the role of the additional node of a fault, or an empty string.
 std::string companion_of(const Fault& fault) {
   switch (fault.kind) {
     case FaultKind::second_sender:

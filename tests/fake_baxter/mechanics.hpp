@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The mechanics of the arm of the tests' robot: what its joints do in one period when the firmware has them follow a
-// reference, and what that presses on. What the firmware decides is the body's.
+// Mechanics of the simulated arm: motion of the joints in one period under the firmware's position control, and contact
+// forces. Decisions of the firmware are in body.hpp.
 #pragma once
 
 #include "baxter/kinematics.hpp"
@@ -15,16 +15,16 @@ namespace palpate::fake_baxter {
 
 using baxter::Joints;
 
-/// What there is to press on: a scene where `scene_pose` puts it before the robot. Keeps a reference to the scene.
+/// A scene at its pose `scene_pose` in the robot's frame. Keeps a reference to the scene.
 class Ground {
  public:
   Ground(const Scene& scene, const baxter::ScenePoseOptions& place) : scene_(scene), frame_(place.frame()) {}
 
   const Scene& scene() const { return scene_; }
-  /// A place in the robot's frame `base` as one of the scene, metres; and back.
+  /// Convert a position between the robot's frame `base` and the scene's frame, metres.
   Eigen::Vector3d in_scene(const Eigen::Vector3d& in_base) const { return frame_.inverse() * in_base; }
   Eigen::Vector3d in_base(const Eigen::Vector3d& in_scene) const { return frame_ * in_scene; }
-  /// How far a place of `base` is above what lies there, metres; negative below it.
+  /// Returns the height of a position in `base` above the scene, metres; negative below its surface.
   double clearance(const Eigen::Vector3d& in_base) const;
 
  private:
@@ -32,24 +32,24 @@ class Ground {
   Eigen::Isometry3d frame_;
 };
 
-/// How the joints trail their references: scene.effects.joint_lag, 0.35 s if absent.
+/// Returns the lag of the joints behind their references: scene.effects.joint_lag, default 0.35 s.
 JointLag joint_lag(const Scene& scene);
-/// Of what the tip presses on, N/m: scene.effects.stiffness.object, 1500 if absent.
+/// Returns the stiffness of the contact, N/m: scene.effects.stiffness.object, default 1500.
 double object_stiffness(const Scene& scene);
 
-/// What an instrumented arm would show at the end of a period.
+/// True state of the arm at the end of a period.
 struct ArmState {
-  Joints position = Joints::Zero();  ///< rad, with what the arm gives way
+  Joints position = Joints::Zero();  ///< rad, including deflection
   Joints velocity = Joints::Zero();  ///< rad/s
-  Joints effort = Joints::Zero();    ///< torques that carry the arm and press, Nm
-  double pressing = 0.0;             ///< N, upwards on the tip: the truth
-  double peak = 0.0;                 ///< N, the most that it was during the period
-  double depth = 0.0;                ///< m, the most by which the tip was below what it presses during the period
-  /// N in `base`, on the tip: what the robot makes of its efforts, before noise and bias.
+  Joints effort = Joints::Zero();    ///< Nm, including gravity and contact
+  double pressing = 0.0;             ///< N, true upward force on the tip
+  double peak = 0.0;                 ///< N, largest force during the period
+  double depth = 0.0;                ///< m, largest depth of the tip below the undeformed surface during the period
+  /// Force on the tip in N, in `base`, as the robot estimates it from its torques, before noise and bias.
   Eigen::Vector3d felt = Eigen::Vector3d::Zero();
 };
 
-/// An arm. The firmware's position loop belongs to it: every joint trails its reference by a lag.
+/// Model of an arm including the firmware's position control: every joint follows its reference with a lag.
 class Mechanics {
  public:
   static constexpr double kPeriod = 0.01;  ///< s
@@ -57,13 +57,13 @@ class Mechanics {
 
   virtual ~Mechanics() = default;
 
-  /// Stands there at once, at rest, under what it presses on.
+  /// Moves the arm to `joints` at once, at rest, with the contact force there.
   virtual void put(const Joints& joints) = 0;
-  /// One period with this reference.
+  /// Simulates one period with this reference.
   virtual void advance(const Joints& reference) = 0;
-  /// The reference that keeps the arm as it is, with the force that it presses with.
+  /// Returns the reference that keeps the present position and contact force.
   virtual Joints holding() const = 0;
-  /// The brakes close: with the reference `holding()` it stands at once.
+  /// Closes the brakes: with the reference `holding()` the arm stops at once.
   virtual void brake() = 0;
 
   const ArmState& state() const { return state_; }
@@ -72,21 +72,21 @@ class Mechanics {
   ArmState state_;
 };
 
-/// Which arm.
+/// Selects the model of the arm.
 struct MechanicsOptions {
   enum class Type {
-    lagged,   ///< joints that trail their reference, without mass: lagged.hpp
+    lagged,   ///< joints with lag, without mass: lagged.hpp
     springs,  ///< rigid bodies and springs, by KDL: springs.hpp
     mujoco    ///< the same arm, by MuJoCo: mujoco.hpp
   };
   Type type = Type::lagged;
-  double friction = 0.0;  ///< of every joint, Nm; lagged has none
-  double step = 1e-3;     ///< of springs, s, which goes into a period
+  double friction = 0.0;  ///< Nm per joint; unused by `lagged`
+  double step = 1e-3;     ///< s, step of `springs`; must divide the period
 };
 
-/// The arm with a tool whose tip is there in the frame left_hand, metres, over `ground`, which it keeps; the effects of
-/// the scene say how stiff what it presses on is and how the joints lag. Throws Error for an arm that this build does
-/// not have.
+/// Creates the model of the arm. `tip`: position of the tool's tip in the frame left_hand, metres. Contact stiffness
+/// and lag come from the effects of the scene in `ground`, of which the model keeps a copy. Throws Error if this build
+/// does not have the model.
 std::unique_ptr<Mechanics> make_mechanics(const MechanicsOptions& options, const Ground& ground,
                                           const Eigen::Vector3d& tip);
 

@@ -21,12 +21,13 @@ namespace {
 using namespace baxter::description;
 
 constexpr double kGravity = 9.81;  // m/s^2
-constexpr double kStep = 2e-4;     // s: MuJoCo's contacts are best when they may be harder than what is pressed
+constexpr double kStep = 2e-4;     // s: MuJoCo's contacts are best if they may be harder than the objects
 constexpr int kInPeriod = 50;      // steps
-constexpr int kTogether = 5;       // steps that are one where nothing is near
+constexpr int kTogether = 5;       // steps that are combined if nothing is near the tip
 constexpr double kNear = 0.005;    // m of the tip above the scene, more than it moves in a period
-constexpr double kPlate = 0.02;    // kg: what the tip meets, so light that the spring below it is what it feels
-constexpr double kClear = 0.002;   // m of the tip above the scene, more than a tip that bounces rises
+constexpr double kPlate =
+    0.02;  // kg, mass of the plate under the tip, small enough for its spring to determine the force
+constexpr double kClear = 0.002;   // m of the tip above the scene, more than it bounces
 constexpr double kRadius = 0.004;  // m, of the tip
 
 std::string frame(const Step& step) {
@@ -48,8 +49,8 @@ std::string joint(std::size_t number, double friction) {
 }  // namespace
 
 std::string mujoco_model(const Eigen::Vector3d& tip, double stiffness, double friction) {
-  // Contact and friction are as hard as the step allows: what gives way is the plate's spring, and a joint that sticks
-  // stays.
+  // Contact and friction are as stiff as the step allows. So only the plate's spring yields, and a sticking joint stays
+  // in place.
   std::string out = fmt::format(R"(<mujoco>
 <compiler angle='radian' eulerseq='XYZ' inertiafromgeom='false'/>
 <option timestep='{step}' integrator='implicit' gravity='0 0 -{gravity}'/>
@@ -73,7 +74,7 @@ std::string mujoco_model(const Eigen::Vector3d& tip, double stiffness, double fr
     out +=
         fmt::format("<body name='{}' {}>{}{}", kLinks[i].name, frame(kSteps[i]), joint(i, friction), body(kLinks[i]));
   }
-  // The ball of the tip ends where the tip is.
+  // The lowest point of the tip's sphere is the tip.
   out += fmt::format(
       "<body name='hand' pos='0 0 {}'>{}<body name='tool'>{}<site name='tip' pos='{} {} {}'/>"
       "<geom name='tip' type='sphere' size='{}' pos='{} {} {}'/></body></body>",
@@ -90,7 +91,7 @@ struct Free {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-/// MuJoCo takes models from files, among them those that are in memory.
+/// Loads a model. MuJoCo reads models only from files, which may be virtual files in memory.
 std::unique_ptr<mjModel, Free> load(const std::string& text) {
   constexpr const char* kName = "arm.xml";
   mjVFS files;
@@ -142,14 +143,14 @@ class Mujoco final : public Mechanics {
   Eigen::Map<Joints> position() const { return Eigen::Map<Joints>(data_->qpos + kArm); }
   Eigen::Map<Joints> speed() const { return Eigen::Map<Joints>(data_->qvel + kArm); }
 
-  /// Of what lies where the tip is, in `base`, m.
+  /// Returns the height of the scene below the tip, in `base`, m.
   double surface() {
     mj_kinematics(model_.get(), data_.get());
     const Eigen::Vector3d tip = Eigen::Map<const Eigen::Vector3d>(data_->site_xpos + 3 * tip_);
     return tip.z() - ground_.clearance(tip);
   }
 
-  /// What its own inverse dynamics has the arm weigh.
+  /// Returns the torques of gravity by MuJoCo's inverse dynamics.
   Joints weight(const Joints& joints) {
     mjData* still = rest();
     Eigen::Map<Joints>(still->qpos + kArm) = joints;
@@ -170,10 +171,10 @@ class Mujoco final : public Mechanics {
     for (int i = 0; i < together; ++i) motors_.follow(reference);
     const Joints carried = weight(position());
     state_.effort = motors_.torque(position(), speed(), carried);
-    // The part of the damping that depends on the joints' own speed is among what MuJoCo steps implicitly.
+    // MuJoCo integrates the damping of the joints' own speed implicitly, so it is removed here.
     Eigen::Map<Joints>(data_->qfrc_applied + kArm) = state_.effort + spring_damping().cwiseProduct(Joints(speed()));
     model_->qpos_spring[0] = surface();
-    // The scene lies still, and the plate would swing where the tip passes an edge.
+    // The scene is at rest. Without this reset the plate would oscillate when the tip passes an edge.
     if (data_->site_xpos[3 * tip_ + 2] > model_->qpos_spring[0] + kClear) {
       data_->qpos[0] = model_->qpos_spring[0];
       data_->qvel[0] = 0.0;
@@ -210,7 +211,7 @@ class Mujoco final : public Mechanics {
   Motors motors_;
   std::unique_ptr<mjModel, Free> model_;
   std::unique_ptr<mjData, Free> data_;
-  std::unique_ptr<mjData, Free> rest_;  ///< another state of the arm, to ask what it weighs
+  std::unique_ptr<mjData, Free> rest_;  ///< second state of the arm, for weight()
   int tip_;
 };
 

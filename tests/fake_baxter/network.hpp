@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One way of the network between robot and driver.
+// One direction of the network between robot and driver.
 #pragma once
 
 #include <palpate/random.hpp>
@@ -13,8 +13,8 @@ class Network {
  public:
   explicit Network(Random random) : random_(random) {}
 
-  /// Returns when a message arrives that is sent at `sent`: after `delay` and a uniform share of `jitter`, and never
-  /// before a message that was sent earlier. All in seconds.
+  /// Returns the arrival of a message sent at `sent`: after `delay` and a uniform fraction of `jitter`, and not before
+  /// earlier messages. All times in s.
   double arrival(double sent, double delay, double jitter) {
     latest_ = std::max(latest_, sent + delay + (jitter > 0.0 ? jitter * random_.uniform() : 0.0));
     return latest_;

@@ -36,19 +36,19 @@ namespace {
 
 constexpr double kMasterPatience = 5.0;        // s of real time
 constexpr double kGripperPeriod = 1.0 / 38.0;  // s
-constexpr double kLead = 2.0 * Body::kPeriod;  // s that /clock may be ahead of the driver
-constexpr double kSlack = Body::kPeriod / 2;   // of comparisons between periods, s
+constexpr double kLead = 2.0 * Body::kPeriod;  // s, largest lead of /clock over the driver
+constexpr double kSlack = Body::kPeriod / 2;   // s, tolerance when comparing times of periods
 constexpr double kShortPatience = 0.02;        // s of real time
-constexpr double kNap = 0.005;                 // s of real time between looks at signals
-constexpr double kBacklog = 0.1;               // s of real time that are caught up
+constexpr double kNap = 0.005;                 // s of real time between checks for signals
+constexpr double kBacklog = 0.1;               // s of real time that may be caught up
 constexpr const char* kSoftware = "1.2.0.57";
 
-/// As the robot has them in joint_states, all that it has.
+/// All joints in the robot's joint_states, in its order.
 constexpr const char* kAllJoints[] = {"head_nod", "head_pan", "left_e0",  "left_e1",  "left_s0",  "left_s1",
                                       "left_w0",  "left_w1",  "left_w2",  "right_e0", "right_e1", "right_s0",
                                       "right_s1", "right_w0", "right_w1", "right_w2", "torso_t0"};
 
-/// The place of each joint of the left arm among them.
+/// Returns the index of a joint in kAllJoints.
 std::size_t place_of(const std::string& joint) {
   return static_cast<std::size_t>(std::find(std::begin(kAllJoints), std::end(kAllJoints), joint) -
                                   std::begin(kAllJoints));
@@ -67,7 +67,7 @@ void put(Xyz& out, const Eigen::Vector3d& value) {
   out.z = value.z();
 }
 
-/// A message as it goes over the wire; the force in it stands for the arm's whole wrench.
+/// Converts a reading to its ROS message.
 baxter_core_msgs::EndpointState message_of(const baxter::EndpointReading& reading, const Eigen::Vector3d& speed) {
   baxter_core_msgs::EndpointState out;
   out.header.frame_id = "base";
@@ -142,16 +142,15 @@ void join_network(bool clock) {
     }
     ros::WallDuration(0.05).sleep();
   }
-  // Nodes look at it when they start.
+  // Nodes read the parameter when they start.
   if (clock) ros::param::set("/use_sim_time", true);
 }
 
-/// One row a period of what is so, whatever is said: t, x, y, z of the tip in the scene's frame, height of the
-/// set-point, pressing force, what the robot says of the force along z, mode, commands so far, whether a fault has
-/// begun.
+/// Writes one row per period with the true state: t, x, y, z of the tip in the scene's frame, height of the set-point,
+/// contact force, published force along z, mode, number of commands, and whether a fault has begun.
 class Trace {
  public:
-  /// "" writes nothing. Throws Error.
+  /// An empty name writes nothing. Throws Error.
   explicit Trace(const std::string& file) {
     if (file.empty()) return;
     out_.open(file);
@@ -211,7 +210,7 @@ class Node {
     std::fflush(stdout);
     while (!stop) {
       due += period;
-      // With /clock nothing needs to be caught up; in real time, a little.
+      // With /clock nothing needs to be caught up; in real time, up to kBacklog.
       const ros::WallTime oldest = ros::WallTime::now() - ros::WallDuration(options_.rate > 0.0 ? 0.0 : kBacklog);
       due = std::max(due, oldest);
       queue_.callAvailable();
@@ -262,7 +261,7 @@ class Node {
     listen<std_msgs::Empty>("/robot/set_super_reset", [this](const auto&) { body_.reset(); });
   }
 
-  /// Set-points by name, of some joints or all; other modes than positions are not modelled.
+  /// Takes set-points by name for some or all joints. Only position modes are simulated.
   void command(const baxter_core_msgs::JointCommand& message) {
     heard_at_ = body_.now();
     allowed_ = std::min(std::max(allowed_, heard_at_) + Body::kPeriod, heard_at_ + kLead);
@@ -273,9 +272,9 @@ class Node {
     body_.command(overlaid(body_.set_point(), message.names, message.command));
   }
 
-  /// Every command lets the clock go on by one period, so that a driver that hears of the time late does not fall back
-  /// ever more; one period is held in reserve. A driver that leaves out a period gets it after a short wait, one that
-  /// sends no more after a long one.
+  /// Holds /clock until the driver has sent a command. Every command allows one more period, so that a driver that
+  /// receives the time late does not fall behind. One period is in reserve. The wait is short for a single missing
+  /// command and long if commands have stopped.
   void wait_for_driver(const std::atomic<bool>& stop) {
     const ros::WallTime begin = ros::WallTime::now();
     while (options_.rate > 0.0 && !stop && !gave_up_) {
@@ -319,7 +318,7 @@ class Node {
     for (Beside& one : beside_) {
       if (body_.active(one.with) != nullptr) one.node.tell(body_.now());
     }
-    // Last, so that who sees the time most likely has what was said at that time.
+    // Published last, so that messages usually arrive before the time.
     if (options_.rate > 0.0 && body_.active(FaultKind::freeze_clock) == nullptr) {
       rosgraph_msgs::Clock clock;
       clock.clock = time_of(body_.now());
@@ -339,9 +338,9 @@ class Node {
   ros::Publisher endpoint_, joints_, collision_, avoidance_, properties_, clock_;
   std::function<void(const baxter::StateReading&)> publish_state_;
   std::vector<ros::Subscriber> heard_;
-  double heard_at_ = -1e9;  ///< when a driver last sent a command, whatever became of it
-  double allowed_ = -1e9;   ///< the time to which the clock may go without another command
-  bool gave_up_ = false;    ///< waiting for one
+  double heard_at_ = -1e9;  ///< s, time of the last command, even if it was ignored
+  double allowed_ = -1e9;   ///< s, limit of the clock without another command
+  bool gave_up_ = false;    ///< whether the wait for a command has timed out
   double gripper_due_ = 0.0;
 };
 

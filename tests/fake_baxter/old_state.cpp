@@ -3,8 +3,8 @@
 
 #include <ros/ros.h>
 
-// Generated from a definition of the same name as today's. Its C++ types get a namespace of their own, so that one
-// program may have both; what goes over the wire are texts, which a macro leaves alone.
+// The definition has the same name as the present one. A macro renames the C++ namespace, so that one program can
+// contain both. The name in the message's data type is a string literal and stays.
 #define baxter_core_msgs old_baxter_core_msgs
 #include <old/baxter_core_msgs/AssemblyState.h>
 #undef baxter_core_msgs

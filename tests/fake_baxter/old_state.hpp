@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// /robot/state as firmware before 1.2 publishes it: under the same name, without `ready`, with another md5 sum.
+// /robot/state of firmware before 1.2: the same name without `ready`, and another md5 sum.
 #pragma once
 
 #include "baxter/robot.hpp"
@@ -13,10 +13,10 @@ class NodeHandle;
 
 namespace palpate::fake_baxter {
 
-/// Advertises it, and returns what publishes one.
+/// Advertises the topic and returns a function that publishes a state.
 std::function<void(const baxter::StateReading&)> advertise_old_state(ros::NodeHandle& node);
 
-/// The md5 sum of that message.
+/// Returns the md5 sum of the old message.
 std::string old_state_md5();
 
 }  // namespace palpate::fake_baxter

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A small node that looks at a robot on the network of ROS_MASTER_URI, for the tests of fake_baxter.
-//   listen SECONDS             of the robot's time: sender, topic, messages, rate, a line each
-//   switches                   stop, enable, reset, enable: what /robot/state says after each
-//   drive SECONDS STALL        sends a set-point every 10 ms of the robot's time, STALL s of real time late each
+// Node that observes a robot on the network of ROS_MASTER_URI, for the tests of fake_baxter:
+//   listen SECONDS             prints sender, topic, number and rate of messages, one line each; SECONDS of robot time
+//   switches                   stops, enables, resets, enables, and prints /robot/state after each
+//   drive SECONDS STALL        sends a set-point every 10 ms of robot time, each STALL s of real time late
 #include <baxter_core_msgs/AssemblyState.h>
 #include <baxter_core_msgs/CollisionAvoidanceState.h>
 #include <baxter_core_msgs/CollisionDetectionState.h>
@@ -31,7 +31,7 @@ using baxter_core_msgs::EndpointState;
 using baxter_core_msgs::JointCommand;
 using sensor_msgs::JointState;
 
-constexpr double kPatience = 20.0;  // s of real time for anything to come
+constexpr double kPatience = 20.0;  // s of real time
 
 class Probe {
  public:
@@ -45,7 +45,7 @@ class Probe {
     hear<CollisionAvoidanceState>("/robot/limb/left/collision_avoidance_state", [](const auto&) {});
   }
 
-  /// Takes what comes until `holds`; false if that lasts too long.
+  /// Processes messages until `holds` is true. Returns false after kPatience.
   bool until(const std::function<bool()>& holds) {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kPatience);
     while (!holds()) {
@@ -67,7 +67,7 @@ class Probe {
     return out;
   }
 
-  std::map<std::string, long> counts;  ///< of messages, by sender, topic and, of joints, how many
+  std::map<std::string, long> counts;  ///< number of messages by sender, topic and, for joints, number of joints
   std::optional<JointState> joints;
   std::optional<AssemblyState> state;
 
@@ -95,7 +95,7 @@ class Probe {
 };
 
 int listen(Probe& probe, double seconds) {
-  probe.wait(0.5);  // until all are connected
+  probe.wait(0.5);  // until all connections exist
   probe.counts.clear();
   const double begin = ros::Time::now().toSec();
   probe.wait(seconds);
@@ -106,7 +106,7 @@ int listen(Probe& probe, double seconds) {
   return 0;
 }
 
-/// Repeats a message as Rethink's tools do, until the state is as wanted or half a second of the robot's time is over.
+/// Repeats a message for half a second of robot time, as Rethink's tools do, and prints the state.
 template <class Message>
 void flip(Probe& probe, const char* word, const std::string& topic, const Message& message) {
   const ros::Publisher publisher = probe.advertise<Message>(topic);
@@ -147,10 +147,10 @@ int drive(Probe& probe, double seconds, double stall) {
     publisher.publish(message);
     due += 0.01;
     if (!probe.until([&] { return ros::Time::now().toSec() >= due - 1e-6; })) return 1;
-    // A driver on a busy machine: what the robot must wait for.
+    // Simulates a driver on a busy machine, for which the robot must wait.
     ros::WallDuration(stall).sleep();
     const double now = ros::Time::now().toSec();
-    // Before it has heard the first command, the robot cannot wait.
+    // The robot cannot wait before it has received the first command.
     if (due > begin + 0.1 && now > due + 0.035) ++late;
     due = std::max(due, now - 0.005);
   }

@@ -11,7 +11,7 @@ const Joints& spring_stiffness() {
 }
 
 const Joints& spring_damping() {
-  // About critical for what each carries.
+  // Approximately critical for the load of each joint.
   static const Joints damping = (Joints() << 40, 40, 20, 20, 4, 4, 1).finished();
   return damping;
 }
@@ -38,7 +38,7 @@ Joints Motors::torque(const Joints& joints, const Joints& speed, const Joints& w
 }
 
 Eigen::Vector3d estimate_force(const Eigen::Matrix<double, 6, 7>& jacobian, const Joints& torques) {
-  constexpr double kDamping = 1e-2;  // of singular values: those of a posture at work are above 0.1
+  constexpr double kDamping = 1e-2;  // of singular values, which exceed 0.1 in working postures
   Eigen::Matrix<double, 6, 6> square = jacobian * jacobian.transpose();
   square.diagonal().array() += kDamping * kDamping;
   const Eigen::Matrix<double, 6, 1> wrench = square.llt().solve(jacobian * torques);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the arms with masses have in common, whoever computes how the masses move: motors that follow the reference with
-// the firmware's lag, springs between motors and joints, and what the robot makes of the springs' torques.
+// Common part of the arms with mass: motors that follow the reference with the firmware's lag, springs between motors
+// and joints, and the robot's force estimate from the torques of the springs.
 #pragma once
 
 #include "fake_baxter/mechanics.hpp"
@@ -10,31 +10,31 @@
 
 namespace palpate::fake_baxter {
 
-/// Of the springs, Nm/rad: stiff ones in shoulder and elbow, softer ones in the wrist.
+/// Stiffness of the springs, Nm/rad, larger in shoulder and elbow than in the wrist.
 const Joints& spring_stiffness();
-/// By which the firmware damps them, Nm s/rad.
+/// Damping of the springs by the firmware, Nm s/rad.
 const Joints& spring_damping();
-/// Of the joints' bearings, Nm s/rad, as baxter.urdf has it.
+/// Damping of the joints' bearings, Nm s/rad, from baxter.urdf.
 constexpr double kBearings = 0.7;
-/// The part of its weight that the firmware does not make up for: the arm settles 0.004 to 0.008 rad off its reference.
+/// Fraction of the weight that the firmware does not compensate: the arm settles 0.004 to 0.008 rad off its reference.
 constexpr double kSag = 0.15;
-/// How long what is pressed takes to follow, s: its damping is its stiffness times this.
+/// Relaxation time of the contact, s: its damping is its stiffness times this.
 constexpr double kRelaxation = 1e-3;
 
-/// What the motors do: where they would have the joints if these carried no load.
+/// Positions of the motors: the joint positions without load.
 class Motors {
  public:
-  /// `step`: for how long a reference stays, s.
+  /// `step`: duration of a reference, s.
   Motors(const JointLag& lag, double step) : lag_(lag), step_(step) {}
 
-  /// At rest there.
+  /// Moves the motors to `joints` at once, at rest.
   void put(const Joints& joints);
   void follow(const Joints& reference);
 
   const Joints& position() const { return position_; }  ///< rad
   const Joints& velocity() const { return velocity_; }  ///< rad/s
 
-  /// Torques of the springs, Nm, with the joints there (rad, rad/s) and a weight (Nm) that the firmware knows.
+  /// Returns the torques of the springs, Nm, for these joints (rad, rad/s) and the known weight (Nm).
   Joints torque(const Joints& joints, const Joints& speed, const Joints& weight) const;
 
  private:
@@ -45,8 +45,8 @@ class Motors {
   Joints velocity_ = Joints::Zero();
 };
 
-/// The force on the tip (N, in `base`) that explains torques beyond the weight (Nm) best; `jacobian`: of the tip, m/rad
-/// and rad/rad. Damped: near a singular posture it stays finite.
+/// Returns the force on the tip (N, in `base`) that fits the torques beyond the weight (Nm) best. `jacobian` is that of
+/// the tip, m/rad and rad/rad. Damping keeps the result finite near singular postures.
 Eigen::Vector3d estimate_force(const Eigen::Matrix<double, 6, 7>& jacobian, const Joints& torques);
 
 }  // namespace palpate::fake_baxter

@@ -9,8 +9,8 @@
 namespace palpate::fake_baxter {
 namespace {
 
-constexpr int kSweeps = 200;       // of the search for friction and contact
-constexpr double kSettled = 1e-9;  // rad/s by which the last sweep may have changed a speed
+constexpr int kSweeps = 200;       // iterations of the solver for friction and contact
+constexpr double kSettled = 1e-9;  // rad/s, change of a speed at which the iteration ends
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void Springs::put(const Joints& joints) {
   state_.position = joints;
   state_.depth = std::max(0.0, -ground_.clearance(dynamics_.tip(joints)));
   state_.pressing = stiffness_ * state_.depth;
-  // Where the motors must be so that the springs carry what the firmware does not, less what the ground does.
+  // Position of the motors at which the springs carry the uncompensated weight minus the contact force.
   const Joints carried = dynamics_.jacobian(joints).row(2).transpose() * state_.pressing;
   const Joints left = kSag * dynamics_.weight(joints) - carried;
   motors_.put(joints + left.cwiseQuotient(spring_stiffness()));
@@ -45,10 +45,10 @@ void Springs::advance(const Joints& reference) {
   measure();
 }
 
-/// M (v' - v) / h = M a - B (v' - v) / 2 + J_z f + r: a is the acceleration by springs and weight where things are and
-/// by the dampers B at the speed v, of which the step takes the mean of before and after; f is the force of the ground
-/// and r the friction, f = max(0, k d - c (w + w') / 2) with the depth d and the speed w of the tip, and r within its
-/// bounds, v' = 0 where it is inside them. Projected Gauss and Seidel.
+/// Solves M (v' - v) / h = M a - B (v' - v) / 2 + J_z f + r for the new speed v'. a is the acceleration by springs and
+/// weight at the present position, and by the dampers B at the speed v; the step uses the mean of both speeds. f is the
+/// contact force, f = max(0, k d - c (w + w') / 2), with depth d and speed w of the tip. r is friction within its
+/// bounds, and v' = 0 where it is strictly inside. The solver is projected Gauss-Seidel.
 void Springs::step(const Joints& reference) {
   Joints& position = state_.position;
   Joints& speed = state_.velocity;
@@ -61,7 +61,7 @@ void Springs::step(const Joints& reference) {
   const Dynamics::Inertia mobility = inertia.llt().solve(Dynamics::Inertia::Identity());
 
   const Joints lever = dynamics_.jacobian(position).row(2).transpose();
-  const Joints lifted = step_ * (mobility * lever);  // m/s of each newton
+  const Joints lifted = step_ * (mobility * lever);  // m/s per newton
   const double raised = lever.dot(lifted);
   const double depth = -ground_.clearance(dynamics_.tip(position));
   const double damping = kRelaxation * stiffness_ / 2;
@@ -91,7 +91,7 @@ void Springs::step(const Joints& reference) {
   state_.depth = std::max(state_.depth, depth);
 }
 
-/// The robot knows what its arm weighs, and takes whatever else its springs carry for a force on the tip.
+/// The robot knows the weight of its arm, and interprets all other torques of its springs as a force on the tip.
 void Springs::measure() {
   const Joints weight = dynamics_.weight(state_.position);
   state_.felt = estimate_force(dynamics_.jacobian(state_.position), weight - state_.effort);

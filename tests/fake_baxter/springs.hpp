@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An arm of rigid bodies with springs in its joints, as Baxter's is, moved by KDL's solvers.
+// Arm of rigid bodies with springs in its joints, as in Baxter, by KDL's solvers.
 #pragma once
 
 #include "fake_baxter/dynamics.hpp"
@@ -7,15 +7,14 @@
 
 namespace palpate::fake_baxter {
 
-/// The tip presses on whatever the scene has below it as on a damped spring, vertically and without friction; the arm
-/// gives way by its own springs. What it feels comes from their torques, with all that is not a force in it: friction
-/// of the joints, and masses that are moved.
+/// The scene below the tip is a vertical damped spring without friction; the arm deflects in its own springs. The
+/// measured force comes from their torques, including the effects of joint friction and of accelerated masses.
 ///
-/// A step is semi-implicit: springs push from where things were, damping and friction act on the speed that they lead
-/// to. Joints stick, and the tip leaves the ground, exactly: a small complementarity problem in every step.
+/// The step is semi-implicit: springs act at the old position, damping and friction at the new speed. Sticking of
+/// joints and loss of contact are exact, by a small complementarity problem per step.
 class Springs final : public Mechanics {
  public:
-  /// `step`: s, which goes into a period; `friction`: of every joint, Nm.
+  /// `step`: s, must divide the period; `friction`: of every joint, Nm.
   Springs(const Ground& ground, const Eigen::Vector3d& tip, double friction, double step);
 
   void put(const Joints& joints) override;
@@ -30,11 +29,11 @@ class Springs final : public Mechanics {
   Ground ground_;
   Dynamics dynamics_;
   Motors motors_;
-  double stiffness_;                 ///< of what is pressed, N/m
+  double stiffness_;                 ///< N/m, contact
   double friction_;                  ///< Nm
   double step_;                      ///< s
-  int steps_;                        ///< in a period
-  Joints rubbing_ = Joints::Zero();  ///< torques of friction, Nm: where the next step begins to look for its own
+  int steps_;                        ///< steps per period
+  Joints rubbing_ = Joints::Zero();  ///< Nm, friction of the last step, start of the next iteration
 };
 
 }  // namespace palpate::fake_baxter

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the robot of the tests says of itself as /robot_description: the end of its left arm, which is all that the
-// tests look at.
+// URDF of the simulated robot for /robot_description, with only the end of the left arm, which the tests need.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +8,7 @@
 
 namespace palpate::fake_baxter {
 
-/// With a tool of this mass, kg, as the robot has been told; by itself its links beyond the flange weigh 0.1 g each.
+/// Returns a URDF with a tool of this mass, kg. The other links beyond the flange weigh 0.1 g each.
 inline std::string urdf(double tool_mass) {
   const auto link = [](const char* name, double mass) {
     return fmt::format("  <link name=\"{}\">\n    <inertial><mass value=\"{}\"/></inertial>\n  </link>\n", name, mass);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A kernel, exp(-(r / (reach * stretch))^power), as it was (VERSION 1), with an option more (2), and with another
-// order, another default, an option less and one of another name (3).
+// A kernel, exp(-(r / (reach * stretch))^power), in three versions. VERSION 2 adds an option. VERSION 3 has another
+// order and another default, removes an option and renames one.
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# An acquisition in sh: the uncertainty is the score. framework/docs/strategies.md has the protocol.
+# Acquisition as a shell script whose score is the uncertainty. The protocol is in framework/docs/strategies.md.
 # reads=["uncertainty"]
 while read -r ask; do
   bytes=${ask##*\"bytes\":}

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""An acquisition by NumPy: taps where the height is least known, the more so the more an object is probable there and
-around."""
+"""Acquisition with NumPy: uncertainty of the height, weighted by the mean probability of an object around the
+position."""
 import numpy
 
 from palpate_acquisition import acquisition
 
 
 def blurred(grid):
-    """The mean over each cell and its four neighbours."""
+    """Returns the mean over each cell and its four neighbours."""
     padded = numpy.pad(grid, 1, mode="edge")
     return (padded[1:-1, 1:-1] + padded[:-2, 1:-1] + padded[2:, 1:-1] + padded[1:-1, :-2] + padded[1:-1, 2:]) / 5
 

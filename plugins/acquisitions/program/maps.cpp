@@ -17,7 +17,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 constexpr char kMagic[] = "\x93NUMPY\x01\x00";
 constexpr std::size_t kMagicLength = 8;
 
-/// A file NPY of such a shape ("2209,"), `bytes` of data at `data`.
+/// Returns an NPY file with this shape ("2209,") and `bytes` of data.
 std::string npy(const char* type, const std::string& shape, const void* data, std::size_t bytes) {
   constexpr std::size_t kAlign = 64;
   std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
@@ -38,7 +38,7 @@ std::string npy(const RowMajor& rows) {
              static_cast<std::size_t>(rows.size()) * sizeof(double));
 }
 
-/// A row for each outline, a truth value for each candidate.
+/// Returns one row per outline and one truth value per candidate.
 std::string hypotheses(const Belief& belief) {
   const OutlineSample& sample = belief.outlines();
   const Eigen::Index places = belief.candidates().rows();
@@ -53,7 +53,7 @@ std::string hypotheses(const Belief& belief) {
   return npy("|b1", fmt::format("{}, {}", sample.count, places), out.data(), out.size());
 }
 
-/// x, y, height, and 1 on an object or 0 on the desk, a row for each contact.
+/// Returns one row per contact: x, y, height, and 1 on an object or 0 on the desk.
 std::string contacts(const Belief& belief) {
   const std::vector<Touch>& touches = belief.touches();
   RowMajor out(static_cast<Eigen::Index>(touches.size()), 4);
@@ -72,7 +72,7 @@ std::string lines(const SurfaceBelief& belief, const Part& part) {
   return npy(out);
 }
 
-/// As a plugin `uncertainty` scores: the variance relative to the largest, along normals.
+/// Returns the score of the acquisition `uncertainty`: variance relative to the largest, along normals.
 std::string relative_variance(const SurfaceBelief& belief) {
   constexpr double kAlong = 0.999;
   const double most = belief.deviation().maxCoeff();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arrays that a program reads, and its scores: in the format NPY of NumPy, version 1.0, little-endian, in C order
+// Arrays that a program reads, and its scores. Format: NPY of NumPy, version 1.0, little-endian, C order
 // (https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html).
 #pragma once
 
@@ -13,24 +13,24 @@
 
 namespace palpate::program {
 
-/// One array that a program may read. What only one kind of belief has is null for the other.
+/// An array that a program may read. Members for a belief without this array are null.
 struct Map {
   const char* name;
-  Quantities reads;                     ///< of a Belief
-  std::string (*above)(const Belief&);  ///< as a file NPY; null: not there where the tool comes from above
-  Quantities reads_of_approaches;       ///< of a SurfaceBelief
+  Quantities reads;                     ///< quantities of a Belief
+  std::string (*above)(const Belief&);  ///< returns an NPY file; null: not available for taps from above
+  Quantities reads_of_approaches;       ///< quantities of a SurfaceBelief
   std::string (*any_side)(const SurfaceBelief&);
 };
 
-/// All of them.
+/// Returns all available arrays.
 const std::vector<Map>& maps();
-/// Null for a name that is none of theirs.
+/// Returns the array with this name, or null.
 const Map* find_map(const std::string& name);
 
-/// Returns the length of the header that follows the first kNpyStart bytes of a file NPY. Throws std::runtime_error
-/// with a clause that follows "the program answered with ", for bytes that begin no file NPY of version 1.
+/// Returns the length of the header after the first kNpyStart bytes of an NPY file. Throws std::runtime_error unless
+/// the bytes start an NPY file of version 1; its text continues "the program answered with ".
 std::size_t header_length(const std::string& start);
-/// Throws likewise unless the header is that of `count` numbers of type '<f8'.
+/// Throws std::runtime_error, as above, unless the header describes `count` numbers of type '<f8'.
 void check_header(const std::string& text, Eigen::Index count);
 
 }  // namespace palpate::program

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An acquisition as a Python function: maps in, scores out. A file with nothing but
+"""An acquisition as a Python function, from arrays to scores. A file that contains only
 
     from palpate_acquisition import acquisition
 
@@ -7,9 +7,9 @@
     def score(belief):
         return belief.height_std * (belief.object_probability > 0.3)
 
-is `acquisition: {type: program, command: "python3 my.py"}`: palpate finds this module for the programs that it starts.
-Under palpate the file answers from the decorator on, so the function stands last in it; otherwise the decorator returns
-the function, for a test to call. It needs NumPy and nothing else.
+is used by `acquisition: {type: program, command: "python3 my.py"}`; palpate adds this module to the path of the programs
+that it starts. Under palpate the decorator answers requests and does not return, so the function must be last in the
+file. Otherwise the decorator returns the function, and tests can call it. The module needs only NumPy.
 """
 import io
 import json
@@ -19,23 +19,23 @@ import sys
 import numpy
 
 PROTOCOL = 1
-SERVED = "PALPATE_PROGRAM" in os.environ  # palpate has started this program
+SERVED = "PALPATE_PROGRAM" in os.environ  # started by palpate
 
-if SERVED:  # stdout is for scores alone: what anybody prints goes to a file of the run
+if SERVED:  # stdout is for scores; other output goes to a file of the run
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
 
 
 class Belief:
-    """What is believed before a tap. Its attributes are the arrays that `reads` names, float64, with one value per
-    candidate unless the table of framework/docs/strategies.md says otherwise, and
+    """State of the models before a tap. The attributes are the arrays that `reads` names: float64, one value per
+    candidate unless the table of framework/docs/strategies.md says otherwise. Further attributes:
 
-    tap         number of the tap that is chosen, from 1
-    seed        of the run
-    rows, columns  of the grid of candidates, row after row (taps from above): map.reshape(belief.rows, belief.columns)
-    area, desk  {"width", "depth"}, and the desk's height, metres
+    tap         number of the tap to choose, from 1
+    seed        seed of the run
+    rows, columns  of the grid of candidates, row by row (taps from above): map.reshape(belief.rows, belief.columns)
+    area, desk  {"width", "depth"}, and height of the desk, metres
 
-    A test makes one with what its function reads: Belief(uncertainty=numpy.ones(4), tap=5).
+    A test creates one with the attributes that its function reads: Belief(uncertainty=numpy.ones(4), tap=5).
     """
 
     def __init__(self, **values):
@@ -49,13 +49,13 @@ class Belief:
 
     @property
     def random(self):
-        """A numpy.random.Generator of this tap and seed: the same each time, so that a run can be carried on."""
+        """A numpy.random.Generator that depends only on tap and seed, so that resumed runs draw the same numbers."""
         return numpy.random.default_rng([self.seed, self.tap])
 
 
 def acquisition(reads):
-    """Makes a function an acquisition. `reads` is a list of names, written out: palpate looks for it in the file. The
-    function takes a Belief and returns one finite number per candidate; the highest is tapped."""
+    """Makes a function an acquisition. `reads` is a literal list of names, because palpate reads it from the text of the
+    file. The function takes a Belief and returns one finite number per candidate; the highest one is tapped."""
 
     def decorate(function):
         if SERVED and function.__module__ == "__main__":
@@ -67,7 +67,7 @@ def acquisition(reads):
 
 
 def serve(function, reads):
-    """Answers every ask until stdin ends."""
+    """Answers requests until stdin ends."""
     for line in iter(sys.stdin.buffer.readline, b""):
         ask = json.loads(line)
         if ask["palpate"] != PROTOCOL:
@@ -79,7 +79,7 @@ def serve(function, reads):
         scores = numpy.asarray(function(Belief(**ask, **arrays)), dtype="<f8")
         if scores.shape != (ask["candidates"],):
             sys.exit(f"{function.__name__} returned an array of shape {scores.shape}, not ({ask['candidates']},)")
-        answer = io.BytesIO()  # to a pipe NumPy does not write
+        answer = io.BytesIO()  # NumPy cannot write to a pipe
         numpy.save(answer, numpy.ascontiguousarray(scores))
         answers.write(answer.getvalue())
         answers.flush()

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Any program as an acquisition: it reads arrays on its stdin and answers with the scores on its stdout.
-// framework/docs/strategies.md has the protocol.
+// Acquisition by another program, which reads arrays from its stdin and writes the scores to its stdout. The protocol
+// is in framework/docs/strategies.md.
 //
-// It is started by the first score, and only in a run, whose context has a folder: who reads a record starts nothing.
-// Anything but one array of finite scores in time (an end, silence, another shape, NaN, a byte too many) ends the
-// program and the run, which is carried on by the same program started again. So nothing of a late answer is ever taken
-// for another tap's.
+// The program starts with the first score, and only in a run, whose context has a folder. Readers of records start
+// nothing. Every answer except one array of finite scores in time ends the program and the run. Examples are an end, a
+// timeout, another shape, NaN, or an additional byte. A resumed run starts the same program again. So no late answer is
+// taken for another tap.
 #include "program/maps.hpp"
 #include "programs/child.hpp"
 #include "programs/command.hpp"
@@ -35,12 +35,12 @@ namespace fs = std::filesystem;
 using programs::Child;
 using programs::shown;
 
-/// Rises when an ask or an answer changes its meaning; every ask carries it.
+/// Version of the protocol, in every request. It increases if the meaning of a request or an answer changes.
 constexpr int kProtocol = 1;
 
 constexpr const char* kNoArray = "none";
 
-/// The names in a text, whatever stands between them; `none` stands for none.
+/// Returns all names in a text with any separators; `none` stands for no name.
 std::vector<std::string> names_in(const std::string& text) {
   constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
   std::vector<std::string> out;
@@ -53,7 +53,7 @@ std::vector<std::string> names_in(const std::string& text) {
   return out;
 }
 
-/// What stands between the brackets of each `reads=[...]` in the text of a program: it is looked for, nothing runs.
+/// Returns the text in the brackets of each `reads=[...]` in a program's text. The program is not executed.
 std::set<std::string> declarations(const std::string& program) {
   constexpr std::size_t kMost = 1000;
   std::set<std::string> out;
@@ -71,7 +71,7 @@ std::set<std::string> declarations(const std::string& program) {
   return out;
 }
 
-/// "uncertainty, label_mean (from above); uncertainty, surface_std (from any side)", of all arrays.
+/// Returns the names of all arrays: "uncertainty, label_mean (from above); uncertainty, surface_std (from any side)".
 std::string all_names() {
   std::vector<const char*> above;
   std::vector<const char*> any_side;
@@ -82,7 +82,7 @@ std::string all_names() {
   return fmt::format("{} (from above); {} (from any side)", fmt::join(above, ", "), fmt::join(any_side, ", "));
 }
 
-/// Returns whether a word of the command that names no file in `folder` names one in the folder above.
+/// Returns whether a word of the command is a file in the parent of `folder` but not in `folder`.
 bool lies_above(const std::vector<std::string>& words, const fs::path& folder) {
   std::error_code none;
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
@@ -90,8 +90,8 @@ bool lies_above(const std::vector<std::string>& words, const fs::path& folder) {
   });
 }
 
-/// The folder of palpate_acquisition.py: beside that of this library, in a build, a package and an installation of pip
-/// alike. Not this folder itself: Python would take random.so for its module `random`.
+/// Returns the folder of palpate_acquisition.py, a sibling of this library's folder in a build, a package and an
+/// installation by pip. It must not be the same folder, because Python would import random.so as its module `random`.
 std::string python_folder() {
   Dl_info self{};
   std::error_code none;
@@ -99,7 +99,7 @@ std::string python_folder() {
   return (fs::weakly_canonical(self.dli_fname, none).parent_path().parent_path() / "python").string();
 }
 
-/// Where Python finds palpate_acquisition, after all that the user says.
+/// Returns PYTHONPATH with the user's entries, followed by the folder of palpate_acquisition.
 std::string python_path() {
   const char* const before = std::getenv("PYTHONPATH");
   return std::string("PYTHONPATH=") + (before != nullptr && *before != '\0' ? std::string(before) + ":" : "") +
@@ -134,7 +134,7 @@ struct ProgramOptions : Options {
                              "reads=[...] in the program. With `none`, the program receives no arrays"));
     fields.require(!words || !reads.empty(), "reads",
                    unsaid(words.value_or(std::vector<std::string>()), content.program, declared));
-    // A config seldom has names of its own: those of the program are corrected there.
+    // Unknown names are usually in the program, so the error points there.
     const bool by_program = declared.size() == 1 && reads == *declared.begin();
     for (const std::string& name : names_in(reads)) {
       fields.require(program::find_map(name) != nullptr, by_program ? "command" : "reads",
@@ -174,7 +174,7 @@ class ProgramAcquisition final : public Acquisition {
  public:
   using Options = ProgramOptions;
 
-  /// Throws Error, for a run, when there is no such program, or it is another one than the checksum says.
+  /// In a run, throws Error if the program does not exist or its checksum differs from the option.
   ProgramAcquisition(const Options& options, const Context& context) : options_(options), context_(context) {
     for (const std::string& name : names_in(options.reads)) maps_.push_back(program::find_map(name));
     if (!from_above() && !any_side()) {
@@ -205,7 +205,7 @@ class ProgramAcquisition final : public Acquisition {
 
   void score(const Belief& belief, VectorOut out) const override {
     const Points& places = belief.candidates();
-    Eigen::Index columns = 0;  // of the grid, row after row
+    Eigen::Index columns = 0;  // number of columns of the grid
     while (columns < places.rows() && places(columns, 1) == places(0, 1)) ++columns;
     std::vector<std::string> arrays;
     for (const program::Map* one : maps_) arrays.push_back(one->above(belief));
@@ -220,7 +220,7 @@ class ProgramAcquisition final : public Acquisition {
     exchange(fmt::format(R"("tap":{})", belief.taps() + 1), arrays, out);
   }
 
-  /// Nobody says how large scores are before the first tap.
+  /// The size of scores before the first tap is unknown.
   double prior_scale() const override { return 0.0; }
 
  private:
@@ -232,7 +232,7 @@ class ProgramAcquisition final : public Acquisition {
     throw Error("", "the program " + what, remedy, Error::Kind::run);
   }
 
-  /// Fails with how the program ended, and where a module of Python is missing with what has it.
+  /// Fails with the end of the program. If NumPy is missing, the remedy is its installation.
   [[noreturn]] void fail_ended(const std::string& fate) const {
     const std::string file = in_record(".stderr.txt");
     if (fate.find("No module named 'numpy'") != std::string::npos)
@@ -242,7 +242,7 @@ class ProgramAcquisition final : public Acquisition {
     fail(fate, "correct it, its output is in " + file);
   }
 
-  /// Sends what there is to read, and takes the scores.
+  /// Sends the arrays and receives the scores.
   void exchange(const std::string& fields, const std::vector<std::string>& arrays, VectorOut out) const {
     if (context_.directory.empty())
       throw Error("", "programs are started in a run only", "use the values that the run recorded", Error::Kind::run);
@@ -260,7 +260,7 @@ class ProgramAcquisition final : public Acquisition {
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),
         context_.interrupted};
     std::string bytes;
-    // Whatever there is before the ask is no answer to it.
+    // Output before the request is not an answer to it.
     if (child_->hear(bytes, 1, {Clock::now(), context_.interrupted}) == Heard::line)
       fail("printed more than its scores", "print other text to stderr");
     check(child_->send(ask(fields, arrays, out.size()), patience), {});
@@ -296,7 +296,7 @@ class ProgramAcquisition final : public Acquisition {
     return out;
   }
 
-  /// Fails unless all that was waited for is there; `bytes` is what came instead.
+  /// Fails unless the expected output has arrived; `bytes` is the output instead.
   void check(Heard heard, const std::string& bytes) const {
     switch (heard) {
       case Heard::line:
@@ -314,15 +314,15 @@ class ProgramAcquisition final : public Acquisition {
     }
   }
 
-  /// Returns the path of a file of this program in the run's folder. Each program of a sum has its own.
+  /// Returns the path of this program's file in the run's folder. Each program of a sum has its own files.
   std::string in_record(const std::string& ending) const {
     constexpr std::size_t kEnough = 8;
     return context_.directory + "/acquisition_" + options_.checksum.substr(0, kEnough) + ending;
   }
 
-  /// Keeps the program's text with the run: its file may be another one tomorrow.
+  /// Copies the program to the run's folder, because the original may change.
   void keep_program() const {
-    constexpr std::size_t kMostBytes = 1 << 20;  // more than anybody writes by hand
+    constexpr std::size_t kMostBytes = 1 << 20;  // larger than any hand-written program
     const programs::Content content = programs::content_of(words_, options_.folder);
     if (content.program.empty() || content.program.size() > kMostBytes) return;
     programs::keep_copy(in_record(fs::path(content.file).extension().string()), content.program);
@@ -335,8 +335,8 @@ class ProgramAcquisition final : public Acquisition {
   std::vector<const program::Map*> maps_;
   std::vector<std::string> words_;
   std::string file_;
-  mutable std::unique_ptr<Child> child_;  ///< score() is a pure function of the belief all the same
-  mutable bool answered_ = false;         ///< at least once, by any process of it
+  mutable std::unique_ptr<Child> child_;  ///< cache; score() remains a pure function of the belief
+  mutable bool answered_ = false;         ///< whether any started program has answered
 };
 
 PALPATE_PLUGIN(Acquisition, ProgramAcquisition, "program", "scores from a program of your own, in any language")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One descent of Tapper: it rests, bounds its speed, comes down, goes up and judges.
+// Descent of Tapper: rest, speed limit, descent, rise, and acceptance of the contact.
 #include "baxter/tapper.hpp"
 #include "baxter/words.hpp"
 #include "tapping/motion.hpp"
@@ -16,26 +16,28 @@ namespace {
 using tapping::newtons;
 using Then = Fault::Then;
 
-/// New readings of a force that pulls, in kPulledFor seconds: what moving takes away from it is noisy.
+/// Upper limit of consecutive readings of a pull until it is a fault. The count is kPulledFor seconds of new readings,
+/// within these limits.
 constexpr double kPulled = 6.0;
 constexpr double kFewestPulled = 3.0;
 constexpr double kPulledFor = 0.12;
-constexpr double kEvenFrom = 0.7;  ///< s after which an arm that trails by 0.35 s comes down evenly
-constexpr double kEvenTo = 1.0;    ///< s until which its force is averaged, longer if there are fewer readings than
+constexpr double kEvenFrom = 0.7;  ///< s until an arm that trails its set-point by 0.35 s descends at constant speed
+constexpr double kEvenTo = 1.0;    ///< s: end of the average of the force, later with fewer than kFewestEven readings
 constexpr std::size_t kFewestEven = 10;
-/// An arm that its springs hold presses with at least half of its stiffness times the way by which it stays behind; so
-/// much more than the threshold, N, must be felt of it. Less than kLeastBehind, m, may be a posture that sags more.
+/// Conditions for an arm that falls behind without a contact. A blocked arm presses with at least half of stiffness
+/// times lag, and the measured force must exceed the threshold by kPressed (N). A lag below kLeastBehind (m) may come
+/// from a posture that sags more.
 constexpr double kPressed = 2.0;
 constexpr double kLeastBehind = 0.003;
-constexpr int kQuiet = 3;  ///< readings within half the threshold, one after the other: no contact has fewer above it
-constexpr double kSteady = 1.5;      ///< N from the first half of it to the second: noise of 1.5 N makes 0.55
-constexpr double kLeastMoved = 2.5;  ///< N that the zero may move, whatever the threshold: noise makes 0.4
+constexpr int kQuiet = 3;            ///< consecutive readings within half the threshold; a contact has fewer
+constexpr double kSteady = 1.5;      ///< N between the means of both halves; noise of 1.5 N causes 0.55 N
+constexpr double kLeastMoved = 2.5;  ///< N: least limit of the zero's change in a tap; noise causes 0.4 N
 
-/// The mean force along z of a descent from when the arm, which trails its set-point, comes down evenly until shortly
-/// after. Where it rises meanwhile a contact begins: that is no force of a moving arm.
+/// Mean force along z while the arm, which trails its set-point, descends at constant speed. Without a result if the
+/// force rises meanwhile, because a contact may begin.
 class EvenDescent {
  public:
-  /// Takes a reading `time` seconds after the set-point began to come down; the mean when it is there.
+  /// Takes a reading `time` seconds after the set-point began to descend. Returns the mean once it is complete.
   std::optional<double> add(double time, double force) {
     if (time < kEvenFrom) forces_.clear();
     if (time < kEvenFrom || done_) return std::nullopt;
@@ -54,16 +56,16 @@ class EvenDescent {
   bool done_ = false;
 };
 
-/// The periods in which the set-point comes down evenly, those up to now and those up to the latest notice.
+/// Periods with a constant speed of descent: all up to now, and those up to the last detection.
 struct EvenPeriods {
   std::vector<Reaction::Period> now;
-  std::vector<double> lags;  ///< m by which the tip trails its set-point in each of them
-  double least_lag = 0.0;    ///< m, of them all
+  std::vector<double> lags;  ///< m by which the tip trails its set-point in each period
+  double least_lag = 0.0;    ///< m, minimum of lags
   std::vector<Reaction::Period> at_notice;
   int noticed = 0;
   double begin = 0.0;  ///< s
 
-  /// `even_for`: since when it comes down so, seconds; 0 if it does not.
+  /// Adds a period. `even_for`: seconds since the set-point descends at constant speed; 0 if it does not.
   void add(const Reaction::Period& period, double set_point, double even_for) {
     if (even_for < kEvenFrom) clear();
     if (even_for < kEvenFrom || period.time < begin) return;
@@ -76,13 +78,13 @@ struct EvenPeriods {
     now.clear();
     lags.clear();
   }
-  /// Begins anew once an arm that is slowed down at `time` comes down evenly again.
+  /// Starts again after a change of speed at `time`, as soon as the arm descends at constant speed.
   void restart(double time) {
     clear();
     begin = time + kEvenFrom;
   }
-  /// How much farther than at its nearest the tip trailed its set-point `ago` (s), metres; 0 while it did not come
-  /// down.
+  /// Returns the lag of the tip `ago` seconds before the last period, minus the least lag, in metres; 0 without such a
+  /// period.
   double behind(double ago) const {
     for (std::size_t i = now.size(); i > 0; --i) {
       if (now[i - 1].time <= now.back().time - ago) return lags[i - 1] - least_lag;
@@ -95,8 +97,8 @@ struct EvenPeriods {
   }
 };
 
-/// While the sign is not known there are two taps, one for each. They are led alike until one of them feels a contact;
-/// that one goes on, and its sign is the robot's, if the contact is one.
+/// Guarded tap for an unknown sign of the force. Two taps, one per sign, run in parallel until one of them detects a
+/// contact. That tap continues, and its sign is the robot's if the contact is accepted.
 class SignedTap {
   struct One {
     double sign;
@@ -105,17 +107,17 @@ class SignedTap {
   };
 
  public:
-  /// `sign`: of the force when something presses the tool upwards, 1 or -1; 0 if it is not known.
+  /// `sign`: sign of the force when an object presses the tool upwards, 1 or -1; 0 if unknown.
   SignedTap(const tapping::MotionOptions& motion, const tapping::Descent& descent, double sign) {
     const tapping::GuardedTap tap(motion, descent, tapping::GuardedTap::Arm::real);
     taps_ = sign != 0.0 ? std::vector<One>{{sign, tap}} : std::vector<One>{{-1.0, tap}, {1.0, tap}};
   }
 
-  /// As GuardedTap::next, with the force as the robot tells it.
+  /// Calls GuardedTap::next() with the force as the robot reports it.
   double next(double height, double force, bool fresh) {
     for (One& one : taps_) one.set_point = one.tap.next(height, one.sign * force, fresh);
     if (taps_.size() == 2 && taps_.front().set_point != taps_.back().set_point) {
-      // Of a contact the set-point is put where the arm is.
+      // The tap with the contact puts its set-point at the height of the arm.
       const bool second = taps_.back().set_point == height;
       taps_.erase(second ? taps_.begin() : taps_.begin() + 1);
     }
@@ -126,9 +128,9 @@ class SignedTap {
     for (One& one : taps_) one.tap.slow_to(speed);
   }
   const tapping::GuardedTap& tap() const { return taps_.front().tap; }
-  /// The force along z that it compares with, as the robot tells it.
+  /// Returns the zero of the force along z, with the robot's sign.
   double zero() const { return taps_.front().sign * tap().zero(); }
-  /// 0 while nothing has shown it.
+  /// Returns 0 as long as the sign is unknown.
   double sign() const { return taps_.size() == 1 ? taps_.front().sign : 0.0; }
 
  private:
@@ -137,25 +139,25 @@ class SignedTap {
 
 }  // namespace
 
-/// A way down: what it goes by, where it is, and what it has felt.
+/// State of a descent: plan, position, and measured forces.
 struct Tapper::WayDown {
   const Path& column;
-  tapping::MotionOptions motion;  ///< bounded
-  double stiffness;               ///< N/m, of the arm
+  tapping::MotionOptions motion;  ///< limited to the allowed speed
+  double stiffness;               ///< N/m, stiffness of the arm
   tapping::Descent plan;
   SignedTap tap;
-  Eigen::Vector3d at_hover;  ///< N, the force of the first tare
+  Eigen::Vector3d at_hover;  ///< N, force at the first tare
   Joints command;
   double set_point = plan.hover;
   double speed = motion.speed;
   bool tared = false;
   bool goes_up = false;
-  std::vector<Eigen::Vector3d> tare = {};  ///< readings of one that goes on
+  std::vector<Eigen::Vector3d> tare = {};  ///< readings of the current tare
   EvenDescent even = {};
-  std::optional<double> moving = {};  ///< N along z that an arm which comes down reads beside that at rest
+  std::optional<double> moving = {};  ///< N along z by which a free descent reads more than rest
   EvenPeriods periods = {};
-  int pulled = 0;  ///< readings, one after the other
-  int quiet = 0;   ///< readings, one after the other
+  int pulled = 0;  ///< consecutive readings
+  int quiet = 0;   ///< consecutive readings
 
   Joints at(double height) const { return column.at(plan.hover + kFromAbove - height); }
 };
@@ -184,7 +186,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
   return contact.outcome == Outcome::contact ? judge(way, contact) : contact;
 }
 
-/// One period of a way down: takes what the arm feels and sets the next command.
+/// Executes one period of a descent: evaluates the force and sets the next command.
 void Tapper::lead(WayDown& way) {
   const bool taring = way.tap.tap().taring();
   const bool coming_down = way.tap.tap().coming_down();
@@ -196,14 +198,15 @@ void Tapper::lead(WayDown& way) {
   if (way.tap.tap().noticed() > way.periods.noticed) way.periods.notice(way.tap.tap().noticed());
   if (!taring && !way.tap.tap().presses_no_further()) slow_down(way);
   const double sign = way.tap.sign();
-  // Once for each way up: a new expectation forgets the readings that pulled.
+  // Called once per rise, because a new expectation resets the count of pulling readings.
   if (way.set_point > before && !way.goes_up && sign != 0.0) {
     const double along = std::clamp(way.plan.hover + kFromAbove - height(), 0.0, way.column.length() - kTurned);
     watch_.expect_rise(Watch::Rise{way.tap.zero(), sign, most_pull(way.column, along)});
   }
   if (way.set_point < before) watch_.expect_rise(std::nullopt);
   if (way.set_point != before) way.goes_up = way.set_point > before;
-  // A set-point put where the arm is means: stop. The measured joints stop every joint, not the tip alone.
+  // A set-point at the height of the arm means stop. Commanding the measured joints stops every joint, not only the
+  // tip.
   if (way.set_point == height() && way.set_point != before) {
     way.command = seen_.joints->position;
   } else if (way.set_point != before) {
@@ -214,8 +217,8 @@ void Tapper::lead(WayDown& way) {
   expect_descent(way);
 }
 
-/// An arm that falls behind and feels nothing stands for another reason than a contact. When it comes free it would
-/// jump down to its set-point.
+/// Throws Fault if the arm falls behind its set-point without a contact force. It would jump down to its set-point when
+/// it comes free.
 void Tapper::expect_descent(const WayDown& way) const {
   if (way.quiet < kQuiet || way.tap.tap().done()) return;
   const double behind = way.periods.behind(reaction_.noticing() + reaction_.lateness());
@@ -226,7 +229,7 @@ void Tapper::expect_descent(const WayDown& way) const {
               Then::hold};
 }
 
-/// Messages that come later than before, or a force that is renewed more seldom, leave less time to stop.
+/// Reduces the speed if later messages or rarer renewals of the force leave less time to stop.
 void Tapper::slow_down(WayDown& way) {
   const double greatest = greatest_speed(way.motion.threshold, way.stiffness, Then::retreat);
   if (greatest >= way.speed) return;
@@ -235,7 +238,8 @@ void Tapper::slow_down(WayDown& way) {
   way.periods.restart(seen_.now);
 }
 
-/// The bias of the force depends on the pose: every tare of the tap is one for the rules, too.
+/// Averages the readings of a tare and passes the zero to the safety rules, because the bias of the force depends on
+/// the pose.
 void Tapper::tare(WayDown& way) {
   if (watch_.fresh()) way.tare.push_back(seen_.endpoint->force);
   way.pulled = 0;
@@ -246,7 +250,8 @@ void Tapper::tare(WayDown& way) {
   watch_.set_tare(zero_);
 }
 
-/// Takes a new reading of an arm that comes down: `felt` is that along z without `beside` (N), which moving makes.
+/// Evaluates a new reading during the descent. `felt`: force along z minus `beside` (N), the part that the motion
+/// causes.
 void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_down) {
   const double zero = way.tap.zero();
   const double against = sign_ == 0.0 ? std::abs(felt - zero) : sign_ * (felt - zero);
@@ -254,20 +259,20 @@ void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_dow
   const bool two_stage = way.motion.type == tapping::MotionOptions::Type::two_stage;
   const double least = two_stage ? std::min(way.motion.threshold, way.motion.fine_threshold) : way.motion.threshold;
   way.quiet = std::abs(felt - zero) < 0.5 * least ? way.quiet + 1 : 0;
-  // Of an arm that is being stopped the force is the contact's, and noise may take that above force_stop.
+  // While the arm stops at a contact the force belongs to the contact, and noise may raise it above force_stop.
   if (way.tap.tap().presses_no_further()) {
     watch_.forget_tare();
   } else {
     watch_.set_tare({zero_.x(), zero_.y(), zero + beside});
   }
-  // Once, high up: lower down the bias of another pose would be taken for that of the motion, and near what is
-  // expected a soft contact.
+  // Measured once, high above the desk. Lower, the bias of another pose would count as that of the motion, and near the
+  // expected surface a soft contact would.
   if (!way.moving && way.plan.start >= way.plan.hover) {
     const auto mean = way.even.add(way.tap.tap().even_for(), seen_.endpoint->force.z());
     if (mean) way.moving = *mean - zero_.z();
     if (mean) lately_ = {std::abs(*way.moving), way.speed};
   }
-  // An arm that goes up rubs the other way, which is no pull.
+  // Friction of a rising arm has the opposite sign, so only a descent counts.
   way.pulled = coming_down && sign_ * (felt - zero) < -way.motion.threshold ? way.pulled + 1 : 0;
   if (way.pulled < std::clamp(kPulledFor / watch_.renewals().seconds(), kFewestPulled, kPulled)) return;
   throw Fault{
@@ -275,8 +280,8 @@ void Tapper::feel_free(WayDown& way, double felt, double beside, bool coming_dow
       Then::retreat};
 }
 
-/// The contact, if the force at rest is what it was before: sideways the robot's estimate is at its worst. What the tap
-/// has shown of the robot is learnt.
+/// Accepts the contact if the force at rest equals that before the tap. Sideways the limit is larger, because the
+/// robot's estimate is worst there. Learns from an accepted contact.
 Contact Tapper::judge(const WayDown& way, const Contact& contact) {
   rest_from_above(way.column);
   const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;
@@ -287,7 +292,7 @@ Contact Tapper::judge(const WayDown& way, const Contact& contact) {
                   "the contact may be false");
   }
   if (way.moving) learn_moving(*way.moving);
-  // The height of the other motions is not that of the beginning.
+  // Other motions do not measure the height of the onset.
   const bool at_onset = way.motion.type == tapping::MotionOptions::Type::continuous;
   reaction_.learn_noticing(way.periods.at_notice, at_onset ? std::optional<double>(contact.height) : std::nullopt,
                            way.motion.threshold, way.stiffness);

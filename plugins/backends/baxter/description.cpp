@@ -15,14 +15,14 @@ namespace {
 
 using Element = const tinyxml2::XMLElement*;
 
-/// NaN where it is no number from 0 on.
+/// Returns NaN if the text is not a number of at least 0.
 double mass_of(const std::string& text) {
   double value = 0.0;
   const bool number = boost::conversion::try_lexical_convert(text, value) && value >= 0.0;
   return number ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// "" for an element or an attribute that there is not.
+/// Returns an empty string if the element or the attribute does not exist.
 std::string attribute(Element element, const char* name) {
   const char* value = element != nullptr ? element->Attribute(name) : nullptr;
   return value != nullptr ? value : "";
@@ -32,7 +32,7 @@ std::string attribute(Element element, const char* name) {
 
 std::optional<double> mass_beyond(const std::string& urdf, const std::string& link) {
   tinyxml2::XMLDocument document;
-  // What is nested too deeply for it is refused, too: it reads by recursion, and knows its limit.
+  // The parser is recursive and rejects XML that is nested too deeply.
   if (document.Parse(urdf.data(), urdf.size()) != tinyxml2::XML_SUCCESS) return {};
   std::map<std::string, double> masses;
   std::multimap<std::string, std::string> hanging_on;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is read of a robot's own description of itself (URDF).
+// Reader for masses in the URDF description of a robot.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,9 @@
 
 namespace palpate::baxter {
 
-/// The mass of all links that hang on `link` by joints, directly or through others, without its own; kg. None if the
-/// text has no such link, or a mass below it that is no number from 0 on. A text that is no URDF has no links.
+/// Returns the total mass in kg of all links that are attached to `link` by joints, directly or through other links.
+/// The mass of `link` itself is not included. Returns nullopt if `link` does not exist, if a mass is not a number of at
+/// least 0, or if the text is not URDF.
 std::optional<double> mass_beyond(const std::string& urdf, const std::string& link);
 
 }  // namespace palpate::baxter

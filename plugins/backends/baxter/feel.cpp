@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What Tapper makes of the force that the robot tells: its rest, its bound, the way up, and what it learns.
+// Force sensing of Tapper: force at rest, speed limit, rise, friction, and sign.
 #include "baxter/tapper.hpp"
 #include "baxter/words.hpp"
 #include "tapping/motion.hpp"
@@ -15,29 +15,31 @@ namespace {
 using tapping::newtons;
 using Then = Fault::Then;
 
-constexpr std::size_t kForceSamples = 25;        ///< new ones, for the force at rest
-constexpr std::size_t kFewestForceSamples = 12;  ///< after kForcePatience, of a force that is renewed seldom
+constexpr std::size_t kForceSamples = 25;        ///< new readings of the force at rest
+constexpr std::size_t kFewestForceSamples = 12;  ///< least number of readings, after kForcePatience
 constexpr double kForcePatience = 1.0;           ///< s
 constexpr double kMostForcePatience = 3.0;       ///< s
-constexpr int kTold = 3;                         ///< taps of a run for which that is noted
-constexpr double kMostMoving = 0.8;              ///< of the threshold: more may be a contact that begins
+constexpr int kTold = 3;                         ///< number of taps per run for which the difference is logged
+constexpr double kMostMoving = 0.8;  ///< fraction of the threshold; a larger difference may be the onset of a contact
 
-/// m above what it touched to where an arm goes up gently: there it is clear, and its joints rub the other way.
+/// Clearance in m at which a slow rise ends: the tool is free, and the friction of the joints has changed its
+/// direction.
 constexpr double kClear = 0.005;
-constexpr double kFarther = 0.01;  ///< m that it goes on gently where it still presses: an onset is as inexact
-constexpr double kRubs = 1.4;      ///< times as much as at rest, while the joints turn around and move
-constexpr double kGentle = 0.01;   ///< m/s: an arm of 6.4 kN/m that is held feels 2 N more in three readings
-constexpr double kSpeedUp = 0.15;  ///< m/s^2, afterwards
-/// N that an arm reads less when it goes up faster, by its speed, and behind a zero that changes by 50 N/m.
+constexpr double kFarther =
+    0.01;                      ///< m of additional slow rise while the arm still presses, because an onset is inexact
+constexpr double kRubs = 1.4;  ///< ratio of friction during a reversal to friction at rest
+constexpr double kGentle = 0.01;   ///< m/s: a caught arm of 6.4 kN/m gains 2 N in three readings
+constexpr double kSpeedUp = 0.15;  ///< m/s^2, after the slow rise
+/// Additional pull in N of a faster rise, from its speed and from a zero that changes by 50 N/m.
 constexpr double kFaster = 2.0;
-constexpr double kMovingNoise = 0.5;     ///< N of it that may be noise: two deviations of 30 readings
-constexpr double kLatest = 0.2;          ///< of a force that is followed, the part of the latest reading
-constexpr double kToRest = 0.015;        ///< m/s, of the centimetre before a rest, where nothing should be
-constexpr double kFirstThreshold = 5.0;  ///< N, until a contact was measured
-constexpr double kMostRubbing = 0.5;     ///< Nm of a joint: more is something that touches the arm
-constexpr double kStiffest = 8000.0;     ///< N/m of the arm where its posture is not known
+constexpr double kMovingNoise = 0.5;     ///< N: two standard deviations of the mean of 30 readings
+constexpr double kLatest = 0.2;          ///< weight of the last reading in a moving average of the force
+constexpr double kToRest = 0.015;        ///< m/s of the last centimetre before a rest, where no object is expected
+constexpr double kFirstThreshold = 5.0;  ///< N, until the first measured contact
+constexpr double kMostRubbing = 0.5;     ///< Nm per joint; more means that something touches the arm
+constexpr double kStiffest = 8000.0;     ///< N/m, assumed for an unknown posture
 
-/// Of each component; at least one reading.
+/// Returns the median of each component; needs at least one reading.
 Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
   Eigen::Vector3d out;
   const auto middle = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
@@ -51,22 +53,22 @@ Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
 
 }  // namespace
 
-/// How far the joints turn for each metre of a way, `along` it: rad/m, all of them together.
+/// Returns the sum of all joint rotations per metre of path at `along`, rad/m.
 double Tapper::turned(const Path& way, double along) {
   const double end = std::min(way.length(), along + kTurned);
   return (way.at(end) - way.at(along)).lpNorm<1>() / std::max(end - along, 1e-3);
 }
 
-/// Comes down to `hover` from just above and waits until the arm rests. Its joints rub: at 0.4 Nm the force of an arm
-/// at rest reads 9 N less after it has come up than after it has come down. So it rests as it will go on, and what is
-/// felt at rest before a tap and after it can be compared.
+/// Descends from the height of travel to `hover` and waits until the arm rests. The direction matters because of
+/// friction: at 0.4 Nm, the force at rest reads 9 N less after a rise than after a descent. So all forces at rest are
+/// measured after a descent.
 void Tapper::rest_from_above(const Path& column) {
   settle(column.front());
   follow(column, std::min(motion_.speed, kToRest), kFromAbove);
   settle(column.at(kFromAbove));
 }
 
-/// The greatest vertical stiffness of the arm on its way down there, N/m.
+/// Returns the largest vertical stiffness of the arm on its descent at `place`, N/m.
 double Tapper::stiffness_at(const Target& place) const {
   double out = 0.0;
   std::optional<Joints> joints = untucked();
@@ -77,8 +79,8 @@ double Tapper::stiffness_at(const Target& place) const {
   return out > 0.0 ? out : kStiffest;
 }
 
-/// The greatest speed (m/s) at which no contact is expected to exceed Reaction::kGreatestForce. Throws Fault, after
-/// which `then` may be done, where that speed is too low to tap with.
+/// Returns the speed (m/s) at which no contact is expected to exceed Reaction::kGreatestForce. Throws Fault with the
+/// action `then` if this speed is too low for taps.
 double Tapper::greatest_speed(double threshold, double stiffness, Then then) const {
   const double greatest = reaction_.greatest_speed(threshold, stiffness);
   if (greatest >= reaction_.slowest()) return greatest;
@@ -91,16 +93,16 @@ double Tapper::greatest_speed(double threshold, double stiffness, Then then) con
               then};
 }
 
-/// Takes how late messages are now, and how often the force is renewed.
+/// Passes the lateness of messages and the period of the force to reaction_.
 void Tapper::measure_time() {
   reaction_.late(watch_.lateness(), seen_.now);
   reaction_.renewed_every(watch_.renewals().seconds());
 }
 
-/// The motion at speeds at which no contact is expected to exceed Reaction::kGreatestForce. Throws Fault where such a
-/// speed is not worth having.
+/// Returns `motion` with its speeds limited so that no contact is expected to exceed Reaction::kGreatestForce. Throws
+/// Fault if the limit is too low for taps.
 tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double stiffness) const {
-  // Nobody knows yet how late this robot is: it is taken for the slowest that is driven.
+  // Before the first measured contact, the delays of the slowest supported robot are assumed.
   if (!reaction_.measured()) {
     motion.threshold = std::min(motion.threshold, kFirstThreshold);
     motion.fine_threshold = std::min(motion.fine_threshold, motion.threshold);
@@ -116,8 +118,8 @@ tapping::MotionOptions Tapper::bounded(tapping::MotionOptions motion, double sti
   return motion;
 }
 
-/// Once a run, in the air above the first column: what the joints rub, by the force at rest after coming down and after
-/// coming up. By virtual work a torque r in each of them takes r times turned() along the way.
+/// Measures the friction of the joints once per run, in the air above the first column. The force at rest differs
+/// between descent and rise. By virtual work, a torque r in each joint contributes r times turned().
 void Tapper::learn_rubbing(const Path& column) {
   rest_from_above(column);
   const double down = force_at_rest(column.at(kFromAbove)).z();
@@ -127,8 +129,8 @@ void Tapper::learn_rubbing(const Path& column) {
   rubbing_ = std::min(kMostRubbing, std::abs(down - force_at_rest(up.end()).z()) / 2 / turned(up, 0.0));
 }
 
-/// N of a pull, against its zero at rest, that an arm may feel which goes up `along` this way and is not held: what its
-/// joints rub, and what it was seen to read beside while it moves.
+/// Returns the largest pull in N, relative to the zero at rest, that a free arm can read while it rises at `along`.
+/// Causes are friction of the joints and the motion itself.
 double Tapper::most_pull(const Path& way, double along) const {
   if (!rubbing_) return options_.force_stop;
   const double beside =
@@ -136,30 +138,30 @@ double Tapper::most_pull(const Path& way, double along) const {
   return motion_.threshold + beside + kRubs * 2 * *rubbing_ * turned(way, along);
 }
 
-/// m/s at which an arm that goes up freely reads at most kFaster less than it is known to: that grows with its speed.
+/// Returns the speed in m/s at which a free rise reads at most kFaster N less than at the known speed. The difference
+/// grows with the speed.
 double Tapper::greatest_rise() const {
   const double surely = lately_.beside - kMovingNoise;
   if (surely <= 0.0) return motion_.retreat_speed;
   return std::min(motion_.retreat_speed, lately_.speed * (1.0 + kFaster / surely));
 }
 
-/// Goes up from where it may press, of which only a pull is a fault. `zero`: of the force along z down there, N.
+/// Rises from a contact or its end, where only a pull is a fault. `zero`: force along z at the contact, N.
 void Tapper::retreat(const Path& up, double sign, double zero, const Contact& contact) {
   watch_.forget_tare();
   const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kGently - kClear;
   rise(up, std::clamp(touched - height(), 0.0, kMostGentle) + kClear, sign, zero);
 }
 
-/// Goes up gently until the tip has come up by `gently` (m), at most kFarther more while it presses; then faster. On
-/// the first part what it presses with goes, and what its joints rub against turns around; then its zero follows the
-/// pose. `zero`: N of the force along z of an arm that is free; without it what it feels after the first part is taken
-/// for that.
+/// Rises slowly until the tip is `gently` metres higher, or up to kFarther metres more while the tool presses; then
+/// faster. During the slow part pressure disappears and friction changes its direction. Afterwards the zero follows the
+/// pose. `zero`: force along z of a free arm, N; if absent, the force after the slow part.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = most_pull(up, 0.0);
   if (sign != 0.0 && zero) watch_.expect_rise(Watch::Rise{*zero, sign, limit});
   const double clear = height() + gently;
   const double surely = clear + kFarther;
-  // A pull is noticed as late as a contact.
+  // A pull is detected as late as a contact.
   const double stiffness = arm_.vertical_stiffness(seen_.joints->position);
   double speed = std::min(
       {motion_.speed, kGentle, std::max(reaction_.slowest(), reaction_.greatest_speed(motion_.threshold, stiffness))});
@@ -189,7 +191,7 @@ std::string Tapper::learnt_sign() const {
   return sign_ > 0.0 ? "positive" : "negative";
 }
 
-/// From the latest contact, once it is believed and is where it should be.
+/// Adopts the sign of the last contact, once the contact is accepted.
 void Tapper::learn_sign() {
   if (sign_ != 0.0) return;
   sign_ = shown_sign_;
@@ -197,7 +199,7 @@ void Tapper::learn_sign() {
         std::string(sign_ > 0.0 ? "rises: positive" : "falls: negative"));
 }
 
-/// What the force reads beside while the arm comes down in the air is no contact: from now on it counts as zero then.
+/// Learns the difference of the force between free descent and rest, which later descents subtract.
 void Tapper::learn_moving(double difference) {
   const bool much = std::abs(difference) >= kMostMoving * motion_.threshold;
   moving_ = much ? 0.0 : difference;
@@ -208,7 +210,7 @@ void Tapper::learn_moving(double difference) {
               : ": this is its zero during descents from the next tap on"));
 }
 
-/// The median of a few new readings, while the arm is where it is sent: one of them may be far off.
+/// Returns the median of several new readings with the arm held at `joints`. A median is robust to single outliers.
 Eigen::Vector3d Tapper::force_at_rest(const Joints& joints) {
   std::vector<Eigen::Vector3d> readings;
   const double begin = seen_.now;

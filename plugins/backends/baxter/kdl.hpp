@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Baxter's numbers in KDL's words.
+// Conversions from the driver's types to those of KDL.
 #pragma once
 
 #include "baxter/kinematics.hpp"

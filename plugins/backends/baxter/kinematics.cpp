@@ -15,9 +15,10 @@ using namespace description;
 
 constexpr double kAccuracy = 1e-6;
 constexpr int kIterations = 100;
-constexpr double kLever = 0.1;  // m: a turn counts as much as the way of a point so far away
+constexpr double kLever = 0.1;  // m: lever that converts a rotation error in rad to a position error
 
-/// KDL turns a joint after the fixed part of its segment, a URDF before it: so each joint takes the next one's step.
+/// KDL rotates a joint before the fixed part of its segment, URDF after it. So each KDL joint gets the transform of the
+/// next URDF joint.
 KDL::Chain left_arm(const Eigen::Vector3d& tip) {
   KDL::Chain out;
   out.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), frame(kMount) * frame(kSteps[0])));
@@ -81,7 +82,7 @@ Joints upper_limits() {
 Joints untucked() { return (Joints() << -0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.50).finished(); }
 
 const Eigen::Quaterniond& straight_down() {
-  // What is left of the untucked rotation when its tilt is taken out.
+  // The untucked rotation without its tilt.
   static const Eigen::Quaterniond rotation = [] {
     const Eigen::Quaterniond hand = Arm(Eigen::Vector3d::Zero()).tip(untucked()).rotation;
     return Eigen::Quaterniond(0.0, hand.x(), hand.y(), 0.0).normalized();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Baxter's left arm as a chain of seven joints. The numbers are those of Rethink's baxter.urdf 1.2.0; the solver is
-// KDL's.
+// Kinematics of Baxter's left arm, a chain of seven joints. The geometry is that of Rethink's baxter.urdf 1.2.0; KDL
+// solves the inverse problem.
 #pragma once
 
 #include "baxter/robot.hpp"
@@ -10,17 +10,19 @@
 
 namespace palpate::baxter {
 
-/// Where the joints are: the numbers of Rethink's baxter.urdf 1.2.0.
+/// Geometry and stiffness of the joints. Source of the geometry: Rethink's baxter.urdf 1.2.0.
 namespace description {
 
-constexpr double kHalfPi = 1.57079632679;  // as many digits as the robot's own description has
+constexpr double kHalfPi = 1.57079632679;  // rounded as in baxter.urdf
 
-/// Position of a joint in the frame of the one before, metres, and its rotation as roll, pitch and yaw.
+/// Position of a joint in the frame of the previous joint, in metres, and its rotation as roll, pitch and yaw in
+/// radians.
 struct Step {
   double x, y, z, roll, pitch, yaw;
 };
 
-/// base -> torso -> left_arm_mount, then joint by joint; every joint turns about its own z.
+/// Transforms base -> torso -> left_arm_mount (kMount), then one transform per joint. Every joint rotates about its own
+/// z axis.
 constexpr Step kMount = {0.024645, 0.219645, 0.118588, 0, 0, 0.7854};
 constexpr Step kSteps[] = {
     {0.055695, 0, 0.011038, 0, 0, 0},            // s0
@@ -31,30 +33,33 @@ constexpr Step kSteps[] = {
     {0.01, 0, 0.2707, -kHalfPi, -kHalfPi, 0},    // w1
     {0.115975, 0, 0, kHalfPi, 0, kHalfPi},       // w2
 };
-constexpr double kHand = 0.11355;  // left_wrist -> left_hand, along z
+constexpr double kHand = 0.11355;  // m from left_wrist to left_hand, along z
 
-/// Stiffness of the springs between motors and joints, Nm/rad: Rethink's hardware specification.
+/// Stiffness of the springs between motors and joints, Nm/rad. Source: Rethink's hardware specification.
 constexpr double kSprings[] = {843, 843, 843, 843, 250, 250, 250};
 
 }  // namespace description
 
-/// The arm with something fixed to its flange (the frame `left_hand`). Safe to share; solve() is not.
+/// The arm with a tool fixed to its flange (frame `left_hand`). Const methods may be called from several threads,
+/// except solve().
 class Arm {
  public:
-  /// `tip`: the point of the tool that touches, in the frame left_hand, whose z axis goes on along the forearm; metres.
+  /// `tip`: contact point of the tool in the frame left_hand, in metres. The z axis of left_hand points away from the
+  /// forearm.
   explicit Arm(const Eigen::Vector3d& tip);
   ~Arm();
 
-  /// Where the tip is, and how the hand is turned.
+  /// Returns the position of the tip and the rotation of the hand, in the frame `base`.
   Pose tip(const Joints& joints) const;
 
-  /// Returns the vertical stiffness of the tip in `base`, N/m, with the motors held: (J_z K^-1 J_z^T)^-1, where J_z is
-  /// the vertical row of the Jacobian and K the stiffness of the springs. 2.2 to 6.4 kN/m over a usual area.
+  /// Returns the vertical stiffness of the tip in `base`, in N/m, with the motors held: (J_z K^-1 J_z^T)^-1. J_z is the
+  /// vertical row of the Jacobian and K the stiffness of the springs. Typical values over a usual area are 2.2 to 6.4
+  /// kN/m.
   double vertical_stiffness(const Joints& joints) const;
 
-  /// The solution of the inverse problem that Levenberg and Marquardt's method finds from `seed`, to 1e-6 m and rad;
-  /// none if there is none nearby or it leaves the limits of the joints by less than `margin` radians. It does not jump
-  /// to another posture of the elbow unless the seed is far away.
+  /// Returns joints that put the tip at the pose `tip`, to 1e-6 m and rad, by Levenberg and Marquardt's method started
+  /// from `seed`. Returns nullopt if the method finds none, or if a joint is closer to its limit than `margin` radians.
+  /// The elbow keeps its posture unless the seed is far from the solution.
   std::optional<Joints> solve(const Pose& tip, const Joints& seed, double margin = 0.0) const;
 
  private:
@@ -66,13 +71,15 @@ class Arm {
 Joints lower_limits();
 Joints upper_limits();
 
-/// The first joint that is beyond its limit less `margin`; -1 if all are within.
+/// Returns the index of the first joint that is closer to its limit than `margin` radians, or -1 if there is none.
 int beyond_limits(const Joints& joints, double margin);
 
-/// The posture from which solutions are sought: Rethink's "untucked", elbow out, the tool nearly straight down.
+/// Returns the start posture of inverse kinematics: Rethink's "untucked", with the elbow out and the tool nearly
+/// vertical.
 Joints untucked();
 
-/// The rotation of the hand when the tool points straight down, turned about the vertical as it is when untucked.
+/// Returns the rotation of the hand with the tool pointing straight down. The rotation about the vertical is that of
+/// untucked().
 const Eigen::Quaterniond& straight_down();
 
 }  // namespace palpate::baxter

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a config says of a Baxter: where its tool and the scene are, how it taps, when it must stop.
+// Options of the backend `baxter`: poses of tool and scene, motion, and force limits.
 #pragma once
 
 #include "tapping/motion.hpp"
@@ -12,28 +12,30 @@
 
 namespace palpate::baxter {
 
-/// The arm's firmware stops at 16 N ("squish"), for two seconds. A threshold must leave room for what the arm presses
-/// on while a contact is noticed and it comes to rest, at the slowest that it is driven.
+/// Upper limits of `threshold` and `force_stop`, N. The firmware stops the arm for two seconds at 16 N ("squish"). The
+/// arm keeps pressing while a contact is detected and the motion stops, so a threshold must be lower.
 constexpr double kGreatestThreshold = 10.0;
 constexpr double kGreatestStop = 15.0;
-constexpr double kLeastThreshold = 3.0;  ///< N: twice the noise of the tests' robot; nobody published a real one's
-constexpr double kShortestTare = 0.1;    ///< s
-constexpr double kSlowest = 0.01;        ///< m/s, for ways that have no time-out
-constexpr double kFastest = 0.1;         ///< m/s, downwards: the arm presses on for a third of a second of it
-constexpr double kDeepest = 0.1;         ///< m below the desk
+constexpr double kLeastThreshold =
+    3.0;  ///< N: twice the noise of the simulated robot; no noise of a real one is published
+constexpr double kShortestTare = 0.1;  ///< s
+constexpr double kSlowest = 0.01;      ///< m/s, for motions without a timeout
+constexpr double kFastest = 0.1;  ///< m/s downwards: after a contact the arm moves on for about a third of a second
+constexpr double kDeepest = 0.1;  ///< m below the desk
 
-/// In a build that cannot talk to a robot no option is mandatory: what is to be said first is then what to install.
+/// Marks `field` as mandatory, except in the stub. There, the error about missing packages must come before any error
+/// about a missing option.
 inline Field mandatory(Field field) {
-#ifndef PALPATE_ABSENT
+#ifndef PALPATE_STUB
   field.needed();
 #endif
   return field;
 }
 
-/// What is fixed to the flange of the arm.
+/// Tool that is fixed to the flange of the arm.
 struct ToolOptions : Options {
-  double tip[3] = {0.0, 0.0, 0.0};  ///< the point that touches, in the frame left_hand, metres
-  double gripper = 0.025;           ///< left_gripper as the robot has it, from left_hand along z, metres
+  double tip[3] = {0.0, 0.0, 0.0};  ///< contact point in the frame left_hand, metres
+  double gripper = 0.025;           ///< distance from left_hand to the robot's frame left_gripper along z, metres
   void list(Fields& fields) override {
     const char* meaning =
         "x, y, z of the tool's contact point in the frame left_hand. The z axis points away from the flange";
@@ -48,12 +50,12 @@ struct ToolOptions : Options {
   }
 };
 
-/// Where the frame of the scene lies in the robot's frame `base`.
+/// Pose of the scene's frame in the robot's frame `base`.
 struct ScenePoseOptions : Options {
-  double corner[2] = {0.0, 0.0};  ///< metres
-  double height = 0.0;            ///< of the scene's zero, metres
-  double rotation = 0.0;          ///< about the vertical, radians
-  /// Brings a point (x, y, z) of the scene to corner + R(rotation) (x, y), height + z.
+  double corner[2] = {0.0, 0.0};  ///< x and y of the area's corner in base, metres
+  double height = 0.0;            ///< height of the scene's origin in base, metres
+  double rotation = 0.0;          ///< rotation about the vertical, radians
+  /// Returns the transform that maps a scene point (x, y, z) to (corner + R(rotation) (x, y), height + z).
   Eigen::Isometry3d frame() const {
     return Eigen::Translation3d(corner[0], corner[1], height) * Eigen::AngleAxisd(rotation, Eigen::Vector3d::UnitZ());
   }
@@ -75,10 +77,10 @@ struct ScenePoseOptions : Options {
   }
 };
 
-/// A tap on the bare desk before the first of the run, whose height then counts instead of the config's.
+/// Tap on the bare desk before the first tap of a run. The measured height replaces the configured height of the desk.
 struct CalibrationOptions : Options {
-  double at[2] = {0.0, 0.0};  ///< in the area, metres
-  double tolerance = 0.01;    ///< how far the desk may be from where the config has it, metres
+  double at[2] = {0.0, 0.0};  ///< position in the area, metres
+  double tolerance = 0.01;    ///< largest allowed difference between measured and configured height of the desk, metres
   void list(Fields& fields) override {
     fields.reals(at, 2,
                  Field("at", "position of the calibration tap in the area. The desk must be bare at this position")
@@ -98,21 +100,22 @@ struct CalibrationOptions : Options {
 
 struct BaxterOptions : Options {
   enum class InverseKinematics { own, robot };
-  /// The sign of the force along z when something presses the tool upwards; `learn`: the first contact shows it.
+  /// Sign of the force along z when an object presses the tool upwards. With `learn`, the first contact determines the
+  /// sign.
   enum class ForceSign { negative, positive, learn };
 
   tapping::BackendMotion motion;
   ToolOptions tool;
   ScenePoseOptions scene_pose;
   std::optional<CalibrationOptions> calibration;
-  std::optional<ForceSign> force_sign;  ///< `learn` with a calibration and else `negative`, if the config says nothing
+  std::optional<ForceSign> force_sign;  ///< absent from the config: `learn` with a calibration, else `negative`
   double force_stop = 14.0;             ///< N
   InverseKinematics inverse_kinematics = InverseKinematics::own;
   bool dry_run = false;
   bool view = true;
   bool bag = false;
 
-  /// Metres below the desk at which the deepest of descents ends.
+  /// Returns the largest depth below the desk at which a descent ends, metres.
   double deepest() const {
     double out = 0.0;
     for (int i = 0; i < motion.count(); ++i) out = std::max(out, motion.at(i).overrun);

@@ -9,13 +9,14 @@
 namespace palpate::baxter {
 namespace {
 
-/// Between two poses for which joints are sought, metres: what joints in between miss is below 0.1 mm.
+/// Distance in metres between inverse kinematics solutions on a path. Interpolation in between misses the path by less
+/// than 0.1 mm.
 constexpr double kColumnStep = 0.005;
 constexpr double kLineStep = 0.01;
-/// The hand turns so much (rad) between two poses of a line at most.
+/// Largest rotation of the hand in rad between two solutions on a line.
 constexpr double kTurnStep = 0.05;
-/// Farthest turn of a joint per step: several times what is seen within reach. Beyond, the arm would swing over to
-/// another posture, or is near one that it cannot leave evenly.
+/// Largest rotation of a joint in rad between two solutions, several times the usual value within reach. A larger
+/// rotation means that the arm switches to another posture or is near a singular one.
 constexpr double kJump = 0.15;
 
 std::string place_text(const Pose& pose) {
@@ -32,14 +33,14 @@ void Path::add(const Joints& joints, double distance) {
   joints_.push_back(joints);
 }
 
-/// The index of the point that ends the segment around `distance`.
+/// Returns the index of the point that ends the segment with `distance`.
 std::size_t Path::segment(double distance) const {
   const auto after = std::upper_bound(at_.begin(), at_.end(), distance);
   const auto index = static_cast<std::size_t>(after - at_.begin());
   return std::clamp<std::size_t>(index, 1, at_.size() - 1);
 }
 
-/// How fast a joint turns on it, rad/m.
+/// Returns the largest rotation of a joint per metre in a segment, rad/m.
 double Path::slope(std::size_t segment) const {
   const Joints turn = joints_[segment] - joints_[segment - 1];
   return turn.cwiseAbs().maxCoeff() / (at_[segment] - at_[segment - 1]);
@@ -118,7 +119,7 @@ Path Planner::line(const Joints& from, const Joints& to) const {
   const double turn = start.rotation.angularDistance(end.rotation);
   const double posture = (to - from).cwiseAbs().maxCoeff();
   const int count = std::max({steps(length, kLineStep), steps(turn, kTurnStep), steps(posture, kTurnStep)});
-  // A turn on the spot takes as long as moving a lever of 20 cm would.
+  // A rotation on the spot takes as long as a translation by the same angle with a lever of 20 cm.
   const double step = std::max({length, 0.2 * turn, 0.2 * posture}) / count;
   Path out;
   out.add(from, 0.0);
@@ -128,7 +129,7 @@ Path Planner::line(const Joints& from, const Joints& to) const {
     const double share = static_cast<double>(i) / count;
     const Pose between{(1.0 - share) * start.position + share * end.position,
                        start.rotation.slerp(share, end.rotation)};
-    // Sought near the mean of both ends, so that the way ends in `to` and not in another posture with the same tip.
+    // The mean of both ends is the seed, so that the path ends in `to` and not in another posture with the same tip.
     const Joints joints = i == count ? to : solve(between, (1.0 - share) * from + share * to, nullptr);
     if ((joints - last).cwiseAbs().maxCoeff() > kJump) {
       throw NoPath{"the joints would jump on the way at " + place_text(between) +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ways of the tool, planned as joints before anything moves: what cannot be reached is known beforehand, and the
-// control loop only reads off.
+// Paths of the tool, planned as joint positions before the arm moves. Unreachable positions are found in advance, and
+// the control loop only interpolates.
 #pragma once
 
 #include "baxter/kinematics.hpp"
@@ -16,23 +16,24 @@
 
 namespace palpate::baxter {
 
-/// A way of the tip that the joints can follow: joints at distances along it, straight in between.
+/// Path of the tip with joint positions at increasing distances along it. Joints are interpolated linearly between
+/// these points.
 class Path {
  public:
-  /// Goes on from the last point to `joints`, `distance` metres farther along the way.
+  /// Appends `joints`, at `distance` metres after the last point.
   void add(const Joints& joints, double distance);
 
-  /// Metres.
+  /// Returns the length in metres.
   double length() const { return at_.empty() ? 0.0 : at_.back(); }
-  /// The joints `distance` metres from the start; the ends for what lies beyond.
+  /// Returns the joints at `distance` metres from the start, clamped to the ends of the path.
   Joints at(double distance) const;
-  /// The next distance after one period of `seconds` at `speed` (m/s), or less where a joint would turn faster than
-  /// kJointSpeed.
+  /// Returns the distance (m) after one more period of `seconds` at `speed` (m/s). The speed is reduced where a joint
+  /// would rotate faster than kJointSpeed.
   double advance(double distance, double speed, double seconds) const;
 
-  /// The way back to the start from `distance` metres along.
+  /// Returns the reversed path from `distance` metres to the start.
   Path back(double distance) const;
-  /// Fastest turn of a joint along the way, radians per metre.
+  /// Returns the largest rotation of a joint per metre of the path, rad/m.
   double steepest() const;
 
   const Joints& front() const { return joints_.front(); }
@@ -46,55 +47,57 @@ class Path {
   std::vector<Joints> joints_;
 };
 
-/// Fastest turn of a joint, rad/s. An arm that trails by 0.4 s is then 0.16 rad behind, which the watch allows.
+/// Largest speed of a joint, rad/s. An arm that trails its set-point by 0.4 s is then 0.16 rad behind, less than
+/// Watch::kFollowing.
 constexpr double kJointSpeed = 0.4;
 
-/// Why there is no path; one line.
+/// Thrown if no path exists; `reason` is one line.
 struct NoPath {
   std::string reason;
 };
 
-/// The joints of a pose of the tip from a seed nearby; none if there are none. May throw what asking brings.
+/// Returns joints for a pose of the tip, searched near `seed`, or nullopt. May throw the errors of the solver.
 using Inverse = std::function<std::optional<Joints>(const Pose& tip, const Joints& seed)>;
 
-/// Plans in the frame of the scene. Throws NoPath.
+/// Plans paths in the frame of the scene. Methods throw NoPath.
 class Planner {
  public:
   Planner(const ScenePoseOptions& place, const Arm& arm, Inverse inverse)
       : frame_(place.frame()), arm_(arm), inverse_(std::move(inverse)) {}
 
-  /// Of a point of the scene and back, metres; the tool points straight down.
+  /// Returns the pose in `base` of a tool that points straight down at the scene position `place` and `height` (m).
   Pose pose(const Target& place, double height) const {
     return {frame_ * Eigen::Vector3d(place.x, place.y, height), straight_down()};
   }
   Eigen::Vector3d to_scene(const Eigen::Vector3d& base) const { return frame_.inverse() * base; }
 
-  /// From `hover` straight down to `floor` (m) at `place`. Every height is planned from the one above, the first from
-  /// the joints at `middle`, so that a column depends on its place alone and not on the way there. No joint turns
-  /// faster than kJointSpeed when the tip moves at `speed` (m/s).
+  /// Plans straight down at `place`, from `hover` to `floor` (m). Inverse kinematics at `hover` starts from the
+  /// solution at `middle`, and at each lower height from the one above. So a column depends on its position only, not
+  /// on the arm's earlier path. Throws if the tip's `speed` (m/s) requires a joint speed above kJointSpeed.
   Path column(const Target& place, const Target& middle, double hover, double floor, double speed) const;
 
-  /// From the joints `from` straight to the joints `to`: the tip on a straight line, the hand turning evenly.
+  /// Plans from `from` to `to` with the tip on a straight line and the hand rotating evenly.
   Path line(const Joints& from, const Joints& to) const;
 
-  /// From the joints `from` straight up by `rise` metres, the hand as it is.
+  /// Plans straight up from `from` by `rise` metres, with constant rotation of the hand.
   Path up(const Joints& from, double rise) const;
 
-  /// The desk turned out to lie so much higher (m) than the config has it.
+  /// Raises the scene by `height` metres, after a calibration tap.
   void raise(double height) { frame_.translation().z() += height; }
 
  private:
   Joints solve(const Pose& tip, const Joints& seed, const char* what) const;
-  /// The tip from where the joints `from` have it straight up by `rise`, or down; each height is planned from the last.
+  /// Plans a vertical motion of the tip by `rise` metres (negative: down), starting with joints `from` at pose `tip`.
+  /// Inverse kinematics at each height starts from the previous solution. `way` is a phrase for the error.
   Path vertical(const Joints& from, Pose tip, double rise, const char* way) const;
 
-  Eigen::Isometry3d frame_;  ///< of the scene, in `base`
+  Eigen::Isometry3d frame_;  ///< of the scene's frame in `base`
   const Arm& arm_;
   Inverse inverse_;
 };
 
-/// Plans for every place of the area, on a grid of `spacing` metres. Throws Error (kind `run`) that counts the places
-/// for which `plan` throws NoPath and says why for the first. Returns how many places were looked at.
+/// Calls `plan` on a grid of `spacing` metres over the area and returns the number of positions. Throws Error (kind
+/// `run`) with the number of positions where `plan` threw NoPath, and the reason of the first.
 int check_reach(const Area& area, double spacing, const std::function<void(const Target&)>& plan);
 
 }  // namespace palpate::baxter

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What Tapper looks at and plans while nothing moves.
+// Checks and planning of Tapper while the arm does not move.
 #include "baxter/tapper.hpp"
 
 #include "baxter/words.hpp"
@@ -13,23 +13,23 @@ namespace {
 
 using Then = Fault::Then;
 
-constexpr double kLimitMargin = 0.03;   ///< rad that planned joints keep from their limits
-constexpr double kReachSpacing = 0.02;  ///< m between the places of a dry run
-constexpr double kPoseError = 0.001;    ///< m and
-constexpr double kTurnError = 0.02;     ///< rad by which an answer of the robot's may miss the pose
-constexpr double kPatience = 1.0;       ///< s in which data must be fresh when a tap begins
-/// s in which another program that commands the arm is heard, and streams that are too slow
+constexpr double kLimitMargin = 0.03;   ///< rad: margin of planned joints to their limits
+constexpr double kReachSpacing = 0.02;  ///< m between the positions of a dry run
+constexpr double kPoseError = 0.001;    ///< m: largest position error of the robot's inverse kinematics
+constexpr double kTurnError = 0.02;     ///< rad: largest rotation error of the robot's inverse kinematics
+constexpr double kPatience = 1.0;       ///< s in which the data must become fresh when a tap begins
+/// Time in s to detect other programs that command the arm, and message rates that are too low.
 constexpr double kListen = Stream::kWindow + 0.05;
 
-constexpr double kAgreement = 0.005;   ///< m between kinematics and endpoint_state: both come from the same joints
-constexpr double kAgreedTurn = 0.035;  ///< rad, likewise
-constexpr double kUpright = 0.35;      ///< rad that the tool may lean before the first motion puts it upright
+constexpr double kAgreement = 0.005;   ///< m between own kinematics and endpoint_state, which both use the same joints
+constexpr double kAgreedTurn = 0.035;  ///< rad between own kinematics and endpoint_state
+constexpr double kUpright = 0.35;  ///< rad: largest tilt of the tool before the first motion, which makes it upright
 
-/// Finer than what is said of taps.
+/// Formats a length with more digits than messages about taps have.
 std::string fine_centimetres(double length) { return fmt::format("{:.2f} cm", 100.0 * length); }
 
-/// Own kinematics against the robot's: they must agree on left_gripper, but for a gripper that the config does not
-/// know.
+/// Compares own kinematics with the robot's pose of left_gripper. Throws Error if they disagree, also if the distance
+/// of left_gripper is not the configured one.
 void check_gripper(const JointReading& joints, const EndpointReading& endpoint, double gripper) {
   const Pose hand = Arm(Eigen::Vector3d::Zero()).tip(joints.position);
   const Eigen::Vector3d seen = hand.rotation.inverse() * (endpoint.pose.position - hand.position);
@@ -48,8 +48,8 @@ void check_gripper(const JointReading& joints, const EndpointReading& endpoint, 
                 "check that the arm is a Baxter's and that its gripper is mounted straight");
 }
 
-/// What others have left on the robot and what it takes to be mounted, one line each for the diary. Throws Error where
-/// its collision avoidance pushes the arm.
+/// Returns lines for the run's log: settings that other programs left on the robot, and the mounted tool. Throws Error
+/// if the robot's collision avoidance pushes the arm.
 std::vector<std::string> check_settings(const Snapshot& seen) {
   const struct {
     const char* topic;
@@ -76,7 +76,7 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
   return out;
 }
 
-/// Of all that GuardedTap does within a column.
+/// Returns the largest speed of GuardedTap within a column, m/s.
 double fastest(const tapping::MotionOptions& motion) {
   double out = std::max(motion.speed, motion.type == tapping::MotionOptions::Type::two_stage ? motion.fine_speed : 0.0);
   if (motion.adaptive_hover) out = std::max(out, motion.adaptive_hover->speed);
@@ -116,8 +116,7 @@ void Tapper::check() {
   }
 }
 
-/// Compares what the robot says with what the config says of it. In a dry run the robot may be disabled and the arm
-/// anywhere.
+/// Compares the state of the robot with the config. In a dry run the robot may be disabled and the arm anywhere.
 void Tapper::check_robot() const {
   const bool moving = !options_.dry_run;
   if (const std::optional<Fault> fault = Watch::fit(seen_, moving)) throw trouble("", fault->reason);
@@ -137,7 +136,7 @@ void Tapper::check_robot() const {
   }
 }
 
-/// What is wrong with how often the robot's data come.
+/// Returns a fault if the robot's messages arrive too rarely.
 std::optional<Fault> Tapper::listen() {
   take(robot_.read());
   watch_.begin();
@@ -183,7 +182,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   return out;
 }
 
-/// Reads until the robot is fit; if it is not within a second, what was read last says why.
+/// Reads until the robot passes the rules of Watch::fit(), for at most kPatience seconds. The last snapshot is kept.
 void Tapper::await_fit(bool moving) {
   take(robot_.read());
   next_ = seen_.now;
@@ -197,18 +196,19 @@ Path Tapper::column(const Target& place) const {
                          scene_.desk() - options_.deepest(), fastest(options_));
 }
 
-/// From where the arm is to the height of travel; no way if it is there.
+/// Plans from the current position to the height of travel. The path is empty if the arm is already there.
 Path Tapper::way_up() const {
   const double missing = travel_height() - height();
   return planner_.up(seen_.joints->position, missing > kNearTravel ? missing : 0.0);
 }
 
-/// Of a fault one goes up by own kinematics: who knows what else has failed.
+/// Solves inverse kinematics as configured. After a fault own kinematics is used, because the robot's service may have
+/// failed, too.
 std::optional<Joints> Tapper::inverse(const Pose& tip, const Joints& seed) {
   if (options_.inverse_kinematics == BaxterOptions::InverseKinematics::own || recovering_) {
     return arm_.solve(tip, seed, kLimitMargin);
   }
-  // Many poses are asked for, and each may take a second.
+  // Planning needs many poses, and the robot's service may take a second per pose.
   if (interrupted()) throw Fault{"interrupted", Then::silence, false};
   const Eigen::Vector3d offset(0.0, 0.0, options_.tool.gripper);
   const std::optional<Joints> answer = robot_.solve(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The left arm of a Baxter as a backend.
+// The backend `baxter`: taps with the left arm of a Baxter.
 #include "baxter/options.hpp"
 #include "baxter/real_time.hpp"
 #include "baxter/ros/connect.hpp"
@@ -18,23 +18,24 @@
 namespace palpate::baxter {
 namespace {
 
-/// What happens on the way, one line each, beside the record of the run: `baxter.txt`.
+/// Log of the driver beside the run's record, one line per event, in the file `baxter.txt`.
 class Diary {
  public:
-  /// An empty `directory` keeps none. The folder is there from the first tap on.
+  /// An empty `directory` disables the log. The folder exists from the first tap on.
   explicit Diary(std::string directory) : directory_(std::move(directory)) {}
 
   void note(const std::string& line) { waiting_ += line + '\n'; }
 
-  /// Writes what has been noted so far.
+  /// Appends the lines since the last call to the file.
   void write() {
     const std::string file = directory_ + "/baxter.txt";
-    // A record from somebody else may hold a link there, to a file of this user.
+    // A record from another person may have a symbolic link here that leads to a file of this user.
     if (!directory_.empty() && !std::filesystem::is_symlink(file)) std::ofstream(file, std::ios::app) << waiting_;
     waiting_.clear();
   }
 
-  /// A name for the rosbag that no earlier part of the run has taken; notes that there is one.
+  /// Returns a file name for the rosbag that no earlier attempt of this run used. Adds a line to the log if an earlier
+  /// bag exists.
   std::string new_bag() {
     std::string file = directory_ + "/baxter.bag";
     for (int part = 2; std::filesystem::exists(std::filesystem::symlink_status(file)); ++part) {
@@ -55,8 +56,7 @@ class Diary {
   std::string waiting_;
 };
 
-/// Of the left arm of the robot whose master this process will ask. A master that is not named is no arm: connecting
-/// says so.
+/// Returns the lock of the left arm at ROS_MASTER_URI. Without the variable no lock is taken; connect() then throws.
 ArmLock lock_of_arm() {
   const char* master = std::getenv("ROS_MASTER_URI");
   if (master == nullptr || *master == '\0') return {};
@@ -72,7 +72,7 @@ class Baxter final : public Backend {
 
   static constexpr bool kOneAtATime = true;
 
-  /// Joins the robot's network and checks all that can be checked before anything moves. Throws Error.
+  /// Joins the robot's network and makes all checks that need no motion. Throws Error.
   Baxter(const Options& options, const Context& context)
       : options_(options),
         scene_(context.scene),
@@ -110,7 +110,7 @@ class Baxter final : public Backend {
     return sign.empty() ? std::vector<Learnt>() : std::vector<Learnt>{{"force_sign", sign}};
   }
 
-  /// A dry run moves nothing: its taps are no failures of a robot, and put nothing at risk.
+  /// A dry run moves nothing, so its taps can be repeated.
   bool repeatable() const override { return options_.dry_run; }
   bool scene_is_truth() const override { return false; }
   Quantities expects() const override { return tapping::expects(options_.motion); }
@@ -122,11 +122,11 @@ class Baxter final : public Backend {
   Options options_;
   const Scene& scene_;
   Diary diary_;
-  ArmLock arm_;  ///< while it is connected
+  ArmLock arm_;  ///< held while connected
   std::unique_ptr<Robot> robot_;
   Tapper tapper_;
-  std::unique_ptr<View> view_;  ///< before the robot goes, this goes
-  bool begun_ = false;          ///< with the first tap
+  std::unique_ptr<View> view_;  ///< declared after robot_, so destroyed before it
+  bool begun_ = false;          ///< true from the first tap on
 };
 
 PALPATE_PLUGIN(Backend, Baxter, "baxter", "left arm of a Baxter robot, over ROS 1")

@@ -10,19 +10,19 @@
 namespace palpate::baxter {
 namespace {
 
-constexpr std::size_t kMotions = 5;      ///< the latest, whose worst counts
-constexpr std::size_t kContacts = 10;    ///< the latest: of a soft object five leave 0.1 s open
-constexpr double kFades = 30.0;          ///< s in which a lateness fades to a third
+constexpr std::size_t kMotions = 5;      ///< last motions, of which the maximum counts
+constexpr std::size_t kContacts = 10;    ///< last contacts: five with a soft object leave an uncertainty of 0.1 s
+constexpr double kFades = 30.0;          ///< s: time constant with which a lateness decays
 constexpr std::size_t kFewest = 30;      ///< periods of a free descent
-constexpr double kClear = 0.001;         ///< m above that height that counts as free
-constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and the period in which they are looked at
-constexpr double kRiseFor = 0.1;         ///< s before a notice in which the rise of the force is measured
-constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: what takes longer was no steady rise
-/// s, two standard deviations of what is assumed before a contact; and the weight of that, 1/s^2.
+constexpr double kClear = 0.001;         ///< m above the onset, where the tip counts as free
+constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and one control period
+constexpr double kRiseFor = 0.1;         ///< s before a detection in which the slope of the force is measured
+constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: a longer rise is not steady
+/// Two standard deviations of the initial assumption, s, and its weight, 1/s^2.
 constexpr double kFirst = Reaction::kFirstNoticing - kLeastNoticing;
 constexpr double kFirstWeight = 4.0 / (kFirst * kFirst);
-/// s that joints trail at least on a Baxter (measured: 0.3 to 0.4 s), and the share of a lag that they go on by after a
-/// stop: those of a critically damped joint, 1 / (2 e).
+/// Least lag of the joints of a Baxter in s (measured: 0.3 to 0.4 s). kGoOn is the share of the lag for which a
+/// critically damped joint moves on after a stop, 1 / (2 e).
 constexpr double kLeastLag = 0.3;
 constexpr double kGoOn = 0.184;
 
@@ -36,16 +36,16 @@ double most(const std::deque<double>& values, double without) {
   return values.empty() ? without : *std::max_element(values.begin(), values.end());
 }
 
-/// A straight line through heights over time, by least squares.
+/// Line through heights over time, fitted by least squares.
 struct Line {
-  double height, time;  ///< m and s, of its middle
+  double height, time;  ///< m and s of the centre
   double velocity;      ///< m/s
   double at(double other) const { return height + velocity * (other - time); }
 };
 
 using Periods = std::vector<Reaction::Period>;
 
-/// The last kLookedAt seconds of the periods whose tip was free; empty if they are too few.
+/// Returns the last kLookedAt seconds of the periods with a free tip, or nothing if there are fewer than kFewest.
 Periods last_free(const Periods& periods, double free_down_to) {
   Periods out;
   for (const Reaction::Period& one : periods) {
@@ -74,8 +74,9 @@ Line fit(const Periods& periods) {
   return out;
 }
 
-/// How fast the force rose at the notice, N/s: by how fast the tip stayed behind its `descent`. Of an arm that shows no
-/// springs, by the threshold and the time since the contact began at the height `began`.
+/// Returns the slope of the force at the detection, N/s, from the speed with which the tip falls behind `descent`. If
+/// the springs do not show in the positions, the slope is the threshold divided by the time since the onset at height
+/// `began`.
 double rise(const Periods& periods, double began, const Line& descent, double threshold, double stiffness) {
   const Reaction::Period& notice = periods.back();
   const double rigid = stiffness * std::abs(descent.velocity);
@@ -121,7 +122,7 @@ void Reaction::learn_noticing(const Periods& periods, std::optional<double> bega
   const Periods free = last_free(periods, std::max(began.value_or(softest), softest));
   if (free.empty()) return;
   const Line descent = fit(free);
-  double reached = notice.time;  // when the true force was at the threshold
+  double reached = notice.time;  // time when the true force reached the threshold
   for (auto it = periods.rbegin(); it != periods.rend(); ++it) {
     if (stiffness * (it->height - descent.at(it->time)) < threshold) break;
     reached = it->time;
@@ -130,12 +131,13 @@ void Reaction::learn_noticing(const Periods& periods, std::optional<double> bega
   keep(noticing_, {seconds, rise(periods, began.value_or(softest), descent, threshold, stiffness)}, kContacts);
 }
 
-/// s, of a contact. A force that is renewed seldom has crossed the threshold up to one renewal ago.
+/// Returns the standard deviation of a contact's delay, s. With rare renewals the threshold may have been crossed up to
+/// one renewal earlier.
 double Reaction::deviation(const Notice& one) const {
   return std::hypot(kNoise / std::max(one.rise, 1e-3), renewal_ / std::sqrt(12.0));
 }
 
-/// 1/s^2, the inverse of the variance.
+/// Returns the sum of the inverse variances of the contacts, 1/s^2.
 double Reaction::weight() const {
   return std::accumulate(noticing_.begin(), noticing_.end(), 0.0, [this](double sum, const Notice& one) {
     return sum + 1.0 / (deviation(one) * deviation(one));
@@ -160,7 +162,7 @@ double Reaction::noticing() const {
 
 double Reaction::trailing() const { return most(trailing_, kFirstTrailing); }
 
-/// An arm that trails by less than a Baxter's joints do is another arm: all of that may be delay.
+/// An arm that trails less than the joints of a Baxter is not a Baxter; all of its trailing time may then be delay.
 double Reaction::stopping() const {
   const double trails = trailing();
   const double goes_on = kGoOn * kLeastLag;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The control loop before everything else that this computer does.
+// Real-time scheduling of the control loop.
 #pragma once
 
 #include <cstring>
@@ -9,10 +9,10 @@
 
 namespace palpate::baxter {
 
-/// For as long as it lives the calling thread is scheduled in real time (SCHED_FIFO), where the system allows that.
+/// Schedules the calling thread in real time (SCHED_FIFO) during its own lifetime, if the system allows that.
 class RealTime {
  public:
-  /// With `wanted` false it does nothing: of a simulated clock no period is real.
+  /// With `wanted` false nothing changes. Periods of a simulated clock are not real time.
   explicit RealTime(bool wanted) {
     if (!wanted) return;
     pthread_getschedparam(pthread_self(), &policy_before_, &before_);
@@ -31,11 +31,11 @@ class RealTime {
   RealTime(const RealTime&) = delete;
   RealTime& operator=(const RealTime&) = delete;
 
-  /// What came of it, for the diary, with what it takes; empty if it was not wanted.
+  /// Returns a line for the run's log: whether it was granted, and the remedy. Empty with `wanted` false.
   const std::string& words() const { return words_; }
 
  private:
-  /// Above everything ordinary, below the kernel's own threads for interrupts (50).
+  /// Higher than ordinary threads, lower than the kernel's interrupt threads (50).
   static constexpr int kPriority = 20;
 
   bool granted_ = false;

@@ -17,20 +17,20 @@ using tapping::newtons;
 using ForceSign = BaxterOptions::ForceSign;
 using Then = Fault::Then;
 
-constexpr double kStepClamp = 0.05;  ///< rad by which a set-point may leave both the last one and the arm
+constexpr double kStepClamp = 0.05;  ///< rad: largest distance of a set-point from the last one and from the arm
 constexpr double kAtGoal = 0.015;    ///< rad: settled errors are up to 0.008
-constexpr double kStill = 0.002;     ///< rad in kStillFor
+constexpr double kStill = 0.002;     ///< rad within kStillFor
 constexpr double kStillFor = 0.1;    ///< s
-constexpr double kSettling = 5.0;    ///< s: after a stop the arm takes two
+constexpr double kSettling = 5.0;    ///< s: after a stop the arm needs two
 
 constexpr double kHeld = 0.5;         ///< s for which the measured joints are sent at a stop
 constexpr double kReflexEnds = 4.0;   ///< s: the firmware's own stop lasts two
-constexpr int kReflexes = 20;         ///< how often it may fire on the way up of an arm that presses
-constexpr double kPulls = 3.5;        ///< N by which an arm that presses reads less than nothing: its joints rub
-constexpr double kAboveTravel = 0.3;  ///< m that the arm may be above the height of travel
-constexpr double kBelowFloor = 0.01;  ///< m that the tip may be below the end of a descent
+constexpr int kReflexes = 20;         ///< reflexes of the firmware that are tolerated while a pressing arm rises
+constexpr double kPulls = 3.5;        ///< N below zero that friction can cause in an arm that presses
+constexpr double kAboveTravel = 0.3;  ///< m: largest height above the height of travel
+constexpr double kBelowFloor = 0.01;  ///< m: largest depth below the end of a descent
 
-/// For the first contact with a desk of which nobody knows how hard it is.
+/// Limits speed and threshold for the first contact with a desk of unknown hardness.
 tapping::MotionOptions gentle(tapping::MotionOptions motion) {
   motion.speed = std::min(motion.speed, 0.01);
   motion.fine_speed = std::min(motion.fine_speed, motion.speed);
@@ -39,7 +39,7 @@ tapping::MotionOptions gentle(tapping::MotionOptions motion) {
   return motion;
 }
 
-/// Where the tip may be: the area and a little beside it, from below the desk, where descents end, to well above the
+/// Returns the allowed space of the tip: the area with a margin, from below the deepest descent to well above the
 /// height of travel.
 Workspace workspace_of(const BaxterOptions& options, const Scene& scene) {
   const Area area = scene.area();
@@ -113,7 +113,7 @@ Contact Tapper::attempt(const TapRequest& request) {
   return contact;
 }
 
-/// The scene's zero moves to where a tap on the bare desk found it.
+/// Moves the origin of the scene to the measured height of the bare desk.
 void Tapper::calibrate(const Contact& contact) {
   if (contact.outcome != Outcome::contact) {
     throw Fault{"the calibration tap found no desk: " + contact.reason, Then::hold};
@@ -130,15 +130,15 @@ void Tapper::calibrate(const Contact& contact) {
   note_("calibration: the desk is " + centimetres(off) + " above its height in the config");
 }
 
-/// Takes over the arm where it is and brings it over a place at the height of travel: straight up first if it is below,
-/// then straight there. All of it is planned before the first command, which is the measured joints.
+/// Moves the arm from its current position to joints `hover`: straight up to the height of travel if necessary, then
+/// along a line. Everything is planned before the first set-point, which equals the measured joints.
 void Tapper::go_to(const Joints& hover) {
   watch_.begin();
   expect_fit();
   const Joints start = seen_.joints->position;
   const Path up = way_up();
   const Path across = planner_.line(up.end(), hover);
-  expect_fit();  // the robot's own inverse kinematics takes its time
+  expect_fit();  // the robot's inverse kinematics takes time
   next_ = seen_.now;
   watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
   climb(up, sign_, {});
@@ -149,14 +149,14 @@ void Tapper::go_to(const Joints& hover) {
   motion_log_.reset();
 }
 
-/// Goes up from wherever a run or a fault has left the arm. `sign`: of the force when something presses the tool
-/// upwards, 0 if it is not known; `zero` as in rise().
+/// Rises along `up` from the end of an earlier run or fault. `sign`: sign of the force when an object presses the tool
+/// upwards, 0 if unknown. `zero`: see rise().
 void Tapper::climb(const Path& up, double sign, const std::optional<double>& zero) {
   if (up.length() > 0.0) rise(up, kGently, sign, zero);
 }
 
-/// Waits until the arm has come up after its set-point: one that went sideways before would cut the corner, and what
-/// stands there.
+/// Waits until the arm has reached the height of its set-point. A sideways motion before that would cut the corner and
+/// could hit objects.
 void Tapper::await_height(const Joints& top) {
   const double begin = seen_.now;
   while (height() < travel_height() - kNearTravel) {
@@ -174,7 +174,7 @@ void Tapper::follow(const Path& path, double speed, double end) {
   }
 }
 
-/// Waits until the arm stands still where it was sent: only then does a tare mean anything.
+/// Waits until the arm rests at `goal`, because a tare needs an arm at rest.
 void Tapper::settle(const Joints& goal) {
   const double begin = seen_.now;
   Joints then = seen_.joints->position;
@@ -195,11 +195,11 @@ void Tapper::expect_fit() {
   await_fit(true);
   std::optional<Fault> fault = Watch::fit(seen_, true);
   if (!fault) return;
-  fault->then = Then::silence;  // the arm stands, and has not been taken over
+  fault->then = Then::silence;  // the arm rests, and no set-point has been sent
   throw *fault;
 }
 
-/// One period: sends the set-point, waits, reads, and looks whether every rule holds. Throws Fault.
+/// Executes one period: sends the set-point, waits, reads, and checks all rules. Throws Fault.
 void Tapper::step(const Joints& command) {
   if (!recovering_ && interrupted()) throw Fault{"interrupted", Then::retreat, false};
   const auto jump = [&](const Joints& from) { return (command - from).cwiseAbs().maxCoeff() > kStepClamp; };
@@ -209,14 +209,14 @@ void Tapper::step(const Joints& command) {
   }
   robot_.command(command);
   watch_.sent(seen_.now, command);
-  // A period that was missed is not made up for: the arm would be sent several set-points at once.
+  // A missed period is skipped, because catching up would send several set-points at once.
   if (next_ + kPeriod <= seen_.now) next_ = seen_.now;
   if (!pass()) throw standstill();
   if (motion_log_) motion_log_->push_back({seen_.now, planner_.to_scene(arm_.tip(command).position), tip_});
   if (std::optional<Fault> fault = watch_.look(seen_, tip_)) throw *fault;
 }
 
-/// Waits for the next period and reads; false where time stands still.
+/// Waits for the next period and reads. Returns false if the clock stands still.
 bool Tapper::pass() {
   next_ += kPeriod;
   if (!robot_.wait_until(next_)) return false;
@@ -229,13 +229,13 @@ void Tapper::take(Snapshot seen) {
   if (seen_.joints) tip_ = planner_.to_scene(arm_.tip(seen_.joints->position).position);
 }
 
-/// Does what may still be done and tells, in half a sentence, where that left the arm.
+/// Executes the action that the fault allows. Returns a phrase with the final state of the arm.
 std::string Tapper::recover(const Fault& fault) {
   if (fault.then == Then::silence) return kSilent;
   const auto silent = [](const Fault& other) { return std::string(kSilent) + ": " + other.reason; };
   const auto where = [&] { return "the arm holds " + centimetres(height() - scene_.desk()) + " above the desk"; };
   recovering_ = true;
-  // While nobody knows the sign, what was felt on the way down has it.
+  // With an unknown sign, the force of the descent determines it.
   const double sign = sign_ != 0.0 ? sign_ : std::copysign(1.0, seen_.endpoint->force.z() - zero_.z());
   const auto presses = [&] { return sign * (seen_.endpoint->force.z() - zero_.z()); };
   if (const auto other = stay(fault)) return silent(*other);
@@ -244,7 +244,7 @@ std::string Tapper::recover(const Fault& fault) {
     for (int attempt = 1;; ++attempt) {
       try {
         outlast_reflex();
-        // Where the zero has moved, what seems to pull at rest does not count.
+        // If the zero has moved, an apparent pull at rest does not count.
         const double zero = zero_.z() + sign * std::min(0.0, presses());
         climb(way_up(), sign, zero);
         settle(*watch_.last_sent());
@@ -263,8 +263,8 @@ std::string Tapper::recover(const Fault& fault) {
   }
 }
 
-/// Holds the arm where it is. One that is held by its tool, and therefore by its own reflex, is held once more when
-/// that has let it go: its springs then pull by less.
+/// Holds the arm at its position. If an object holds the tool and the reflex stopped the arm, the arm is held again
+/// after the reflex: its springs then pull less.
 std::optional<Fault> Tapper::stay(const Fault& fault) {
   if (const auto other = hold(seen_.joints->position)) return other;
   if (!fault.reflex || fault.then != Then::hold) return std::nullopt;
@@ -276,8 +276,8 @@ std::optional<Fault> Tapper::stay(const Fault& fault) {
   return hold(seen_.joints->position);
 }
 
-/// Waits, where the arm is, until its own reflex lets it go. Of an arm that is left pressing it fires again as soon as
-/// that: a little way up is made each time, until there is less than 16 N.
+/// Waits without motion until the firmware's reflex ends. While the arm keeps pressing, the reflex fires again
+/// immediately. The arm then rises a little each time, until it presses with less than 16 N.
 void Tapper::outlast_reflex() {
   watch_.begin();
   watch_.expect_collision(true);
@@ -289,8 +289,7 @@ void Tapper::outlast_reflex() {
   step(seen_.joints->position);
 }
 
-/// Sends the joints, which keep the arm where it is, for a while; or less, where a rule comes to ask for silence. That
-/// rule, if one did.
+/// Sends `joints` for kHeld seconds, or until a rule demands silence. Returns the fault of this rule, if any.
 std::optional<Fault> Tapper::hold(Joints joints) {
   watch_.begin();
   next_ = seen_.now;

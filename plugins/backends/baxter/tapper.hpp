@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One tap of the arm: plan, travel, tare, come down until it touches, stop there, go up again; and what is done when a
-// rule is broken on the way.
+// Motion of the arm in a tap: plan, travel, tare, descent until a contact, stop, rise; and the reactions to faults.
 #pragma once
 
 #include "baxter/path.hpp"
@@ -19,44 +18,43 @@
 
 namespace palpate::baxter {
 
-/// Moves the arm, and is the only one to do so. A tap begins and ends at the height of travel; the first begins
-/// wherever above the area the arm is.
+/// Moves the arm; no other class sends set-points. A tap begins and ends at the height of travel. The first tap may
+/// begin anywhere above the area.
 class Tapper {
  public:
-  /// `robot` must outlive it; `interrupted` may be null; `note` gets what happens, one line each, for the diary of the
-  /// run.
+  /// `robot` must outlive the object; `interrupted` may be null. `note` receives the lines of the run's log.
   Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, const std::atomic<bool>* interrupted,
          std::function<void(const std::string&)> note);
 
   Tapper(const Tapper&) = delete;
   Tapper& operator=(const Tapper&) = delete;
 
-  /// Taps. What goes wrong is an outcome: `unreachable` before anything moved; `aborted` by a fault, whose reason ends
-  /// with where the arm was left, and which `ends_run` if the robot needs a person.
+  /// Performs one tap. Failures are outcomes: `unreachable` before any motion, or `aborted` after a fault. The reason
+  /// of `aborted` ends with the final position of the arm; `ends_run` is set if a person must fix the robot.
   Contact tap(const TapRequest& request);
 
-  /// tap() in words: from where the arm is now, which may not be where it was left.
+  /// Returns the plan of tap() in words, starting from the current position of the arm.
   std::vector<std::string> describe(const TapRequest& request);
 
-  /// What the taps have shown of the robot's force that the config left open: `positive` or `negative`; empty for
-  /// nothing.
+  /// Returns the sign of the force if taps determined it: `positive` or `negative`, else empty.
   std::string learnt_sign() const;
 
-  /// Looks at everything that must be right before anything moves. Throws Error (kind `run`) that names the cause and
-  /// the remedy: a calibration tap beside the area, a state in which it must not move, a second sender, stale or
-  /// unsound data, a joint beyond its limit, left_gripper not where the config has it, an arm that is not above the
-  /// area with its tool down, settings that others left, places that cannot be reached.
+  /// Checks all conditions for the first motion. Throws Error (kind `run`) with cause and remedy: calibration tap
+  /// outside the area, forbidden state of the robot, second sender, stale or invalid data, joint beyond its limit,
+  /// wrong position of left_gripper, arm not above the area with its tool down, settings of other programs, unreachable
+  /// positions.
   void check();
 
  private:
   static constexpr double kPeriod = tapping::GuardedTap::kPeriod;
-  static constexpr double kNearTravel = 0.01;  ///< m that the tip may be below the height of travel
-  static constexpr double kGently = 0.01;      ///< m that an arm which may press goes up gently; and
-  static constexpr double kMostGentle = 0.02;  ///< m, at most, since nothing that is touched gives way by more
+  static constexpr double kNearTravel = 0.01;  ///< m by which the tip may be below the height of travel
+  static constexpr double kGently = 0.01;      ///< m of a slow rise for an arm that may press
+  static constexpr double kMostGentle = 0.02;  ///< m: upper limit of that rise, because supported objects yield less
   static constexpr const char* kSilent = "no more commands are sent, the arm stays where it is";
-  /// m above `hover` that the arm travels: from there it comes down to where it rests and feels its zero.
+  /// Height of travel above `hover`, m. The arm descends from there to its rest before the tare, so that friction
+  /// always has the same direction.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
-  static constexpr double kTurned = 0.01;  ///< m of a way over which most_pull() looks
+  static constexpr double kTurned = 0.01;  ///< m of a path over which most_pull() measures the rotation of the joints
 
   Contact attempt(const TapRequest& request);
   Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
@@ -109,7 +107,7 @@ class Tapper {
   void learn_sign();
 
   BaxterOptions options_;
-  tapping::MotionOptions motion_;  ///< of this tap
+  tapping::MotionOptions motion_;  ///< motion of this tap
   const Scene& scene_;
   Robot& robot_;
   const std::atomic<bool>* interrupted_;
@@ -119,25 +117,25 @@ class Tapper {
   Workspace workspace_;
   Watch watch_;
   Snapshot seen_;
-  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  ///< of what was seen, in the frame of the scene
-  double next_ = 0.0;                              ///< when the next period begins
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  ///< measured tip in the scene's frame, m
+  double next_ = 0.0;                              ///< s, start of the next period
   bool recovering_ = false;
   bool calibrated_ = false;
-  double sign_;  ///< of the force along z when something presses the tool upwards; 0 until it is known
-  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< the force of the latest tare
-  double moving_ = 0.0;  ///< N along z that it reads beside while the arm comes down in the air
-  /// Of this descent as soon as it shows it, of earlier ones before: how much it read beside, N, and how fast it was,
-  /// m/s.
+  double sign_;  ///< sign of the force along z when an object presses the tool upwards; 0 if unknown
+  Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< N, force at the last tare
+  double moving_ = 0.0;  ///< N: difference of the force along z between a free descent and rest
+  /// Latest difference of the force between a free descent and rest (N), and the speed of that descent (m/s). It is of
+  /// this descent as soon as measured, else of an earlier one.
   struct {
     double beside = 0.0;
     double speed = 0.0;
   } lately_;
-  std::optional<double> rubbing_;  ///< Nm with which every joint rubs, once it is known
-  double shown_sign_ = 0.0;        ///< by the latest contact that was believed; 0 if nothing showed it
+  std::optional<double> rubbing_;  ///< Nm of friction per joint, once measured
+  double shown_sign_ = 0.0;        ///< sign of the force at the last accepted contact; 0 if not determined
   Reaction reaction_;
-  std::optional<std::vector<Reaction::Step>> motion_log_;  ///< gets every period while it is there
-  int told_ = 0;                                           ///< of how many taps moving_ was noted
-  std::optional<double> peak_;  ///< N, the most that was felt of this tap against the tool; none before its descent
+  std::optional<std::vector<Reaction::Step>> motion_log_;  ///< receives every period while present
+  int told_ = 0;                                           ///< number of taps for which moving_ was logged
+  std::optional<double> peak_;  ///< N, largest force against the tool in this tap; absent before the descent
 };
 
 }  // namespace palpate::baxter

@@ -13,19 +13,19 @@ namespace {
 using Then = Fault::Then;
 using Button = StateReading::Button;
 
-/// Of set_speed_ratio: 0.27 of 1.5 rad/s is the 0.4 rad/s that a joint is asked for.
+/// Least set_speed_ratio: 0.27 times 1.5 rad/s are the 0.4 rad/s that joints are commanded.
 constexpr double kLeastRatio = 0.27;
 constexpr double kLeastTimeout = 0.05;  ///< s: five set-points
-constexpr double kMostTimeout = 0.5;    ///< s for which an arm goes on that nobody leads any more
+constexpr double kMostTimeout = 0.5;    ///< s for which an arm moves on after the last set-point
 
 double degrees(double radians) { return radians * 180.0 / 3.14159265358979323846; }
 
-constexpr double kPeriod = 0.01;  ///< s from one look to the next
+constexpr double kPeriod = 0.01;  ///< s between two reads
 
 constexpr const char* kReset =
     "reset it (rosrun baxter_tools enable_robot.py -r) and enable it (rosrun baxter_tools enable_robot.py -e)";
 
-/// What the robot's state forbids; the first rule that is broken counts.
+/// Returns a fault for the first forbidden state of the robot, else nullopt.
 std::optional<Fault> state_forbids(const StateReading& state, const std::optional<JointReading>& joints, bool moving) {
   const bool stays_disabled = moving && !state.enabled;
   const double shoulder = joints ? joints->position(1) : 0.0;
@@ -35,7 +35,8 @@ std::optional<Fault> state_forbids(const StateReading& state, const std::optiona
   } rules[] = {
       {state.estop_button == Button::pressed, "the emergency stop is pressed: release it, then {reset}"},
       {state.estop_button == Button::released, "the emergency stop was pressed and is released: {reset}"},
-      // An error alone stops nothing, by Rethink's own reference: an enabled robot may report one and move.
+      // An enabled robot may report an error and still move, according to Rethink's reference. So an error alone is not
+      // a fault.
       {state.error && !state.enabled, "the robot reports an error and is disabled: check its screen, then {reset}"},
       {state.stopped && state.estop_button == Button::unknown,
        "a program, perhaps a safety node, stopped the robot (/robot/set_super_stop): find out why, then {reset}"},
@@ -56,7 +57,8 @@ std::optional<Fault> state_forbids(const StateReading& state, const std::optiona
 constexpr const char* kOwnSlowness =
     ": end other programs that keep this computer busy, and allow real-time scheduling (see baxter.txt of the run)";
 
-/// `gap`: how long ago the driver itself looked last. What is old only by that is nobody else's fault.
+/// Returns a fault if `age` exceeds `most`. `gap`: seconds since the driver's last read. If the gap explains the age,
+/// the fault blames this computer.
 std::optional<Fault> stale(const char* stream, double age, double most, double gap, Then then = Then::silence) {
   if (age <= most) return std::nullopt;
   if (gap > most && age <= gap + most) {
@@ -69,7 +71,7 @@ std::optional<Fault> stale(const char* stream, double age, double most, double g
 std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Delay& best, Then then) {
   const double delay = arrival.received - arrival.stamp;
   if (!std::isfinite(delay)) return Fault{fmt::format("{} has a time stamp that is not a number", stream), then};
-  // Two clocks that nobody sets drift apart, by more than kLate within hours.
+  // Unsynchronised clocks drift apart, by more than kLate within hours.
   best.least = std::min(delay, best.least + Watch::kDrift * std::max(0.0, arrival.received - best.at));
   best.at = arrival.received;
   best.excess = delay - best.least;
@@ -83,7 +85,7 @@ std::optional<Fault> late(const char* stream, const Arrival& arrival, Watch::Del
 constexpr const char* kJoints = "/robot/joint_states of the left arm";
 constexpr const char* kEndpoint = "endpoint_state of the left arm";
 
-/// Two nodes that send one stream, of those after which so much may still be done.
+/// Returns a fault if two nodes send the same stream, among the streams whose fault allows the action `then`.
 std::optional<Fault> many(const Senders& senders, Then then) {
   const struct {
     const char* stream;
@@ -142,7 +144,7 @@ std::optional<Fault> Watch::fit(const Snapshot& seen, bool moving) {
   return moving ? settings(seen) : std::nullopt;
 }
 
-/// For how long this program did not get to the arm: since the look before, or to receive what came.
+/// Returns the time in s for which this program did not read or receive messages.
 double Watch::gap(const Snapshot& seen) const {
   const double looked = motion_.looks.empty() ? 0.0 : seen.now - motion_.looks.back();
   return seen.simulated ? looked : std::max(looked, seen.own_gap);
@@ -153,7 +155,7 @@ std::optional<Fault> Watch::listen(const Snapshot& seen) {
   return too_slow(seen);
 }
 
-/// Notes which readings are new.
+/// Marks new readings.
 void Watch::hear(const Snapshot& seen) {
   if (motion_.looks.empty()) motion_.began = seen.now;
   motion_.looks.push_back(seen.now);
@@ -166,8 +168,8 @@ void Watch::hear(const Snapshot& seen) {
   fresh_ = renewals_.hear(endpoint, seen.now);
 }
 
-/// Whoever feels too seldom presses too hard before he notices. A simulated clock runs on while this program is late,
-/// which then says nothing about the robot: there the readings are held against the looks.
+/// Returns a fault if readings or reads are too rare to detect a contact in time. A simulated clock runs on while this
+/// program is late. In that case the rate is compared with the reads of this program.
 std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
   if (seen.now - motion_.began < Stream::kWindow) return std::nullopt;
   const int looks = static_cast<int>(motion_.looks.size());
@@ -192,7 +194,7 @@ std::optional<Fault> Watch::too_slow(const Snapshot& seen) const {
                Then::hold};
 }
 
-/// Whatever forbids to command even the measured joints.
+/// Checks the rules whose violation forbids every set-point, even the measured joints.
 std::optional<Fault> Watch::known(const Snapshot& seen, bool moving, double gap) {
   if (!seen.malformed.empty()) return Fault{seen.malformed};
   if (!seen.state || !seen.joints || !seen.endpoint) return Fault{"joints, endpoint and state were not all received"};
@@ -207,7 +209,7 @@ std::optional<Fault> Watch::known(const Snapshot& seen, bool moving, double gap)
   return Fault{"/robot/joint_states has a position that is not a number: restart the robot"};
 }
 
-/// Where the arm is, is known: it may be held there.
+/// Checks the rules whose violation still allows to hold the arm, because its position is known.
 std::optional<Fault> Watch::feels(const Snapshot& seen, double gap) {
   const EndpointReading& endpoint = *seen.endpoint;
   if (auto fault = many(seen.senders, Then::hold)) return fault;
@@ -221,7 +223,7 @@ std::optional<Fault> Watch::feels(const Snapshot& seen, double gap) {
       Then::hold};
 }
 
-/// What another program has told the robot, and the robot keeps, so that the arm would not do what it is sent.
+/// Checks settings that other programs left on the robot and that change how it follows set-points.
 std::optional<Fault> Watch::settings(const Snapshot& seen) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   const struct {
@@ -242,8 +244,8 @@ std::optional<Fault> Watch::settings(const Snapshot& seen) {
   return std::nullopt;
 }
 
-/// Of several rules that are broken at once that counts which leaves the least to do: so all that ask for silence are
-/// looked at first, and those that allow to retreat last.
+/// Checks the rules in the order of their actions: first those that demand silence, last those that allow a rise. So if
+/// several rules are broken, the most restrictive one counts.
 std::optional<Fault> Watch::look(const Snapshot& seen, const Eigen::Vector3d& tip) {
   const double own = gap(seen);
   hear(seen);
@@ -282,7 +284,7 @@ std::optional<Fault> Watch::endpoint(const Snapshot& seen, double gap) {
   return collision_silent(seen, gap);
 }
 
-/// A robot that sends it again and again must go on; one that sends it when it changes may be silent.
+/// A robot that repeats its collision state must continue to do so. A robot that sends only changes may be silent.
 std::optional<Fault> Watch::collision_silent(const Snapshot& seen, double gap) {
   if (!seen.collision) return std::nullopt;
   const double received = seen.collision->received;
@@ -307,11 +309,11 @@ std::optional<Fault> Watch::follows(const Snapshot& seen) const {
                Then::hold};
 }
 
-/// Of an arm that is `now` behind its set-point: whether it goes after it, too slowly, or stands. How fast the joint
-/// goes that is farthest behind, over the last kRecent seconds, says so.
+/// Explains why the arm is behind its set-point: too slow, or blocked. The decision uses the speed of the joint that is
+/// farthest behind, over the last kRecent seconds.
 std::string Watch::why_behind(const Joints& now, double time) const {
-  constexpr double kRecent = 0.2;    // s
-  constexpr double kTurning = 0.05;  // rad/s: one that is blocked turns less
+  constexpr double kRecent = 0.2;    // s of the measured speed
+  constexpr double kTurning = 0.05;  // rad/s: a blocked joint rotates slower
   const Sent& last = motion_.sent.back();
   const Sent& then = *std::find_if(motion_.sent.begin(), motion_.sent.end() - 1,
                                    [&](const Sent& one) { return one.time >= time - kRecent; });

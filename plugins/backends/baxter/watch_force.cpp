@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rules of Watch about the force: that it is another again and again, that it is not too strong, that nothing holds
-// the tool.
+// Force rules of Watch: the force is renewed, is not too strong, and nothing holds the tool.
 #include "baxter/watch.hpp"
 
 #include "baxter/words.hpp"
@@ -13,12 +12,12 @@ namespace {
 
 using Then = Fault::Then;
 
-/// N by which the force is less than its zero, in the direction of a press.
+/// Returns the pull in N: the amount by which the force is below its zero, in the direction of a press.
 double pull_of(const Watch::Rise& rise, const EndpointReading& endpoint) {
   return rise.sign * (rise.zero - endpoint.force.z());
 }
 
-/// `reflex`: the arm's own has stopped it, too.
+/// Returns the fault of a caught tool. `reflex`: the firmware has stopped the arm, too.
 Fault held(double newtons, const Eigen::Vector3d& tip, bool reflex) {
   return {fmt::format("the tool is caught: it is pulled with {:.0f} N at ({:.1f}, {:.1f}, {:.1f}) cm of the scene. "
                       "Find what holds the tool, and free it by hand before the arm moves up again",
@@ -57,7 +56,7 @@ std::optional<Fault> Watch::frozen(const EndpointReading& endpoint, double now) 
                Then::hold};
 }
 
-/// What the arm's own reflex is about: an arm that it stops on its way up may be held by what it touched.
+/// Returns the fault of the firmware's reflex. If the arm was rising under a pull, the tool is caught.
 std::optional<Fault> Watch::reflex(const Snapshot& seen, const Eigen::Vector3d& tip) const {
   if (motion_.rise) {
     const double pulls = pull_of(*motion_.rise, *seen.endpoint);

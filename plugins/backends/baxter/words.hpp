@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How this backend says things.
+// Errors and lists in messages of the driver.
 #pragma once
 
 #include <palpate/error.hpp>
@@ -12,12 +12,12 @@
 
 namespace palpate::baxter {
 
-/// What is wrong with the robot or the way to it, which a person can mend; of kind `run`.
+/// Returns an error of kind `run`: a problem of the robot or its network that a person can fix.
 inline Error trouble(const std::string& where, const std::string& reason, const std::string& hint = {}) {
   return {where, reason, hint, Error::Kind::run};
 }
 
-/// "a", "a and b", "a, b and c".
+/// Joins words: "a", "a and b", "a, b and c".
 inline std::string listed(const std::vector<std::string>& words) {
   if (words.size() < 2) return words.empty() ? std::string() : words.front();
   return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());

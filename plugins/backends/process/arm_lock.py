@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A lock for each arm, for programs of the backend `process`: the lock of a record keeps two processes from one run, but
-not two runs from one arm. It is that of palpate's own backends (framework/shared/children/arm_lock.hpp)."""
+"""A lock per arm for programs of the backend `process`. The lock of a record keeps two processes from one run, but not two
+runs from one arm. Backends of palpate use the same lock (framework/shared/children/arm_lock.hpp)."""
 import errno
 import os
 import socket
@@ -8,14 +8,14 @@ import struct
 
 
 class Held(Exception):
-    """Another process has the arm; the text says which."""
+    """Another process has the arm; the text contains its process id."""
 
 
 def hold_arm(arm):
-    """Locks `arm`, a name such as "UR 192.168.56.101" of which 95 bytes count, and returns an object: the lock is held
-    until that is closed or the process has ended. Forked children do not hold it. Raises Held, and OSError where the
-    system makes no unix socket. Not excluded are processes of other machines, and of containers with a network of their
-    own."""
+    """Locks `arm`, a name such as "UR 192.168.56.101" (the first 95 bytes count), and returns a lock object. The lock is
+    held until the object is closed or the process ends. Forked children do not hold it. Raises Held if another process
+    has the arm, and OSError if the system cannot create a unix socket. Processes of other machines, and of containers
+    with their own network, are not excluded."""
     name = (b"\0palpate arm " + arm.encode())[:108]
     lock = socket.socket(socket.AF_UNIX)
     try:
@@ -31,7 +31,7 @@ def hold_arm(arm):
 
 
 def holder_of(name):
-    """The process that holds the name, in words."""
+    """Returns a text with the process that holds the lock."""
     with socket.socket(socket.AF_UNIX) as caller:
         caller.setblocking(False)
         try:

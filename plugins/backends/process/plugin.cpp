@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Any program as a backend: it is asked for a tap on a line of its stdin and answers on a line of its stdout.
+// Backend that taps through another program. The program reads each request from its stdin and writes the answer to its
+// stdout, one line each.
 //
-// One rule covers all that can go wrong. An answer that carries the number of the tap keeps the program, even if its
-// fields are refused. After anything else (no answer in time, a line that is no answer, a line too many, an end) nobody
-// knows what the next line would belong to or whether the arm still moves: the tap fails and the program is ended
-// before tap() returns. If taps are repeatable, or the config says `restart`, the next tap starts it again; else the
-// run ends, for somebody to look at the arm. So no late answer is ever taken for another tap, and each trouble is told
-// in the record.
+// One rule covers all failures. An answer with the number of the tap keeps the program running, even if its fields are
+// rejected. After anything else (timeout, invalid line, additional line, end of the program), the next line could
+// belong to any tap, and the arm may still move. So the tap fails and the program is ended before tap() returns. The
+// next tap starts the program again if taps are repeatable or `restart` is set; otherwise the run ends, so that a
+// person can check the arm. No late answer is taken for another tap, and the record contains every failure.
 #include "process/protocol.hpp"
 #include "programs/child.hpp"
 #include "programs/command.hpp"
@@ -67,7 +67,7 @@ class Process final : public Backend {
  public:
   using Options = ProcessOptions;
 
-  /// Throws Error when there is no such program, or it is another one than the checksum says.
+  /// Throws Error if the program does not exist or its checksum differs from the option.
   Process(const Options& options, const Context& context)
       : options_(options),
         context_(context),
@@ -77,7 +77,7 @@ class Process final : public Backend {
   Contact tap(const TapRequest& request) override {
     const auto begin = Clock::now();
     double seconds = options_.deadline;
-    // Not before the first tap: the folder of the record exists only from then on.
+    // The program starts with the first tap, because the folder of the record does not exist earlier.
     if (!child_) {
       start(patience(begin, options_.start));
       seconds += options_.start;
@@ -118,13 +118,13 @@ class Process final : public Backend {
     return {begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)), context_.interrupted};
   }
 
-  /// A file in the folder of the record; empty where none is kept.
+  /// Returns the path of a file in the record's folder, or an empty string without a record.
   std::string recorded(const char* name) const {
     return context_.directory.empty() ? std::string() : context_.directory + "/" + name;
   }
 
-  /// Starts the program, but where taps are not repeatable only once none of an earlier attempt is there any more: two
-  /// must not move one arm. If one still is when the patience is over, there is no child.
+  /// Starts the program. If taps are not repeatable, it first waits until no program of an earlier attempt runs,
+  /// because two must not move one arm. If one still runs at the end of `patience`, child_ stays empty.
   void start(const programs::Patience& patience) {
     Descriptor lock;
     if (!options_.repeatable && !context_.directory.empty()) {
@@ -152,7 +152,7 @@ class Process final : public Backend {
   process::Answer ask(const TapRequest& request, const programs::Patience& patience) {
     std::string line;
     process::Answer answer;
-    // Whatever there is before the ask is no answer to it, and then the arm had better not move.
+    // A line before the request is not an answer to it. The arm must not move then.
     Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
     if (heard == Child::Heard::line) return failed("printed more than its answer: " + programs::shown(line));
     if (heard == Child::Heard::late) {
@@ -180,7 +180,7 @@ class Process final : public Backend {
     return interrupted();
   }
 
-  /// What keeps a program's first answer from arriving is most often its own buffer.
+  /// The most frequent cause of a missing first answer is output buffering in the program.
   std::string not_answered() const {
     return std::string("did not answer in time") +
            (answered_ ? "" : " and has never answered, check that it flushes its output after each line");
@@ -197,7 +197,7 @@ class Process final : public Backend {
   std::vector<std::string> words_;
   std::string file_;
   std::unique_ptr<Child> child_;
-  bool answered_ = false;  ///< at least once, by any process of it
+  bool answered_ = false;  ///< whether any started program has answered
 };
 
 PALPATE_PLUGIN(Backend, Process, "process",

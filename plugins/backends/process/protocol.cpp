@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only user of the JSON library in this plugin.
+// The only file of this plugin that uses the JSON library.
 #include "process/protocol.hpp"
 
 #include "programs/command.hpp"
@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using programs::shown;
 
-/// Options as JSON in SI, from their field list: an option that the motion gains is sent along without a line here.
+/// Writes options as JSON in SI units from their field list, so that new options of the motion need no code here.
 class Written final : public Fields {
  public:
   explicit Written(Json& out) : out_(out) {}
@@ -39,7 +39,7 @@ class Written final : public Fields {
     out_[field.name] = nullptr;
     if (present) section(options, field);
   }
-  // A motion holds no lists and no plugins.
+  // A motion has no lists and no plugins.
   void reals(double*, std::size_t, const Field&) override {}
   void table(std::vector<double>&, std::size_t, const Field&) override {}
   void sections(const ListAccess&, const Field&) override {}
@@ -58,7 +58,7 @@ class Written final : public Fields {
   Json& out_;
 };
 
-/// Reads the fields of one answer. The first trouble is kept, and what is read after it means nothing.
+/// Reads the fields of one answer. The first error is kept; values read after it are meaningless.
 class Reader {
  public:
   explicit Reader(const Json& answer) : answer_(answer) {
@@ -68,7 +68,7 @@ class Reader {
     }
   }
 
-  /// Null counts as absent.
+  /// Returns false for a missing field and for null.
   bool has(const char* field) const { return answer_.contains(field) && !answer_[field].is_null(); }
 
   double number(const char* field) {
@@ -89,7 +89,7 @@ class Reader {
     return answer_[field].get<bool>();
   }
 
-  /// Words for the record, at least one.
+  /// Returns a text of at least one character for the record.
   std::string reason() {
     std::string words = plain_line(text("reason"));
     if (words.find_first_not_of(' ') == std::string::npos) refuse("has no text in 'reason'");
@@ -129,7 +129,7 @@ Contact read_contact(Reader& reader, const HeightBounds& bounds) {
   return out;
 }
 
-/// Whether an answer, however wrong the rest of it, wants the run to end. A stop that is badly told is a stop.
+/// Returns whether an answer requests the end of the run. The request counts even if the rest of the answer is invalid.
 bool wants_end(const Json& answer) {
   const auto end = answer.find("ends_run");
   return end != answer.end() && !end->is_null() && *end != Json(false);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is said to the program and what its answers mean: one JSON object a line. framework/docs/robots.md has the
-// fields as a table.
+// Requests and answers of the backend `process`: one JSON object per line. The table of fields is in
+// framework/docs/robots.md.
 #pragma once
 
 #include "answers/answer.hpp"
@@ -12,21 +12,20 @@
 
 namespace palpate::process {
 
-/// Rises when an ask or an answer changes its meaning; every ask carries it.
+/// Version of the protocol, in every request. It increases if the meaning of a request or an answer changes.
 constexpr int kProtocol = 1;
 
-/// The line that asks for a tap, with its line end. All that a program needs is in it, so that it may keep no state.
-/// SI units.
+/// Returns the request for a tap, with its line end, in SI units. It is complete, so that the program needs no state.
 std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion);
 
-/// What a line means as the answer to a tap.
+/// Result of reading a line as the answer to a tap.
 struct Answer {
-  bool in_step = false;   ///< it carries the number of the tap: the program and we speak of the same one
-  bool accepted = false;  ///< and all of it is valid: `contact` is what the program says, else a failed tap
-  /// Ends the run if the program says so, even in an answer that is refused.
+  bool in_step = false;   ///< whether the line has the number of the tap
+  bool accepted = false;  ///< whether all fields are valid; if not, `contact` is a failed tap
+  /// `ends_run` is set if the program requested it, even in a rejected answer.
   Contact contact;
 };
-/// Reads a line as the answer to this tap. A value that find_fault() finds is refused.
+/// Reads `line` as the answer to `tap`. Values that find_fault() reports are rejected.
 Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds);
 
 }  // namespace palpate::process

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """A Universal Robots arm as a backend of palpate, over ur_rtde.
 
-NEVER RUN ON AN ARM: written from the published interface of ur_rtde, and tested against a stand-in for it. UR.md beside
-it says what to do before and during the first taps.
+NEVER RUN ON AN ARM: written from the published interface of ur_rtde, and tested with a replacement of ur_rtde. UR.md
+describes the steps before and during the first taps.
 """
 import argparse
 import json
@@ -14,14 +14,14 @@ import sys
 from arm_lock import Held, hold_arm
 from ur_moves import ARRIVED, RETRY, Arm, Asks, Failed, Fault, Over, check, distance, length
 
-MARGIN = 0.02  # m around the area in which the tip may stand when a tap begins
+MARGIN = 0.02  # m, margin around the area in which the tip may be when a tap begins
 UPRIGHT = math.cos(math.radians(5))
-NO_TOOL = 0.001  # m: a TCP nearer to the flange is none
+NO_TOOL = 0.001  # m: a shorter TCP offset means that no tool is set
 
 
 class Onset:
-    """Says when the threshold is reached, and then where the force began to rise: on the line through the last reading
-    below half of it. Whatever the sign of the robot's force, a push is a push."""
+    """Detects that the threshold is reached, and computes the height where the force began to rise. That height is on
+    the line through the last reading below half of the threshold. The sign of the force does not matter."""
 
     def __init__(self, threshold):
         self.threshold = threshold
@@ -41,18 +41,18 @@ class Onset:
 
 
 class Tapper:
-    """One tap after another, in the frame of the scene."""
+    """Makes taps in the frame of the scene."""
 
     def __init__(self, arm, corner, rotation):
         self.arm, self.corner, self.rotation = arm, corner, rotation
 
     def tap(self, ask):
-        """The answer to an ask, but for its number."""
+        """Returns the answer to a request, without the number of the tap."""
         arm, motion, desk = self.arm, ask["motion"], ask["desk"]
         if arm.trouble:
             raise arm.trouble
         arm.look()
-        arm.look()  # the first state may be older than a cable pulled since the last tap
+        arm.look()  # the first state may be older than a cable fault since the last tap
         begin, outcome = arm.stamp, None
         self.check_begin(ask)
         here = arm.pose()
@@ -86,8 +86,8 @@ class Tapper:
         return {"outcome": "contact", "height": height - self.corner[2], "force": force, "seconds": arm.stamp - begin}
 
     def approach(self, here, high, above, motion):
-        """Up if it has to be, sideways, and down to `above` no faster than `speed`. The first way of all is made no
-        faster either: TCP, corner or rotation may be wrong."""
+        """Moves up if necessary, sideways, and down to `above` no faster than `speed`. All parts of the first approach
+        are as slow, because TCP, corner or rotation may be wrong."""
         arm, slow = self.arm, motion["speed"]
         up = here[:2] + high[2:]
         for target, speed in (up, motion["retreat_speed"]), (high, motion["travel_speed"]), (above, slow):
@@ -96,21 +96,21 @@ class Tapper:
         arm.approached = True
 
     def descend(self, floor, motion, until):
-        """To a contact above `floor`, or to it: height and force of the contact, or None."""
+        """Descends to a contact or to `floor`. Returns height and force of the contact, or None."""
         arm = self.arm
         arm.zero(motion["tare"])
-        # Not moveUntilContact(): that knows neither a floor nor newtons.
+        # moveUntilContact() is not used, because it has neither a floor nor a threshold in newtons.
         onset = Onset(motion["threshold"])
         contact = arm.follow(floor, motion["speed"], until, onset)
         return contact and (onset.height(*contact), abs(contact[1][2]))
 
     def base(self, x, y, height):
-        """A place of the scene in the robot's base frame."""
+        """Returns a position of the scene in the robot's base frame."""
         c, s = math.cos(self.rotation), math.sin(self.rotation)
         return [self.corner[0] + c * x - s * y, self.corner[1] + s * x + c * y, self.corner[2] + height]
 
     def check_begin(self, ask):
-        """It does not know what else stands in the room: it begins above the area, tool down, or not at all."""
+        """Raises Fault unless the arm is above the area with its tool down, because other obstacles are unknown."""
         motion, area, pose = ask["motion"], ask["area"], self.arm.pose()
         if motion["type"] != "continuous" or motion["adaptive_hover"]:
             raise Fault("this program supports only motion.type continuous without adaptive_hover: change the config")
@@ -127,7 +127,7 @@ class Tapper:
                         f"move it above the area by hand, {RETRY}")
 
     def check_tool(self):
-        """Without a TCP the robot would bring its flange to where the tip should go, and the tool into the desk."""
+        """Raises Fault without a TCP: the robot would move its flange, not the tip, and push the tool into the desk."""
         tcp = self.arm.control.getTCPOffset()
         if not tcp:
             raise Fault(f"the robot does not report its TCP: check the pendant's log, {RETRY}")
@@ -138,14 +138,14 @@ class Tapper:
 
 
 def tool_axis(pose):
-    """How far the tool's z axis points up: the last entry of the matrix of a rotation vector."""
+    """Returns the upward component of the tool's z axis: the last entry of the matrix of a rotation vector."""
     angle = length(pose[3:])
     return 1.0 if angle == 0.0 else math.cos(angle) + (1 - math.cos(angle)) * (pose[5] / angle) ** 2
 
 
 def connect(host, asks, force_limit):
-    """Joins the robot, but moves nothing and uploads nothing before its state is known to be good, nor while another
-    process has the arm."""
+    """Connects to the robot and returns its arm. Nothing moves and nothing is uploaded before the robot's state is checked
+    and the arm is locked."""
     try:
         lock = hold_arm(f"UR {host}")
     except Held as held:
@@ -162,15 +162,15 @@ def connect(host, asks, force_limit):
     except ImportError as error:
         raise Fault(f"{error}: install ur_rtde for {sys.executable}, or name a Python that has it in backend.command "
                     f"(UR.md, step 1), {RETRY}") from None
-    except RuntimeError as error:  # what ur_rtde makes of all that goes wrong on its side
+    except RuntimeError as error:  # ur_rtde raises it for every error of its own
         raise Fault(f"no connection to {host}: {error}; {RETRY}") from None
     arm = Arm(control, receive, asks, force_limit)
-    arm.lock = lock  # for as long as there is this object
+    arm.lock = lock  # held as long as this object exists
     return arm
 
 
 def serve(arguments, asks, answers):
-    """Answers every ask until stdin ends or SIGTERM comes. The arm stands then, as it does after a fault."""
+    """Answers requests until stdin ends or SIGTERM arrives. The arm rests then, as after a fault."""
     arm = None
     try:
         while not asks.ended:
@@ -212,7 +212,7 @@ def main():
     parser.add_argument("--rotation", type=float, default=0.0, help="of the area about the vertical, degrees")
     parser.add_argument("--force-limit", type=float, default=30.0, help="newtons at which the arm stops on any way")
     arguments = parser.parse_args()
-    # ur_rtde prints on stdout, which is for answers alone.
+    # ur_rtde prints on stdout, which must contain only answers.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     serve(arguments, Asks(), answers)

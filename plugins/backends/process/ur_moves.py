@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Moves of a Universal Robots arm over ur_rtde in straight lines, every one of them watched; for ur.py."""
+"""Supervised linear moves of a Universal Robots arm over ur_rtde; used by ur.py."""
 import collections
 import json
 import math
@@ -11,23 +11,23 @@ import time
 
 ACCELERATION = 0.5  # m/s^2, of every move
 DECELERATION = 2.0  # m/s^2, of every stop: from 20 cm/s in 0.1 s, well within the watchdog's time
-WATCHDOG = 5.0  # Hz: the controller stops the arm when it hears nothing for 0.2 s
-FRESH = 0.2  # s without a new state of the robot: the connection is lost
-READINGS = 3  # new ones in a row that make a contact: one alone may be a spike
+WATCHDOG = 5.0  # Hz: the controller stops the arm after 0.2 s without a message
+FRESH = 0.2  # s without a new state of the robot, after which the connection counts as lost
+READINGS = 3  # consecutive new readings that make a contact; one may be a spike
 ARRIVED = 0.0005  # m from the target
-WINDOW = 0.1  # s over which the speed of the tip is averaged: single samples of it are noise
+WINDOW = 0.1  # s over which the speed of the tip is averaged, because single samples are noisy
 AT_REST = 0.001  # m/s
-STOPPING = 1.0  # s in which a stop has to be done
+STOPPING = 1.0  # s, time limit of a stop
 
 RETRY = "then run 'palpate resume --retry-failed'"
 
 
 class Fault(Exception):
-    """No other tap can be made until somebody has seen to the arm."""
+    """No tap is possible until a person has checked the arm."""
 
 
 class Failed(Exception):
-    """The tap failed, the arm can go on."""
+    """The tap failed; the arm can continue."""
 
     def __init__(self, outcome, reason):
         super().__init__(reason)
@@ -35,11 +35,11 @@ class Failed(Exception):
 
 
 class Over(Exception):
-    """The run is gone, or wants this program to end."""
+    """The run has ended, or requests the end of this program."""
 
 
 class Asks:
-    """The lines of stdin, read without waiting: an arm that moves must notice that its run has ended."""
+    """Reads the lines of stdin without waiting, so that a moving arm notices the end of its run."""
 
     def __init__(self):
         self.ended = False
@@ -56,7 +56,7 @@ class Asks:
             self.ended = self.ended or not got
 
     def next(self):
-        """The next ask, None if none has come."""
+        """Returns the next request, or None if none has arrived."""
         line, end, rest = self.text.partition(b"\n")
         if not end:
             return None
@@ -65,20 +65,20 @@ class Asks:
 
 
 class Arm:
-    """Moves in straight lines, every one of them watched."""
+    """Moves in straight lines under supervision."""
 
     def __init__(self, control, receive, asks, force_limit):
         self.control, self.receive, self.asks = control, receive, asks
-        self.force_limit = force_limit  # N, beyond which it stops wherever it is
+        self.force_limit = force_limit  # N, limit of the force in any motion
         self.zero_force = [0.0] * 3
         self.stamp = None
         self.poses = collections.deque()  # (stamp, pose) of the last WINDOW
-        self.lost = False  # the robot may hear nothing any more: no command is sent
-        self.trouble = None  # what happened between two taps
-        self.approached = False  # the first way to above the area is made
+        self.lost = False  # the robot may not receive anything, so no command is sent
+        self.trouble = None  # error between two taps
+        self.approached = False  # whether the first approach is complete
 
     def look(self):
-        """Waits for the next state of the robot, and raises what keeps it from moving on."""
+        """Waits for the next state of the robot. Raises the reason if the arm must not move on."""
         patience = time.monotonic() + FRESH
         while True:
             late = time.monotonic() > patience
@@ -99,14 +99,14 @@ class Arm:
         self.kick()
 
     def kick(self):
-        """Keeps the watchdog quiet, and raises what the robot says against moving."""
+        """Resets the watchdog. Raises the reason if the robot must not move."""
         check(self.receive)
         if not self.control.kickWatchdog():
             raise Fault(f"ur_rtde's script no longer runs on the robot: check the pendant's log, {RETRY}")
 
     def idle(self):
-        """The same between two taps. What is wrong there is the answer to the next ask: somebody may have stopped the
-        arm on purpose."""
+        """As kick(), between two taps. An error becomes the answer to the next request, because a person may have
+        stopped the arm on purpose."""
         try:
             if not self.trouble:
                 self.kick()
@@ -118,11 +118,11 @@ class Arm:
         return list(self.receive.getActualTCPPose())
 
     def force(self):
-        """Newtons along x, y, z of the base since it was last zeroed."""
+        """Returns newtons along x, y, z of the base, relative to the last zero."""
         return [f - zero for f, zero in zip(self.receive.getActualTCPForce(), self.zero_force)]
 
     def moves(self):
-        """Whether the tip moves, by the means of its poses in both halves of WINDOW; True until there are enough."""
+        """Returns whether the tip moves, from its mean poses in both halves of WINDOW; True until WINDOW is full."""
         middle = self.stamp - WINDOW / 2
         halves = [[pose for stamp, pose in self.poses if (stamp > middle) == late] for late in (False, True)]
         if not all(halves) or self.poses[0][0] > self.stamp - 0.9 * WINDOW:
@@ -134,7 +134,7 @@ class Arm:
         return f"the speed slider stands at {100 * self.receive.getTargetSpeedFraction():.0f} %"
 
     def rest(self, seconds):
-        """Waits until the arm has been at rest for so long; the mean of the force meanwhile."""
+        """Waits until the arm has rested for `seconds`. Returns the mean force of this time."""
         since, sum_, count = None, [0.0] * 3, 0
         patience = None
         while True:
@@ -153,7 +153,7 @@ class Arm:
                     return [a / count for a in sum_]
 
     def zero(self, seconds):
-        """Takes the force at rest for zero: first the sensor, then what is left of it."""
+        """Sets the force at rest as zero, first in the sensor, then for the remaining offset."""
         self.rest(seconds)
         if not self.control.zeroFtSensor():
             raise Fault(f"the robot does not zero its force sensor: use an e-Series or newer, {RETRY}")
@@ -161,15 +161,15 @@ class Arm:
         self.zero_force = self.rest(seconds)
 
     def follow(self, target, speed, until=None, touched=None):
-        """Moves to `target`, beyond which the controller itself does not go; None when it is there.
+        """Moves to `target`; the controller cannot move beyond it. Returns None on arrival.
 
-        With `touched`: pose and force of the first of READINGS readings in a row for which that holds, and then the
-        arm stands. After `until`, in the robot's seconds, it raises TimeoutError, standing too.
+        With `touched`, the arm stops after READINGS consecutive readings for which `touched` is true. Pose and force of
+        the first of them are returned. After `until`, in the robot's seconds, it stops and raises TimeoutError.
         """
         way = distance(self.pose(), target)
         until = until or self.stamp + 5.0 + 3.0 * way / speed
         limit = self.force_limit + length(self.force())
-        # For every move: ur_rtde reconnects by itself, and then there is no watchdog until it is set again.
+        # Set before every move: ur_rtde reconnects automatically, and the watchdog is then off.
         if not self.control.setWatchdog(WATCHDOG):
             check(self.receive)
             raise Fault(f"the robot rejects the watchdog: check the pendant's log, {RETRY}")
@@ -200,8 +200,8 @@ class Arm:
         return contacts[0]
 
     def halt(self):
-        """Begins to stop. Where no new state comes it sends nothing: ur_rtde would wait for an answer, for 300 s. The
-        watchdog, which is no longer kept quiet, stops the arm then."""
+        """Begins to stop. Without new states nothing is sent, because ur_rtde would wait 300 s for an answer. The
+        watchdog then stops the arm, as it is no longer reset."""
         if self.lost:
             return
         try:
@@ -211,7 +211,7 @@ class Arm:
             print(f"stopL: {error}", file=sys.stderr)
 
     def stop(self):
-        """Stops, and waits until the arm stands: another command while it stops would end ur_rtde's script."""
+        """Stops and waits for standstill. Another command during the stop would end ur_rtde's script."""
         self.halt()
         until = self.stamp + STOPPING
         while self.moves():
@@ -220,7 +220,7 @@ class Arm:
                 raise Fault(f"the arm still moves {STOPPING:g} s after its stop: check what moves it, {RETRY}")
 
     def leave(self):
-        """Ends the script on the robot, after which nobody keeps the watchdog quiet."""
+        """Ends the script on the robot. The watchdog is not reset any more."""
         try:
             if not self.lost:
                 self.control.stopScript()
@@ -231,7 +231,7 @@ class Arm:
 
 
 def check(receive):
-    """Raises what the robot itself says against moving."""
+    """Raises Fault if the robot's state forbids motion."""
     if receive.isEmergencyStopped():
         raise Fault(f"emergency stop: release the button, switch the arm on, bring the tip above the area, {RETRY}")
     if receive.isProtectiveStopped():

@@ -11,18 +11,18 @@ namespace palpate::backends {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-/// Where no stiffness is modelled the object is rigid and the arm nearly so: 10 N are reached after 0.1 mm of
+/// Stiffness in N/m where the scene has no stiffness effect. Object and arm are then nearly rigid: 10 N need 0.1 mm of
 /// set-point.
 constexpr double kRigidArm = 1e5;
-/// A jerk feels like twice the threshold.
+/// Force of a false contact, in multiples of the threshold.
 constexpr double kJerk = 2.0;
 
 constexpr int kRings = 8;
 constexpr int kSpokes = 24;
-constexpr double kFinest = 1e-8;  ///< metres
+constexpr double kFinest = 1e-8;  ///< metres, smallest stride of the search
 
-/// The largest height(dx, dy) - rise(distance) over a disc, or `least` if none is larger. `rise` is how much further
-/// back than its foremost point the tool is at a distance from its axis; it never falls.
+/// Returns the maximum of height(dx, dy) - rise(distance) over a disc, at least `least`. `rise` is the height of the
+/// tool's surface above its lowest point at a distance from its axis; it never decreases with the distance.
 template <class Height, class Rise>
 double search(Height height, double radius, double least, Rise rise) {
   double best = least;
@@ -39,7 +39,8 @@ double search(Height height, double radius, double least, Rise rise) {
     return true;
   };
   for (int ring = 1; ring <= kRings; ++ring) {
-    const double distance = radius * ring / kRings * (1.0 - 1e-12);  // the rim belongs to the disc, rounded or not
+    const double distance =
+        radius * ring / kRings * (1.0 - 1e-12);  // slightly inside, so that rounding does not exclude the rim
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
       const double angle = 2.0 * kPi * spoke / kSpokes;
       attempt(distance * math::cos(angle), distance * math::sin(angle));
@@ -58,8 +59,8 @@ double search(Height height, double radius, double least, Rise rise) {
   return best;
 }
 
-/// Where the foremost point of the tool is when any of it touches, given the height of what is at (dx, dy) from its
-/// axis, of which none is more than `highest`.
+/// Returns the height of the tool's lowest point when any part of it touches. height_at(dx, dy) is the height of the
+/// scene at a distance from the tool's axis, at most `highest`.
 template <class Height>
 double touched(const Effects& effects, double highest, const Height& height_at) {
   double height = height_at(0.0, 0.0);
@@ -69,18 +70,19 @@ double touched(const Effects& effects, double highest, const Height& height_at) 
       return radius - std::sqrt(std::max(0.0, radius * radius - distance * distance));
     });
   }
-  // The look at the highest is cheaper than a search, and nearly always enough: nothing is that tall.
+  // The comparison with `highest` avoids most searches, because objects are rarely taller than the shaft's end.
   if (effects.shaft && highest - effects.shaft->length > height)
     height = search(height_at, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
   return height;
 }
 
-/// Where any of a tool touches that comes along a line, given how far lines beside it are free.
+/// Returns the distance along `line` at which any part of the tool touches. `free` returns the free length of a
+/// parallel line.
 template <class Free>
 double along(const Effects& effects, const Line& line, const Free& free) {
   const Eigen::Vector3d one = line.direction.unitOrthogonal();
   const Eigen::Vector3d other = line.direction.cross(one);
-  // Against its way, what it meets is high.
+  // Distances are negated, because a near obstacle corresponds to a high surface.
   return -touched(effects, 0.0, [&](double dx, double dy) {
     return -free({line.origin + dx * one + dy * other, line.direction});
   });
@@ -88,8 +90,8 @@ double along(const Effects& effects, const Line& line, const Free& free) {
 
 }  // namespace
 
-// With deviation d = position - set-point: d'' + 2 zeta omega d' + omega^2 d = 0. On a ramp of speed v the arm trails
-// by 2 zeta / omega * v, which is delay * v; a step is overshot by exp(-pi zeta / sqrt(1 - zeta^2)) of its height.
+// The deviation d = position - set-point satisfies d'' + 2 zeta omega d' + omega^2 d = 0. On a ramp of speed v the arm
+// trails by 2 zeta / omega * v = delay * v. A step is overshot by exp(-pi zeta / sqrt(1 - zeta^2)) times its height.
 Arm::Arm(const std::optional<JointLag>& lag, double period, double position)
     : lags_(lag && lag->delay > 0.0), position_(position) {
   if (!lags_) return;
@@ -134,7 +136,7 @@ double desk_along(const Scene& scene, const Effects& effects, const Line& line) 
 double outlier(const ForeignObjects& effect, std::uint64_t seed, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x / effect.size));
   const auto row = static_cast<std::int64_t>(std::floor(y / effect.size));
-  constexpr std::int64_t kColumns = 1 << 20;  // more than any area has
+  constexpr std::int64_t kColumns = 1 << 20;  // upper limit of the number of columns in an area
   Random random(seed, "simulator/outlier", static_cast<std::uint64_t>(row * kColumns + column));
   return random.uniform() < effect.probability ? effect.height * random.uniform() : 0.0;
 }
@@ -155,7 +157,7 @@ Touch::Touch(const Effects& effects, double surface, bool desk, double hover, do
   if (effects.latency) late_ = effects.latency->deviation * std::abs(normal_()) / tapping::GuardedTap::kPeriod;
 }
 
-/// The force as it is heard now: that of `late_` periods ago, on a straight line between two of them.
+/// Returns the force that is measured now: the force `late_` periods ago, interpolated linearly.
 double Touch::heard(double force) {
   if (late_ <= 0.0) return force;
   forces_.push_back(force);

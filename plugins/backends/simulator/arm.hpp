@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The simulated arm: how it follows its set-point, the shape of its tool, and what it feels.
+// The simulated arm: dynamics of an axis, geometry of the tool, and measured force.
 #pragma once
 
 #include "tapping/guarded_tap.hpp"
@@ -18,7 +18,8 @@
 
 namespace palpate::backends {
 
-/// Standard normal numbers from a stream, by Box and Muller's method: in pairs, of which the second waits.
+/// Standard normal numbers from a stream, by Box and Muller's method. Numbers are made in pairs; the second is kept for
+/// the next call.
 class Normal {
  public:
   explicit Normal(Random random) : random_(random) {}
@@ -31,7 +32,7 @@ class Normal {
     return radius * math::cos(angle);
   }
 
-  /// The stream itself, for what is not normal.
+  /// Returns the underlying stream, for draws from other distributions.
   Random& uniform() { return random_; }
 
  private:
@@ -39,14 +40,14 @@ class Normal {
   std::optional<double> spare_;
 };
 
-/// One axis that follows a set-point: a second-order system, exact for a set-point that is constant over each period.
-/// Without lag it is where it is told to be.
+/// One axis that follows a set-point: a second-order system, integrated exactly for a set-point that is constant in
+/// each period. Without `lag` the axis reaches each set-point at once.
 class Arm {
  public:
-  /// At rest at `position` (m); `period` in seconds.
+  /// Starts at rest at `position` (m). `period` is in seconds.
   Arm(const std::optional<JointLag>& lag, double period, double position);
 
-  /// One period with this set-point.
+  /// Simulates one period with this set-point (m).
   void follow(double set_point);
 
   double position() const { return position_; }
@@ -55,37 +56,39 @@ class Arm {
   bool lags_;
   double position_;
   double velocity_ = 0.0;
-  /// Deviation from the set-point and velocity after one period, from those before it.
+  /// Transition of deviation from the set-point and velocity over one period.
   double from_deviation_[2]{}, from_velocity_[2]{};
 };
 
-/// Height of the tool's lowest point when it first meets something on its way straight down at (x, y), metres: that of
-/// the scene for a point; higher where the side of a round tip, or the shaft above it, meets a taller place nearby.
-/// The largest value over the tool's disc is searched on rings and then around the best point, to 0.1 um where the
-/// scene is smooth or has one edge there; details smaller than an eighth of the radius may be missed.
+/// Returns the height in metres of the tool's lowest point at its first contact during a vertical descent at (x, y).
+/// For a point tool it is the height of the scene. It is higher where the side of a round tip or the shaft touches a
+/// taller part nearby. The maximum over the tool's disc is searched on rings and then around the best point. Its
+/// accuracy is 0.1 um where the scene is smooth or has one edge; details below an eighth of the radius may be missed.
 double contact_height(const Scene& scene, const Effects& effects, double x, double y);
 
-/// The same of a tool that comes along a line, its shaft straight behind it: how far along its foremost point is when
-/// any of it first meets an object or the desk, metres; infinity if nothing does.
+/// Returns the distance in metres along `line` at which the tool first touches an object or the desk, or infinity. The
+/// shaft lies on the line behind the tip.
 double contact_along(const Scene& scene, const Effects& effects, const Line& line);
 
-/// The same over the bare desk.
+/// As contact_along(), over the bare desk.
 double desk_along(const Scene& scene, const Effects& effects, const Line& line);
 
-/// What lies at (x, y) beside the scene, metres of height: 0 nearly everywhere. A function of seed and place alone.
+/// Returns the height in metres of a foreign object at (x, y), nearly everywhere 0. The value depends only on seed and
+/// position.
 double outlier(const ForeignObjects& effect, std::uint64_t seed, double x, double y);
 
-/// What the arm meets and feels during one tap: a spring at `surface`, a sensor with noise, drift, blindness and jerks.
+/// Model of contact and force sensor in one tap: a spring at `surface`, and a sensor with noise, drift, latency, missed
+/// and false contacts.
 class Touch {
  public:
-  /// `surface`: height at which the tool meets something, metres, and whether that is the bare desk; `hover`: where the
-  /// arm comes from. All that is drawn comes from `random`.
+  /// `surface`: height in metres at which the tool touches; `desk`: whether the bare desk is touched; `hover`: start of
+  /// the descent. `random` is the source of all draws.
   Touch(const Effects& effects, double surface, bool desk, double hover, double threshold, Random random);
 
-  /// Takes the place at which the joints would have the tip (m), and tells where it is then and the force (N).
+  /// Returns the measured height (m) and force (N) if the joints would put the tip at `position` (m).
   tapping::Sample feel(double position);
 
-  /// The force of the contact now and the largest so far, N, whether it was felt or not.
+  /// Return the present and the largest true force, N, even of a contact that the sensor misses.
   double force() const { return force_; }
   double peak() const { return peak_; }
 
@@ -94,18 +97,19 @@ class Touch {
 
   double surface_;
   double hover_;
-  double stiffness_;    ///< of object and arm in series, N/m
-  double give_ = 0.0;   ///< of what is touched, m/N
-  double noise_ = 0.0;  ///< N
-  double drift_ = 0.0;  ///< N/m, of this tap
+  double stiffness_;    ///< N/m, object and arm in series
+  double give_ = 0.0;   ///< m/N, compliance of the touched object
+  double noise_ = 0.0;  ///< N, standard deviation
+  double drift_ = 0.0;  ///< N/m, drawn per tap
   bool blind_ = false;
-  double jerk_at_ = -std::numeric_limits<double>::infinity();  ///< height, below any floor if there is none
-  double jerk_;                                                ///< N
-  int jerk_left_ = 5;                                          ///< periods: 50 ms
+  double jerk_at_ =
+      -std::numeric_limits<double>::infinity();  ///< height of a false contact; without one below any floor
+  double jerk_;                                  ///< N, force of a false contact
+  int jerk_left_ = 5;                            ///< remaining periods of a false contact: 50 ms in total
   double force_ = 0.0;
   double peak_ = 0.0;
-  double late_ = 0.0;           ///< periods by which the force is heard late
-  std::vector<double> forces_;  ///< of all periods so far, where it is
+  double late_ = 0.0;           ///< latency of the force in periods
+  std::vector<double> forces_;  ///< forces of all periods, if there is a latency
   Normal normal_;
 };
 

@@ -58,7 +58,7 @@ Eigen::Vector3d Simulator::pose_error(const TapRequest& request) const {
   return out;
 }
 
-/// The tool begins clear of the desk: of its wide part, which has no end behind it, all.
+/// Returns whether the tool starts above the desk, with its tip and with all of its shaft.
 bool Simulator::reaches(const Approach& approach) const {
   const Effects& effects = scene_.effects();
   const auto& [line, length] = approach;
@@ -77,8 +77,8 @@ Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
   return {Outcome::contact, surface, tap.motion.threshold, down + up, {}};
 }
 
-/// Along its approach the arm does what it does above a place: what is left of the way stands for the height. Where the
-/// tool is other than the arm thinks, it meets things elsewhere.
+/// Taps along an approach with the motion of a vertical tap; the remaining length of the approach takes the place of
+/// the height. Pose errors and height offset move the true line.
 Contact Simulator::tap_along(const TapRequest& request) const {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Effects& effects = scene_.effects();
@@ -89,8 +89,8 @@ Contact Simulator::tap_along(const TapRequest& request) const {
   const std::unique_ptr<const Scene> pushed = scene_.after(request.number - 1);
   const Scene& scene = pushed ? *pushed : scene_;
   double along = contact_along(scene, effects, true_line);
-  // With the side of a round tip, too, whose foremost point is then above it.
-  constexpr double kAsExact = 1e-6;  // as the search of either, and more
+  // A round tip may touch the desk with its side, while its lowest point is higher.
+  constexpr double kAsExact = 1e-6;  // m, more than the accuracy of both searches
   const bool desk = effects.stiffness && along > desk_along(scene, effects, true_line) - kAsExact;
   const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;
   if (effects.foreign_objects) along -= outlier(*effects.foreign_objects, context_.seed, met.x(), met.y());
@@ -99,7 +99,7 @@ Contact Simulator::tap_along(const TapRequest& request) const {
   const double left = met_any ? std::max(0.0, length - along) : -motion.overrun;
   Contact contact = moves_ ? simulated_tap(request.number, way, left, desk) : ideal_tap(way, std::max(0.0, left));
   if (!moves_ && !met_any && contact.outcome == Outcome::contact) contact.outcome = Outcome::no_contact;
-  // An arm that has felt nothing is at the end of its way, whatever was there.
+  // Without a contact the arm ends at the full length, whatever the scene has there.
   contact.along = contact.outcome == Outcome::contact ? length - contact.height : length;
   contact.height = line.origin.z() + *contact.along * line.direction.z();
   contact.seconds += tapping::travel_seconds(motion, request);
@@ -146,7 +146,7 @@ Contact Simulator::simulated_tap(int number, const Descending& tap, double surfa
   return contact;
 }
 
-/// Lets real time pass in small portions; an aborted tap when the user wants to stop meanwhile.
+/// Waits for the tap's duration times `pace` in short sleeps. Returns an aborted tap if the user interrupts.
 Contact Simulator::paced(Contact contact) const {
   using Clock = std::chrono::steady_clock;
   const double seconds = contact.seconds * options_.pace;

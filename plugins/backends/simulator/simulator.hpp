@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A simulated arm over the scene of the config. It models what the scene asks for and nothing else: without effects the
-// contact stops the motion exactly at the surface, in closed form; effects that only change what the tool meets, or
-// where, change that; only those that change how the arm moves or feels have a tap simulated period by period.
+// A simulated arm over the scene of the config. Without effects the result of a tap is computed in closed form. Effects
+// on tool, position or object change the touched surface. Effects on motion or force have the tap simulated period by
+// period.
 #pragma once
 
 #include "tapping/motion.hpp"
@@ -26,7 +26,7 @@ class Simulator final : public Backend {
  public:
   using Options = SimulatorOptions;
 
-  /// Throws Error when an object is as high as the arm travels.
+  /// Throws Error if an object is as high as the height of travel.
   Simulator(const Options& options, const Context& context);
 
   Contact tap(const TapRequest& request) override;
@@ -39,13 +39,13 @@ class Simulator final : public Backend {
   }
 
  private:
-  /// A tap on its way down.
+  /// A motion and its planned descent.
   struct Descending {
     const tapping::MotionOptions& motion;
     tapping::Descent descent;
   };
   bool beyond_reach(double x, double y) const;
-  /// What a tap is off the place that is asked for, without the offset of heights; metres.
+  /// Returns the offset of the true position from the requested one, metres, without the height offset.
   Eigen::Vector3d pose_error(const TapRequest& request) const;
   Contact ideal_tap(const Descending& tap, double surface) const;
   Contact imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
@@ -56,9 +56,9 @@ class Simulator final : public Backend {
   SimulatorOptions options_;
   const Context& context_;
   const Scene& scene_;
-  std::unique_ptr<const Scene> pushed_;  ///< as it stood at the latest tap, where things are pushed
-  bool perfect_;                         ///< the scene has no effects
-  bool moves_;                           ///< some effect changes how the arm moves or feels
+  std::unique_ptr<const Scene> pushed_;  ///< scene at the last tap, if taps push objects
+  bool perfect_;                         ///< whether the scene has no effects
+  bool moves_;                           ///< whether an effect changes motion or measured force
 };
 
 }  // namespace palpate::backends

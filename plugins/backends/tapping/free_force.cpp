@@ -6,10 +6,10 @@
 namespace palpate::tapping {
 namespace {
 
-/// (noise of a reading / expected slope)^2 in m^2, for 1.5 N and 50 N/m: the prior of the slope in units of the sum of
-/// squared heights.
+/// Prior of the slope in m^2, in units of the sum of squared heights: (noise of a reading / expected slope)^2, for 1.5
+/// N and 50 N/m.
 constexpr double kSlopePrior = 0.0009;
-/// Readings that the tare counts for: it holds the line while there are few others.
+/// Weight of the tare in readings. It dominates the line while there are few readings.
 constexpr double kTareWeight = 5.0;
 
 }  // namespace

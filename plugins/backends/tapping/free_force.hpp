@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: MIT
-// The force that an arm reads while nothing touches its tool, as it depends on the height.
+// Force of an arm without contact, as a function of the height.
 #pragma once
 
 #include <vector>
 
 namespace palpate::tapping {
 
-/// One sample of a descent: the height of the tip, metres, and the force, newtons.
+/// Height of the tip, metres, and force, newtons.
 struct Sample {
   double height;
   double force;
 };
 
-/// A line through the force over the last centimetres of free travel. The zero of an estimated force depends on the
-/// pose of the arm: one tare at the height of travel is wrong by several newtons further down.
+/// Line through the force over the last centimetres of free travel. The zero of an estimated force depends on the pose
+/// of the arm, so a tare at the height of travel is wrong by several newtons further down.
 class FreeForce {
  public:
-  /// `gap`: metres above the tip whose samples do not count, because a contact with something soft may lie in them.
-  /// `top`: the height of the tare, metres.
+  /// `gap`: samples closer than this to the tip (metres above it) are ignored, because they may contain a soft contact.
+  /// `top`: height of the tare, metres.
   FreeForce(double gap, double top) : gap_(gap), top_(top) {}
 
-  /// Forgets all samples and starts with the force of a tare, newtons.
+  /// Removes all samples and sets the force of a tare, newtons.
   void tare(double zero);
 
-  /// Takes a sample of a tip that comes down evenly.
+  /// Adds a sample during a descent at constant speed.
   void add(const Sample& sample) { samples_.push_back(sample); }
 
-  /// The force without a contact, newtons, as a function of the height, metres.
+  /// Force without contact as a linear function of the height.
   struct Line {
     double force;   ///< N, at `height`
     double height;  ///< m
@@ -34,10 +34,10 @@ class FreeForce {
     double at(double other) const { return force + slope * (other - height); }
   };
 
-  /// Returns the line that holds at this height (m): by least squares through the samples between `gap` and `gap` +
-  /// kLength above it, with a normal prior about 0 for the slope. Where there are none, the tare. Its slope is at most
-  /// kMostDrift, and at this height it is off the tare by at most kMostOffset + kMostDrift per metre below the top:
-  /// what changes by more is something soft and not a zero.
+  /// Returns the line for the present height (m): least squares through the samples between `gap` and `gap` + kLength
+  /// above, with a normal prior with mean 0 for the slope. Without samples it is the tare. The slope is at most
+  /// kMostDrift. At `height` the line differs from the tare by at most kMostOffset + kMostDrift per metre below the
+  /// top. Larger changes are a soft object, not a zero.
   Line line(double height) const;
 
   static constexpr double kLength = 0.03;     ///< m

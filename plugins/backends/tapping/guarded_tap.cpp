@@ -10,19 +10,19 @@
 namespace palpate::tapping {
 namespace {
 
-/// Readings above the threshold until it counts as a contact: one alone may be noise.
+/// Consecutive readings above the threshold that make a contact; fewer may be noise.
 constexpr int kConsecutive = 3;
-/// How near to its goal the arm must come before the next stage. One that has not come nearer by as much again for so
-/// many seconds is held up, and will not.
+/// Distance in m at which the arm counts as arrived at its goal. An arm also counts as arrived if it has not approached
+/// by kNear for kHeldUp seconds, because something blocks it.
 constexpr double kNear = 0.001;
 constexpr double kHeldUp = 2.0;
-/// s by which an arm trails its set-point: for so long it does not move yet.
+/// Lag in s of the arm behind its set-point; the arm does not move before.
 constexpr double kTrail = 0.35;
-/// s after which it comes down evenly.
+/// Time in s after which the arm descends at constant speed.
 constexpr double kEven = 0.7;
 
-/// The means of as many samples one after the other as leave at most kMostSamples: the search for an onset takes the
-/// square of their number, and the arm waits for it.
+/// Averages groups of consecutive samples, so that at most kMostSamples remain. The search for an onset takes quadratic
+/// time while the arm waits.
 std::vector<Sample> thinned(const std::vector<Sample>& samples) {
   constexpr std::size_t kMostSamples = 400;
   const std::size_t size = samples.size() / kMostSamples + 1;
@@ -87,8 +87,8 @@ double GuardedTap::next(double height, double force, bool fresh) {
       break;
     case Stage::pause:
       if (arm_ == Arm::real && waited(motion_.pause) && summed_ > 0) {
-        // The mean of the end of the pause, when the arm stands still. Half of the threshold may be a contact, which
-        // must not be tared away.
+        // The mean of the end of the pause, when the arm rests, becomes the new zero. A change of half the threshold
+        // may be a contact, so it is not tared away.
         const double mean = sum_ / summed_;
         if (std::abs(mean - zero_) < 0.5 * motion_.threshold) {
           zero_ = mean;
@@ -159,7 +159,7 @@ void GuardedTap::give_up(double height) {
   enter(Stage::stop);
 }
 
-/// What a new reading counts for.
+/// Evaluates a new reading according to the stage.
 void GuardedTap::feel(double height, double force) {
   const bool in_pause = arm_ == Arm::real && stage_ == Stage::pause && waited(motion_.pause - motion_.tare);
   const bool stopped =
@@ -181,11 +181,11 @@ void GuardedTap::feel(double height, double force) {
   if (descending || stage_ == Stage::stop || paused) trace_.push_back({height, force});
 }
 
-/// The contact is one, or the descent goes on where it is. If something is touched, the mean of the force that followed
-/// the three loud readings is high; if they were noise it is about zero. It is not above the threshold everywhere: a
-/// set-point that is put where the arm is lets its springs relax, on something soft to less than the threshold.
+/// Accepts the contact, or continues the descent. A true contact keeps the mean force high after its three readings,
+/// noise does not. The mean may be below the threshold, because an arm that stops relaxes its springs, especially on
+/// soft objects.
 void GuardedTap::conclude(const Rise& found) {
-  // An arm that brakes presses less meanwhile.
+  // A braking arm presses less during the mean.
   const bool relaxes = motion_.brake > 0.0 || arm_ == Arm::real;
   const double least = relaxes ? 0.5 * motion_.threshold : motion_.threshold;
   const bool presses = summed_ == 0 || sum_ / summed_ - zero_ > least;
@@ -204,7 +204,7 @@ void GuardedTap::conclude(const Rise& found) {
   enter(Stage::descend);
 }
 
-/// Counts a contact that lasts and does not rise as on an object; returns whether they are too many in one place.
+/// Counts contacts that last but rise too slowly. Returns whether kMostSoft of them occurred at one height.
 bool GuardedTap::too_soft() {
   if (softs_ == 0 || std::abs(soft_ - first_) > kFarthestOnset) {
     soft_ = first_;
@@ -213,13 +213,13 @@ bool GuardedTap::too_soft() {
   return ++softs_ >= kMostSoft;
 }
 
-/// Of `continuous`: the height is that of the onset.
+/// Ends a `continuous` motion with the height of the onset.
 void GuardedTap::conclude_at_onset() {
   if (arm_ == Arm::simulated) return conclude({onset_of_descent(trace_).value_or(first_), true, 0.0});
   conclude(rise());
 }
 
-/// How the force of a real arm rose above the line that it had in free travel.
+/// Returns onset and slope of a real arm's force above the line of free travel.
 GuardedTap::Rise GuardedTap::rise() const {
   const FreeForce::Line free = free_.line(first_);
   std::vector<Sample> above;
@@ -241,7 +241,7 @@ double GuardedTap::even_for() const {
 }
 
 void GuardedTap::enter(Stage stage) {
-  // A real arm of `paper` may touch in a pause, or between two of its steps.
+  // A real arm with `paper` may touch during a pause, or between two steps. Its samples continue then.
   const bool resumed =
       stage_ == Stage::stop || (arm_ == Arm::real && (stage_ == Stage::pause || stage_ == Stage::rest));
   stage_ = stage;
@@ -260,7 +260,8 @@ void GuardedTap::enter(Stage stage) {
                                                          : descent_.floor;
       break;
     case Stage::back_off: {
-      // From where the contact began: a soft object may have given way by more than that, and would be tared.
+      // The reference is the onset, because a soft object may yield by more than back_off. The tare would then include
+      // its force.
       const double more = arm_ == Arm::real ? kFromAbove : 0.0;
       goal_ = std::min(descent_.hover + more,
                        std::max(set_point_, onset_of_descent(trace_).value_or(set_point_)) + motion_.back_off + more);
@@ -280,7 +281,7 @@ void GuardedTap::enter(Stage stage) {
 void GuardedTap::touched(double height) {
   first_ = height;
   ++noticed_;
-  // Wherever the arm trails its set-point, holding that would press on.
+  // If the arm trails its set-point, keeping the set-point would increase the force.
   if (motion_.type != MotionOptions::Type::paper || arm_ == Arm::real) set_point_ = height;
   if (motion_.type == MotionOptions::Type::continuous) set_point_ = std::min(descent_.hover, height + motion_.brake);
   switch (motion_.type) {
@@ -289,12 +290,12 @@ void GuardedTap::touched(double height) {
     case MotionOptions::Type::two_stage:
       return enter(Stage::back_off);
     case MotionOptions::Type::continuous:
-    case MotionOptions::Type::per_tap:  // no motion of its own
+    case MotionOptions::Type::per_tap:  // has no motion of its own
       return enter(Stage::stop);
   }
 }
 
-/// Moves the set-point towards `goal` by what one period allows; whether it is there.
+/// Moves the set-point towards `goal` by one period. Returns whether it has arrived.
 bool GuardedTap::ramp(double goal, double speed) {
   const double most = speed * kPeriod;
   const double left = goal - set_point_;
@@ -306,8 +307,8 @@ bool GuardedTap::ramp(double goal, double speed) {
   return false;
 }
 
-/// Whether the arm is where it was sent, or will not come any nearer. One that trails its set-point may still press on
-/// what it should be clear of.
+/// Returns whether the arm has reached its set-point or is blocked. An arm that trails may still press on the object
+/// that it should leave.
 bool GuardedTap::arrived(double height) {
   const double gap = std::abs(height - set_point_);
   if (gap < gap_ - kNear) {
@@ -317,7 +318,8 @@ bool GuardedTap::arrived(double height) {
   return gap < kNear || static_cast<double>(periods_ - nearer_) * kPeriod >= kHeldUp;
 }
 
-/// Half a period of grace: 0.5 s are 50 periods, whatever their sum rounds to.
+/// Returns whether `seconds` have passed in this stage. Half a period is added, so that rounding does not matter: 0.5 s
+/// are 50 periods.
 bool GuardedTap::waited(double seconds) const {
   return (static_cast<double>(periods_ - entered_) + 0.5) * kPeriod >= seconds;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The guarded tap: from what the arm feels to where it goes next, a period at a time, and where a contact began, found
-// from what was felt before and after it was noticed. It owns no arm: a simulator and a robot run the same one.
+// The guarded tap: computes the next set-point from measured height and force, one period at a time, and the onset of a
+// contact from samples before and after its detection. A simulator and a robot drive the same class.
 #pragma once
 
 #include "tapping/free_force.hpp"
@@ -11,105 +11,104 @@
 
 namespace palpate::tapping {
 
-/// The height at which the force begins to rise: the kink of the hinge force = zero + slope * max(0, kink - height)
-/// that is nearest to `samples` in the sense of least squares, zero and slope being free. The height at which a
-/// threshold is crossed lies lower by threshold / stiffness, and by what the arm moves while one makes sure; the kink
-/// does not, and the noise of a single sample is averaged out.
-/// None when there are fewer than four samples or no slope makes the force rise with the depth. Where every kink within
-/// an interval fits as well (a rigid surface, met between two samples), the lowest.
+/// Returns the height at which the force begins to rise. It is the kink of the hinge force = zero + slope * max(0, kink
+/// - height) that fits `samples` best by least squares, with free zero and slope. The height of a threshold crossing is
+/// lower, by threshold / stiffness and the motion during the detection. The kink has neither error and averages the
+/// noise.
+/// Returns nullopt with fewer than four samples, or if the force rises with the depth for no slope. If all kinks of an
+/// interval fit equally (a rigid surface between two samples), the lowest is returned.
 std::optional<double> onset(const std::vector<Sample>& samples);
 
-/// The onset of the contact with which `descent` ends, its samples in the order of time. Only its last part is looked
-/// at, since the zero of the force may wander on the way: as much as shows the whole rise, which is long on a soft
-/// object, with air above it.
+/// Returns the onset of the contact at the end of `descent`, whose samples are in order of time. Only the last part is
+/// used, because the zero of the force may drift. This part contains the whole rise, which is long on soft objects, and
+/// some free travel above it.
 std::optional<double> onset_of_descent(const std::vector<Sample>& descent);
 
-/// Returns how steeply the force rises below a kink, N/m: the slope of the hinge that fits `samples` best; 0 where no
-/// sample lies below it.
+/// Returns the slope of the force below a kink, N/m, of the hinge that fits `samples` best. Returns 0 without samples
+/// below the kink.
 double slope_below(const std::vector<Sample>& samples, double kink);
 
-/// Why a tap has the outcome `timeout`.
+/// Reason of the outcome `timeout`.
 constexpr const char* kTooLong = "the tap took longer than motion.timeout";
 
-/// One descent, from arrival at the height of travel to the end of contact; travel and retreat are the caller's.
+/// One descent, from arrival at the height of travel to the end of contact. The caller makes travel and retreat.
 ///
-/// Every period the caller tells the measured height and force, and whether that force is a new reading; it commands
-/// the set-point that it gets. A contact is declared when three readings, one after the other, were above the
-/// threshold: one reading is one, for however many periods it is the latest. What then follows is the motion's:
-/// - paper: the set-point stays (a real arm's does not), the pause passes, and the height is read while the arm still
-///   presses: too low by what the contact gives way under the set-point's lead.
-/// - two_stage: the set-point is put where the arm is, backs off until the tip is clear, rests and tares, and comes
-/// down
-///   slowly to a gentler threshold; the height is that of the second contact. No second contact within twice the way
-///   back means that the first was none, and the descent goes on.
-/// - continuous: the set-point is put where the arm is, and the height is that of the onset.
-/// A real arm's contact is believed if the force lasts and rises as on an object: within kFarthestOnset and by at least
-/// kSoftestRise. If not, the descent goes on; a second one within kSamePlace of the first is believed.
+/// In each period the caller passes the measured height and force, and whether the force is new. It then commands the
+/// returned set-point. A contact is detected after three consecutive new readings above the threshold. The reaction
+/// depends on the motion:
+/// - paper: the set-point stays (not with a real arm) and the pause passes. The height is measured while the arm still
+///   presses. So it is too low by the distance that the contact yields.
+/// - two_stage: the set-point jumps to the arm, backs off until the tip is free, waits and tares. A slow descent to a
+///   lower threshold follows, and its contact is the result. Without a second contact within twice the distance of the
+///   retreat, the first was false and the descent continues.
+/// - continuous: the set-point jumps to the arm, and the height is that of the onset.
+/// A contact of a real arm is accepted if its force lasts and rises as on an object: within kFarthestOnset and by at
+/// least kSoftestRise. Otherwise the descent continues; a second contact within kSamePlace of the first is accepted.
 class GuardedTap {
  public:
-  /// Of the control loop: Baxter's joint states come at 100 Hz.
+  /// Period of the control loop in s: Baxter's joint states arrive at 100 Hz.
   static constexpr double kPeriod = 0.01;
 
-  /// Whose arm it is. The simulated one of `paper` presses on at a contact, as the paper's did: its set-point stays
-  /// ahead. A real one stops at 16 N and its zero wanders: at every contact the set-point is put where the arm is, and
-  /// every pause of `paper` tares anew, unless what it feels there may be a contact that begins. Its joints rub, so
-  /// that its force at rest depends on the way it came: wherever it tares it has come from above, as it goes on.
+  /// Kind of arm. The simulated arm with `paper` keeps its set-point at a contact and presses further, as in the paper.
+  /// A real arm stops at 16 N and its zero drifts. At each contact its set-point jumps to the arm, and every pause of
+  /// `paper` tares again, unless a contact may begin. Friction makes its force at rest depend on the direction of
+  /// motion, so every tare follows a descent.
   enum class Arm { simulated, real };
 
-  /// The way down, metres, after which an arm rests as one that comes down does: its joints give way by less than a
-  /// milliradian until they slip.
+  /// Descent in metres after which the friction of a resting arm is that of a descending one: joints deflect less than
+  /// a milliradian before they slip.
   static constexpr double kFromAbove = 0.01;
 
-  /// A real arm's contact begins at most so far above the place where it was noticed, metres, and its force rises by at
-  /// least so much, N/m: what rises more slowly is a zero that changes with the pose.
+  /// Limits of a real arm's contact: its onset is at most kFarthestOnset (m) above the detection, and its force rises
+  /// by at least kSoftestRise (N/m). A slower rise is a zero that changes with the pose.
   static constexpr double kFarthestOnset = 0.03;
   static constexpr double kSoftestRise = 200.0;
-  /// N/m of the softest contact, whose beginning is kept out of the force of free travel.
+  /// Stiffness in N/m of the softest supported contact; its onset is excluded from the force of free travel.
   static constexpr double kSoftest = 600.0;
-  /// New readings that a real arm's mean takes at least, of a tare and after a contact; a robot may renew its force as
-  /// seldom as 8 times a second.
+  /// Least numbers of new readings in a real arm's mean, in a tare and after a contact. A robot may renew its force
+  /// only 8 times a second.
   static constexpr int kFewestTared = 10;
   static constexpr int kFewestWatched = 3;
-  /// So many contacts within kFarthestOnset whose force lasts and rises by less than kSoftestRise are one with
-  /// something too soft, which ends the tap.
+  /// Number of contacts within kFarthestOnset that last but rise by less than kSoftestRise, after which the tap ends:
+  /// the object is too soft.
   static constexpr int kMostSoft = 2;
-  /// Two contacts within so much, metres, that do not last are one with something soft.
+  /// Distance in metres within which two contacts that do not last are one contact with a soft object.
   static constexpr double kSamePlace = 0.002;
 
   GuardedTap(const MotionOptions& motion, const Descent& descent, Arm arm = Arm::simulated);
 
   /// Takes the measured height of the tip (m) and the raw force against it (N), and returns the next set-point (m). A
-  /// force that is not `fresh` was told before: time goes on, but it counts for nothing.
+  /// force that is not `fresh` is ignored, but the time passes.
   double next(double height, double force, bool fresh = true);
 
-  /// Comes down no faster than this from now on, m/s, and has as much more time.
+  /// Limits the speed of the descent from now on, m/s, and extends the timeout accordingly.
   void slow_to(double speed);
 
-  /// The arm has stopped by itself, at a force that it has felt: what it presses on with is let go. Where that force is
-  /// seen here, too, if late, it was a contact like any other; else the tap comes to nothing.
+  /// Reports that the arm stopped by itself because of its own force limit; the set-point jumps up from `height` (m).
+  /// If the force also appears here, perhaps late, the result is a normal contact; otherwise the tap is aborted.
   void give_up(double height);
 
   bool done() const { return stage_ == Stage::done; }
-  /// Whether the force of the next period belongs to a tare, the first or that of two_stage.
+  /// Returns whether the next force belongs to a tare, the first one or that of two_stage.
   bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
-  /// Whether a contact was noticed and the arm is being stopped.
+  /// Returns whether a contact was detected and the arm is stopping.
   bool stopping() const { return stage_ == Stage::stop; }
-  /// Whether a contact was noticed and the arm presses no further: it is being stopped, rests, or backs off.
+  /// Returns whether a contact was detected and the arm stops, rests or backs off.
   bool presses_no_further() const {
     return stage_ == Stage::stop || stage_ == Stage::rest || stage_ == Stage::back_off;
   }
-  /// How many contacts were noticed so far, believed or not.
+  /// Returns the number of detected contacts, accepted or not.
   int noticed() const { return noticed_; }
-  /// Whether the arm comes down, or is being stopped at a contact: its force then is that of an arm that moves.
+  /// Returns whether the arm descends or stops at a contact. The force then includes the effects of motion.
   bool coming_down() const;
-  /// The force that a reading is compared with, newtons: that of the tare, or of free travel as far as it is known.
+  /// Returns the reference of the force, newtons: that of the tare, or of free travel once known.
   double zero() const { return zero_; }
-  /// For how long the set-point has been coming down evenly in this stage, seconds.
+  /// Returns for how many seconds the set-point has descended at constant speed in this stage.
   double even_for() const;
-  /// When done, what came of it, but for the time: `contact`, with the largest force above the tare, `no_contact` (the
-  /// floor was reached) or `timeout`.
+  /// Returns the result of a finished tap, without its duration: `contact` with the largest force above the tare,
+  /// `no_contact` at the floor, `timeout` or `aborted`.
   const Contact& result() const { return result_; }
-  /// Since arrival.
+  /// Returns the seconds since the start of the descent.
   double seconds() const { return static_cast<double>(periods_) * kPeriod; }
 
  private:
@@ -120,9 +119,9 @@ class GuardedTap {
   void touched(double height);
   void conclude_at_onset();
   struct Rise {
-    double height;  ///< where it begins, m
+    double height;  ///< m, onset
     bool is_contact;
-    double slope;  ///< N/m below it
+    double slope;  ///< N/m below the onset
   };
   Rise rise() const;
   void conclude(const Rise& found);
@@ -130,7 +129,7 @@ class GuardedTap {
   bool ramp(double goal, double speed);
   bool arrived(double height);
   bool waited(double seconds) const;
-  /// Whether the mean of a stage has enough readings.
+  /// Returns whether the mean of a stage has enough readings.
   bool averaged(int fewest) const { return arm_ == Arm::simulated || summed_ >= fewest; }
   void finish(const Contact& result);
   double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
@@ -140,24 +139,24 @@ class GuardedTap {
   Arm arm_;
   Stage stage_ = Stage::tare;
   long periods_ = 0;
-  long entered_ = 0;  ///< the period in which the stage began
+  long entered_ = 0;  ///< period in which the stage began
   double set_point_;
-  double goal_ = 0.0;  ///< of the ramp of this stage
+  double goal_ = 0.0;  ///< m, end of the stage's ramp
   double zero_ = 0.0;  ///< force without a contact, N
-  FreeForce free_;     ///< the same of a real arm that comes down
-  double sum_ = 0.0;   ///< of forces while taring
-  int summed_ = 0;     ///< how many
+  FreeForce free_;     ///< force of free travel, of a real arm
+  double sum_ = 0.0;   ///< N, sum of the forces of a mean
+  int summed_ = 0;     ///< number of forces in sum_
   double peak_ = 0.0;
-  double first_ = 0.0;             ///< height at which the latest contact was noticed
-  std::optional<double> refused_;  ///< `first_` of the latest that was not believed
-  double soft_ = 0.0;              ///< `first_` of the first contact with something too soft
-  int softs_ = 0;                  ///< how many there were since
-  double gap_ = 0.0;               ///< least distance of arm and set-point in this stage
-  long nearer_ = 0;                ///< the period in which it last became less
+  double first_ = 0.0;             ///< m, height at the last detection
+  std::optional<double> refused_;  ///< `first_` of the last rejected contact
+  double soft_ = 0.0;              ///< `first_` of the first contact that was too soft
+  int softs_ = 0;                  ///< number of contacts that were too soft
+  double gap_ = 0.0;               ///< m, least distance between arm and set-point in this stage
+  long nearer_ = 0;                ///< period of the last decrease of gap_
   bool given_up_ = false;
   int noticed_ = 0;
-  int above_ = 0;              ///< readings above the threshold, without a break
-  std::vector<Sample> trace_;  ///< of the descent, for the onset
+  int above_ = 0;              ///< consecutive readings above the threshold
+  std::vector<Sample> trace_;  ///< samples of the descent, for the onset
   Contact result_;
 };
 

@@ -12,7 +12,7 @@ namespace palpate::tapping {
 
 namespace {
 
-/// A quantity that is more than nothing; `source` is where its default comes from.
+/// Returns a field with values above 0. `source` is the origin of the default.
 Field positive(const char* name, const char* meaning, Unit unit, const char* source) {
   return Field(name, meaning).in(unit).above(0).from(source);
 }
@@ -38,10 +38,10 @@ std::string touch(const MotionOptions& motion) {
                      per_second(motion.fine_speed), newtons(motion.fine_threshold));
 }
 
-/// The moment at which a force is noticed errs by about so much, seconds; an arm that moves errs by as much as it goes
-/// then. An estimate, of an arm of Baxter's class: `latency` in configs/effects/standard.yaml.
+/// Error in s of the detection time; a moving arm errs by speed times this. An estimate for arms like Baxter's, see
+/// `latency` in configs/effects/standard.yaml.
 constexpr double kMoment = 0.015;
-/// Metres by which the height of an arm at rest errs: `pose_noise` there.
+/// Error in metres of the height of a resting arm; see `pose_noise` in configs/effects/standard.yaml.
 constexpr double kPlace = 0.001;
 
 class Several final : public Motions {
@@ -212,14 +212,15 @@ Descent plan_descent(const MotionOptions& motion, double desk, const std::option
     const AdaptiveHover& adaptive = *motion.adaptive_hover;
     const double probability = adaptive.certainty ? predicted->probability.value_or(0.5) : 0.5;
     const double certainty = adaptive.certainty.value_or(1.0);
-    // The desk is there whatever the models say.
+    // The desk is certain, whatever the models predict.
     double surface = desk;
     if (probability > 1.0 - certainty)
       surface = std::max(desk, predicted->height + adaptive.deviations * predicted->standard_deviation);
     out.start = std::min(out.hover, surface + adaptive.clearance);
-    // Where a contact is not felt the arm presses on to the floor: as deep into an object as into the desk, no deeper.
+    // If a contact is not detected, the arm presses down to the floor. So the floor below an object is as deep as that
+    // below the desk.
     if (probability >= certainty) {
-      constexpr double kSure = 3.0;  // deviations
+      constexpr double kSure = 3.0;  // standard deviations
       const double lowest = predicted->height - kSure * predicted->standard_deviation;
       out.floor = std::min(out.start, std::max(desk, lowest) - motion.overrun);
     }
@@ -245,7 +246,7 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
     const double end = std::max(descent.start, surface);
     seconds += (descent.hover - end) / adaptive.speed;
     from = end;
-    if (surface > descent.start) {  // hit on the way: back off, then as always
+    if (surface > descent.start) {  // contact during the fast descent: back off, then as usual
       from = std::min(descent.hover, end + adaptive.clearance);
       seconds += (from - end) / adaptive.speed;
     }
@@ -254,7 +255,7 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
   seconds += down / motion.speed;
   switch (motion.type) {
     case MotionOptions::Type::paper:
-      // Whole steps are counted, though contact cuts the last one short: the pause follows all the same.
+      // Whole steps are counted, because the pause also follows a step that a contact cuts short.
       return seconds + std::max(1.0, std::ceil(down / motion.step)) * motion.pause;
     case MotionOptions::Type::two_stage: {
       const double back = std::min(motion.back_off, descent.hover - surface);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How an arm taps: the options that a simulated and a real arm share, what follows from them before anything moves, and
-// a tap in words, for a person who decides whether it is made.
+// Motion of a tap: options that simulated and real arms share, planned heights and durations, and descriptions for a
+// person who must approve a tap.
 #pragma once
 
 #include <palpate/backend.hpp>
@@ -15,26 +15,26 @@
 
 namespace palpate::tapping {
 
-/// Begin the slow descent just above the surface that the models expect, instead of at the height of travel.
+/// Fast descent to just above the predicted surface; the slow descent begins there instead of at the height of travel.
 struct AdaptiveHover : Options {
-  double deviations = 2.0;  ///< standard deviations of the expected height that are kept clear
-  double clearance = 0.01;  ///< metres, beside them
-  double speed = 0.1;       ///< m/s, from the height of travel down to there
-  /// How probable an object must be, or none, to be relied on; without it an object is expected everywhere.
+  double deviations = 2.0;  ///< clearance in standard deviations of the predicted height
+  double clearance = 0.01;  ///< additional clearance, metres
+  double speed = 0.1;       ///< m/s, speed of the fast descent
+  /// Least probability of an object, or of the bare desk, to be relied on. Without it an object is expected everywhere.
   std::optional<double> certainty;
   void list(Fields& fields) override;
 };
 
-/// One tap: travel at `hover` above the desk, tare, come down in a way of its own until the force rises, retreat.
+/// One tap: travel at `hover` above the desk, tare, descend until the force rises, retreat.
 struct MotionOptions : Options {
-  enum class Type { paper, two_stage, continuous, per_tap };  ///< `per_tap` is a BackendMotion's alone
+  enum class Type { paper, two_stage, continuous, per_tap };  ///< `per_tap` only in BackendMotion
   Type type = Type::paper;
-  double speed = 0.024;         ///< m/s, of the descent
+  double speed = 0.024;         ///< m/s, descent
   double step = 0.03;           ///< m, paper
   double pause = 0.5;           ///< s, paper and two_stage
   double back_off = 0.02;       ///< m, two_stage
   double brake = 0.0;           ///< m, continuous
-  bool confirm = false;         ///< continuous; a real arm always does
+  bool confirm = false;         ///< continuous; real arms always confirm
   double fine_speed = 0.02;     ///< m/s, two_stage
   double fine_threshold = 6.0;  ///< N, two_stage
   double threshold = 10.0;      ///< N
@@ -53,58 +53,58 @@ struct MotionOptions : Options {
   void list_rest(Fields& fields);
 };
 
-/// The same, or several of them, of which the strategy takes one for each tap.
+/// Motion of a backend: one motion, or a list from which the strategy chooses for each tap.
 struct BackendMotion : MotionOptions {
-  std::vector<MotionOptions> of;  ///< none, or two and more
+  std::vector<MotionOptions> of;  ///< empty, or at least two
   void list(Fields& fields) override;
 
   int count() const { return of.empty() ? 1 : static_cast<int>(of.size()); }
-  /// One of them; the one that a request asks for.
+  /// Return the motion with this index, and the motion of a request.
   const MotionOptions& at(int number) const { return of.empty() ? *this : of.at(static_cast<std::size_t>(number)); }
   const MotionOptions& of_request(const TapRequest& request) const { return at(request.motion); }
 };
 
-/// What a motion, or the choice between several, depends on of all that the models expect.
+/// Return the predictions that a motion, or the choice between motions, uses.
 Quantities expects(const MotionOptions& motion);
 Quantities expects(const BackendMotion& motion);
 
-/// The heights of one descent, metres, in the frame of the scene: floor <= start <= hover.
+/// Heights of one descent in the scene's frame, metres: floor <= start <= hover.
 struct Descent {
-  double hover;  ///< where the arm arrives, and to where it retreats
-  double start;  ///< where the slow descent begins: `hover`, unless that is adaptive and something is predicted
-  double floor;  ///< where it ends without a contact: below the desk, or below an object that is certain to be there
+  double hover;  ///< start of the descent and end of the retreat
+  double start;  ///< start of the slow descent: `hover`, or lower with adaptive hover and a prediction
+  double floor;  ///< end without contact: below the desk, or below an object that is certain
 };
 Descent plan_descent(const MotionOptions& motion, double desk, const std::optional<Prediction>& predicted);
 
-/// Seconds from one place to the next, at the height of travel, and seconds up again from `height`, both at constant
+/// Return the seconds of the travel between two positions, and of the retreat from `height` (m), both at constant
 /// speed.
 double travel_seconds(const MotionOptions& motion, const TapRequest& request);
 double retreat_seconds(const MotionOptions& motion, const Descent& descent, double height);
 
-/// The force at which an arm with a `force_limit` stops by itself, newtons: what it presses on while it brakes is
-/// within the limit.
+/// Fraction of `force_limit` at which the arm stops by itself, so that the further rise of the force stays within the
+/// limit.
 constexpr double kOwnStop = 0.75;
-/// Why a tap has the outcome `aborted`, then.
+/// Reason of the outcome `aborted` after such a stop.
 constexpr const char* kStoppedByItself = "the arm stopped by itself, short of motion.force_limit";
 
-/// How long `continuous` watches the arm once it has stopped it, seconds: what the arm presses on meanwhile tells of
-/// the onset, too.
+/// Time in s for which `continuous` measures the force after the stop. These samples improve the onset.
 constexpr double kWatched = 0.1;
 
-/// Seconds from arrival to contact with a rigid surface at `surface`, for an arm that follows its set-point at once and
-/// feels without noise: what GuardedTap needs then, but for whole periods and those that it takes to be sure.
+/// Returns the seconds from arrival to contact with a rigid surface at height `surface` (m). The arm follows its
+/// set-point without lag, and the force has no noise. GuardedTap takes as long, except for rounding to periods and the
+/// readings of a detection.
 double ideal_seconds(const MotionOptions& motion, const Descent& descent, double surface);
 
-/// What the strategy chooses from; null where there is but one motion.
+/// Returns the motions from which the strategy chooses; null if there is only one.
 std::unique_ptr<Motions> motions(const BackendMotion& motion, double desk);
 
-/// Rounded to a millimetre and to a tenth of a newton: "13.5 cm", "6.0 N".
+/// Format a length with 0.1 cm and a force with 0.1 N: "13.5 cm", "6.0 N".
 std::string centimetres(double length);
 std::string newtons(double force);
-/// "(11.5, 3.0) cm"
+/// Formats a position: "(11.5, 3.0) cm".
 std::string place(const Target& target);
 
-/// The way there from `from` (none: it is not known), the descent, and the force that ends it; a line each.
+/// Describes travel from `from` (nullopt: unknown), descent, and the force that ends it, one line each.
 std::vector<std::string> describe(const MotionOptions& motion, double desk, const TapRequest& request,
                                   const std::optional<Target>& from);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the force of a descent begins to rise, and how steeply.
+// Onset and slope of the force in a descent.
 #include "tapping/guarded_tap.hpp"
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 namespace palpate::tapping {
 namespace {
 
-/// The shortest part of a descent that is looked at, metres, and the share of it that the rise may take.
+/// Shortest part of a descent that is searched, metres, and largest share of it that the rise may take.
 constexpr double kFirstWindow = 0.02;
 constexpr double kInside = 0.6;
 
-/// What the best hinge with this kink explains: the sum of squares that it takes off that of the forces about their
-/// mean. Negative where the force would fall with the depth.
+/// Returns the sum of squares that the best hinge with this kink explains: the reduction relative to a constant force.
+/// Returns a negative number if the force would fall with the depth.
 double explained(const std::vector<Sample>& samples, double kink) {
   const auto n = static_cast<double>(samples.size());
   double depth = 0.0;
@@ -56,7 +56,7 @@ std::optional<double> onset(const std::vector<Sample>& samples) {
   std::sort(heights.begin(), heights.end());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
   if (heights.size() < 3) return std::nullopt;
-  // Between two neighbouring heights the hinge changes smoothly, so the best of them brackets the best kink.
+  // The hinge changes smoothly between neighbouring heights, so the best height is next to the best kink.
   std::size_t best = 0;
   double most = -1.0;
   for (std::size_t i = 1; i < heights.size(); ++i) {
@@ -89,7 +89,7 @@ std::optional<double> onset_of_descent(const std::vector<Sample>& descent) {
     const auto first =
         std::find_if(descent.begin(), descent.end(), [&](const Sample& one) { return one.height < bottom + window; });
     const std::optional<double> found = onset({first, descent.end()});
-    // A kink at the upper end of the window is that of a window that begins within the rise.
+    // A kink at the upper end means that the window starts within the rise.
     const bool inside = found && *found - bottom < kInside * window;
     if (inside || first == descent.begin()) return found;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Hyperparameters from the taps: the largest marginal likelihood, or leave-one-out predictive density, weighted by what
-// is reasonable to expect of a surface in an area of this size (Rasmussen and Williams 2006, chapter 5): a coarse look
-// around, then quasi-Newton ascent. The only file that sees Ceres.
+// Fits hyperparameters to the taps. The objective is the marginal likelihood or the leave-one-out predictive density,
+// times priors for surfaces in an area of this size (Rasmussen and Williams 2006, chapter 5). A coarse search is
+// followed by quasi-Newton ascent. This is the only file that includes Ceres.
 #include "options.hpp"
 
 #include <palpate/fitting.hpp>
@@ -26,33 +26,34 @@ namespace palpate::fitting {
 
 namespace {
 
-/// Above this number of points a part of them finds the region of the optimum, and all of them only the optimum.
+/// Number of points above which a part of them determines the region of the optimum, and all of them only the optimum.
 constexpr Eigen::Index kPart = 96;
-/// Largest slope at the end, per point and in units of the curvature: the objective is then within about 1e-8 of its
-/// maximum.
+/// Largest slope at the end of an ascent, per point and in units of the curvature. The objective is then within about
+/// 1e-8 of its maximum.
 constexpr double kFine = 1e-4;
 
-/// More taps than after the last search by this factor ask for another one: until then a fit climbs from where the one
-/// before ended. Not without priors: a likelihood has several optima, of which one more tap may make another the best.
+/// Growth of the number of taps that triggers a new search. Before, a fit ascends from the last optimum. Without priors
+/// every fit searches: a likelihood has several optima, and one tap may change which is the best.
 constexpr double kGrowth = 1.1;
 
-/// A place of the search and what is known of it.
+/// Result of an ascent.
 struct Spot {
   Eigen::VectorXd x;
   double value = 0.0;
-  bool valid = false;      ///< value and gradient were finite on the whole way
-  bool converged = false;  ///< and the gradient is gone
-  std::string reason;      ///< why the ascent ended
-  Eigen::MatrixXd metric;  ///< of the ascent that ended here
+  bool valid = false;      ///< whether value and gradient were always finite
+  bool converged = false;  ///< whether the gradient also vanished
+  std::string reason;      ///< reason for the end of the ascent
+  Eigen::MatrixXd metric;  ///< metric of this ascent
 };
 
-/// What one fit leaves for the next (FitProblem::memory): after how many taps was searched, and the metric.
+/// State that a fit leaves for the next one (FitProblem::memory): number of taps at the last search, and metric.
 struct Memory {
   double searched = 0.0;
   Eigen::MatrixXd metric;
 
   static Memory of(const std::vector<double>& numbers, Eigen::Index size) {
-    if (static_cast<Eigen::Index>(numbers.size()) != 1 + size * size) return {};  // nothing, or of other outputs
+    if (static_cast<Eigen::Index>(numbers.size()) != 1 + size * size)
+      return {};  // empty, or for another number of outputs
     return {numbers.front(), Eigen::Map<const Eigen::MatrixXd>(numbers.data() + 1, size, size)};
   }
   void keep(std::vector<double>& numbers) const {
@@ -61,7 +62,7 @@ struct Memory {
   }
 };
 
-/// The objective, turned over and in the coordinates of a metric, as Ceres wants it.
+/// Negative objective in the coordinates of a metric, as a function for Ceres.
 class Descent final : public ceres::FirstOrderFunction {
  public:
   Descent(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric)
@@ -94,9 +95,9 @@ Eigen::VectorXd within_limits(Eigen::VectorXd x, const std::vector<Expectation>&
   return x;
 }
 
-/// Ascends from `start` by BFGS with a Wolfe line search (ceres::GradientProblem), until no entry of the gradient in
-/// the coordinates of `metric` is above `tolerance`. x = start + metric u, so a metric near the square root of the
-/// inverse curvature saves steps; identity where nothing is known.
+/// Ascends from `start` by BFGS with a Wolfe line search (ceres::GradientProblem), until all entries of the gradient in
+/// the coordinates of `metric` are at most `tolerance`. x = start + metric u, so a metric near the square root of the
+/// inverse curvature saves steps. Without knowledge it is the identity.
 Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric, double tolerance) {
   ceres::GradientProblemSolver::Options options;
   options.logging_type = ceres::SILENT;
@@ -110,17 +111,18 @@ Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::Mat
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, u.data(), &summary);
   const Eigen::VectorXd x = start + metric * u;
-  // An ascent that ends in trouble has still come as far as it says, but for one that could not begin.
+  // An ascent that fails on its way still has a valid result, unless its start failed.
   const bool valid = !summary.iterations.empty() && std::isfinite(summary.final_cost) && x.allFinite();
   const bool converged = valid && summary.termination_type == ceres::CONVERGENCE;
   return {x,     -summary.final_cost, valid, converged, summary.message.substr(0, summary.message.find_first_of(".\n")),
           metric};
 }
 
-/// A metric from the curvature at `spot`, by differences of gradients.
+/// Returns a metric from the curvature at `spot`, by differences of gradients.
 Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& spot) {
-  constexpr double kStep = 1e-3;      // in logarithms: far above rounding, far below any change of curvature
-  constexpr double kFlattest = 1e-3;  // a curvature below this is as good as none
+  constexpr double kStep =
+      1e-3;  // in logarithms: large compared with rounding, small compared with changes of the curvature
+  constexpr double kFlattest = 1e-3;  // smaller curvatures are replaced by this
   const Eigen::Index size = spot.size();
   Eigen::MatrixXd curvature(size, size);
   Eigen::VectorXd here(size);
@@ -139,12 +141,12 @@ Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& spot) {
   return solver.eigenvectors() * scale.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-/// A start that does not depend on luck: likelihoods over a few length scales and noises, signals at their best, and
-/// those of `now`; the best of them. A likelihood has a wide flat region of pure noise, from which no ascent returns.
+/// Returns a deterministic start: the best of `now` and a grid of length scales and noises, each with its best signals.
+/// A likelihood has a wide flat region of pure noise, which no ascent leaves.
 Eigen::VectorXd look_around(Objective& objective, const Model& model, const Eigen::VectorXd& now,
                             const std::vector<Expectation>& expectations) {
   constexpr int kLengths = 4;
-  constexpr std::array<double, 2> kNoises{1e-3, 1e-1};  // squared ratios: a clean surface, a noisy one
+  constexpr std::array<double, 2> kNoises{1e-3, 1e-1};  // squared noise ratios of a clean and of a noisy surface
   const std::vector<KernelParameter> parameters = model.kernel.parameters();
   const auto count = static_cast<Eigen::Index>(parameters.size());
   const double extent = (model.points.colwise().maxCoeff() - model.points.colwise().minCoeff()).maxCoeff();
@@ -175,7 +177,7 @@ Eigen::VectorXd look_around(Objective& objective, const Model& model, const Eige
   return within_limits(best, expectations);
 }
 
-/// Within two spreads of what is expected, uniformly.
+/// Returns a uniform random start within two standard deviations of the priors.
 Eigen::VectorXd random_start(const std::vector<Expectation>& expectations, Random& random) {
   Eigen::VectorXd x(static_cast<Eigen::Index>(expectations.size()));
   for (std::size_t i = 0; i < expectations.size(); ++i) {
@@ -186,7 +188,7 @@ Eigen::VectorXd random_start(const std::vector<Expectation>& expectations, Rando
 
 bool better(const Spot& a, const Spot& b) { return a.valid && (!b.valid || a.value > b.value); }
 
-/// What every start came to, in words.
+/// Describes the results of all starts.
 std::string told(const std::vector<Spot>& spots, const Model& model) {
   std::string values;
   for (const Spot& spot : spots) {
@@ -246,7 +248,7 @@ class Ceres final : public Fitting {
       summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent reached a finite value";
     }
     if (problem.memory != nullptr && best.valid) {
-      // The metric of a search among few points is that of its start, which may be far away.
+      // After a search with few points, the metric is that of its start, which may be far from the optimum.
       if (searched && model.size() <= kPart) best.metric = metric_at(objective, best.x);
       Memory{searched ? taps : memory.searched, best.metric}.keep(*problem.memory);
     }
@@ -267,9 +269,9 @@ class Ceres final : public Fitting {
 
  private:
   std::vector<Expectation> expectations(const Model& model) const {
-    // A scene is part desk and part object, with a step between them that no stationary kernel follows. Its taps look
-    // calmer and smoother than what is still to be found: from few taps the likelihood alone takes too long a length
-    // scale and too small a signal, and is sure where it should not be. framework/docs/runs.md has the figures of both.
+    // A scene has desk and objects, with steps that no stationary kernel follows. Its taps look smoother than the rest
+    // of the surface. So with few taps the likelihood alone favours too long length scales and too small signals, with
+    // too small uncertainty. Results with and without priors are in framework/docs/runs.md.
     const auto log_normal = [](double median, double spread, double factor) {
       return Expectation{math::log(median), spread, math::log(median / factor), math::log(median * factor)};
     };
@@ -277,8 +279,8 @@ class Ceres final : public Fitting {
     for (const KernelParameter& one : model.kernel.parameters()) {
       out.push_back(one.unit == Unit::metre ? log_normal(side_ / 12.0, 0.4, 1e4) : log_normal(1.0, 1.0, 1e3));
     }
-    // Squares of noise and signal: spreads twice those of the standard deviations.
-    const double noise = model.mean_ratio > 0.0 ? 0.05 : 0.3;  // an open level has no desk, and so no step
+    // Squares of noise and signal have twice the spread of the standard deviations.
+    const double noise = model.mean_ratio > 0.0 ? 0.05 : 0.3;  // with an unknown level there is no desk, so no step
     out.push_back(log_normal(noise * noise, 0.8, 1e8));
     for (Eigen::Index i = 0; i < model.outputs(); ++i) out.push_back(log_normal(1.0, 0.6, 1e8));
     for (Eigen::Index i = 0; model.fit_means && i < model.outputs(); ++i) out.push_back({0.0, 1.0, -1e3, 1e3});
@@ -289,8 +291,8 @@ class Ceres final : public Fitting {
     return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
   }
 
-  /// The optima that the ascents found, the best first. `objective` is that of `model`; `evaluations` counts those of
-  /// its parts.
+  /// Returns the optima of all ascents, the best first. `objective` belongs to `model`. Evaluations of objectives for a
+  /// part of the points are added to `evaluations`.
   std::vector<Spot> search(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
                            const Eigen::VectorXd& now, Random& random, int& evaluations) const {
     std::vector<Spot> spots;
@@ -301,7 +303,7 @@ class Ceres final : public Fitting {
         spots.push_back(ascend(objective, start, metric_at(objective, start), kFine));
       }
     } else {
-      // A part of the points finds the region and its curvature; all of them decide between the optima of the part.
+      // A part of the points determines region and curvature; all points decide between the optima of the part.
       const Model part = part_of(model, kPart / 2);
       Objective rough = objective_of(part, expected);
       spots = search(part, rough, expected, now, random, evaluations);
@@ -315,7 +317,7 @@ class Ceres final : public Fitting {
   }
 
   Options options_;
-  double side_;  ///< of the area, the longer one, metres
+  double side_;  ///< longer side of the area, metres
 };
 
 PALPATE_PLUGIN(Fitting, Ceres, "ceres",

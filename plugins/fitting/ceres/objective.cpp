@@ -13,16 +13,16 @@ namespace palpate::fitting {
 namespace {
 
 constexpr double kLogTwoPi = 1.83787706640934548356;
-/// Steepness of the walls: e-folds beyond a limit, squared, each cost this much per point.
+/// Steepness of the smooth limits: the squared distance beyond a limit, in e-folds, costs this much per point.
 constexpr double kWall = 1.0;
-/// Deviations of targets below this share of their size are rounding.
+/// Relative deviation of targets below which they count as equal.
 constexpr double kRounding = 1e-9;
 
 Eigen::VectorXd exponentials(const double* logs, Eigen::Index count) {
   return Eigen::Map<const Eigen::VectorXd>(logs, count).unaryExpr([](double x) { return math::exp(x); });
 }
 
-/// Of two rows of lines.
+/// Returns the dot product of two rows of lines.
 double product(const double* a, const double* b, Eigen::Index lines) {
   using Numbers = Eigen::Map<const Eigen::VectorXd, Eigen::AlignedMax>;
   return Numbers(a, 8 * lines).dot(Numbers(b, 8 * lines));
@@ -152,7 +152,7 @@ double Objective::profiled(const Eigen::VectorXd& kernel_logs, double log_noise,
   fill(false);
   if (!decompose(math::exp(log_noise))) return -std::numeric_limits<double>::infinity();
   solve(model_.targets.rowwise() - model_.means.transpose());
-  // In the likelihood of an output only -(square / signal^2 + n log signal^2) / 2 depends on the signal.
+  // The part of an output's likelihood that depends on the signal is -(square / signal^2 + n log signal^2) / 2.
   log_signals = (squares_ / n).unaryExpr(&math::log);
   const Eigen::Index m = model_.outputs();
   squares_.setConstant(n);
@@ -182,8 +182,8 @@ void Objective::fill(bool slopes) {
 bool Objective::decompose(double noise) {
   noise_ = noise;
   const Eigen::Index n = model_.size();
-  // The smooth lower limit of the noise: the first jitter of RegularFactor, but always, for an objective without steps.
-  // Too small to enter the gradient. What is not regular with it is rejected, and the search turns back.
+  // Smooth lower limit of the noise: the first jitter of RegularFactor, always added to avoid steps in the objective.
+  // It is too small to affect the gradient. Matrices that remain singular are rejected, and the search turns back.
   const double floor = kFirstJitter * static_cast<double>(n) * kEpsilon * matrix_(0, 0);
   for (Eigen::Index i = 0; i < n; ++i) own_(i) = matrix_(i, i) += noise + floor;
   if (!factorise(matrix_, reciprocals_)) return false;
@@ -203,7 +203,7 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
   for (Eigen::Index i = 0; i < targets.cols(); ++i) solve_lower(matrix_, solved_.col(i));
   squares_ = solved_.colwise().squaredNorm();
   if (!(model_.mean_ratio > 0.0)) return;
-  // K + r^2 1 1^T by the formulas of Sherman, Morrison and Woodbury.
+  // Inverse of K + r^2 1 1^T by the formulas of Sherman, Morrison and Woodbury.
   ones_ = Eigen::VectorXd::Zero(solved_.rows());
   ones_.head(n).setOnes();
   solve_lower(matrix_, ones_);
@@ -218,7 +218,7 @@ void Objective::solve(const Eigen::MatrixXd& targets) {
   }
 }
 
-/// L -> K^-1, and what L^-1 was applied to gets the other half.
+/// Replaces L by K^-1, and applies L^-T to the vectors to which L^-1 was applied.
 void Objective::invert() {
   invert_transposed(matrix_, reciprocals_, upper_);
   for (Eigen::Index i = 0; i < solved_.cols(); ++i) multiply_upper(upper_, solved_.col(i));
@@ -267,7 +267,7 @@ double Objective::leave_one_out(double* gradient) {
   Eigen::ArrayXd weight = Eigen::ArrayXd::Zero(n);
   Eigen::MatrixXd adjoint = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const Eigen::ArrayXd ratio = solved_.col(i).head(n).array() / own;  // target - prediction
+    const Eigen::ArrayXd ratio = solved_.col(i).head(n).array() / own;  // target minus prediction
     const double squares = (solved_.col(i).head(n).array() * ratio).sum();
     sum -= 0.5 * squares;
     if (gradient == nullptr) continue;
@@ -294,7 +294,7 @@ void Objective::contract(double* gradient) const {
     const double* const adjoint = matrix_.at(s, 0)->numbers;
     for (Eigen::Index p = 0; p < parameters_; ++p) {
       const double* const slopes = slopes_[static_cast<std::size_t>(slopes_of(s) + p * columns(s))].numbers;
-      // A tile of the diagonal holds both of its halves; those left of it stand for those right of it, too.
+      // A diagonal tile is complete; tiles left of it also represent the symmetric tiles on the right.
       gradient[p] +=
           2.0 * product(adjoint, slopes, 8 * s) + product(adjoint + 64 * s, slopes + 64 * s, columns(s) - 8 * s);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a config says of a fit.
+// Options of the fitting `ceres`.
 #pragma once
 
 #include "objective.hpp"

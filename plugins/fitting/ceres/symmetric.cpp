@@ -15,11 +15,11 @@ namespace {
 using Eigen::Index;
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 
-/// Columns that are taken into the rest of a matrix together, in strips: so much of a few strips stays in the first
-/// cache.
+/// Number of strips in a panel. Eight columns of a few strips fit into the first-level cache.
 constexpr Index kPanel = 8;
 
-// Registers of rows, and columns, whose products are summed together: packs x columns sums fill the register file.
+// Registers of rows, and columns, whose products are summed together. The kPacks * kColumns sums fill the register
+// file.
 #if HWY_TARGET == HWY_AVX3
 constexpr Index kPacks = 3;
 constexpr Index kColumns = 8;
@@ -31,11 +31,11 @@ constexpr Index kPacks = 2;
 constexpr Index kColumns = 4;
 #endif
 
-/// Registers in a line, and strips whose tiles are multiplied together.
+/// Registers per line, and number of strips whose tiles are multiplied together.
 constexpr Index kPacksOfLine = 8 / kLanes;
 constexpr Index kTogether = kPacks > kPacksOfLine ? kPacks / kPacksOfLine : 1;
 
-/// out_p += or -= a_p b^T for some registers of rows: `a` and `b` have `depth` columns, `out` eight.
+/// Computes out_p += or -= a_p b^T for kCount registers of rows. `a` and `b` have `depth` columns, `out` has eight.
 template <Index kCount, bool kPlus>
 HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, double* const* out) {
   for (Index first = 0; first < 8; first += kColumns) {
@@ -63,7 +63,8 @@ HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, d
   }
 }
 
-/// Columns [from, to) of A and B: the tiles (s, j) of C, for strips s in [first, last), += or -= A_s B_j^T.
+/// Computes the tiles (s, j) of C for strips s in [first, last): += or -= A_s B_j^T, over the columns [from, to) of A
+/// and B.
 template <bool kPlus>
 HWY_INLINE void update(Strips& c, const Strips& a, const Strips& b, Index first, Index last, Index j, Index from,
                        Index to) {
@@ -82,11 +83,12 @@ HWY_INLINE void update(Strips& c, const Strips& a, const Strips& b, Index first,
   for (Index p = 0; p < packs; ++p) multiply<1, kPlus>(in + p, b.at(j, from)->numbers, to - from, out + p);
 }
 
-/// The triangle L of a tile from its square, and the reciprocals of its diagonal. False where it has none.
+/// Factorises a tile into its triangle L and computes the reciprocals of the diagonal. Returns false if it is not
+/// positive definite.
 HWY_INLINE bool factorise_tile(double* tile, double* reciprocals) {
   for (Index c = 0; c < 8; ++c) {
     double* const own = tile + 8 * c;
-    // What is above the diagonal goes along, for nothing.
+    // Rows above the diagonal are computed, too, at no cost.
     for (Index d = 0; d < c; ++d) {
       const Vector share = all(tile[8 * d + c]);
 #pragma GCC unroll 8
@@ -103,7 +105,7 @@ HWY_INLINE bool factorise_tile(double* tile, double* reciprocals) {
   return true;
 }
 
-/// X -> X L^-T for the tile X of strip `s` and the triangle L of a tile.
+/// Computes X L^-T in place, for a tile X and the triangle L of a diagonal tile.
 HWY_INLINE void solve_tile(double* x, const double* lower, const double* reciprocals) {
 #pragma GCC unroll 8
   for (Index row = 0; row < 8; row += kLanes) {
@@ -121,8 +123,8 @@ HWY_INLINE void solve_tile(double* x, const double* lower, const double* recipro
   }
 }
 
-// Panel by panel: what earlier panels have taken from a column is done when its panel comes, so that within a panel
-// each column of tiles waits only for those before it in the panel.
+// The factorisation proceeds by panels. Contributions of earlier panels are complete when a panel starts. So within a
+// panel each column of tiles depends only on columns of the same panel.
 bool factorise(Strips& matrix, double* reciprocals) {
   const Index strips = matrix.strips();
   for (Index panel = 0; panel < strips; panel += kPanel) {
@@ -143,7 +145,7 @@ bool factorise(Strips& matrix, double* reciprocals) {
   return true;
 }
 
-// L^-T is what becomes of the identity where rows below K go through its factorisation.
+// L^-T results from applying the factorisation of K to rows of the identity below K.
 void invert_transposed(const Strips& factor, const double* reciprocals, Strips& out) {
   const Index strips = factor.strips();
   for (Index panel = 0; panel < strips; panel += kPanel) {
@@ -167,18 +169,18 @@ void square_upper(const Strips& upper, Strips& out) {
     const Index end = std::min(panel + kPanel, strips);
     for (Index s = 0; s < end; s += kTogether) {
       const Index last = std::min(s + kTogether, end);
-      const Index from = panel > s ? panel : s;  // what is left of it is 0
+      const Index from = panel > s ? panel : s;  // columns further left are 0
       for (Index j = 0; j < last; ++j) update<true>(out, upper, upper, j > s ? j : s, last, j, 8 * from, 8 * end);
     }
   }
 }
 
-/// `out`, a line, += columns [from, to) of strip `s` times b[from], ...
+/// Adds columns [from, to) of strip `s` times b[from], ... to the line `out`.
 void times(const Strips& matrix, Index s, Index from, Index to, const double* b, double* out) {
   for (Index p = 0; p < kPacksOfLine; ++p) {
     const auto column = [&](Index k) { return at(matrix.at(s, k)->numbers + p * kLanes); };
     Vector sum = at(out + p * kLanes);
-    Vector odd = hn::Zero(kReals);  // two sums, as each waits for the number before
+    Vector odd = hn::Zero(kReals);  // two sums halve the wait for additions
     Index k = from;
     for (; k + 1 < to; k += 2) {
       sum = hn::MulAdd(all(b[k]), column(k), sum);

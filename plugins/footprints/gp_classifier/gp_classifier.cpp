@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Gaussian process classification of the labels: a probability that stays in [0, 1] and falls back to the prior where
-// nothing was touched.
+// Gaussian process classification of the labels. The probability is always in [0, 1] and equals the prior far from all
+// taps.
 #include "laplace.hpp"
 
 namespace palpate::footprints {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Gaussian process classification with a probit likelihood by Laplace's approximation (Rasmussen and Williams 2006,
-// sections 3.4 and 3.9): a latent function f ~ GP(mean, signal^2 k), and p(on | x) = Phi(f(x)).
+// sections 3.4 and 3.9). The model is a latent function f ~ GP(mean, signal^2 k) with p(on | x) = Phi(f(x)).
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -15,16 +15,16 @@
 
 namespace palpate::footprints {
 
-/// log Phi(z), and its first two derivatives: r = phi(z) / Phi(z) and -w = -r (z + r). Finite for all finite z; w lies
-/// in (0, 1).
+/// log Phi(z) and its derivatives: `slope` = phi(z) / Phi(z), and -`weight` = -slope (z + slope). Finite for all finite
+/// z; `weight` is in (0, 1).
 struct Probit {
   double log = 0.0;
   double slope = 0.0;
-  double weight = 0.0;  ///< minus the second derivative
+  double weight = 0.0;  ///< negative second derivative
 };
 Probit probit(double z);
 
-/// Phi(z), the standard normal distribution.
+/// Returns Phi(z), the standard normal distribution function.
 double normal_cdf(double z);
 
 struct LaplaceOptions : Options {
@@ -42,25 +42,26 @@ struct LaplaceOptions : Options {
   }
 };
 
+/// Prior of the latent function f.
 struct LaplaceSettings {
   double signal = 1.0;  ///< prior standard deviation of f, > 0
   double mean = 0.0;    ///< prior mean of f
 };
 
-/// The posterior after n labels. The mode is found by damped Newton steps: the log posterior is concave, so there is
-/// one, and contradictory labels at one place do no harm, as only I + W^1/2 K W^1/2 is ever factorised.
+/// Posterior given n labels. Damped Newton steps find the mode, which is unique because the log posterior is concave.
+/// Contradictory labels at one position do no harm, because only I + W^1/2 K W^1/2 is factorised.
 class Laplace {
  public:
-  /// `kernel` must outlive it. `points` n x 2, `on` n.
+  /// `kernel` must outlive the object. `points` is n x 2, `on` has n entries.
   Laplace(const Kernel& kernel, const LaplaceSettings& settings, const PointsView& points, const std::vector<bool>& on);
 
-  /// p(on) at each of `places`: Phi(mean / sqrt(1 + variance)) of f there.
+  /// Computes p(on) at each position: Phi(mean / sqrt(1 + variance)) with mean and variance of f there.
   void probability(const PointsView& places, VectorOut out) const;
 
-  /// Approximate log p(labels), natural logarithm.
+  /// Returns the approximate log p(labels), natural logarithm.
   double log_evidence() const { return log_evidence_; }
-  /// What rounding made necessary in the factorisation at the mode; no unit. Only a kernel that is not positive
-  /// definite needs any, as no eigenvalue of what is factorised is below 1.
+  /// Returns the corrections of rounding errors in the factorisation at the mode, without unit. Only a kernel that is
+  /// not positive definite needs any, because all eigenvalues of the factorised matrix are at least 1.
   const FactorReport& report() const { return factor_.report(); }
 
  private:
@@ -70,14 +71,14 @@ class Laplace {
   const Kernel& kernel_;
   LaplaceSettings settings_;
   Points points_;
-  Eigen::VectorXd sign_;         ///< +1 on an object, -1 off
-  Eigen::VectorXd gradient_;     ///< of the log likelihood at the mode
+  Eigen::VectorXd sign_;         ///< +1 on an object, -1 on the desk
+  Eigen::VectorXd gradient_;     ///< gradient of the log likelihood at the mode
   Eigen::VectorXd root_weight_;  ///< W^1/2 at the mode
-  RegularFactor factor_;         ///< of I + W^1/2 K W^1/2
+  RegularFactor factor_;         ///< factor of I + W^1/2 K W^1/2
   double log_evidence_ = 0.0;
 };
 
-/// The footprint of all touches so far.
+/// The footprint `gp_classifier`, also used by `primitives`.
 class Classifier final : public Footprint {
  public:
   using Options = LaplaceOptions;
@@ -112,7 +113,7 @@ class Classifier final : public Footprint {
   LaplaceSettings settings_;
   Points points_{0, 2};
   std::vector<bool> on_;
-  std::optional<Laplace> posterior_;  ///< of all touches; none between one and the next question
+  std::optional<Laplace> posterior_;  ///< posterior of all taps; reset by a new tap
 };
 
 }  // namespace palpate::footprints

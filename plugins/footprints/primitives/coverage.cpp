@@ -13,16 +13,17 @@
 #define PALPATE_ROW_CUT
 namespace palpate::footprints {
 
-/// The cut of a form by the rows of a grid, in columns and rows. In each row the form is the intersection of one or two
-/// intervals: middle `x + slope * dy`, half width `half`; for an ellipse times sqrt(1 - (dy / reach)^2).
+/// Intersection of a form with the rows of a grid, in units of columns and rows. In each row it is the intersection of
+/// one or two intervals with middle `x + slope * dy` and half width `half`. For an ellipse the half width is multiplied
+/// by sqrt(1 - (dy / reach)^2).
 struct RowCut {
   bool box = true;
-  double x = 0.0, y = 0.0;  ///< of the centre
-  double reach = 0.0;       ///< along y
+  double x = 0.0, y = 0.0;  ///< centre
+  double reach = 0.0;       ///< extent along y
   double slope[2] = {0.0, 0.0}, half[2] = {0.0, 0.0};
 };
 
-/// A form in single precision.
+/// Copy of a form in single precision.
 struct SingleForm {
   explicit SingleForm(const Form& form)
       : box(form.family == Form::Family::box),
@@ -53,7 +54,7 @@ using Doubles = hn::Vec<decltype(kDoubles)>;
 HWY_INLINE Singles all(float value) { return hn::Set(kSingles, value); }
 HWY_INLINE Singles square(Singles x) { return hn::Mul(x, x); }
 
-/// As Form::depth().
+/// See Form::depth().
 HWY_INLINE Singles depth(const SingleForm& form, Singles x, Singles y) {
   const float a = form.a;
   const float b = form.b;
@@ -78,7 +79,7 @@ HWY_INLINE Singles depth(const SingleForm& form, Singles x, Singles y) {
   return hn::IfThenElse(hn::Gt(slope, hn::Zero(kSingles)), hn::Min(to_rim, to_circle), all(b));
 }
 
-/// As LabelModel::step() of the depths of some positions in a primitive.
+/// See LabelModel::step(), for the depths of `count` positions in a primitive.
 void steps(const Primitive& primitive, float per_metre, const float* x, const float* y, int count,
            LabelModel::Step* out) {
   const hn::RebindToSigned<decltype(kSingles)> numbers;
@@ -97,7 +98,8 @@ void steps(const Primitive& primitive, float per_metre, const float* x, const fl
   }
 }
 
-/// The columns of `columns` that a cut has in each of `count` rows from `first` on: begins, and first column beyond.
+/// Computes the columns of a cut in `count` rows, starting at row `first`: first column, and first column after the
+/// cut. `columns` is the number of columns.
 void cut_rows(const RowCut& cut, int first, int count, int columns, std::int32_t* begins, std::int32_t* ends) {
   const hn::Rebind<std::int32_t, decltype(kDoubles)> numbers;
   const auto all = [](double value) { return hn::Set(kDoubles, value); };
@@ -105,7 +107,7 @@ void cut_rows(const RowCut& cut, int first, int count, int columns, std::int32_t
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(kDoubles))) {
     const Doubles dy = hn::Sub(hn::Iota(kDoubles, first + i), all(cut.y));
     const Doubles middle = hn::Add(all(cut.x), hn::Mul(all(cut.slope[0]), dy));
-    Doubles low, high, inside;  // `inside` is negative in rows that the form does not reach
+    Doubles low, high, inside;  // `inside` is negative in rows outside the form
     if (cut.box) {
       const Doubles other = hn::Add(all(cut.x), hn::Mul(all(cut.slope[1]), dy));
       low = hn::Max(hn::Sub(middle, all(cut.half[0])), hn::Sub(other, all(cut.half[1])));
@@ -125,7 +127,7 @@ void cut_rows(const RowCut& cut, int first, int count, int columns, std::int32_t
   }
 }
 
-/// As Form::reach().
+/// See Form::reach().
 HWY_INLINE Singles reach(bool box, Singles along, Singles across) {
   return box ? hn::Add(hn::Abs(along), hn::Abs(across)) : hn::Sqrt(hn::Add(square(along), square(across)));
 }
@@ -152,7 +154,7 @@ void count_overlaps(const Hypothesis& hypothesis, const FormTable& table, float*
       const Singles other_v = hn::Sub(hn::Mul(cosine, dy), hn::Mul(sine, dx));
       const Singles c = hn::Add(hn::Mul(one_c, cosine), hn::Mul(one_s, sine));
       const Singles s = hn::Sub(hn::Mul(one_c, sine), hn::Mul(one_s, cosine));
-      // The gap between the two along each axis, as in overlap(); there is none if no gap is positive.
+      // Gap between both forms along each axis, as in overlap(). They overlap if no gap is positive.
       const Singles distance = hn::Add(square(dx), square(dy));
       Singles gap = hn::Sub(hn::Sub(distance, reach(one.box, hn::Mul(one_a, u), hn::Mul(one_b, v))),
                             reach(ellipse, hn::Mul(a, other_u), hn::Mul(b, other_v)));
@@ -193,7 +195,7 @@ RowCut cut_of(const Form& form, double x0, double step_x, double y0, double step
     set(0, form.cosine * form.sine * (form.a * form.a - form.b * form.b) / (reach * reach), form.a * form.b / reach);
     return out;
   }
-  // Sides along x limit the rows, not the columns.
+  // Sides parallel to x limit only the rows.
   const auto sides = [&](int interval, double along, double across, double side) {
     const bool along_x = std::abs(along) < 1e-12;
     set(interval, along_x ? 0.0 : -across / along,
@@ -204,7 +206,7 @@ RowCut cut_of(const Form& form, double x0, double step_x, double y0, double step
   return out;
 }
 
-/// Whether `test(i)`, 0 or 1, is 1 for any object tap.
+/// Returns whether `test(i)`, 0 or 1, is 1 for any object tap.
 template <class Test>
 bool any_object(const Taps& taps, const Test& test) {
   static_assert(LabelModel::kInside % 2 == 1);
@@ -288,7 +290,7 @@ Grid::Grid(const PointsView& positions) : positions_(positions), x_(0.0, 0.0, 1)
 }
 
 bool Grid::has_equal_steps() const {
-  constexpr double kLeast = 1e-6;  // metres: smaller steps are all but rounding
+  constexpr double kLeast = 1e-6;  // metres: smaller steps may be rounding errors
   if (x_.step < kLeast || y_.step < kLeast) return false;
   for (int i = 0; i < size(); ++i) {
     if (!(std::abs(positions_(i, 0) - x_.at(i % x_.count)) <= kLeast * x_.step)) return false;
@@ -315,7 +317,7 @@ void Grid::add_spans(const Primitive& primitive, Spans& out) const {
   const auto row_at = [this](double y) { return static_cast<int>(std::min(std::max(y, 0.0), 1.0 * y_.count)); };
   const int begin = row_at(form.y - form.reach);
   const int last = row_at(form.y + form.reach + 1.0);
-  // Room for all spans. Each is written, and the next one takes its place if it is empty.
+  // Space for all spans. An empty span is overwritten by the next one.
   std::size_t count = out.size();
   out.resize(count + static_cast<std::size_t>(primitive.hollow ? 2 * (last - begin) : last - begin));
   const auto add = [&](int from, int to) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which taps and candidates a primitive covers, and which other primitives it overlaps. All loops that need wide
-// vectors are in coverage.cpp. They compute in single precision or in doubles without fused operations, so that every
-// instruction set gives the same bytes.
+// Coverage of taps and candidates by primitives, and overlap of primitives. All vectorised loops are in coverage.cpp.
+// They use single precision, or doubles without fused operations, so that every instruction set gives the same bytes.
 #pragma once
 
 #include "hypothesis.hpp"
@@ -15,24 +14,24 @@
 
 namespace palpate::footprints {
 
-/// Positions and labels of all taps. Rows with an entry per tap have length(), a multiple of kRound; entries after the
-/// last tap belong to no tap, and are outside of every primitive.
+/// Positions and labels of all taps. Rows with one entry per tap have length() entries, a multiple of kRound. Entries
+/// after the last tap are padding, outside every primitive.
 class Taps {
  public:
   static constexpr int kRound = 16;
   using Step = LabelModel::Step;
 
   void add(const Touch& touch);
-  /// Sets these taps to `made` as they are seen after a push.
+  /// Sets these taps to the positions of `made` after a push.
   void set_after_push(const Taps& made, const Push& push);
 
   int size() const { return size_; }
   int length() const { return static_cast<int>(x_.size()); }
   Target operator[](int tap) const { return {x_[static_cast<std::size_t>(tap)], y_[static_cast<std::size_t>(tap)]}; }
   bool on(int tap) const { return labels_[static_cast<std::size_t>(tap)] != LabelModel::kOutside; }
-  /// LabelModel::kInside for each tap with the label of an object, otherwise LabelModel::kOutside.
+  /// Returns LabelModel::kInside for each tap with the label of an object, otherwise LabelModel::kOutside.
   const Step* labels() const { return labels_.data(); }
-  /// Number of taps with the label of an object.
+  /// Returns the number of taps with the label of an object.
   int objects() const { return objects_; }
 
   /// Sets a row of length() entries to the step of the depth of each tap in a primitive.
@@ -48,15 +47,15 @@ class Taps {
 /// Pointers to rows of steps, in the order of the primitives of a hypothesis.
 using RowList = ShortList<const LabelModel::Step*>;
 
-/// A row of steps for each primitive of a hypothesis: all that is kept about taps.
+/// Rows of steps per primitive of a hypothesis. No other data about taps are kept per particle.
 class TapRows {
  public:
   using Step = LabelModel::Step;
 
   int length() const { return length_; }
-  /// Makes all rows longer; the new entries are outside.
+  /// Lengthens all rows; new entries are outside.
   void grow(int length);
-  /// Copies rows. Those that are rows of this object keep their order, or replace an earlier one.
+  /// Copies rows. Rows of this object must keep their order or replace an earlier row.
   void set(const RowList& rows);
   Step* row(int primitive) { return steps_.data() + static_cast<std::ptrdiff_t>(primitive) * length_; }
   const Step* row(int primitive) const { return steps_.data() + static_cast<std::ptrdiff_t>(primitive) * length_; }
@@ -66,15 +65,14 @@ class TapRows {
   std::vector<Step> steps_;
 };
 
-/// Sets `out` to the step of each tap in the union of the rows: the largest one.
+/// Sets `out` to the largest step of each tap over all rows: the step in the union of the primitives.
 void find_deepest(const RowList& rows, int length, LabelModel::Step* out);
-/// Return whether a row has an object tap inside, whether two rows have one in common, and whether they have different
-/// ones.
+/// Return whether a row has an object tap inside, whether two rows share one, and whether they contain different ones.
 bool holds_object(const LabelModel::Step* row, const Taps& taps);
 bool share_object(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
 bool hold_different_objects(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
 
-/// The candidates, or any other positions: M x 2 metres.
+/// Candidates or other positions, M x 2 metres.
 class Grid {
  public:
   explicit Grid(const PointsView& positions);
@@ -82,19 +80,19 @@ class Grid {
   int size() const { return static_cast<int>(positions_.rows()); }
   bool matches(const PointsView& positions) const;
 
-  /// Consecutive positions, from `begin` on and before `end`.
+  /// Consecutive positions [begin, end).
   struct Span {
     int begin, end;
   };
   using Spans = std::vector<Span>;
-  /// Appends the positions that a primitive covers, in order, each once. This is quick if the positions are rows in
-  /// equal steps, and a test of each position otherwise.
+  /// Appends the positions that a primitive covers, in order. Rows of equally spaced positions are fast; other
+  /// positions are tested one by one.
   void add_spans(const Primitive& primitive, Spans& out) const;
-  /// Appends the positions that any of the primitives covers.
+  /// Appends the positions that at least one of the primitives covers.
   void add_spans(const ShortList<Primitive>& primitives, Spans& out) const;
 
  private:
-  /// Positions along an axis, in equal steps.
+  /// Equally spaced positions along an axis.
   struct Axis {
     Axis(double from, double to, int places)
         : first(from), step(places > 1 ? (to - from) / (places - 1) : 1.0), count(places) {}
@@ -102,7 +100,7 @@ class Grid {
     double first, step;
     int count;
   };
-  /// Whether the positions are those of the two axes, row by row.
+  /// Returns whether the positions are the product of both axes, row by row.
   bool has_equal_steps() const;
 
   Points positions_;
@@ -110,7 +108,7 @@ class Grid {
   bool regular_;
 };
 
-/// Whole numbers at the positions of a grid, kept as differences from one position to the next.
+/// Integers at the positions of a grid, stored as differences between consecutive positions.
 class GridSums {
  public:
   explicit GridSums(int size) : steps_(static_cast<std::size_t>(size) + 1, 0) {}
@@ -121,23 +119,23 @@ class GridSums {
       steps_[static_cast<std::size_t>(span.end)] -= value;
     }
   }
-  /// The sum at each position, times a factor.
+  /// Returns the value at each position, times `factor`.
   Eigen::VectorXd values(double factor) const;
 
  private:
   std::vector<std::int64_t> steps_;
 };
 
-/// Forms as the wide loop compares them, coordinate by coordinate.
+/// Coordinates of forms as separate arrays, for the vectorised comparison.
 struct FormTable {
   static constexpr std::size_t kRound = 16;
 
-  /// Replaces the forms; after the last one come points at the origin, up to a multiple of kRound.
+  /// Replaces the forms and pads the arrays with points at the origin to a multiple of kRound.
   void set(const std::vector<const Form*>& forms);
   std::vector<float> x, y, a, b, cosine, sine, ellipse;  ///< `ellipse`: 1 for an ellipse, 0 for a box
 };
-/// Adds 1 to `count` of each form of the table that overlaps a primitive of the hypothesis, by overlap() up to
-/// rounding. `count` has as many entries as the table.
+/// Adds 1 to `count` for each form of the table that overlaps a primitive of the hypothesis, as overlap() up to
+/// rounding. `count` has one entry per form.
 void count_overlaps(const Hypothesis& hypothesis, const FormTable& table, float* count);
 
 }  // namespace palpate::footprints

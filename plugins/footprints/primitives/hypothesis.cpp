@@ -6,17 +6,17 @@
 namespace palpate::footprints {
 namespace {
 
-// Shares of a form's axes that a fitted hole takes.
+// Range of a fitted hole's fraction of the form's axes.
 constexpr double kLeastShare = 0.1;
 constexpr double kMostShare = 0.9;
 
-/// Half axes of nearly round ellipses: the short one from `shortest` on over a range of logarithms.
+/// Half axes of nearly round ellipses. The short one starts at `shortest`; `range` is its range of logarithms.
 class NearlyRound {
  public:
   NearlyRound(double shortest, double range)
       : shortest_(shortest), range_(range), most_(std::min(kMostLog, 0.5 * range)) {}
 
-  /// `apart` and `size` in [0, 1]; uniform values give uniform logarithms.
+  /// `apart` and `size` are in [0, 1]; uniform values give uniform logarithms.
   void set(Form& form, double apart, double size) const {
     const double by = most_ * apart;
     form.b = shortest_ * math::exp((range_ - by) * size);
@@ -74,13 +74,13 @@ void Form::order_axes() {
 bool overlap(const Form& one, const Form& other) {
   const double dx = other.x - one.x;
   const double dy = other.y - one.y;
-  // The circles about the forms, and the circles inside, decide most cases.
+  // Circumscribed and inscribed circles decide most cases.
   const double square = dx * dx + dy * dy;
   const double inner = one.b + other.b;
   if (square <= inner * inner) return true;
   const double outer = one.a + other.a;
   if (square > 2.0 * outer * outer) return false;
-  // The line between the centres, along the axes of each, and the axes of one along those of the other.
+  // Separating axes: the line between the centres, and the axes of both forms.
   const double u = one.cosine * dx + one.sine * dy;
   const double v = one.cosine * dy - one.sine * dx;
   const double other_u = other.cosine * dx + other.sine * dy;
@@ -102,7 +102,7 @@ void Primitive::fit_hole() {
     hole.b *= along;
     return;
   }
-  // Centred at the corner: nothing of the form is left beyond the sides, even for noisy taps.
+  // The hole's centre is the corner, so the form has no remainder beyond the hole, even for noisy taps.
   const double u = side_a * form.a;
   const double v = side_b * form.b;
   hole.x += form.cosine * u - form.sine * v;
@@ -148,7 +148,7 @@ Prior::Prior(const Settings& settings)
       // A form longer than the diagonal never fits.
       longest_(0.5 * std::min(settings.max_length, math::hypot(settings.area.width, settings.area.depth))),
       range_(math::log(longest_ / (0.5 * settings.min_width))) {
-  constexpr double kRoom = 1.01;  // with less, hardly any draw fits
+  constexpr double kRoom = 1.01;  // with a smaller ratio hardly any draw fits
   if (std::min(settings.area.width, settings.area.depth) < kRoom * settings.min_width) {
     throw Error("footprint", "hardly any primitive of this prior fits into the area",
                 "make min_width smaller or the area larger");
@@ -267,7 +267,7 @@ double Prior::fitted_hole(const Primitive& primitive) const {
   const bool box = primitive.form.family == Form::Family::box;
   if (!possible(primitive.along)) return 0.0;
   if (primitive.fit == Primitive::Fit::concentric) return (box ? 0.5 : 1.0) * kUniform;
-  // One of four corners.
+  // Probability of one of four corners.
   return box && possible(primitive.across) ? 0.5 * 0.25 * kUniform * kUniform : 0.0;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Bayesian inference of hypotheses, each a set of primitives: the probability of a position is the share of hypotheses
-// that cover it. If the taps contradict all hypotheses, gp_classifier replaces the inference.
+// Bayesian inference of hypotheses, each a set of primitives. The probability of a position is the fraction of
+// hypotheses that cover it. If the taps contradict all hypotheses, gp_classifier replaces the inference.
 //
 // Reading order: hypothesis.hpp (state and prior), tap_model.hpp (likelihood of labels and heights), undiscovered.hpp
-// (primitives that no object tap has touched), proposals.hpp (moves and their ratios), sampler.hpp (particles, weights,
-// Markov chain). coverage.hpp has what all of them compute with: rows of taps, spans of candidates, wide loops.
+// (primitives without an object tap), proposals.hpp (moves and their ratios), sampler.hpp (particles, weights, Markov
+// chain). coverage.hpp has the shared computations: rows of taps, spans of candidates, vectorised loops.
 #include "../gp_classifier/laplace.hpp"
 #include "sampler.hpp"
 
@@ -127,7 +127,7 @@ class Primitives final : public Footprint {
     return sampler_.undiscovered_probability(kMinLength);
   }
 
-  /// After gp_classifier has replaced the primitives, the numbers stay those of that contact.
+  /// After gp_classifier has replaced the primitives, the numbers keep their values of that contact.
   std::vector<FootprintNumber> numbers() const override {
     std::vector<FootprintNumber> out{{"label_errors", sampler_.mean_label_errors()},
                                      {"primitives", sampler_.mean_primitives()},
@@ -171,10 +171,10 @@ class Primitives final : public Footprint {
 
   Options options_;
   Classifier classifier_;
-  mutable Sampler sampler_;  ///< queries keep what the next one about the same positions needs
+  mutable Sampler sampler_;  ///< mutable, because queries cache values for the same positions
   int taps_ = 0;
   double expected_label_errors_ = 0.0;
-  int replaced_at_ = 0;  ///< number of taps; 0: not yet
+  int replaced_at_ = 0;  ///< number of the tap at which gp_classifier took over; 0: not yet
 };
 
 PALPATE_PLUGIN(Footprint, Primitives, "primitives",

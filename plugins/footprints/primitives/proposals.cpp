@@ -9,21 +9,21 @@
 namespace palpate::footprints {
 namespace {
 
-// Largest steps.
+// Largest steps of the moves.
 constexpr double kShift = 0.05;    // metres
 constexpr double kTurn = 0.6;      // tangent of half of the angle
 constexpr double kStretch = 0.3;   // see stretched()
-constexpr double kHoleStep = 0.2;  // of a form's axes, for a fitted hole
+constexpr double kHoleStep = 0.2;  // fraction of a form's axes, for a fitted hole
 
-// How much more often a primitive near the latest tap is changed than another one.
+// Relative frequency of changes to a primitive near the latest tap.
 constexpr double kNearWeight = 30.0;
 
-// Standard deviations of a push along x and y, metres, and of its turn, radians.
+// Standard deviations of a push along x and y, metres, and of its rotation, radians.
 constexpr double kPushShift = 0.012;
 constexpr double kPushTurn = 0.1;
 
-/// The steps of one move, symmetric about 0, from one draw of 64 bits. Their scale is drawn, too, from 1 down to a
-/// twentieth with uniform logarithms, because posteriors are wide or narrow.
+/// Steps of one move, symmetric about 0, from one draw of 64 bits. Their random scale is between 1/20 and 1 with
+/// uniform logarithms, because posteriors may be wide or narrow.
 struct Steps {
   explicit Steps(Random& random) {
     constexpr int kScales = 16;
@@ -48,7 +48,7 @@ struct Steps {
   bool coin, other_coin;
 };
 
-/// A primitive chosen at random, those near the latest tap more often.
+/// Random choice of a primitive, weighted towards those near the latest tap.
 class Choice {
  public:
   Choice(const ShortList<Primitive>& primitives, const Target& latest, Random& random) : latest_(latest) {
@@ -63,7 +63,7 @@ class Choice {
   }
 
   int index() const { return index_; }
-  /// The probability of the choice if the chosen primitive has become another one, over its probability now.
+  /// Returns the probability of this choice after the chosen primitive becomes `changed`, divided by the present one.
   double ratio(const Primitive& changed) const {
     if (!(sum_ > 0.0)) return 1.0;
     const double after = weight(changed);
@@ -75,7 +75,7 @@ class Choice {
 
   Target latest_;
   int index_ = 0;
-  double sum_ = 0.0;  ///< of the weights: a whole number
+  double sum_ = 0.0;  ///< sum of the weights, an integer
   double weight_ = 0.0;
 };
 
@@ -83,20 +83,22 @@ int chosen(const ShortList<Primitive>& primitives, Random& random) {
   return static_cast<int>(random.index(static_cast<std::size_t>(primitives.size())));
 }
 
-/// The density of a new primitive's centre: a random object tap is at a uniform position in the form. Per square metre.
+/// Returns the density of a new primitive's centre per square metre, if a random object tap is at a uniform position in
+/// the form.
 double density_about_taps(const Form& form, const Taps& taps) {
   int inside = 0;
   for (int i = 0; i < taps.size(); ++i) inside += taps.on(i) && form.contains(taps[i].x, taps[i].y) ? 1 : 0;
   return inside / (taps.objects() * form.extent());
 }
 
-/// Prior density of a new primitive without a hole, over the density of drawing it by draw_about_taps().
+/// Returns the prior density of a new primitive without a hole, divided by its density in draw_about_taps().
 double ratio_about_taps(const Form& form, const Prior& prior, const Taps& taps) {
   const double drawn = density_about_taps(form, taps);
   return drawn > 0.0 ? prior.whole_probability(form) * prior.centre_density(form) / drawn : 0.0;
 }
 
-/// Draws a primitive without a hole over a random object tap; false if there is none, or the prior does not allow it.
+/// Draws a primitive without a hole around a random object tap. Returns false if there is no object tap, or if the
+/// prior density is 0.
 bool draw_about_taps(Primitive& out, const Prior& prior, const Taps& taps, Random& random) {
   if (taps.objects() == 0) return false;
   auto left = static_cast<int>(random.index(static_cast<std::size_t>(taps.objects())));
@@ -116,7 +118,7 @@ void add(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& 
   const int count = from.primitives.size();
   Primitive primitive;
   if (count >= prior.settings().most || !draw_about_taps(primitive, prior, taps, random)) return;
-  // A primitive with a hole is proposed as one without, and then its hole.
+  // Primitives with holes result from two moves: a primitive without a hole, then its hole.
   out.ratio = prior.settings().expected / (count + 1) * ratio_about_taps(primitive.form, prior, taps);
   out.added.add(primitive);
 }
@@ -133,7 +135,7 @@ void remove(Proposal& out, const Hypothesis& from, const Prior& prior, const Tap
   out.removed.add(index);
 }
 
-/// Draws another primitive for one of them.
+/// Replaces a random primitive by a new one.
 void replace(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, Random& random) {
   if (from.primitives.size() == 0) return;
   const int index = chosen(from.primitives, random);
@@ -144,7 +146,7 @@ void replace(Proposal& out, const Hypothesis& from, const Prior& prior, const Ta
   out.ratio = ratio_about_taps(primitive.form, prior, taps) / before;
 }
 
-/// Draws a hole from the prior, or fills one: the densities of hole and draw cancel.
+/// Draws a hole from the prior, or removes one. The densities of prior and proposal cancel.
 void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& prior, Random& random) {
   if (from.primitives.size() == 0) return;
   const int index = chosen(from.primitives, random);
@@ -158,22 +160,23 @@ void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& 
   out.ratio = adds ? odds : 1.0 / odds;
 }
 
-// A turn by 2 atan(tangent), and a factor, each as probable as its reverse, which has the other sign.
+// Rotation by 2 atan(tangent), and stretching by a factor. The reverse of each has the opposite sign and the same
+// probability.
 void turn(Form& form, double tangent) {
   const double square = tangent * tangent;
   form.turn_by((1.0 - square) / (1.0 + square), 2.0 * tangent / (1.0 + square));
 }
 double stretched(double step) { return (1.0 + step) / (1.0 - step); }
 
-/// Stretches a form. Half of the time an ellipse keeps its proportions, so that a round one stays round.
+/// Stretches a form. With probability 1/2 an ellipse keeps its proportions, so that a round one stays round.
 void stretch(Form& form, const Steps& steps) {
   const double one = stretched(kStretch * steps.one);
   form.a *= one;
   form.b *= form.family == Form::Family::ellipse && steps.coin ? one : stretched(kStretch * steps.other);
 }
 
-/// Moves a side; the opposite one stays. Returns the ratio: a symmetric step in the length of a half axis is not
-/// symmetric in its logarithm.
+/// Moves one side; the opposite side stays. Returns the ratio of densities: a symmetric step of a half axis is
+/// asymmetric in its logarithm.
 double move_side(Form& form, const Steps& steps) {
   const bool along = steps.coin;
   double& half = along ? form.a : form.b;
@@ -188,14 +191,14 @@ double move_side(Form& form, const Steps& steps) {
 }
 
 void change_family(Form& form) {
-  constexpr double kSameExtent = 1.1283791670955126;  // sqrt(4 / pi)
+  constexpr double kSameExtent = 1.1283791670955126;  // sqrt(4 / pi): box and ellipse have equal areas
   const bool box = form.family == Form::Family::box;
   form.family = box ? Form::Family::ellipse : Form::Family::box;
   form.a *= box ? kSameExtent : 1.0 / kSameExtent;
   form.b *= box ? kSameExtent : 1.0 / kSameExtent;
 }
 
-/// Changes the shares of a fitted hole, and sometimes its corner.
+/// Changes the fractions of a fitted hole, and sometimes its corner.
 void change_fitted(Primitive& primitive, double which, const Steps& steps) {
   constexpr double kOtherCorner = 0.05;
   primitive.along += kHoleStep * steps.one;
@@ -204,8 +207,8 @@ void change_fitted(Primitive& primitive, double which, const Steps& steps) {
   if (which < kOtherCorner) (steps.coin ? primitive.side_a : primitive.side_b) *= -1;
 }
 
-/// Changes the form of a primitive or its hole; `both`: a shift of the hole shifts the form, too. Returns the ratio
-/// without the prior.
+/// Changes the form of a primitive or of its hole. With `both`, a translation of the hole also translates the form.
+/// Returns the ratio of densities without the prior.
 double change_part(Primitive& primitive, bool of_form, bool both, double which, const Steps& steps) {
   Form& form = of_form ? primitive.form : primitive.hole;
   double ratio = 1.0;
@@ -256,13 +259,13 @@ void change_form(Proposal& out, const Hypothesis& from, const Prior& prior, cons
   out.ratio = ratio * primitive.density / before * choice.ratio(primitive);
 }
 
-// Shares of the moves that do not change a form. A move and its reverse have the same share.
+// Fractions of the moves that do not change a form. A move and its reverse have equal fractions.
 constexpr double kAddOrRemove = 0.03;  // each
 constexpr double kMakeOrFillHole = 0.04;
 constexpr double kReplace = 0.01;
 constexpr double kNotOfForms = 2.0 * (kAddOrRemove + kMakeOrFillHole) + kReplace;
 
-/// A push from the prior, and its density up to a factor.
+/// Draws a push from the prior. density() returns its density up to a constant factor.
 Push drawn_push(const Area& area, Random& random) {
   Push out;
   out.origin_x = 0.5 * area.width;
@@ -280,7 +283,7 @@ double density(const Push& push) {
   return math::exp(-0.5 * ((push.dx * push.dx + push.dy * push.dy) / (kPushShift * kPushShift) + angle * angle));
 }
 
-/// Changes when a push was, or how far it went; false if that is impossible.
+/// Changes the time of a push, or its displacement. Returns false if the result is impossible.
 bool change_push(Push& push, int taps, Random& random) {
   if (random.uniform() < 0.25) {
     constexpr int kFarthest = 3;  // taps
@@ -335,7 +338,7 @@ void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int
   out.kind = Proposal::Kind::push;
   const bool moves_along = random.uniform() < 0.5;
   if (random.uniform() < 0.5) {
-    // A push is often noticed some taps later. Half of the time it is proposed among the latest taps.
+    // A push often shows some taps later. With probability 1/2 it is proposed among the latest taps.
     constexpr int kLatest = 6;
     const int latest = std::min(kLatest, taps - 1);
     const auto ratio = [&](int before) {

@@ -13,15 +13,15 @@
 namespace palpate::footprints {
 namespace {
 
-// Shares of the moves.
+// Fractions of the moves.
 constexpr double kNoiseMoves = 0.02;
 constexpr double kPushMoves = 0.10;
-// Primitives far from the tap count in the number of moves up to this many.
+// Largest contribution of primitives far from the tap to the number of moves.
 constexpr double kMostFar = 3.0;
-// Taps after a find with twice as many particles.
+// Number of taps after a discovery with twice as many particles.
 constexpr int kDoubledTaps = 10;
 
-/// Primitives that are this close are exchanged together, metres.
+/// Distance in metres within which primitives are exchanged together.
 constexpr double kTogether = 0.01;
 
 bool are_close(const Form& one, const Form& other) {
@@ -148,10 +148,10 @@ Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random ran
     particles_[i].hypothesis.noisy = settings.position_noise > 0.0 && i % 2 == 1;
 }
 
-// A tap finds one new primitive at most, and is taken to be fully inside: an undiscovered primitive whose noisy rim is
-// near the tap is not found. Its heights do not count, and a particle with the maximum number of primitives finds
-// nothing. Later moves correct all of that: with 4 mm of noise, probabilities were off by less than 0.01; with heights
-// in the weights, the accuracy of the default did not change.
+// A tap discovers at most one new primitive, which is assumed to contain the tap fully. So an undiscovered primitive
+// whose noisy rim is near the tap is not discovered. Its heights do not count, and a particle with the maximum number
+// of primitives discovers nothing. Later moves correct these approximations. With 4 mm of noise, the error of
+// probabilities was below 0.01. With heights in the weights, the accuracy of the default did not change.
 double Sampler::add(const Touch& touch) {
   likelihood_.add(touch);
   const Taps& taps = likelihood_.taps();
@@ -196,7 +196,7 @@ double Sampler::add(const Touch& touch) {
   return p_label / before;
 }
 
-/// Adds the undiscovered primitive that the tap may have found to each particle, with its probability given the label.
+/// Adds an undiscovered primitive at the tap to each particle, with its probability given the label.
 void Sampler::find(const Undiscovered::Covering& covering, double p_new) {
   const Taps& taps = likelihood_.taps();
   const int tap = taps.size() - 1;
@@ -217,8 +217,8 @@ void Sampler::find(const Undiscovered::Covering& covering, double p_new) {
   }
 }
 
-/// Systematic resampling: each particle comes as often as its weight says, up to rounding, by a single random number.
-/// The first copy stays where it is; others replace particles that are not drawn, or exchange primitives with them.
+/// Systematic resampling with one random number: the number of copies is proportional to the weight, up to rounding.
+/// The first copy stays at its index. Others replace particles without copies, or exchange primitives with them.
 void Sampler::resample(const std::vector<double>& weights, double sum, std::size_t count) {
   const double step = sum / static_cast<double>(count);
   const double first = random_.uniform() * step;
@@ -231,8 +231,8 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
     while (cumulative < wanted && from + 1 < weights.size()) cumulative += weights[++from];
     ++copies[from];
   }
-  // Indices of particles that are not drawn, by whether these are noisy, the first ones last. As many are free as there
-  // are further copies and particles that have to move to the front.
+  // Indices of particles without copies, separately for exact and noisy ones, in descending order. There are as many as
+  // further copies and particles that must move to the front.
   std::array<std::vector<std::size_t>, 2> free;
   for (std::size_t i = count; i-- > 0;) {
     if (copies[i] == 0) free[particles_[i].hypothesis.noisy ? 1 : 0].push_back(i);
@@ -254,15 +254,15 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
       }
     }
   }
-  // If there are fewer particles than before, the last ones move to the front.
+  // If the number of particles decreases, the last ones move to the front.
   for (std::size_t i = count; i < particles_.size(); ++i) {
     if (copies[i] > 0) next_free(particles_[i]) = std::move(particles_[i]);
   }
   particles_.resize(count);
 }
 
-/// The number of moves of each particle after a tap that left this effective share of the particles. It depends on the
-/// states that are moved, which biases the chain by O(1 / particles).
+/// Returns the number of moves per particle after a tap that left this effective fraction of particles. It depends on
+/// the moved states, which biases the chain by O(1 / particles).
 int Sampler::count_moves(double effective_share) const {
   const Taps& taps = likelihood_.taps();
   const Target latest = taps[taps.size() - 1];
@@ -301,13 +301,13 @@ void Mover::move(Particle& particle, int times, Likelihood& likelihood, Random& 
   }
 }
 
-/// Accepts or rejects a proposal by Metropolis and Hastings in two steps: first by the labels, then by the heights,
-/// which take longer (delayed acceptance: Christen and Fox 2005). `taps`: as seen after the push of the proposal.
+/// Accepts or rejects the proposal by Metropolis and Hastings in two steps: labels first, then heights, which take
+/// longer (delayed acceptance: Christen and Fox 2005). `taps`: positions after the push of the proposal.
 bool Mover::accept(Particle& particle, const Taps& taps, Likelihood& likelihood, Random& random) {
   const Proposal& proposal = proposal_;
-  // The density of a far push may be too small for a double.
+  // The density of a long push may underflow, so the ratio is limited.
   const double ratio = std::min(proposal.ratio / (1.0 - random.uniform()), std::numeric_limits<double>::max());
-  if (particle.loss == 0 && ratio < 1.0) return false;  // no loss is negative; most moves need no logarithm
+  if (particle.loss == 0 && ratio < 1.0) return false;  // losses are at least 0; most moves need no logarithm
   const auto most = particle.loss + static_cast<LogUnits>(std::floor(math::log(ratio) * 0x1p20));
   if (most < 0) return false;
   const LabelModel& labels = likelihood.labels(proposal.noisy);
@@ -321,7 +321,7 @@ bool Mover::accept(Particle& particle, const Taps& taps, Likelihood& likelihood,
   proposal.apply(added_rows, rows);
   const LogUnits loss = likelihood.loss(rows, proposal.noisy);
   if (loss > most) return false;
-  // A primitive without an object tap would be an undiscovered one.
+  // Primitives without an object tap belong to the undiscovered ones.
   for (const LabelModel::Step* row : added_rows) {
     if (!holds_object(row, taps)) return false;
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The posterior distribution of hypotheses given the taps, as equally probable particles. After each tap they are drawn
-// again by their likelihood and moved by a Markov chain (resample-move: Gilks and Berzuini 2001). The chain has the
-// density
+// Posterior distribution of hypotheses given the taps, as equally weighted particles. After each tap they are resampled
+// by their likelihood and moved by a Markov chain (resample-move: Gilks and Berzuini 2001). The target density of the
+// chain is
 //
 //     rate^[push] f(push) expected^n density(1) ... density(n) P(labels | union, push, noisy) P(heights | primitives)
 //
-// of n primitives (in any order; hypothesis.hpp) that contain an object tap each, of a push (proposals.cpp) and of
-// noisy positions (half of the hypotheses). Undiscovered primitives (undiscovered.hpp) are independent of these, up to
-// the approximations that are stated where they are made.
+// for n unordered primitives (hypothesis.hpp) with at least one object tap each, a push (proposals.cpp), and noisy
+// positions with prior probability 1/2. Undiscovered primitives (undiscovered.hpp) are independent of these, up to
+// approximations that are documented with the code.
 #pragma once
 
 #include "proposals.hpp"
@@ -24,62 +24,63 @@
 namespace palpate::footprints {
 
 struct SamplerSettings {
-  /// Number of particles; doubled for ten taps after a find.
+  /// Number of particles; doubled for ten taps after a discovery.
   int particles = 384;
-  double label_error = 0.01;    ///< probability that a tap of an object has the label of the desk, in (0, 0.5]
-  double false_contact = 0.01;  ///< probability that a tap of the desk has the label of an object, in (0, 0.5]
-  /// Standard deviation of the positions of taps along x and y, metres. If above 0, half of the hypotheses have noisy
-  /// positions before the first tap, and half have exact ones.
+  double label_error = 0.01;    ///< probability that an object tap has the label of the desk, in (0, 0.5]
+  double false_contact = 0.01;  ///< probability that a desk tap has the label of an object, in (0, 0.5]
+  /// Standard deviation of tap positions along x and y, metres. If above 0, half of the initial hypotheses have noisy
+  /// positions, the others exact ones.
   double position_noise = 0.0;
-  /// Prior weight of a push between two taps, relative to none. A hypothesis has one push at most.
+  /// Prior weight of a push between two taps, relative to no push. A hypothesis has at most one push.
   double push_probability = 0.0;
   bool heights = true;  ///< whether heights are part of the likelihood
-  /// Moves per primitive and hole after each tap, and how many more per unit of N / ESS - 1 (effective sample size:
-  /// Kong, Liu and Wong 1994): an improbable label leaves many copies of few particles, which have to move apart.
+  /// Moves per primitive and hole after each tap, and additional moves per unit of N / ESS - 1 (effective sample size:
+  /// Kong, Liu and Wong 1994). An improbable label leaves many copies of few particles, which must diversify.
   double moves = 2.5;
   double moves_apart = 7.5;
   int most_moves = 200;  ///< per particle and tap
 };
 
-/// A hypothesis, and its likelihood: sums over all taps.
+/// A hypothesis with its likelihood, summed over all taps.
 struct Particle {
   Hypothesis hypothesis;
-  TapRows rows;          ///< of its primitives, with taps as seen after its push
-  LogUnits loss = 0;     ///< of labels
-  LogUnits heights = 0;  ///< evidence of heights
+  TapRows rows;          ///< rows of its primitives, with taps after its push
+  LogUnits loss = 0;     ///< loss of the labels
+  LogUnits heights = 0;  ///< evidence of the heights
 
   RowList list_rows() const;
 };
 
-/// Replaces those primitives of `to` that the latest tap says something about by those of `from`: primitives near the
-/// tap, and primitives that are close to one of these, or have an object tap in common, in either hypothesis. The
-/// others stay, because a tap of one object says nothing about another (local particle filters: Rebeschini and van
-/// Handel 2015). Otherwise few distinct hypotheses of one object would be left while another one is tapped. The
-/// likelihood of `to` is left as it was. Returns false, and changes nothing, if no primitive would stay, if there would
-/// be more than `most`, if either hypothesis has a push, or if only one has noisy positions. `taps`: as made.
+/// Replaces the primitives of `to` about which the latest tap is informative by those of `from`. These are primitives
+/// near the tap, and primitives that are close to them or share an object tap with them, in either hypothesis. Other
+/// primitives stay, because a tap of one object carries no information about another (local particle filters:
+/// Rebeschini and van Handel 2015). Without this rule few distinct hypotheses of an object would survive while another
+/// object is tapped. The likelihood of `to` is not updated. Returns false, without a change, in three cases: no
+/// primitive would stay or more than `most` would result, a hypothesis has a push, or only one hypothesis has noisy
+/// positions. `taps` are the positions as made.
 ///
-/// An approximation: the weights of resampling are not corrected for the primitives that stay; the moves that follow
-/// correct the particles. In the calibration with the moves of the defaults, no error was seen at 0.003.
+/// An approximation: the resampling weights are not corrected for the primitives that stay; the moves that follow
+/// correct the particles. A calibration with the default moves showed no error at 0.003.
 bool exchange(const Particle& from, const Taps& taps, int most, Particle& to);
 
-/// The taps, and how well a hypothesis explains them.
+/// Taps and their likelihood under a hypothesis.
 class Likelihood {
  public:
   explicit Likelihood(const SamplerSettings& settings);
 
   void add(const Touch& touch);
-  /// The taps as made.
+  /// Returns the taps at their original positions.
   const Taps& taps() const { return taps_; }
-  /// The probabilities of labels for hypotheses with noisy or exact positions.
+  /// Returns the model of labels for noisy or exact positions.
   const LabelModel& labels(bool noisy) const { return labels_[noisy ? 1 : 0]; }
 
-  /// Returns the loss of all labels of a hypothesis with these rows.
+  /// Returns the loss of all labels for a hypothesis with these rows.
   LogUnits loss(const RowList& rows, bool noisy);
   /// Returns the evidence of the heights of all object taps.
   LogUnits evidence(const RowList& rows);
-  /// Sets both sums of a particle by its rows.
+  /// Sets loss and heights of a particle from its rows.
   void weigh(Particle& particle);
-  /// Adds the step of the latest tap to the rows of a particle; returns that in the union of its primitives.
+  /// Appends the step of the latest tap to the particle's rows; returns its step in the union of the primitives.
   LabelModel::Step add_latest(Particle& particle) const;
 
  private:
@@ -87,19 +88,19 @@ class Likelihood {
   std::array<LabelModel, 2> labels_;  ///< exact and noisy
   HeightModel heights_;
   Taps taps_;
-  std::vector<LabelModel::Step> steps_;  ///< scratch, as the next
+  std::vector<LabelModel::Step> steps_;  ///< scratch memory, as holders_
   std::vector<std::uint16_t> holders_;
 };
 
-/// The Markov chain.
+/// Markov chain that moves a particle.
 class Mover {
  public:
   Mover(const Prior& prior, const SamplerSettings& settings) : prior_(prior), settings_(settings) {}
 
-  /// Proposes `times` moves, and makes those that are accepted.
+  /// Proposes `times` moves and applies the accepted ones.
   void move(Particle& particle, int times, Likelihood& likelihood, Random& random);
 
-  /// Share of accepted moves.
+  /// Returns the fraction of accepted moves.
   double acceptance_rate() const {
     return tried_ > 0 ? static_cast<double>(accepted_) / static_cast<double>(tried_) : 0.0;
   }
@@ -110,40 +111,42 @@ class Mover {
   Prior prior_;
   SamplerSettings settings_;
   long tried_ = 0, accepted_ = 0;  ///< moves
-  Proposal proposal_;              ///< kept to save allocations, as the next
-  Taps seen_, pushed_;             ///< taps as seen after the push of the particle, and of the proposal
+  Proposal proposal_;              ///< reused memory, as the members below
+  Taps seen_, pushed_;             ///< taps after the push of the particle, and of the proposal
   TapRows added_;
 };
 
-/// Updates: sampler.cpp. Queries: sampler_queries.cpp. Positions are M x 2 metres.
+/// Particle filter of the footprint. Updates are in sampler.cpp, queries in sampler_queries.cpp. Positions are M x 2
+/// metres.
 class Sampler {
  public:
-  /// Throws Error as Prior does.
+  /// Throws Error under the conditions of Prior.
   Sampler(const Prior& prior, const SamplerSettings& settings, Random random);
 
-  /// Updates the particles by a tap. Returns the probability of its label before the tap.
+  /// Updates the particles with a tap. Returns the probability of its label before the tap.
   double add(const Touch& touch);
 
-  // Queries must not run at the same time: they keep what the next one about the same positions needs.
+  // Queries must not run concurrently, because they cache values for the same positions.
 
   /// Sets `out` to the probability that each position is on an object.
   void probability(const PointsView& positions, VectorOut out);
-  /// Draws `count` hypotheses, a multiple of 64, from the particles and the undiscovered primitives that overlap them.
-  /// The particles are taken evenly, from a random one on.
+  /// Draws `count` hypotheses, a multiple of 64, from the particles and the overlapping undiscovered primitives.
+  /// Particles are used evenly, starting at a random one.
   void sample(const PointsView& positions, int count, OutlineSample& out);
-  /// Sets `out` to the probability that the label of each tap is an error. A label that noise of the position explains
-  /// is none.
+  /// Sets `out` to the probability that each tap's label is an error. A label that noise of the position explains does
+  /// not count as an error.
   void label_errors(VectorOut out) const;
-  /// Replaces the positions of all taps by where they would be made now, if over half of the particles have a push
-  /// since. `positions` holds where they were made.
+  /// Moves the positions of taps to where objects are now, if over half of the particles have a later push. `positions`
+  /// contains the original positions.
   void current_positions(Points& positions) const;
-  /// Returns the probability that an object at least `length` long, metres, is apart from all known primitives.
+  /// Returns the probability that an object of at least `length` metres exists apart from all known primitives.
   double undiscovered_probability(double length) const;
 
   /// Return the mean number of improbable labels (LabelModel::contradicts) per particle, and of primitives.
   double mean_label_errors() const;
   double mean_primitives() const;
-  /// Share of particles with a push, and their mean number of taps before it and mean shift of their primitives.
+  /// Fraction of particles with a push, their mean number of taps before it, and the mean translation of their
+  /// primitives.
   struct MeanPush {
     double share = 0.0;
     double before = 0.0;
@@ -159,9 +162,9 @@ class Sampler {
   void resample(const std::vector<double>& weights, double sum, std::size_t count);
   void find(const Undiscovered::Covering& covering, double p_new);
   int count_moves(double effective_share) const;
-  /// Sets spans_ for these positions.
+  /// Computes spans_ for these positions.
   void prepare(const PointsView& positions);
-  /// Calls visit(tap, labels, step, on) for each tap of each particle with a loss.
+  /// Calls visit(tap, labels, step, on) for each tap with a loss in each particle.
   template <class Visit>
   void for_each_label(const Visit& visit) const;
 
@@ -173,8 +176,8 @@ class Sampler {
   Mover mover_;
   Undiscovered undiscovered_;
   std::vector<Particle> particles_;
-  int doubled_until_ = 0;  ///< number of taps until which there are twice as many particles
-  /// What each particle covers of the positions of the latest query, unless there was a tap since.
+  int doubled_until_ = 0;  ///< number of taps until which the number of particles is doubled
+  /// Cached positions that each particle covers, of the latest query; invalid after a tap.
   std::vector<Grid::Spans> spans_;
   bool prepared_ = false;
 };

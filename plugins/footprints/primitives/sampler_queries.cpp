@@ -110,7 +110,7 @@ void Sampler::sample(const PointsView& positions, int count, OutlineSample& out)
   out.count = count;
   out.holds.setZero(count / 64, positions.rows());
   for (int k = 0; k < count; ++k) {
-    // A bit changes where a span begins and where it ends.
+    // Bits mark the ends of spans first; a prefix XOR fills the spans.
     const std::uint64_t bit = std::uint64_t{1} << (k % 64);
     for (const Grid::Span& span : spans_[static_cast<std::size_t>(drawn(k))]) {
       out.holds(k / 64, span.begin) ^= bit;
@@ -121,7 +121,7 @@ void Sampler::sample(const PointsView& positions, int count, OutlineSample& out)
     for (Eigen::Index word = 0; word < out.holds.rows(); ++word) out.holds(word, i) ^= out.holds(word, i - 1);
   }
   out.to_find = undiscovered_.expected_extent();
-  // Undiscovered primitives that overlap no primitive are other objects, which `to_find` counts.
+  // Undiscovered primitives that overlap no known primitive are other objects, which `to_find` counts.
   Grid::Spans spans;
   for (const Undiscovered::Member& one : undiscovered_.draw(count, random)) {
     const ShortList<Primitive>& known = particles_[static_cast<std::size_t>(drawn(one.set))].hypothesis.primitives;

@@ -13,24 +13,24 @@ namespace {
 
 // Heights are uniform over this range, metres.
 constexpr double kHeightRange = 0.15;
-// Standard deviation of the difference of two heights, metres, and its growth per metre between the taps.
+// Standard deviation of the difference of two heights, metres, and its growth per metre of distance.
 constexpr double kHeightNoise = 0.004;
 constexpr double kLevelGrowth = 0.05;
 constexpr double kSlopeGrowth = 0.5;
-// Shares of the tops that are level, and that are sloped.
+// Fractions of level and of sloped tops.
 constexpr double kLevels = 0.5;
 constexpr double kSlopes = 0.3;
-// Share of primitives whose height continues that of the nearest tap outside.
+// Fraction of primitives whose height continues that of the nearest tap outside.
 constexpr double kContinued = 0.3;
-// Among this many earlier taps, one is nearly always in the same primitive.
+// Number of nearest earlier taps that are searched; one of them is nearly always in the same primitive.
 constexpr std::size_t kNeighbours = 8;
 
-/// The logarithm of the density of a height given an earlier one, over that of any height.
+/// Returns the logarithm of a height's density given an earlier one, relative to the uniform density.
 double gain(const Touch& earlier, const Touch& later, double growth) {
   const double distance = math::hypot(later.place.x - earlier.place.x, later.place.y - earlier.place.y);
   const double scale = math::hypot(kHeightNoise, growth * distance);
   const double z = (later.height - earlier.height) / scale;
-  // One height in fifty is an error.
+  // One height in fifty is an outlier.
   return math::log(0.98 * math::exp(-0.5 * z * z) / (scale * std::sqrt(2.0 * kPi)) * kHeightRange + 0.02);
 }
 
@@ -41,8 +41,8 @@ LogUnits to_units(double logarithm) { return std::llround(logarithm * 0x1p20); }
 LabelModel::LabelModel(double label_error, double false_contact, double noise)
     : contradictions_{to_units(0.5 * math::log((1.0 - false_contact) / label_error)),
                       to_units(0.5 * math::log((1.0 - label_error) / false_contact))} {
-  constexpr double kDeviations = 3.5;  // beyond, noise puts one tap in some thousand on the other side of the rim
-  // Without noise a step is so short that no tap is within one of a rim.
+  constexpr double kDeviations = 3.5;  // beyond, noise moves about one tap in 2000 across the rim
+  // Without noise the steps are too short for any tap to be within one of a rim.
   reach_ = kDeviations * std::max(noise, 1e-12);
   steps_per_metre_ = 0.5 * kSteps / reach_;
   for (int step = 0; step < kSteps + 2; ++step) {
@@ -67,7 +67,7 @@ LabelModel::Step LabelModel::step(double depth) const {
 LogUnits LabelModel::loss(const Step* steps, const Step* labels, int length) const {
   LogUnits out = 0;
   for (int from = 0; from < length; from += 8) {
-    if (std::memcmp(steps + from, labels + from, 8) == 0) continue;  // most labels are right, far from a rim
+    if (std::memcmp(steps + from, labels + from, 8) == 0) continue;  // most labels are correct and far from a rim
     for (int i = from; i < from + 8; ++i) out += loss(steps[i], labels[i] == kInside);
   }
   return out;
@@ -94,7 +94,7 @@ void HeightModel::add(const Touch& touch) {
 }
 
 LogUnits HeightModel::evidence(const std::vector<std::uint16_t>& holders, int primitives) const {
-  constexpr std::size_t kMost = 16;  // bits
+  constexpr std::size_t kMost = 16;  // bits of a holder
   std::array<LogUnits, kMost> level{};
   std::array<LogUnits, kMost> slope{};
   LogUnits out = 0;

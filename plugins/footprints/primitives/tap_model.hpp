@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The likelihood of a hypothesis: the probability of the labels of the taps, and of their heights. Logarithms are whole
-// numbers in units of 2^-20, so that sums have the same bytes in any order.
+// Likelihood of a hypothesis: probability of the taps' labels and heights. Logarithms are integers in units of 2^-20,
+// so that sums have the same bytes in any order.
 #pragma once
 
 #include <palpate/footprint.hpp>
@@ -12,43 +12,43 @@
 
 namespace palpate::footprints {
 
-/// A natural logarithm in units of 2^-20, and the conversion from and to a real number.
+/// A natural logarithm in units of 2^-20, with conversions from and to real numbers.
 using LogUnits = std::int64_t;
 LogUnits to_units(double logarithm);
 inline double from_units(LogUnits units) { return static_cast<double>(units) * 0x1p-20; }
 
-/// The probability of the label of a tap, given its depth in a hypothesis: the depth in the deepest primitive. With two
-/// rims within the noise this is an approximation. The union of two primitives is deeper there, and a thin primitive
-/// less deep. No error was seen in the calibration with 4 mm of noise.
+/// Probability of a tap's label, given its depth in the deepest primitive of a hypothesis. With two rims within the
+/// noise this is an approximation: the union of two primitives is deeper, and a thin primitive less deep. A calibration
+/// with 4 mm of noise showed no error.
 class LabelModel {
  public:
-  /// `label_error`: probability that a tap of an object has the label of the desk. `false_contact`: probability that a
-  /// tap of the desk has the label of an object; both in (0, 0.5]. `noise`: standard deviation of positions along x and
-  /// y, metres, not negative.
+  /// `label_error`: probability that an object tap has the label of the desk. `false_contact`: probability that a desk
+  /// tap has the label of an object. Both are in (0, 0.5]. `noise`: standard deviation of positions along x and y,
+  /// metres, at least 0.
   LabelModel(double label_error, double false_contact, double noise);
 
-  /// A depth in steps of 2 * reach() / kSteps. kOutside: farther outside than reach(); kInside: deeper than reach().
+  /// Depth in steps of 2 * reach() / kSteps. kOutside: more than reach() outside; kInside: more than reach() deep.
   using Step = std::uint8_t;
   static constexpr int kSteps = 128;
   static constexpr Step kOutside = 0;
   static constexpr Step kInside = kSteps + 1;
-  /// Whether the depth is not negative.
+  /// Returns whether the depth is at least 0.
   static bool inside(Step step) { return step > kSteps / 2; }
   /// Returns the step of a depth, metres.
   Step step(double depth) const;
   double steps_per_metre() const { return steps_per_metre_; }
-  /// The distance from a rim within which noise matters, metres.
+  /// Returns the distance from a rim within which noise matters, metres.
   double reach() const { return reach_; }
 
   double probability(Step step, bool on) const { return entry(step, on).probability; }
-  /// The logarithm of the largest probability of such a label minus that of its probability; not negative.
+  /// Returns the logarithm of the largest probability of the label minus the logarithm of its probability; at least 0.
   std::int32_t loss(Step step, bool on) const { return losses_[index(step, on)]; }
-  /// Returns the sum of the losses of `length` taps, a multiple of 8. `labels`: kInside for taps with the label of an
-  /// object, otherwise kOutside, which are the steps without a loss.
+  /// Returns the sum of the losses of `length` taps, a multiple of 8. `labels` has kInside for object taps and kOutside
+  /// for desk taps, which are the steps without loss.
   LogUnits loss(const Step* steps, const Step* labels, int length) const;
-  /// The probability that the label is an error, rather than due to noise near a rim.
+  /// Returns the probability that the label is an error and not an effect of noise near a rim.
   double wrong(Step step, bool on) const { return entry(step, on).wrong; }
-  /// Whether the label counts as a label error, because its probability is small.
+  /// Returns whether the label counts as an error because of its small probability.
   bool contradicts(Step step, bool on) const { return loss(step, on) > contradictions_[on ? 1 : 0]; }
 
  private:
@@ -60,27 +60,26 @@ class LabelModel {
 
   double reach_;
   double steps_per_metre_;
-  std::array<LogUnits, 2> contradictions_;  ///< half of the loss of a wrong label of the desk, and of an object
+  std::array<LogUnits, 2> contradictions_;  ///< half of the loss of a wrong desk label, and of a wrong object label
   std::vector<Entry> table_;
   std::vector<std::int32_t> losses_;
 };
 
-/// The probability of the heights of the object taps, relative to independent uniform heights. The top of a primitive
-/// is level, sloped or of any form. On a level or sloped top a height depends on that of the nearest earlier tap in the
-/// same primitive: a Gaussian process with one neighbour (Vecchia 1988). The first tap of a primitive has any height,
-/// or that of the nearest earlier tap outside.
+/// Probability of the heights of object taps, relative to independent uniform heights. The top of a primitive is level,
+/// sloped or arbitrary. On a level or sloped top, a height depends on that of the nearest earlier tap in the same
+/// primitive: a Gaussian process with one neighbour (Vecchia 1988). The first tap of a primitive has an arbitrary
+/// height, or that of the nearest earlier tap outside.
 class HeightModel {
  public:
-  /// Adds a tap of an object.
+  /// Adds an object tap.
   void add(const Touch& touch);
 
-  /// Returns the logarithm of the probability. `holders` has an entry for each object tap, in their order: bit i is set
-  /// if primitive i, of 16 at most, contains the tap. A tap in k primitives counts 1/k in each. A push moves no tap
-  /// here.
+  /// Returns the logarithm of the probability. `holders` has one entry per object tap, in order. Bit i is set if
+  /// primitive i, of at most 16, contains the tap. A tap in k primitives counts 1/k in each. A push has no effect here.
   LogUnits evidence(const std::vector<std::uint16_t>& holders, int primitives) const;
 
  private:
-  /// Logarithms of the probability of a height given an earlier one, on a level and on a sloped top.
+  /// Logarithms of a height's probability given an earlier one, on a level and on a sloped top.
   struct Neighbour {
     std::size_t tap;
     LogUnits level, slope;
@@ -88,7 +87,7 @@ class HeightModel {
   struct Tap {
     Touch touch;
     std::vector<Neighbour> neighbours;  ///< nearest first
-    LogUnits first = 0;                 ///< the logarithm as the first tap of a primitive
+    LogUnits first = 0;                 ///< logarithm for the first tap of a primitive
   };
   std::vector<Tap> taps_;
 };

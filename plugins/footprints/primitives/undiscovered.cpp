@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDraws = 8192;
 
-/// Draws an index with probabilities proportional to weights, given their cumulative sums.
+/// Draws an index with probability proportional to its weight, from cumulative weights.
 std::size_t drawn_index(const std::vector<std::uint64_t>& cumulative, Random& random) {
   const auto at = static_cast<std::uint64_t>(static_cast<double>(cumulative.back()) * random.uniform());
   const auto index = std::upper_bound(cumulative.begin(), cumulative.end(), at) - cumulative.begin();
@@ -46,7 +46,7 @@ void Undiscovered::for_each_near(Draws& draws, const Target& position, double re
   for (std::size_t i = 0; i < near.size(); ++i) {
     const float dx = forms_.x[i] - x;
     const float dy = forms_.y[i] - y;
-    // Twice the square of the radius is above the square of radius and reach together.
+    // 2 (radius^2 + reach^2) is at least (radius + reach)^2.
     near[i] = dx * dx + dy * dy <= 2.0F * (forms_.a[i] * forms_.a[i] + forms_.b[i] * forms_.b[i] + margin);
   }
   for (auto one = near.begin(); (one = std::find(one, near.end(), 1)) != near.end(); ++one)
@@ -106,7 +106,7 @@ bool Undiscovered::prepare(const PointsView& positions) {
 }
 
 Eigen::VectorXd Undiscovered::expected_extent() const {
-  constexpr double kExtentUnits = 0x1p24;  // per square metre: whole numbers, as weights are
+  constexpr double kExtentUnits = 0x1p24;  // units per square metre, so that sums are integers
   GridSums sums(grid_->size());
   for (std::size_t i = 0; i < draws_.size(); i += 2) {
     const Draw& one = draws_[i];
@@ -135,7 +135,7 @@ std::vector<Undiscovered::Member> Undiscovered::draw(int count, Random& random) 
   cumulative.reserve(draws_.size());
   std::uint64_t sum = 0;
   for (const Draw& one : draws_) cumulative.push_back(sum += one.weight);
-  // The number in a set is that of events in a unit of time.
+  // The number of members is Poisson: events of rate 1 within the time `rate`.
   const double rate = unit_ * static_cast<double>(sum);
   const auto pause = [&] { return -math::log(1.0 - random.uniform()); };
   std::vector<Member> out;

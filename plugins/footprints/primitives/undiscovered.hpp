@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Primitives without an object tap inside.
+// Undiscovered primitives: those without an object tap inside.
 //
-// The prior is a Poisson process, so primitives are independent of each other. The hypotheses consist of the primitives
-// with an object tap inside. All others are a Poisson process again: none has an object tap inside, and each tap of the
-// desk makes a primitive about the tap less probable (thinning: Kingman 1993). So the probability that a tap finds a
-// new object needs no hypothesis.
+// The prior is a Poisson process, so primitives are independent. Hypotheses contain the primitives with an object tap.
+// The others form another Poisson process: none has an object tap inside, and each desk tap reduces the probability of
+// primitives around it (thinning: Kingman 1993). So the probability that a tap finds a new object does not depend on
+// the hypotheses.
 #pragma once
 
 #include "coverage.hpp"
@@ -17,69 +17,69 @@
 
 namespace palpate::footprints {
 
-/// The process of undiscovered primitives, as draws of the prior with weights.
+/// Process of undiscovered primitives, represented by weighted draws from the prior.
 class Undiscovered {
  public:
   Undiscovered(const Prior& prior, Random& random);
 
-  /// The draws that contain a position.
+  /// Draws that contain a position.
   class Covering {
    public:
-    /// The expected number of undiscovered primitives there.
+    /// Returns the expected number of undiscovered primitives at the position.
     double rate() const { return rate_; }
-    /// Draws one of them. The rate must be above 0.
+    /// Returns a random one of them. The rate must be above 0.
     const Primitive& draw(Random& random) const;
 
    private:
     friend class Undiscovered;
     std::vector<const Primitive*> primitives_;
-    std::vector<std::uint64_t> cumulative_;  ///< weights
+    std::vector<std::uint64_t> cumulative_;  ///< cumulative weights
     double rate_ = 0.0;
   };
-  /// Valid until the next tap.
+  /// Returns the draws at `position`, valid until the next tap.
   Covering covering(const Target& position) const;
 
-  /// Updates the weights by a tap, where it was made. Each draw is weighed as if no other primitive could explain the
-  /// label. If a known primitive contains a tap of the desk as well, the weights become too small: probabilities change
-  /// by 0.01 or less, and by 0.1 if a noisy rim is all that is known.
+  /// Updates the weights with a tap at its original position. Each draw is weighted as if no other primitive could
+  /// explain the label. If a known primitive also contains the desk tap, the weights become too small. Probabilities
+  /// then change by at most 0.01, or by 0.1 if only a noisy rim is known.
   ///
-  /// One process serves exact and noisy hypotheses. With position noise, `labels` is that of noisy ones; the expected
-  /// number of primitives then is 0.012 smaller on average (0.026 at most in 40 scenes of 40 taps). The odds of noisy
-  /// against exact positions should have the factor exp(this difference), and omit it.
+  /// One process serves exact and noisy hypotheses. With position noise, `labels` is the model of noisy ones. The
+  /// expected number of primitives is then 0.012 smaller on average (at most 0.026 in 40 scenes of 40 taps). The odds
+  /// of noisy against exact positions should include the factor exp(this difference), and omit it.
   void add(const Touch& touch, const LabelModel& labels);
 
   /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from those
   /// of the last call.
   bool prepare(const PointsView& positions);
-  /// The prepared positions.
+  /// Returns the prepared positions.
   const Grid& grid() const { return *grid_; }
   /// Returns the rate at each of the prepared positions.
   Eigen::VectorXd rates() const { return rates_.values(unit_); }
-  /// Returns for each of them the expected extent of all forms, holes included, that are apart from what is known and
-  /// cover the position, square metres, as a sum over every second draw.
+  /// Returns for each prepared position an expected area in square metres. It is the area of all forms, with their
+  /// holes, that cover the position and are apart from known primitives. The sum uses every second draw.
   Eigen::VectorXd expected_extent() const;
 
-  /// Compares the draws with hypotheses, at least one, until the next tap. A draw is apart from a hypothesis if it
-  /// overlaps none of its primitives. Eight hypotheses give the probability to be apart in steps of 1/8.
+  /// Compares the draws with at least one hypothesis, until the next tap. A draw is apart from a hypothesis if it
+  /// overlaps none of its primitives. Eight hypotheses give the probability in steps of 1/8.
   void compare(const std::vector<const Hypothesis*>& known);
-  /// Returns the expected number of primitives at least `length` long, metres, that are apart.
+  /// Returns the expected number of primitives of at least `length` metres that are apart.
   double expected_apart(double length) const;
-  /// Calls visit(primitive, expected number) for each draw: what tests compare with the exact process.
+  /// Calls visit(primitive, expected number) for each draw, for tests against the exact process.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const Draw& one : draws_) visit(one.primitive, unit_ * one.weight);
   }
 
-  /// A primitive in one of many sets of undiscovered primitives.
+  /// A primitive in one of several sets of undiscovered primitives.
   struct Member {
     int set;
     const Primitive* primitive;
   };
-  /// Draws `count` sets; returns their members, set by set.
+  /// Draws `count` sets; returns their members ordered by set.
   std::vector<Member> draw(int count, Random& random) const;
 
  private:
-  // Whole numbers: their sums have the same bytes in any order.
+  // Integer weights, whose sums have the same bytes in any order.
   using Weight = std::uint32_t;
   static constexpr Weight kWhole = 1U << 20U;
 
@@ -89,9 +89,9 @@ class Undiscovered {
     Grid::Spans spans;
   };
   void change(Draw& draw, Weight to);
-  /// Erases draws of weight 0, which never return, and prepares the others for compare().
+  /// Removes draws of weight 0, which cannot recover, and prepares the others for compare().
   void update();
-  /// Calls visit(draw) for all draws within `reach` of a position, and for some more.
+  /// Calls visit(draw) for all draws within `reach` of a position, and for some others.
   template <class Draws, class Visit>
   void for_each_near(Draws& draws, const Target& position, double reach, const Visit& visit) const;
   std::int64_t apart(std::size_t draw) const { return known_ - static_cast<std::int64_t>(overlaps_[draw]); }

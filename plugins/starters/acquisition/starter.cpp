@@ -1,5 +1,4 @@
-// How much one wants to tap each candidate: where the height is unknown (u) and an object is probable (p), the more so
-// the larger `trust`. score = u p^trust.
+// Score of each candidate: uncertainty u of the height times object probability p to the power `trust`, u p^trust.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 

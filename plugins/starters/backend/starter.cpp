@@ -1,4 +1,4 @@
-// What a tap is: here a world of arithmetic, a dome in the middle of the desk. A robot would be told to tap there.
+// Result of a tap, here on a computed dome in the middle of the desk. A real backend would move a robot.
 #include <palpate/backend.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>

@@ -1,5 +1,5 @@
-// Hyperparameters from the taps so far: mean and standard deviation of the targets become the prior's. The kernel and
-// the ratio of noise to signal stay as they are.
+// Fit of the hyperparameters: mean and standard deviation of the targets become those of the prior. Kernel and ratio of
+// noise to signal are unchanged.
 #include <palpate/fitting.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>
@@ -24,7 +24,7 @@ class MyFitting final : public Fitting {
   bool due(int taps) const override { return taps > 0 && taps % options_.every == 0; }
 
   FitSummary fit(FitProblem& problem, Random&) const override {
-    // All or nothing: a fit that fails leaves every output as it was.
+    // A failed fit must leave all outputs unchanged.
     std::vector<std::pair<double, double>> found;
     double objective = 0.0;
     for (const FitOutput& output : problem.outputs) {

@@ -1,5 +1,5 @@
-// Where objects are, as a probability: the labels of the touches near a place, the nearer the weightier, beside a prior
-// that counts as much as one touch right there.
+// Probability of an object: mean of the labels of contacts, weighted by their proximity, and of a prior with the weight
+// of one contact at the position itself.
 #include <palpate/footprint.hpp>
 #include <palpate/math.hpp>
 #include <palpate/plugin.hpp>

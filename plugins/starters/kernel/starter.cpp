@@ -1,4 +1,4 @@
-// How alike the heights at two places are, by their distance r: k = 1 / (1 + (r / length_scale)^2).
+// Covariance of the heights at two positions with distance r: k = 1 / (1 + (r / length_scale)^2).
 #include <palpate/kernel.hpp>
 #include <palpate/plugin.hpp>
 

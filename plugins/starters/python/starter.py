@@ -1,12 +1,12 @@
-"""How much one wants to tap each candidate: where the height is unknown and an object is probable. Arrays and their
-units: framework/docs/strategies.md of palpate."""
+"""Score of each candidate: uncertainty of the height, weighted by the probability of an object. The arrays and their
+units are in framework/docs/strategies.md of palpate."""
 import numpy
 
 from palpate_acquisition import acquisition
 
-TRUST = 0.5  # in the probability of an object: 0 taps wherever the height is unknown
+TRUST = 0.5  # exponent of the object probability; with 0 only the uncertainty counts
 
 
-@acquisition(reads=["uncertainty", "object_probability"])  # last in the file: from here on it answers
+@acquisition(reads=["uncertainty", "object_probability"])  # must be last in the file, because it answers from here on
 def score(belief):
     return numpy.sqrt(belief.uncertainty) * belief.object_probability**TRUST

@@ -1,5 +1,5 @@
-// The form of an object: here an ellipsoid that rests on the desk. What lies between is found in the frame in which it
-// is the unit ball.
+// Form of an object, here an ellipsoid on the desk. Intersections are computed in coordinates in which the ellipsoid is
+// the unit sphere.
 #include <palpate/plugin.hpp>
 #include <palpate/shape.hpp>
 

@@ -14,7 +14,7 @@
 namespace palpate::baxter {
 namespace {
 
-/// A minute of everything that a Baxter says.
+/// Number of messages of a Baxter in one minute.
 constexpr int kMostWaiting = 30000;
 
 }  // namespace
@@ -41,8 +41,8 @@ void Bag::open(const std::string& file) {
 }
 
 void Bag::abandon_file() {
-  // Its destructor would try once more to write, and throw: so it is kept for ever, of which class_loader, which loads
-  // its plugins, would warn when the program ends.
+  // The destructor of the file would try to write again and throw. So the object is never destroyed. class_loader,
+  // which loads rosbag's plugins, would warn about it at the end of the program.
   console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
   static auto* const abandoned = new std::vector<std::unique_ptr<rosbag::Bag>>;
   static std::mutex mutex;

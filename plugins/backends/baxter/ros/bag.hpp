@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A rosbag of what is heard, sent and shown. Files are written by a thread of their own: a disk that takes its time
-// must not hold up the set-points of an arm in motion.
+// Rosbag of all messages that are received, sent and displayed. A separate thread writes the file, so that a slow disk
+// does not delay set-points.
 #pragma once
 
 #include <atomic>
@@ -20,21 +20,22 @@ namespace palpate::baxter {
 class Bag {
  public:
   Bag() = default;
-  ~Bag();  ///< writes what is waiting, and the index
+  ~Bag();  ///< writes the queued messages and the index
   Bag(const Bag&) = delete;
   Bag& operator=(const Bag&) = delete;
 
-  /// From now on write() writes. Throws Error.
+  /// Opens the file; write() has an effect from now on. Throws Error.
   void open(const std::string& file);
 
-  /// Nothing before open(), and after an error, which is told once. `header` is the connection's as the sender sent it.
+  /// Queues a message with the connection header of its sender. Without effect before open() and after an error, which
+  /// is printed once.
   template <class Message>
   void write(const std::string& topic, const ros::Time& time, const boost::shared_ptr<const Message>& message,
              const boost::shared_ptr<ros::M_string>& header) {
     add([=](rosbag::Bag& bag) { bag.write(topic, time, message, header); });
   }
 
-  /// The same for a message of our own.
+  /// Queues a message of this program.
   template <class Message>
   void write_own(const std::string& topic, const Message& message, bool latched) {
     const auto header = boost::make_shared<ros::M_string>();
@@ -55,9 +56,9 @@ class Bag {
   void give_up(const char* reason);
 
   std::string file_;
-  std::unique_ptr<rosbag::Bag> bag_;  ///< the writer's, once it is open; none once it is abandoned
+  std::unique_ptr<rosbag::Bag> bag_;  ///< used by the writer thread after open(); null after an error
   std::atomic<bool> recording_{false};
-  std::atomic<int> waiting_{0};  ///< jobs
+  std::atomic<int> waiting_{0};  ///< number of queued jobs
   std::optional<boost::asio::thread_pool> writer_;
 };
 

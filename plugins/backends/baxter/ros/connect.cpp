@@ -15,24 +15,24 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Of the promised five seconds, from the beginning of connect(). What is left at the end is for taking leave.
+// Deadlines since the start of connect(). The rest of the promised five seconds is for disconnecting.
 constexpr milliseconds kReach(2500);   ///< until the master has answered
-constexpr milliseconds kListed(3000);  ///< until everything is listed at the master that is needed
-constexpr milliseconds kHeard(3800);   ///< until it has been heard
-constexpr milliseconds kTold(4200);    ///< until it is known why not
+constexpr milliseconds kListed(3000);  ///< until all required topics are listed at the master
+constexpr milliseconds kHeard(3800);   ///< until all required streams have arrived
+constexpr milliseconds kTold(4200);    ///< until the cause of missing streams is known
 
-constexpr milliseconds kLookUp(1000);       ///< for the name of a robot's host
-constexpr milliseconds kOnePublisher(300);  ///< for what it has to say of itself
-constexpr milliseconds kAskAgain(100);      ///< the master, which serves one question at a time
+constexpr milliseconds kLookUp(1000);       ///< for the name of the robot's host
+constexpr milliseconds kOnePublisher(300);  ///< for the answer of one publisher
+constexpr milliseconds kAskAgain(100);      ///< between queries to the master, which serves one at a time
 constexpr milliseconds kLook(2);
 
 constexpr const char* kVersionParameter = "/rethink/software_version";
 constexpr const char* kDescriptionParameter = "/robot_description";
-/// All that there is to hear, and where this program is heard.
+/// All topics that this program receives or sends.
 constexpr const char* kTopics[] = {kJointTopic,     kEndpointTopic,    kStateTopic,      kCollisionTopic,
                                    kAvoidanceTopic, kEndEffectorTopic, kSpeedRatioTopic, kCommandTimeoutTopic,
                                    kCommandTopic,   kClockTopic};
-/// Of those, what one node alone must send. Joints come from two, of which one sends a gripper's.
+/// Topics that must have exactly one sender. Joints have two, because a gripper's node sends its own.
 constexpr const char* kOfOneNode[] = {kStateTopic, kEndpointTopic, kCollisionTopic, kAvoidanceTopic, kClockTopic};
 
 /// One attempt to join the network.
@@ -59,7 +59,7 @@ class Visit {
  private:
   Deadline until(milliseconds since_begin) const { return begin_ + since_begin; }
 
-  /// What is missing at the master, as the Error to throw; none if nothing is.
+  /// Returns an Error if a required topic, parameter or service is missing at the master, else nullopt.
   std::optional<Error> not_listed(const Graph& graph) const {
     std::vector<std::string> missing;
     for (const Topic& needed : Link::needed()) {
@@ -95,8 +95,8 @@ class Visit {
     }
   }
 
-  /// Of two that send one stream one is a lie, perhaps a mock's that somebody forgot; a node that ended without leaving
-  /// counts, too.
+  /// Throws Error if two nodes publish the same stream, for example a forgotten mock. Nodes that ended without
+  /// unregistering count, too.
   static void expect_one_robot(const Graph& graph) {
     for (const char* topic : kOfOneNode) {
       const auto& nodes = Graph::of(graph.publishers, topic);
@@ -106,7 +106,7 @@ class Visit {
     }
   }
 
-  /// roscpp looks names up while it subscribes, for as long as that takes; so it is done here before.
+  /// Resolves all host names with a deadline, because roscpp resolves them without one while it subscribes.
   void expect_hosts(const Graph& graph) const {
     std::set<std::string> found;
     for (const char* topic : kTopics) {
@@ -127,15 +127,15 @@ class Visit {
     return uri ? parse_uri(*uri, "http") : std::nullopt;
   }
 
-  /// Beyond the flange, kg. The robot's own description is kept up to date: with what is mounted, and with what it has
-  /// been told that it holds.
+  /// Returns the mass beyond the flange, in kg, from the robot's description. The robot updates it when a tool is
+  /// mounted or an object is held.
   std::optional<double> tool_mass() const {
     const auto urdf = network_.master.told("getParam", kDescriptionParameter, until(kTold));
     return urdf ? mass_beyond(*urdf, "left_hand") : std::nullopt;
   }
 
-  /// Two that command one arm pull it to and fro. Each looks once it has said itself that it sends: of two that come at
-  /// the same time both go.
+  /// Throws Error if another palpate commands the arm. Each instance checks after its own registration, so of two
+  /// simultaneous starts both throw.
   void expect_no_other_driver() const {
     const Graph graph = network_.master.graph(until(kTold));
     for (const std::string& node : Graph::of(graph.publishers, kCommandTopic)) {
@@ -146,7 +146,7 @@ class Visit {
     }
   }
 
-  /// Whether a node is still there: one that was killed stays listed.
+  /// Returns whether a node still runs; a killed node stays listed.
   bool answers(const std::string& node) const {
     const auto place = place_of(node);
     if (!place) return false;
@@ -166,7 +166,7 @@ class Visit {
     }
   }
 
-  /// Of Link::needed(), which have brought something.
+  /// Returns for each stream of Link::needed() whether a message has arrived.
   static std::array<bool, 3> heard(Link& link) {
     const Snapshot seen = link.read();
     return {seen.joints.has_value(), seen.endpoint.has_value(), seen.state.has_value()};

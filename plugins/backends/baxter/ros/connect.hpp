@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The way to a Baxter over ROS 1. Nothing of ROS is seen from outside this folder.
+// Connection to a Baxter over ROS 1. No ROS header is visible outside this folder.
 #pragma once
 
 #include "baxter/options.hpp"
@@ -12,39 +12,39 @@
 
 namespace palpate::baxter {
 
-/// What is wanted of the robot.
+/// Requirements of a connection.
 struct Wishes {
-  bool commands = true;             ///< send set-points; without it nothing can be moved
-  bool inverse_kinematics = false;  ///< ask the robot's IKService
+  bool commands = true;             ///< send set-points; without them nothing moves
+  bool inverse_kinematics = false;  ///< use the robot's IKService
 };
 
-/// Joins the network whose master ROS_MASTER_URI names and waits until the robot has been heard in full: joints,
-/// endpoint and state, and that it listens to commands.
-/// roscpp is started with the first connection of the process and ends with the process, since it cannot be started
-/// twice; all that a connection itself begins ends with the object.
-/// Throws Error (kind `run`) within five seconds of real time, with what is missing and what to do: no master, names
-/// that do not resolve, data that do not come, another robot or software, messages of another md5 sum.
+/// Joins the network of ROS_MASTER_URI and waits until joints, endpoint and state have arrived and the robot has
+/// subscribed to the commands.
+/// roscpp starts with the first connection and runs until the process ends, because it cannot start twice. All parts of
+/// a connection itself end with the returned object.
+/// Throws Error (kind `run`) within five seconds of real time, with cause and remedy: no master, unresolvable host
+/// names, missing data, another robot or software version, messages with another md5 sum.
 std::unique_ptr<Robot> connect(const Wishes& wishes);
 
-/// What a person watching the experiment sees: the surface as it is believed, the taps, the area, the next target. All
-/// lengths are metres in the frame of the scene; what is shown is in the robot's frame `base`.
+/// Display for a person who watches the experiment: estimated surface, taps, area, and next target. Arguments are in
+/// metres in the scene's frame; the display uses the robot's frame `base`.
 class View {
  public:
   virtual ~View() = default;
 
-  /// Where the arm goes now.
+  /// Shows the target of the arm's motion.
   virtual void target(const Target& place) = 0;
 
-  /// Shows these contacts, as they are read now, in the place of those before; the target has been reached.
+  /// Replaces the displayed contacts, and removes the target.
   virtual void contacts(const std::vector<Touch>& touches) = 0;
 
-  /// The surface: one height and its standard deviation for each place.
+  /// Shows the surface: one height and one standard deviation per position.
   virtual void surface(const Points& places, const VectorView& height, const VectorView& deviation) = 0;
 };
 
-/// Publishes latched in frame `base`: palpate/surface (PointCloud2 with x, y, z, intensity = standard deviation) and
-/// palpate/taps (MarkerArray: taps on and off the object, the area, the next target). `robot` is what connect() has
-/// made.
+/// Creates a publisher of latched topics in frame `base`. palpate/surface is a PointCloud2 with x, y, z, and intensity
+/// = standard deviation. palpate/taps is a MarkerArray with taps on objects and on the desk, the area, and the next
+/// target. `robot` must come from connect().
 std::unique_ptr<View> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area, double desk);
 
 }  // namespace palpate::baxter

@@ -30,15 +30,16 @@ using XmlRpc::XmlRpcValue;
 using Why = Unreached::Why;
 
 constexpr const char* kCaller = "/palpate";
-constexpr std::size_t kLongest = 4'000'000;  ///< bytes of an answer; a whole network's description has some 10'000
-constexpr std::size_t kDeepest = 64;         ///< elements within elements; that description has 17
+constexpr std::size_t kLongest =
+    4'000'000;                        ///< bytes of an answer; the description of a whole network has about 10'000
+constexpr std::size_t kDeepest = 64;  ///< nested elements; that description has 17
 
 Unreached no_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
 
-/// The first address of a name. With AI_NUMERICHOST it needs nobody's help.
+/// Returns the first address of a name. With AI_NUMERICHOST no name server is used.
 Address first_address(const std::string& host, int flags) {
   addrinfo hints{};
-  const char* ipv6 = std::getenv("ROS_IPV6");  // as roscpp has it, whose connections these addresses foretell
+  const char* ipv6 = std::getenv("ROS_IPV6");  // as roscpp does, because the addresses must predict its connections
   hints.ai_family = ipv6 != nullptr && std::strcmp(ipv6, "on") == 0 ? AF_UNSPEC : AF_INET;
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = flags;
@@ -51,9 +52,9 @@ Address first_address(const std::string& host, int flags) {
   return out;
 }
 
-// ---- XML-RPC: one question, one answer, over a connection of its own ----
+// ---- XML-RPC: one query and one answer per connection ----
 
-/// The body of an answer over HTTP.
+/// Reads the body of an HTTP answer.
 std::string http_body(Wire& wire, Deadline deadline) {
   constexpr const char* kLength = "\r\ncontent-length:";
   std::string text;
@@ -74,11 +75,11 @@ std::string http_body(Wire& wire, Deadline deadline) {
   return body;
 }
 
-/// Whether elements end as they begin and are not nested too deeply. The library reads by recursion, one step for each
-/// value within a value, and looks for a member's name wherever that may be: so the name must be where it belongs.
+/// Returns whether elements are closed correctly and not nested too deeply. The library parses recursively, one step
+/// per nested value, and searches a member's name anywhere. So the name must come first in its member.
 bool is_sound(std::string_view xml) {
   std::vector<std::string_view> open;
-  bool in_member = false;  // and before its name
+  bool in_member = false;  // in a member, before its name
   for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
     const std::size_t end = xml.find_first_of("<>", ++at);
     if (end == std::string_view::npos || end == at || xml[end] == '<' || xml[at] == '!') return false;
@@ -95,7 +96,7 @@ bool is_sound(std::string_view xml) {
   return open.empty();
 }
 
-/// The answer to a question, as it came.
+/// Returns the unparsed answer to a query.
 std::string ask(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
                 Deadline deadline) {
   std::string body = "<?xml version=\"1.0\"?>\r\n<methodCall><methodName>" + method + "</methodName>\r\n<params>";
@@ -108,8 +109,8 @@ std::string ask(const Address& address, const std::string& method, const std::ve
   return http_body(wire, deadline);
 }
 
-/// What `read` makes of the third part of an answer of ROS, whose first is 1 for success, or of an invalid value if it
-/// was none; with what the library throws at those of another form.
+/// Applies `read` to the third part of a ROS answer, or to an invalid value if the first part is not 1 (success).
+/// Throws Unreached if the answer has another form.
 template <class Read>
 auto understood(const std::string& xml, const Read& read) {
   const std::size_t start = xml.find("<value>");
@@ -136,7 +137,7 @@ Graph::Nodes nodes_of(XmlRpcValue& list) {
   return nodes;
 }
 
-// ---- TCPROS: a header each way, then messages ----
+// ---- TCPROS: one header in each direction, then messages ----
 
 std::string number(std::size_t value) {
   const std::uint32_t bits = boost::endian::native_to_little(static_cast<std::uint32_t>(value));
@@ -147,7 +148,7 @@ std::size_t number_at(const std::string& bytes, std::size_t at) {
   return boost::endian::load_little_u32(reinterpret_cast<const unsigned char*>(bytes.data() + at));
 }
 
-/// A number and as many bytes.
+/// Receives a length and that many bytes.
 std::string receive_block(Wire& wire, Deadline deadline) {
   const std::size_t length = number_at(wire.receive(4, deadline), 0);
   if (length > kLongest) throw no_ros();
@@ -194,7 +195,7 @@ Address look_up(const std::string& host, int port, Deadline deadline) {
   try {
     out = first_address(host, AI_NUMERICHOST);
   } catch (const Unreached&) {
-    // One that has begun cannot be stopped: it goes on by itself.
+    // A started look-up cannot be cancelled; its thread ends by itself.
     const auto task = std::make_shared<std::packaged_task<Address()>>([host] { return first_address(host, 0); });
     std::future<Address> found = task->get_future();
     deaf_thread([task] { (*task)(); }).detach();
@@ -207,8 +208,8 @@ Address look_up(const std::string& host, int port, Deadline deadline) {
   return out;
 }
 
-/// Waits for what `begin` begins, which hands its outcome to a handler; how many bytes it was. 0 where the other side
-/// has ended the connection.
+/// Runs the operation that `begin` starts, until `deadline`. Returns the number of bytes; 0 if the other side closed
+/// the connection.
 template <class Begin>
 std::size_t Wire::finish(Deadline deadline, const Begin& begin) {
   boost::system::error_code error;
@@ -230,7 +231,7 @@ std::size_t Wire::finish(Deadline deadline, const Begin& begin) {
 }
 
 Wire::Wire(const Address& address, Deadline deadline) {
-  // Not by the library, which would leave it open in programs that are started meanwhile.
+  // The socket is created here with SOCK_CLOEXEC, so that child processes do not inherit it. Asio would omit the flag.
   const int opened = ::socket(address.data()->sa_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (opened < 0) throw Unreached(Why::refused, std::strerror(errno));
   socket_.assign(address.protocol(), opened);
@@ -257,7 +258,7 @@ std::string Wire::receive(std::size_t bytes, Deadline deadline) {
 
 std::optional<Place> parse_uri(const std::string& uri, const std::string& scheme) {
   static const std::regex form("([a-z]+)://([^:/ \t]+):([0-9]{1,5})/?");
-  constexpr std::size_t kLongestUri = 1000;  // the library reads by recursion, one step for each character
+  constexpr std::size_t kLongestUri = 1000;  // the library parses recursively, one step per character
   std::smatch parts;
   if (uri.size() > kLongestUri || !std::regex_match(uri, parts, form) || parts[1] != scheme) return {};
   const int port = std::stoi(parts[3]);

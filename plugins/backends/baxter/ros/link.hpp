@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Between connect(), which knows what to wait for and what to say when it does not come, and roscpp's side.
+// Interface between connect(), which waits for messages and explains missing ones, and the part that uses roscpp.
 #pragma once
 
 #include "baxter/ros/bag.hpp"
@@ -13,7 +13,7 @@
 
 namespace palpate::baxter {
 
-/// A topic of the robot.
+/// Topic of the robot with its message type.
 struct Topic {
   const char* name;
   const char* type;
@@ -32,18 +32,18 @@ constexpr const char* kCommandTopic = "/robot/limb/left/joint_command";
 constexpr const char* kClockTopic = "/clock";
 constexpr const char* kSolverService = "/ExternalTools/left/PositionKinematicsNode/IKService";
 
-/// The robot, perhaps not yet heard in full.
+/// Connection to a robot whose messages may not have arrived yet.
 class Link : public Robot {
  public:
-  /// The streams without which nothing goes: joints, endpoint, state.
+  /// Returns the streams that every run needs: joints, endpoint, state.
   static const std::array<Topic, 3>& needed();
-  /// What is written of them, and of what is shown.
+  /// Returns the rosbag of received, sent and displayed messages.
   virtual std::shared_ptr<Bag> bag() = 0;
-  virtual bool listened_to() = 0;  ///< somebody receives the set-points
+  virtual bool listened_to() = 0;  ///< whether a node receives the set-points
 };
 
-/// Subscribes and advertises. `tool_mass` is what the robot's description has beyond the flange, kg. The node must have
-/// been started.
+/// Creates subscribers and publishers. `tool_mass`: mass in kg beyond the flange in the robot's description. The node
+/// must be started.
 std::unique_ptr<Link> make_link(const Network& network, bool commands, std::optional<double> tool_mass);
 
 }  // namespace palpate::baxter

@@ -17,7 +17,7 @@
 #include <xmlrpcpp/XmlRpcUtil.h>
 
 namespace ros::master {
-// Part of the library's interface, but of no header: reads the master's address.
+// Part of the library without a header: reads the address of the master.
 void init(const M_string& remappings);
 }  // namespace ros::master
 
@@ -30,13 +30,13 @@ constexpr milliseconds kLookUp(1000);
 constexpr milliseconds kAnswer(2000);
 constexpr milliseconds kFarewell(500);
 
-/// Empty if it is not set: roscpp takes the one for the other.
+/// Returns an empty string if the variable is not set, as roscpp does.
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
 
-/// Whether a server can be there.
+/// Returns whether a server can listen on this address.
 bool is_own_address(const std::string& text) {
   namespace asio = boost::asio;
   boost::system::error_code error;
@@ -47,7 +47,7 @@ bool is_own_address(const std::string& text) {
   return !error;
 }
 
-/// By what name the others on the network reach this machine. Throws Error.
+/// Returns the name or address by which other nodes reach this machine. Throws Error.
 std::string own_name(Deadline deadline) {
   const std::string ip = variable("ROS_IP");
   const std::string name = variable("ROS_HOSTNAME");
@@ -69,17 +69,17 @@ std::string own_name(Deadline deadline) {
   return ip.empty() ? name : ip;
 }
 
-/// Told by roscpp's XML-RPC library on stderr, and of no use to anyone whose robot works.
+/// Drops the messages of roscpp's XML-RPC library on stderr.
 class Nothing : public XmlRpc::XmlRpcErrorHandler {
   void error(const char*) override {}
 };
 
-/// roscpp from the first connection to the end of the process.
+/// The roscpp node, from the first connection to the end of the process.
 class Node {
  public:
   explicit Node(const Network& joined) : network(joined) {
-    // What roscpp has to tell is told by connect(), the watch and the record; what is left is that something comes back
-    // again, in the middle of palpate's own lines.
+    // roscpp's log is switched off. connect(), the safety rules and the record report its errors. Reconnections would
+    // appear between palpate's own lines.
     ROSCONSOLE_AUTOINIT;
     ros::console::set_logger_level("ros", ros::console::levels::Fatal);
     ros::console::notifyLoggerLevelsChanged();
@@ -98,7 +98,7 @@ class Node {
 
   ~Node() {
     forget_silent_master();
-    ros::PollManager::instance()->shutdown();  // the thread of connections: see give_up()
+    ros::PollManager::instance()->shutdown();  // stops the connection thread, see give_up()
     ros::shutdown();
     ros::waitForShutdown();
   }
@@ -109,7 +109,7 @@ class Node {
   const Network network;
 };
 
-/// The process' node, for those who may not start it.
+/// The node of this process, for functions that must not start it.
 const Node* running = nullptr;
 
 void point_roscpp_at(const std::string& master) { ros::master::init({{"__master", master}}); }
@@ -161,7 +161,7 @@ void start_node(const Network& network) {
   if (!ros::ok()) {
     throw trouble(network.where(), "the ROS node of this process was told to shut down", "start it again");
   }
-  point_roscpp_at(network.uri);  // an earlier connection may have left it for gone
+  point_roscpp_at(network.uri);  // an earlier connection may have marked it as gone
 }
 
 std::string node_name() { return ros::this_node::getName(); }
@@ -171,7 +171,7 @@ void forget_silent_master() {
   try {
     running->network.master.greet(Steady::now() + kFarewell);
   } catch (const Unreached&) {
-    point_roscpp_at("http://127.0.0.1:9");  // discard: nobody listens there
+    point_roscpp_at("http://127.0.0.1:9");  // discard port: no server listens there
   }
 }
 
@@ -187,7 +187,7 @@ void give_up(const std::function<void()>& connections) {
   const auto listener = thread->addPollThreadListener(once);
   std::future<void> ended = done.get_future();
   while (ended.wait_for(milliseconds(100)) != std::future_status::ready) {
-    if (!ros::ok()) once();  // nothing is heard there any more
+    if (!ros::ok()) once();  // the connection thread has ended
   }
   thread->removePollThreadListener(listener);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// roscpp in this process. It aborts or waits for ever where the environment is wrong or a host is gone, so everything
-// is looked at first.
+// The roscpp node of this process. roscpp aborts or waits for ever if the environment is wrong or a host is gone, so
+// everything is checked before it starts.
 #pragma once
 
 #include "baxter/ros/graph.hpp"
@@ -12,38 +12,38 @@
 
 namespace palpate::baxter {
 
-/// The network that the environment names, with a master that has answered.
+/// Network of the environment variables, with a master that has answered.
 struct Network {
-  std::string uri;  ///< of the master
+  std::string uri;  ///< URI of the master
   Master master;
-  std::string own_name;  ///< what others reach this machine by, if the environment says; else empty
+  std::string own_name;  ///< name or address of this machine for other nodes, from the environment; may be empty
 
-  /// For the place of an Error: "ROS_MASTER_URI=http://...".
+  /// Returns the place for an Error: "ROS_MASTER_URI=http://...".
   std::string where() const { return "ROS_MASTER_URI=" + uri; }
 };
 
-/// Checks ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME and asks the master. Throws Error (kind `run`) before `deadline`.
+/// Checks ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME and queries the master. Throws Error (kind `run`) before `deadline`.
 Network find_network(Deadline deadline);
 
-/// Why nothing came of talking to `who` at `place`, and what to do: `remedy` if nobody is there who speaks ROS.
+/// Converts a network error to an Error about `who` at `place`. `remedy` is the remedy if the host does not speak ROS.
 Error unreachable(const std::string& where, const std::string& who, const Place& place, const Unreached& reason,
                   const std::string& remedy);
 
-/// Starts roscpp, once a process; it leaves the network when the process ends. Throws Error if it cannot, or was
-/// started with another master, or has been told to go.
+/// Starts roscpp, once per process. The node leaves the network at the end of the process. Throws Error if roscpp does
+/// not start, uses another master, or was told to shut down.
 void start_node(const Network& network);
 
-/// Nodes of palpate are called so, with a number after it that tells them apart.
+/// Name of palpate's nodes; ROS appends a unique number.
 constexpr const char* kNodeName = "palpate";
-/// This process' node at the master; it must have been started.
+/// Returns the name of this process's node, which must be started.
 std::string node_name();
 
-/// Before subscribers and publishers go: taking leave of a master that does not answer would wait for minutes, so if it
-/// does not do so within half a second roscpp takes it for gone from now on.
+/// Prepares the end of subscribers and publishers. If the master does not answer within half a second, roscpp is
+/// pointed at a closed port. Unregistering from a silent master would take minutes.
 void forget_silent_master();
 
-/// Does this on roscpp's thread of connections, and waits for it: a header that arrives there, or a peer that goes,
-/// while another thread gives up what it belongs to, would end the program (ros_comm, issues 1939 and 2032).
+/// Runs `connections` on roscpp's connection thread and waits for its end. Closing connections on another thread may
+/// crash if a header arrives or a peer disconnects meanwhile (ros_comm, issues 1939 and 2032).
 void give_up(const std::function<void()>& connections);
 
 }  // namespace palpate::baxter

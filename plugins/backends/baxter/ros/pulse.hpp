@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a thread got to run as often as it wanted to: what tells a silent network from a busy computer.
+// Gaps in the execution of a thread, which distinguish a busy computer from a silent network.
 #pragma once
 
 #include <algorithm>
@@ -7,11 +7,11 @@
 
 namespace palpate::baxter {
 
-/// Beats of a thread that wants to run many times a second. Not guarded. Times are seconds of one clock.
+/// Records the beats of a thread that should run many times per second. Not thread-safe. Times are in s of one clock.
 class Pulse {
  public:
   static constexpr double kRemembered = 1.0;  ///< s
-  static constexpr double kNoted = 0.01;      ///< s; shorter gaps are the thread's own rest
+  static constexpr double kNoted = 0.01;      ///< s; shorter gaps are the thread's own sleep
 
   explicit Pulse(double now) : last_(now) {}
 
@@ -21,7 +21,7 @@ class Pulse {
     while (!gaps_.empty() && gaps_.front().end < now - kRemembered) gaps_.pop_front();
   }
 
-  /// The longest gap of those that ended within the last kRemembered seconds and the one that is going on; 0 if all
+  /// Returns the longest gap in s: the current gap and those that ended within the last kRemembered seconds; 0 if all
   /// were short.
   double longest(double now) const {
     double out = now - last_ > kNoted ? now - last_ : 0.0;

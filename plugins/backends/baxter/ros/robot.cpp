@@ -34,32 +34,33 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// How long a simulated clock may stand still.
+/// Longest time for which a simulated clock may stand still.
 constexpr seconds kStandstill(2);
-/// A simulated second may pass in a twentieth of a real one: looked at so often, it is not overslept by 4 ms.
+/// Sleep between reads of a simulated clock. With a clock 20 times as fast as real time, a waiting loop is at most 4 ms
+/// late.
 constexpr microseconds kSimulatedNap(150);
-/// A simulated clock goes in steps, and who waits for the next must not miss it by the rounding of sums, seconds.
+/// Tolerance in s for rounding, because a simulated clock advances in steps.
 constexpr double kRounding = 1e-6;
-/// In simulated time the clock may overtake the messages of an instant, on a busy machine by far; so much real time
-/// they are given to catch up, to within so much simulated time.
+/// Real time that messages get to catch up with a simulated clock, which may be ahead of them on a busy machine.
+/// kAlmostNow is the sufficient age in s of simulated time.
 constexpr milliseconds kCatchUp(50);
 constexpr double kAlmostNow = 0.03;
 
-/// What came while this program did not get to it is counted, not dropped: at 100 Hz that of a tenth of a second, and
-/// no more, which would take even longer to get through.
+/// Length of the message queue: a tenth of a second at 100 Hz. Messages that wait while this program is busy are
+/// counted, not dropped. A longer queue would take longer to process.
 constexpr std::uint32_t kBacklog = 10;
-/// Without messages the spinner looks up so often.
+/// Longest wait of the spinner thread for a message.
 const ros::WallDuration kSpin(0.5 * Pulse::kNoted);
 
-/// For an answer of the robot's inverse kinematics, with room in the promised second.
+/// Time for an answer of the robot's inverse kinematics, within the promised second.
 constexpr milliseconds kSolve(900);
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// Protocol time, seconds: the simulated clock, or that of this machine as it was at the beginning, which then goes on
-/// evenly. Who sets the clock meanwhile, by hand or by NTP, neither makes data old nor the arm wait.
+/// Protocol time in s: the simulated clock, or a steady clock that starts at the system time. Changes of the system
+/// time, by hand or by NTP, neither make data old nor delay the arm.
 class Clock {
  public:
   double now() const {
@@ -67,7 +68,7 @@ class Clock {
     return begin_ + std::chrono::duration<double>(Steady::now() - steady_begin_).count();
   }
 
-  /// When a message was received, which roscpp tells by the clock of this machine.
+  /// Converts the reception time of roscpp, which uses the system clock.
   double received(const ros::Time& receipt) const {
     if (ros::Time::isSimTime()) return receipt.toSec();
     return now() - std::max(0.0, (ros::Time::now() - receipt).toSec());
@@ -82,10 +83,10 @@ double steady_seconds() { return std::chrono::duration<double>(Steady::now().tim
 
 constexpr std::size_t kArm = kJointNames.size();
 
-/// The arm's joints among named ones.
+/// Joints of the left arm in a message with named joints.
 struct ArmPart {
-  std::size_t count = 0;  ///< how many of them there are
-  std::string malformed;  ///< what is there, where that is not all of them, each with a position; else empty
+  std::size_t count = 0;  ///< number of the arm's joints in the message
+  std::string malformed;  ///< error text if joints or positions are missing; else empty
   Joints position = Joints::Zero();
 };
 
@@ -113,7 +114,7 @@ class RosRobot final : public Link {
     handle_.setCallbackQueue(&queue_);
     listen();
     if (commands) {
-      // Whoever else sends set-points drives the same arm elsewhere.
+      // Another sender of set-points moves the same arm.
       subscribe<msgs::JointCommand>(kCommandTopic, [](const auto&, const Heard& heard, Snapshot& latest) {
         add_once(latest.commanders, heard.sender);
       });
@@ -166,7 +167,7 @@ class RosRobot final : public Link {
   }
 
   void command(const Joints& target) override {
-    if (!command_publisher_) return;  // not wished for
+    if (!command_publisher_) return;  // commands were not requested
     std::copy(target.begin(), target.end(), command_.command.begin());
     command_publisher_.publish(command_);
     bag_->write_own(kCommandTopic, command_, false);
@@ -217,11 +218,12 @@ class RosRobot final : public Link {
 
   std::shared_ptr<Bag> bag() override { return bag_; }
 
-  /// This program listens, too.
+  /// This program subscribes to the topic, too.
   bool listened_to() override { return command_publisher_.getNumSubscribers() > 1; }
 
  private:
-  /// IKService's, asked with a deadline. It is looked for each time: it may have been started again, elsewhere.
+  /// Calls IKService with a deadline. Its address is looked up for each call, because it may have been restarted
+  /// elsewhere.
   std::string answer(const std::string& request, Deadline deadline) {
     const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
     const auto uri = master_.told("lookupService", kSolverService, deadline);
@@ -231,25 +233,26 @@ class RosRobot final : public Link {
     return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);
   }
 
-  /// Of a message: who sent it, and when it came.
+  /// Sender and reception time of a message.
   struct Heard {
     std::string sender;
     double received;
 
-    /// That of a stream's next reading.
+    /// Returns the arrival of the next reading of a stream.
     template <class Message, class Reading>
     Arrival next(const Message& message, const std::optional<Reading>& latest) const {
       return {received, message.header.stamp.toSec(), (latest ? latest->count : 0) + 1};
     }
   };
 
-  /// `take`, called with the message, its Heard and what is the latest, keeps what there is to keep.
+  /// Subscribes to `topic`. `take` stores a message; its arguments are the message, its Heard and the latest snapshot.
   template <class Message, class Take>
   void subscribe(const char* topic, const Take& take) {
     using Event = ros::MessageEvent<const Message>;
     const boost::function<void(const Event&)> heard = [this, topic, take](const Event& event) {
       if (event.getPublisherName() == ros::this_node::getName()) return;
-      // Before a simulated clock was heard nothing has an age, and what was latched comes then and never again.
+      // Before the first simulated time no message has an age. Latched messages arrive only then, so they are kept
+      // without a time.
       if (!event.getReceiptTime().isZero()) {
         bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
       } else if (traits::HasHeader<Message>::value || std::is_same_v<Message, msgs::AssemblyState>) {
@@ -300,7 +303,8 @@ class RosRobot final : public Link {
     if (ros::Time::isSimTime()) listen_to_clock();
   }
 
-  /// roscpp takes the time from whoever sends it. Here only the senders count, and the bag has times of its own.
+  /// Counts the senders of the simulated clock. roscpp accepts the time from any sender. The clock is not recorded,
+  /// because the bag stores times itself.
   void listen_to_clock() {
     using Event = ros::MessageEvent<const rosgraph_msgs::Clock>;
     const boost::function<void(const Event&)> heard = [this](const Event& event) {
@@ -313,7 +317,7 @@ class RosRobot final : public Link {
 
   static void take_joints(const sensor_msgs::JointState& message, const Heard& heard, Snapshot& latest) {
     const ArmPart part = arm_part(message);
-    if (part.count == 0) return;  // the gripper's, or the other arm's
+    if (part.count == 0) return;  // joints of the gripper or of the other arm
     if (!part.malformed.empty()) return malformed(latest, fmt::format("{} has {}", kJointTopic, part.malformed));
     latest.joints = JointReading{heard.next(message, latest.joints), part.position};
     add_once(latest.senders.joints, heard.sender);
@@ -340,7 +344,7 @@ class RosRobot final : public Link {
     if (latest.malformed.empty()) latest.malformed = words;
   }
 
-  /// Woken by every message and by the end.
+  /// Loop of the spinner thread, which every message and the end wake up.
   void spin() {
     while (!stop_) {
       queue_.callAvailable(kSpin);
@@ -369,8 +373,8 @@ class RosRobot final : public Link {
   msgs::JointCommand command_;
   Master master_;
   std::mutex mutex_;
-  Snapshot latest_;  ///< guarded by mutex_; its `now` and `own_gap` are not used
-  Pulse pulse_;      ///< of the spinner; guarded by mutex_
+  Snapshot latest_;  ///< guarded by mutex_; `now` and `own_gap` are not used
+  Pulse pulse_;      ///< of the spinner thread; guarded by mutex_
   std::atomic<bool> stop_{false};
   std::thread spinner_;
 };

@@ -17,9 +17,9 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kTapSize = 0.008;     ///< of what marks a tap, metres
-constexpr double kLineWidth = 0.002;   ///< of the area's border, metres
-constexpr double kArrowLength = 0.08;  ///< above the desk, where the arm goes next, metres
+constexpr double kTapSize = 0.008;     ///< m, size of a tap's marker
+constexpr double kLineWidth = 0.002;   ///< m, width of the area's border
+constexpr double kArrowLength = 0.08;  ///< m, from the arrow's start to the desk
 constexpr double kArrowWidth = 0.006;
 constexpr const char* kFrame = "base";
 
@@ -57,7 +57,7 @@ class RosView final : public View {
   void surface(const Points& places, const VectorView& height, const VectorView& deviation) override {
     const auto count = static_cast<std::size_t>(std::min({places.rows(), height.size(), deviation.size()}));
     sensor_msgs::PointCloud2 cloud;
-    // No stamp: it is as good in a minute as it is now, and RViz drops what is older than its transforms.
+    // Without a stamp, because RViz drops messages that are older than its transforms.
     cloud.header.frame_id = kFrame;
     cloud.height = 1;
     cloud.is_dense = height.allFinite() && deviation.allFinite();
@@ -87,7 +87,7 @@ class RosView final : public View {
     return point;
   }
 
-  /// One marker a namespace, always with the same id, so that each message replaces the one before.
+  /// Returns a marker with a fixed id in its own namespace, so that each message replaces the previous one.
   static Marker marker(const char* name, int type, double width, const std::array<float, 3>& color,
                        std::vector<geometry_msgs::Point> points) {
     Marker result;
@@ -115,8 +115,8 @@ class RosView final : public View {
     std::vector<geometry_msgs::Point> arrow;
     if (next_) arrow = {in_base(next_->x, next_->y, desk_ + kArrowLength), in_base(next_->x, next_->y, desk_)};
     Marker next = marker("next", Marker::ARROW, kArrowWidth, {0.9F, 0.5F, 0.1F}, arrow);
-    next.scale.y = 2 * kArrowWidth;  // of the head
-    next.scale.z = 4 * kArrowWidth;  // its length
+    next.scale.y = 2 * kArrowWidth;  // width of the head
+    next.scale.z = 4 * kArrowWidth;  // length of the head
     array.markers.push_back(next);
     publish(taps_publisher_, array);
   }
