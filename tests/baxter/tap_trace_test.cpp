@@ -66,47 +66,68 @@ constexpr double kDeeper = 0.05;      // m by which the desk is lower than expec
 constexpr double kGoesOn = 0.07;      // s for which stopped joints move on
 constexpr double kLimit = 16.0;       // N
 
+using Rows = std::vector<TapTrace::Row>;
+
+/// A tap of a robot, with the truth.
+struct RecordedTap {
+  Rows rows;
+  double touched = -1.0;  ///< s, first contact force; -1 without one
+  double springs = 0.0;   ///< N/m, vertical stiffness of the arm at the end
+};
+
 /// Records the second tap on the bare desk at a position, because the first shows the driver the robot's properties.
-TapTrace record(const Case& one) {
+RecordedTap second_tap(const Case& one, const BaxterOptions& options, bool contact) {
   const auto scene =
       palpate::test::scene_of(palpate::test::kBare, fmt::format("{{stiffness: {{object: {} N/m}}}}", one.stiffness));
-  const bool contact = one.verdict == TapTrace::Verdict::contact;
-  BaxterOptions options = test::shipped_options();
-  test::BodyOptions body = test::body_options(options);
-  if (!contact) options.scene_pose.height += kDeeper;
+  test::BodyOptions body = test::body_options(test::shipped_options());
   body.mechanics.type = fake_baxter::MechanicsOptions::Type::springs;
   test::BodyRobot robot(*scene, body);
   for (const fake_baxter::Fault& fault : one.faults) robot.body.inject(fault);
   Tapper tapper(options, *scene, robot, nullptr, [](const std::string&) {});
   const Arm arm(Eigen::Map<const Eigen::Vector3d>(options.tool.tip));
   const Eigen::Isometry3d to_scene = options.scene_pose.frame().inverse();
-  std::vector<TapTrace::Row> rows;
-  double touched = -1.0;
+  RecordedTap out;
   robot.every_period = [&] {
     const Snapshot seen = robot.read();
     const double height = (to_scene * arm.tip(seen.joints->position).position).z();
-    rows.push_back({robot.body.now(), height, -seen.endpoint->force.z(), 0});
-    if (touched < 0.0 && robot.body.pressing() > 0.0) touched = robot.body.now();
+    out.rows.push_back({robot.body.now(), height, -seen.endpoint->force.z(), 0});
+    if (out.touched < 0.0 && robot.body.pressing() > 0.0) out.touched = robot.body.now();
   };
   TapRequest request;
   for (request.number = 1; request.number <= 2; ++request.number) {
     request.previous = request.target = Target{kPlace.x + 0.03 * (2 - request.number), kPlace.y};
-    rows.clear();
-    touched = -1.0;
+    out.rows.clear();
+    out.touched = -1.0;
     EXPECT_EQ(tapper.tap(request).outcome, contact ? Outcome::contact : Outcome::no_contact) << one.name;
   }
-  // The descent ends at the lowest position of the arm; before it the arm rested.
-  const auto lower = [](const TapTrace::Row& a, const TapTrace::Row& b) { return a.height < b.height; };
-  const auto lowest = std::min_element(rows.begin(), rows.end(), lower);
-  const double top = options.motion.hover;
+  out.springs = arm.vertical_stiffness(robot.body.joints());
+  return out;
+}
+
+/// Returns the first row of the rest before the descent that ends at `lowest`.
+Rows::const_iterator begin_of_rest(const Rows& rows, Rows::const_iterator lowest, double top) {
   auto begin = lowest;
   while (begin != rows.begin() && begin->height < top - 0.0002) --begin;
   const double sank = begin->time;
   while (begin != rows.begin() && begin->time > sank - kTared) --begin;
+  return begin;
+}
+
+/// Records a case with its verdict.
+TapTrace record(const Case& one) {
+  const bool contact = one.verdict == TapTrace::Verdict::contact;
+  BaxterOptions options = test::shipped_options();
+  if (!contact) options.scene_pose.height += kDeeper;
+  const RecordedTap tap = second_tap(one, options, contact);
+  const Rows& rows = tap.rows;
+  // The descent ends at the lowest position of the arm.
+  const auto lower = [](const TapTrace::Row& a, const TapTrace::Row& b) { return a.height < b.height; };
+  const auto lowest = std::min_element(rows.begin(), rows.end(), lower);
+  const auto begin = begin_of_rest(rows, lowest, options.motion.hover);
   TapTrace out;
   out.what = one.what;
   out.verdict = one.verdict;
-  out.not_before = touched - begin->time;
+  out.not_before = tap.touched - begin->time;
   for (auto it = begin; it != rows.end() && it->time < lowest->time + kAfter; ++it) {
     out.rows.push_back({it->time - begin->time, it->height, it->force, 0});
   }
@@ -114,10 +135,9 @@ TapTrace record(const Case& one) {
     return std::find_if(rows.begin(), rows.end(), [=](const auto& row) { return row.time >= time; })->height;
   };
   // Speed in the second before the touch, or two seconds before the end.
-  const double late = contact ? touched : lowest->time - 2.0;
+  const double late = contact ? tap.touched : lowest->time - 2.0;
   const double speed = at(late - 1.0) - at(late);
-  const double springs = arm.vertical_stiffness(robot.body.joints());
-  const double stiffness = springs * one.stiffness / (springs + one.stiffness);
+  const double stiffness = tap.springs * one.stiffness / (tap.springs + one.stiffness);
   const double delay = one.faults.empty() || one.faults[0].kind != FaultKind::delay ? 0.0 : one.faults[0].amount;
   out.by = out.not_before + kLimit / (stiffness * speed) - 2.0 * delay - kGoesOn;
   out.motion = fmt::format(

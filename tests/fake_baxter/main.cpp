@@ -116,14 +116,8 @@ int run(const Arguments& a) {
   return 0;
 }
 
-int run_main(int argc, char** argv) {
-  CLI::App app{
-      "fake_baxter: simulates the left arm of a Baxter in the scene of an experiment, on a ROS network. All noise is\n"
-      "drawn from the config's seed; its backend sets the tool and the pose of the scene.",
-      "fake_baxter"};
-  Arguments a;
-  CLI::Option* companion = app.add_option("--companion", a.companion, "");
-  companion->group("");
+/// Adds all options except --companion.
+void add_options(CLI::App& app, Arguments& a) {
   app.add_option("CONFIG", a.config, "YAML file of the experiment");
   app.add_option("OVERRIDE", a.overrides, "value of a key or name of a config group, as for 'palpate run'")
       ->type_name("KEY=VALUE");
@@ -159,6 +153,17 @@ int run_main(int argc, char** argv) {
   app.add_option("--at", a.at, "start of the faults: start, or DESCENT:HEIGHT above the desk, such as 2:8cm");
   app.add_option("--trace", a.node.trace, "CSV file to write, with one row per period");
   app.footer("Faults; those marked * hold from the start, whatever --at says:\n" + describe_faults());
+}
+
+int run_main(int argc, char** argv) {
+  CLI::App app{
+      "fake_baxter: simulates the left arm of a Baxter in the scene of an experiment, on a ROS network. All noise is\n"
+      "drawn from the config's seed; its backend sets the tool and the pose of the scene.",
+      "fake_baxter"};
+  Arguments a;
+  CLI::Option* companion = app.add_option("--companion", a.companion, "");
+  companion->group("");
+  add_options(app, a);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

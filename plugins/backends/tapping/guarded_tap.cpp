@@ -58,88 +58,93 @@ double GuardedTap::next(double height, double force, bool fresh) {
     finish({Outcome::timeout, 0.0, 0.0, 0.0, kTooLong});
     return set_point_;
   }
+  if (stage_ == Stage::pause) tare_in_pause();
+  if (above_ < kConsecutive || !react(height)) advance(height);
+  return set_point_;
+}
+
+/// Reacts to a detected contact. Returns false in stages that ignore contacts.
+bool GuardedTap::react(double height) {
+  switch (stage_) {
+    case Stage::approach:
+    case Stage::unwind:
+      set_point_ = height;
+      enter(stage_ == Stage::approach ? Stage::clear : Stage::back_off);
+      return true;
+    case Stage::descend:
+    case Stage::pause:
+    case Stage::bottom:
+      touched(height);
+      return true;
+    case Stage::fine:
+      finish({Outcome::contact, height, peak_, 0.0, {}});
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Continues the stage by one period without a contact.
+void GuardedTap::advance(double height) {
   switch (stage_) {
     case Stage::tare:
     case Stage::settle:
-      if (waited(stage_ == Stage::tare ? motion_.tare : motion_.pause) && summed_ > 0 && averaged(kFewestTared)) {
-        zero_ = sum_ / summed_;
-        free_.tare(zero_);
-        enter(stage_ == Stage::settle ? Stage::fine : Stage::approach);
-      }
-      break;
+      return finish_tare();
     case Stage::approach:
-      if (above_ >= kConsecutive) {
-        set_point_ = height;
-        enter(Stage::clear);
-      } else if (descent_.start >= descent_.hover || ramp(descent_.start, motion_.adaptive_hover->speed)) {
+      if (descent_.start >= descent_.hover || ramp(descent_.start, motion_.adaptive_hover->speed))
         enter(Stage::descend);
-      }
       break;
     case Stage::clear:
       if (ramp(goal_, motion_.adaptive_hover->speed) && arrived(height)) enter(Stage::descend);
       break;
     case Stage::descend:
-      if (above_ >= kConsecutive) {
-        touched(height);
-      } else if (ramp(goal_, motion_.speed)) {
+      if (ramp(goal_, motion_.speed)) {
         enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
       }
       break;
     case Stage::pause:
-      if (arm_ == Arm::real && waited(motion_.pause) && summed_ > 0) {
-        // The mean of the end of the pause, when the arm rests, becomes the new zero. A change of half the threshold
-        // may be a contact, so it is not tared away.
-        const double mean = sum_ / summed_;
-        if (std::abs(mean - zero_) < 0.5 * motion_.threshold) {
-          zero_ = mean;
-          free_.tare(zero_);
-        }
-      }
-      if (above_ >= kConsecutive) {
-        touched(height);
-      } else if (waited(motion_.pause)) {
-        enter(set_point_ <= descent_.floor ? Stage::bottom : Stage::descend);
-      }
+      if (waited(motion_.pause)) enter(set_point_ <= descent_.floor ? Stage::bottom : Stage::descend);
       break;
     case Stage::rest:
-      if (waited(motion_.pause) && (arm_ == Arm::simulated || averaged(kFewestWatched))) {
-        Rise found = arm_ == Arm::simulated ? Rise{height, true, 0.0} : rise();
-        found.height = height;
-        conclude(found);
-      }
+      if (waited(motion_.pause) && averaged(kFewestWatched)) conclude_at_rest(height);
       break;
     case Stage::back_off:
       if (ramp(goal_, motion_.speed) && arrived(height)) enter(arm_ == Arm::real ? Stage::unwind : Stage::settle);
       break;
     case Stage::unwind:
-      if (above_ >= kConsecutive) {
-        set_point_ = height;
-        enter(Stage::back_off);
-      } else if (ramp(goal_, motion_.fine_speed) && arrived(height)) {
-        enter(Stage::settle);
-      }
+      if (ramp(goal_, motion_.fine_speed) && arrived(height)) enter(Stage::settle);
       break;
     case Stage::fine:
-      if (above_ >= kConsecutive) {
-        finish({Outcome::contact, height, peak_, 0.0, {}});
-      } else if (ramp(goal_, motion_.fine_speed)) {
-        enter(Stage::descend);
-      }
+      if (ramp(goal_, motion_.fine_speed)) enter(Stage::descend);
       break;
     case Stage::stop:
       if (waited(kWatched) && averaged(kFewestWatched)) conclude_at_onset();
       break;
     case Stage::bottom:
-      if (above_ >= kConsecutive) {
-        touched(height);
-      } else if (arrived(height)) {
-        finish({Outcome::no_contact, 0.0, 0.0, 0.0, "the descent ended without a contact"});
-      }
+      if (arrived(height)) finish({Outcome::no_contact, 0.0, 0.0, 0.0, "the descent ended without a contact"});
       break;
     case Stage::done:
       break;
   }
-  return set_point_;
+}
+
+/// Ends a tare after its time, with the mean force as the zero.
+void GuardedTap::finish_tare() {
+  if (!waited(stage_ == Stage::tare ? motion_.tare : motion_.pause) || summed_ == 0 || !averaged(kFewestTared)) return;
+  zero_ = sum_ / summed_;
+  free_.tare(zero_);
+  enter(stage_ == Stage::settle ? Stage::fine : Stage::approach);
+}
+
+/// Tares a real arm at the end of a pause, when it rests. A change of half the threshold may be a contact, so it is not
+/// tared away.
+void GuardedTap::tare_in_pause() {
+  if (arm_ != Arm::real || !waited(motion_.pause) || summed_ == 0) return;
+  const double mean = sum_ / summed_;
+  if (std::abs(mean - zero_) < 0.5 * motion_.threshold) {
+    zero_ = mean;
+    free_.tare(zero_);
+  }
 }
 
 void GuardedTap::slow_to(double speed) {
@@ -211,6 +216,13 @@ bool GuardedTap::too_soft() {
     softs_ = 0;
   }
   return ++softs_ >= kMostSoft;
+}
+
+/// Ends the rest of `paper`, with the height of the resting arm.
+void GuardedTap::conclude_at_rest(double height) {
+  Rise found = arm_ == Arm::simulated ? Rise{height, true, 0.0} : rise();
+  found.height = height;
+  conclude(found);
 }
 
 /// Ends a `continuous` motion with the height of the onset.

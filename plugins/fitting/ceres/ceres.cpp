@@ -189,7 +189,7 @@ Eigen::VectorXd random_start(const std::vector<Expectation>& expectations, Rando
 bool better(const Spot& a, const Spot& b) { return a.valid && (!b.valid || a.value > b.value); }
 
 /// Describes the results of all starts.
-std::string told(const std::vector<Spot>& spots, const Model& model) {
+std::string describe(const std::vector<Spot>& spots, const Model& model) {
   std::string values;
   for (const Spot& spot : spots) {
     values += values.empty() ? "" : " / ";
@@ -233,25 +233,7 @@ class Ceres final : public Fitting {
     double value_now = 0.0;
     const bool known = objective.evaluate(now.data(), &value_now, nullptr);
 
-    const Memory memory = problem.memory != nullptr ? Memory::of(*problem.memory, now.size()) : Memory();
-    const auto taps = static_cast<double>(model.size());
-    Spot best;
-    const bool one_optimum = options_.priors == Options::Priors::touch;
-    if (known && one_optimum && taps >= memory.searched && taps < kGrowth * memory.searched) {
-      best = ascend(objective, now, memory.metric, kFine);
-      if (best.converged) summary.reason = best.reason + "; from the values before";
-    }
-    const bool searched = !best.converged;
-    if (searched) {
-      const std::vector<Spot> spots = search(model, objective, expected, now, random, summary.evaluations);
-      best = spots.front();
-      summary.reason = best.valid ? best.reason + "; from " + told(spots, model) : "no ascent reached a finite value";
-    }
-    if (problem.memory != nullptr && best.valid) {
-      // After a search with few points, the metric is that of its start, which may be far from the optimum.
-      if (searched && model.size() <= kPart) best.metric = metric_at(objective, best.x);
-      Memory{searched ? taps : memory.searched, best.metric}.keep(*problem.memory);
-    }
+    const Spot best = optimum(model, objective, expected, now, known, problem.memory, random, summary);
     summary.evaluations += objective.evaluations();
     if (model.used.size() < problem.outputs.size()) summary.reason += "; outputs without information were left out";
     if (best.valid && (!known || best.value > value_now)) {
@@ -289,6 +271,34 @@ class Ceres final : public Fitting {
 
   Objective objective_of(const Model& model, const std::vector<Expectation>& expected) const {
     return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
+  }
+
+  /// Returns the optimum by an ascent from the present values `now` if one suffices, else by a search. `known`: whether
+  /// the objective is finite at `now`. Updates `memory`, which may be null, and reason and evaluations of `summary`.
+  Spot optimum(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
+               const Eigen::VectorXd& now, bool known, std::vector<double>* memory, Random& random,
+               FitSummary& summary) const {
+    const Memory last = memory != nullptr ? Memory::of(*memory, now.size()) : Memory();
+    const auto taps = static_cast<double>(model.size());
+    Spot best;
+    const bool one_optimum = options_.priors == Options::Priors::touch;
+    if (known && one_optimum && taps >= last.searched && taps < kGrowth * last.searched) {
+      best = ascend(objective, now, last.metric, kFine);
+      if (best.converged) summary.reason = best.reason + "; from the values before";
+    }
+    const bool searched = !best.converged;
+    if (searched) {
+      const std::vector<Spot> spots = search(model, objective, expected, now, random, summary.evaluations);
+      best = spots.front();
+      summary.reason =
+          best.valid ? best.reason + "; from " + describe(spots, model) : "no ascent reached a finite value";
+    }
+    if (memory != nullptr && best.valid) {
+      // After a search with few points, the metric is that of its start, which may be far from the optimum.
+      if (searched && model.size() <= kPart) best.metric = metric_at(objective, best.x);
+      Memory{searched ? taps : last.searched, best.metric}.keep(*memory);
+    }
+    return best;
   }
 
   /// Returns the optima of all ascents, the best first. `objective` belongs to `model`. Evaluations of objectives for a

@@ -188,12 +188,16 @@ double Sampler::add(const Touch& touch) {
   undiscovered_.add(touch, likelihood_.labels(settings_.position_noise > 0.0));
   const int times = count_moves(sum * sum / (sum_of_squares * before));
   for (Particle& particle : particles_) mover_.move(particle, times, likelihood_, random_);
+  compare_undiscovered();
+  return p_label / before;
+}
+
+void Sampler::compare_undiscovered() {
   constexpr std::size_t kCompared = 8;
   std::vector<const Hypothesis*> known;
   for (std::size_t k = 0; k < kCompared; ++k)
     known.push_back(&particles_[k * particles_.size() / kCompared].hypothesis);
   undiscovered_.compare(known);
-  return p_label / before;
 }
 
 /// Adds an undiscovered primitive at the tap to each particle, with its probability given the label.
