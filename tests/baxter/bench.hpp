@@ -2,8 +2,8 @@
 // Common input of the driver's tests: scene pose and tool of configs/backend/fake_baxter.yaml, and a sound robot.
 #pragma once
 
+#include "baxter/motion_guard.hpp"
 #include "baxter/path.hpp"
-#include "baxter/watch.hpp"
 #include "support/plugins.hpp"
 
 #include <cmath>

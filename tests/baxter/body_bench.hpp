@@ -52,8 +52,8 @@ class BodyBench {
   void inject(const std::string& fault, const std::string& at = "start") {
     body.inject(fake_baxter::parse_fault(fault), fake_baxter::parse_trigger(at));
   }
-  baxter::StateReading state() const { return *body.said().state; }
-  Eigen::Vector3d force() const { return body.said().endpoint->force; }
+  baxter::StateReading state() const { return *body.messages().state; }
+  Eigen::Vector3d force() const { return body.messages().endpoint->force; }
   bool reflex() const { return body.mode() == fake_baxter::Body::Mode::reflex; }
 
   /// Simulates `seconds` with set-points at `target`. Outside of hold() no set-points are sent.

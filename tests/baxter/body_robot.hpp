@@ -84,7 +84,7 @@ class BodyRobot final : public Robot {
 
  private:
   void hear() {
-    for (const fake_baxter::Said& said : delivery_.take(body)) {
+    for (const fake_baxter::RobotMessages& said : delivery_.take(body)) {
       keep(heard_.joints, said.joints);
       keep(heard_.endpoint, said.endpoint);
       keep(heard_.state, said.state);

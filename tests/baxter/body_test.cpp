@@ -14,7 +14,7 @@ namespace {
 using fake_baxter::Body;
 using fake_baxter::parse_fault;
 using fake_baxter::parse_trigger;
-using fake_baxter::Said;
+using fake_baxter::RobotMessages;
 using State = baxter::StateReading;
 
 TEST(FakeBody, StandsStraightDownAboveTheMiddle) {
@@ -35,23 +35,23 @@ TEST(FakeBody, TrailsItsSetPointInEveryJointByAThirdOfASecondTimesTheSpeed) {
   // The set-point is a staircase, so the lag varies by half a step.
   const baxter::Joints lag = bench.target - bench.body.joints();
   for (double one : lag) EXPECT_NEAR(one, speed * Body::kLag, speed * Body::kPeriod);
-  const Said said = bench.body.said();
+  const RobotMessages said = bench.body.messages();
   for (double one : said.speed) EXPECT_NEAR(one, speed, 1e-4);
 }
 
 TEST(FakeBody, GoesAtItsShareOfTheGreatestSpeedHoweverFarTheSetPointJumps) {
   BodyBench as_shipped(kBare, "{}");
   BodyBench as_left(kBare, "{}", [](auto& o) { o.speed_ratio = 0.03; });
-  BodyBench told(kBare, "{}");
+  BodyBench in_letters(kBare, "{}");
   told.body.set_speed_ratio(1.0);
   told.body.set_speed_ratio(std::numeric_limits<double>::quiet_NaN());
   for (const auto& [bench, share] : {std::pair(&as_shipped, 0.3), {&as_left, 0.03}, {&told, 1.0}}) {
     bench->target(1) -= 1.5 * share;
     for (int i = 0; i < 100; ++i) {
       bench->hold(Body::kPeriod);
-      EXPECT_LT(bench->body.said().speed.cwiseAbs().maxCoeff(), 1.5 * share * (1 + 1e-9));
+      EXPECT_LT(bench->body.messages().speed.cwiseAbs().maxCoeff(), 1.5 * share * (1 + 1e-9));
     }
-    EXPECT_LT(bench->body.said().speed(1), -1.0 * share);
+    EXPECT_LT(bench->body.messages().speed(1), -1.0 * share);
   }
 }
 
@@ -115,12 +115,12 @@ TEST(FakeBody, TheFirmwareHoldsItForTwoSecondsAbove16NewtonsAndThenItGoesOn) {
   EXPECT_LT(bench.body.pressing(), Body::kReflex + 1.5);
   bench.jump({0.115, 0.115, 0.05});
   while (bench.reflex()) {
-    EXPECT_TRUE(bench.body.said().collision->collision);
+    EXPECT_TRUE(bench.body.messages().collision->collision);
     EXPECT_LT(bench.body.tip().z(), 0.0) << "commands are ignored";
     bench.hold(Body::kPeriod);
   }
   EXPECT_NEAR(bench.body.now() - begin, Body::kHeld, 0.011);
-  EXPECT_FALSE(bench.body.said().collision->collision);
+  EXPECT_FALSE(bench.body.messages().collision->collision);
   bench.hold(3.0);
   EXPECT_NEAR(bench.body.tip().z(), 0.05, 1e-4);
 }
@@ -135,7 +135,7 @@ TEST(FakeBody, LeftPressingItIsHeldAgainAndAgainAndALittleWayUpEachTimeSetsItFre
   const auto watch = [&](double seconds) {
     for (double left = seconds; left > 0.0; left -= Body::kPeriod) {
       bench.hold(Body::kPeriod);
-      EXPECT_EQ(bench.body.said().collision->collision, bench.reflex());
+      EXPECT_EQ(bench.body.messages().collision->collision, bench.reflex());
       fired += bench.reflex() && !before ? 1 : 0;
       before = bench.reflex();
     }
@@ -173,7 +173,7 @@ TEST(FakeBody, AnEmergencyStopNeedsItsButtonReleasedThenAResetAndThenEnable) {
 
 /// Returns the state as text: an upper-case letter per set flag and a lower-case one per unset flag, then button and
 /// source as numbers.
-std::string told(const State& state) {
+std::string in_letters(const State& state) {
   return fmt::format("{}{}{}{} {} {}", state.ready ? "R" : "r", state.enabled ? "E" : "e", state.stopped ? "S" : "s",
                      state.error ? "X" : "x", static_cast<int>(state.estop_button),
                      static_cast<int>(state.estop_source));
@@ -204,7 +204,7 @@ TEST(FakeBody, IsReadyOnlyWhileItIsEnabledAndStoppedByAnythingButItsButtonDoesNo
     } else {
       bench.inject(word);
     }
-    EXPECT_EQ(told(bench.state()), state) << word;
+    EXPECT_EQ(in_letters(bench.state()), state) << word;
     bench.hold(0.1);
     const Body::Mode held = state[2] == 'S' ? Body::Mode::stopped : Body::Mode::disabled;
     EXPECT_EQ(bench.body.mode(), state[0] == 'R' ? Body::Mode::following : held) << word;
@@ -226,7 +226,7 @@ TEST(FakeBody, AFaultBeginsOnTheDescentAndAtTheHeightAskedFor) {
     EXPECT_EQ(bench.body.faulty(), descent == 2);
   }
   EXPECT_NEAR(bench.body.tip().z(), 0.08, 0.001);
-  EXPECT_TRUE(bench.body.said().state->error);
+  EXPECT_TRUE(bench.body.messages().state->error);
   const double height = bench.body.tip().z();
   bench.hold(2.0);
   EXPECT_NEAR(bench.body.tip().z(), height, 0.001) << "brakes";
@@ -237,9 +237,9 @@ TEST(FakeBody, SaysWhatItsFaultsMakeOfIt) {
     BodyBench bench;
     bench.hold(0.5);
     bench.inject(fault);
-    const Said before = bench.body.said();
+    const RobotMessages before = bench.body.messages();
     bench.hold(0.5);
-    return std::make_pair(before, bench.body.said());
+    return std::make_pair(before, bench.body.messages());
   };
   EXPECT_FALSE(said("kill_endpoint").second.endpoint);
   EXPECT_FALSE(said("no_data=endpoint").second.endpoint);

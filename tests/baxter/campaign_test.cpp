@@ -3,7 +3,7 @@
 // in a hundred, and no force above the arm's reflex. PALPATE_CAMPAIGN=TAPS sets the number of taps per arm instead of
 // the everyday number: tests/robot_campaign.sh.
 #include "baxter/campaign.hpp"
-#include "fake_baxter/mujoco.hpp"
+#include "fake_baxter/mujoco_arm.hpp"
 #include "support/sanitizers.hpp"
 
 #include <fmt/format.h>
@@ -118,7 +118,7 @@ TEST_P(Campaign, RunsThirtyTapsOnSoftAndOnHardThings) {
 
 /// Condition of a robot with Rethink's springs: stiffness of the object in N/m, delay or jitter of every message in s,
 /// time constant of the force's filter in s, and change of the force's zero in N/m.
-struct Trouble {
+struct Disturbance {
   double stiffness = 20000.0;
   double delay = 0.0;
   double jitter = 0.0;
@@ -136,24 +136,24 @@ constexpr double kSoftest = 1000.0;
 constexpr double kHardest = 50000.0;
 
 /// Each extreme alone, and all of them together.
-const std::vector<Trouble>& extremes() {
-  static const std::vector<Trouble> all = {{kSoftest},
-                                           {kHardest},
-                                           {kHardest, kMostDelay},
-                                           {kHardest, 0.0, kMostDelay},
-                                           {kHardest, 0.0, 0.0, kMostFilter},
-                                           {kSoftest, 0.0, 0.0, 0.0, kMostDrift},
-                                           {kHardest, 0.0, 0.0, 0.0, -kMostDrift},
-                                           {kSoftest, kMostDelay, 0.0, kMostFilter, kMostDrift},
-                                           {kHardest, kMostDelay, 0.0, kMostFilter, -kMostDrift},
-                                           {kHardest, 0.04, 0.0, 0.1}};
+const std::vector<Disturbance>& extremes() {
+  static const std::vector<Disturbance> all = {{kSoftest},
+                                               {kHardest},
+                                               {kHardest, kMostDelay},
+                                               {kHardest, 0.0, kMostDelay},
+                                               {kHardest, 0.0, 0.0, kMostFilter},
+                                               {kSoftest, 0.0, 0.0, 0.0, kMostDrift},
+                                               {kHardest, 0.0, 0.0, 0.0, -kMostDrift},
+                                               {kSoftest, kMostDelay, 0.0, kMostFilter, kMostDrift},
+                                               {kHardest, kMostDelay, 0.0, kMostFilter, -kMostDrift},
+                                               {kHardest, 0.04, 0.0, 0.1}};
   return all;
 }
 
 /// Generates the points of a Sobol sequence.
-class Troubles {
+class DisturbanceSequence {
  public:
-  Trouble next() {
+  Disturbance next() {
     std::array<double, 4> at{};
     for (double& one : at) one = uniform_(sequence_);
     const bool jitters = at[1] > 0.5;
@@ -167,7 +167,7 @@ class Troubles {
   boost::random::uniform_01<double> uniform_;
 };
 
-Condition condition_of(const Trouble& trouble, const std::string& motion = {}) {
+Condition condition_of(const Disturbance& trouble, const std::string& motion = {}) {
   Condition out;
   out.arm.type = Type::springs;
   out.stiffness = trouble.stiffness;
@@ -182,25 +182,25 @@ Condition condition_of(const Trouble& trouble, const std::string& motion = {}) {
   return out;
 }
 
-std::string name_of(const Trouble& trouble) {
+std::string name_of(const Disturbance& trouble) {
   return fmt::format("{:.1f} kN/m, delay {:.0f} ms, jitter {:.0f} ms, filter {:.0f} ms, drift {:.0f} N/m",
                      1e-3 * trouble.stiffness, 1e3 * trouble.delay, 1e3 * trouble.jitter, 1e3 * trouble.filter,
                      trouble.drift);
 }
 
 /// s per tap of this robot without disturbance at the speed in configs/backend/baxter.yaml.
-constexpr double kUntroubled = 16.5;
+constexpr double kUndisturbed = 16.5;
 
 TEST(ForceBound, HoldsUnderDelaysFiltersAndDriftsOnSoftAndHardThings) {
   const char* wanted = std::getenv("PALPATE_CAMPAIGN");
   const int at_extremes = wanted != nullptr ? 40 : palpate::test::kSanitized ? 2 : 4;
   const int in_between = wanted != nullptr ? std::atoi(wanted) : palpate::test::kSanitized ? 4 : 40;
   constexpr int kOneRun = 8;
-  std::vector<std::pair<Trouble, int>> all;
-  for (const Trouble& one : extremes()) all.emplace_back(one, at_extremes);
-  Troubles troubles;
+  std::vector<std::pair<Disturbance, int>> all;
+  for (const Disturbance& one : extremes()) all.emplace_back(one, at_extremes);
+  DisturbanceSequence sequence;
   for (int taps = 0; taps < in_between; taps += kOneRun) {
-    const Trouble next = troubles.next();
+    const Disturbance next = sequence.next();
     // The duration of a tap depends on its position: eight taps under one condition took 28 to 39 s each, 40 took 34 s
     // on average.
     const bool many = wanted != nullptr && next.is_common();
@@ -216,7 +216,7 @@ TEST(ForceBound, HoldsUnderDelaysFiltersAndDriftsOnSoftAndHardThings) {
     EXPECT_LT(one.found, 10.0) << name_of(trouble) << ": s from a touch to its end";
     if (trouble.is_common()) {
       EXPECT_EQ(one.ended, 0) << name_of(trouble);
-      EXPECT_LT(one.seconds / one.taps, 2.2 * kUntroubled) << name_of(trouble);
+      EXPECT_LT(one.seconds / one.taps, 2.2 * kUndisturbed) << name_of(trouble);
     }
     sum.add(one);
   }

@@ -50,9 +50,9 @@ const Kind kKinds[] = {
     {"squish", FaultKind::squish, 0, 0, kNever, false, kBent, false},
     {"freeze_endpoint", FaultKind::freeze_endpoint, 0, 0, kNever, false, kBent, false},
     {"kill_endpoint", FaultKind::kill_endpoint, 0, 0, kNever, false, kBent, false},
-    {"kill_joints", FaultKind::kill_joints, 0, 0, Watch::kFresh, true, kBent, false},
-    {"kill_state", FaultKind::kill_state, 0, 0, Watch::kStateFresh, true, kBent, false},
-    {"stale_stamps", FaultKind::stale_stamps, 0, 0, Watch::kLate, true, kBent, false},
+    {"kill_joints", FaultKind::kill_joints, 0, 0, MotionGuard::kFresh, true, kBent, false},
+    {"kill_state", FaultKind::kill_state, 0, 0, MotionGuard::kStateFresh, true, kBent, false},
+    {"stale_stamps", FaultKind::stale_stamps, 0, 0, MotionGuard::kLate, true, kBent, false},
     {"second_sender", FaultKind::second_sender, 0, 0, 0.0, true, kBent, false},
     {"second_sender=endpoint", FaultKind::second_sender, 0, 0, kNever, false, kBent, false},
     {"nan_wrench", FaultKind::nan_wrench, 0, 0, kNever, false, kBent, false},
@@ -145,7 +145,7 @@ class Chaos {
     EXPECT_TRUE(!last_.ends_run || last_.outcome == Outcome::aborted);
     // A limited speed extends the timeout accordingly, for at least 1 mm/s. Travel and rise take up to 30 s more.
     const double way = options_.motion.hover + options_.motion.overrun;
-    const double bounded = way / Reaction::kSlowestFirst - way / options_.motion.speed;
+    const double bounded = way / ReactionTime::kSlowestFirst - way / options_.motion.speed;
     EXPECT_LT(robot_.body.now() - begin, options_.motion.timeout + bounded + 30.0);
     if (last_.outcome == Outcome::contact && !robot_.body.faulty()) {
       // Paper and two_stage measure where the force exceeds its threshold, after the object has yielded.

@@ -3,9 +3,9 @@
 // nothing remains afterwards.
 #include "baxter/ros/connect.hpp"
 
-#include "elsewhere.hpp"
+#include "child_run.hpp"
+#include "command_lines.hpp"
 #include "robot_lab.hpp"
-#include "robot_words.hpp"
 #include "support/ports.hpp"
 #include "support/programs.hpp"
 
@@ -20,10 +20,10 @@ namespace palpate::test {
 namespace {
 
 using baxter::connect;
+using baxter::ConnectionOptions;
 using baxter::Joints;
 using baxter::Robot;
 using baxter::Snapshot;
-using baxter::Wishes;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
@@ -40,9 +40,9 @@ std::vector<std::string> with(std::vector<std::string> environment, const std::v
 }
 
 /// Returns the error of connect(), and checks that it comes in time.
-std::string refusal(const std::vector<std::string>& environment, const Wishes& wishes = {}) {
-  const Elsewhere result = elsewhere(environment, [&] {
-    connect(wishes);
+std::string refusal(const std::vector<std::string>& environment, const ConnectionOptions& options = {}) {
+  const ChildResult result = run_in_child(environment, [&] {
+    connect(options);
     return std::string("connected");
   });
   EXPECT_LE(result.seconds, kPromised) << result.printed;
@@ -198,7 +198,7 @@ TEST(Connect, TheRobotsInverseKinematicsIsMissedOnlyByThoseWhoWishForIt) {
 TEST(Connect, TwiceInOneProcessOrEndedInTheMiddleItLeavesNoThreadAndNoNodeAndNotAWord) {
   const RobotLab lab(in_real_time());
   const std::vector<std::string> before = lab.nodes();
-  const Elsewhere twice = elsewhere(lab.environment(), [] {
+  const ChildResult twice = run_in_child(lab.environment(), [] {
     const std::string first = connect({})->read().malformed;
     const long of_roscpp = threads();
     auto robot = connect({});
@@ -209,7 +209,7 @@ TEST(Connect, TwiceInOneProcessOrEndedInTheMiddleItLeavesNoThreadAndNoNodeAndNot
   EXPECT_EQ(twice.printed, "1 0");
   EXPECT_EQ(twice.status, 0);
   EXPECT_EQ(lab.nodes(), before);
-  const Elsewhere ended = elsewhere(lab.environment(), []() -> std::string {
+  const ChildResult ended = run_in_child(lab.environment(), []() -> std::string {
     const auto robot = connect({});
     std::exit(3);
   });
@@ -222,7 +222,7 @@ TEST(Connect, AMasterThatGoesAwayIsNeitherMissedNorWaitedFor) {
   for (const int ending : {SIGKILL, SIGSTOP}) {
     RobotLab lab;
     lab.start_robot(in_real_time());
-    const Elsewhere result = elsewhere(lab.environment(), [&] {
+    const ChildResult result = run_in_child(lab.environment(), [&] {
       const auto robot = connect({});
       send(ending, lab.master_pid());
       const double begin = robot->read().now;
@@ -238,7 +238,7 @@ TEST(Connect, AMasterThatGoesAwayIsNeitherMissedNorWaitedFor) {
 
 TEST(Connect, AClockThatStandsStillEndsAWait) {
   RobotLab lab(in_real_time({"--rate", "5"}));
-  const Elsewhere result = elsewhere(lab.environment(), [&] {
+  const ChildResult result = run_in_child(lab.environment(), [&] {
     const auto robot = connect({});
     const double now = robot->read().now;
     std::string said = robot->wait_until(now + 0.1) ? "goes, " : "stands still, ";
@@ -253,7 +253,7 @@ TEST(Connect, AClockThatStandsStillEndsAWait) {
 TEST(Connect, TheRobotsInverseKinematicsFindsTheJointsOfWhereTheArmIsAndIsGivenASecond) {
   const auto solved = [](const std::vector<std::string>& fault) {
     const RobotLab lab(in_real_time(fault));
-    const Elsewhere result = elsewhere(lab.environment(), [] {
+    const ChildResult result = run_in_child(lab.environment(), [] {
       const auto robot = connect({true, true});
       const Snapshot snapshot = robot->read();
       std::optional<Joints> found;
@@ -277,7 +277,7 @@ TEST(Connect, TheRobotsInverseKinematicsFindsTheJointsOfWhereTheArmIsAndIsGivenA
 TEST(Connect, ABagThatCannotBeWrittenIsAnErrorAtOnce) {
   RobotLab lab(in_real_time());
   const auto record = [&](const std::string& file) {
-    return elsewhere(lab.environment(), [&] {
+    return run_in_child(lab.environment(), [&] {
       const auto robot = connect({});
       robot->record(file);
       robot->wait_until(robot->read().now + 0.3);
@@ -299,7 +299,7 @@ TEST(AConnection, IsGivenUpAgainAndAgainWithoutEndingTheProgram) {
   RobotLab lab(in_real_time());
   const char* times = std::getenv("PALPATE_CONNECTIONS");
   const int count = times != nullptr ? std::atoi(times) : 20;
-  const Elsewhere result = elsewhere(with(kNoRos, lab.environment()), [&] {
+  const ChildResult result = run_in_child(with(kNoRos, lab.environment()), [&] {
     int made = 0;
     for (; made < count; ++made) connect({});
     return std::to_string(made);

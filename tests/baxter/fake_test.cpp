@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests of the simulated robot on a real ROS network.
+#include "command_lines.hpp"
 #include "robot_lab.hpp"
-#include "robot_words.hpp"
 #include "support/programs.hpp"
 
 #include <gmock/gmock.h>
@@ -25,17 +25,17 @@ namespace {
 using ::testing::HasSubstr;
 
 /// A line of the probe's output, "sender topic size count rate", by its first three words.
-struct Heard {
+struct StreamRate {
   long count;
   double rate;
 };
-std::map<std::string, Heard> heard(const RobotLab& lab, const std::string& seconds) {
+std::map<std::string, StreamRate> heard(const RobotLab& lab, const std::string& seconds) {
   const Ended probe = lab.probe({"listen", seconds});
   EXPECT_EQ(probe.status, 0) << probe.err;
-  std::map<std::string, Heard> out;
+  std::map<std::string, StreamRate> out;
   std::istringstream lines(probe.out);
   std::string sender, topic, size;
-  Heard one{};
+  StreamRate one{};
   while (lines >> sender >> topic >> size >> one.count >> one.rate) out[sender + " " + topic + " " + size] = one;
   return out;
 }
@@ -57,7 +57,7 @@ TEST(FakeRobot, ItsMessagesAreThoseOfARealRobotByTheirMd5Sums) {
 }
 
 TEST(FakeRobot, PublishesItsStreamsAtTheirRatesFromTwoNodes) {
-  RobotLab lab(robot_words());
+  RobotLab lab(robot_arguments());
   const auto streams = heard(lab, "10");
   // Rates are in the robot's time. With a queue of one message, some may be lost on a busy machine.
   const auto expect_rate = [&](const std::string& name, double rate) {
@@ -75,7 +75,7 @@ TEST(FakeRobot, PublishesItsStreamsAtTheirRatesFromTwoNodes) {
 }
 
 TEST(FakeRobot, StopsResetsAndIsEnabledLikeARealOne) {
-  RobotLab lab(robot_words());
+  RobotLab lab(robot_arguments());
   EXPECT_EQ(lab.probe({"switches"}).out,
             "stop: ready 0 enabled 0 stopped 1 error 0 button 2 source 2\n"
             "enable: ready 0 enabled 0 stopped 1 error 0 button 2 source 2\n"
@@ -85,7 +85,7 @@ TEST(FakeRobot, StopsResetsAndIsEnabledLikeARealOne) {
 
 TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
   RobotLab lab;
-  std::vector<std::string> words = robot_words();
+  std::vector<std::string> words = robot_arguments();
   words.back() = "20";
   // A driver may lose the processor for a while when other tests run, so the robot waits longer here.
   words.insert(words.end(), {"--patience", "1"});
@@ -111,11 +111,11 @@ TEST(FakeRobot, ItsTimeDoesNotRunAwayFromADriverOnABusyMachine) {
 }
 
 TEST(FakeRobot, ASecondNodeMayClaimToBeTheRobotAndOldFirmwareIsNotUnderstood) {
-  const RobotLab two(robot_words({"--fault", "second_sender=state"}));
+  const RobotLab two(robot_arguments({"--fault", "second_sender=state"}));
   const auto states = heard(two, "5");
   EXPECT_EQ(states.count("/second_robot /robot/state 1"), 1U);
   EXPECT_EQ(states.count("/realtime_loop /robot/state 1"), 1U);
-  const RobotLab old(robot_words({"--fault", "old_state"}));
+  const RobotLab old(robot_arguments({"--fault", "old_state"}));
   const auto streams = heard(old, "5");
   EXPECT_EQ(streams.count("/realtime_loop /robot/state 1"), 0U);
   EXPECT_EQ(streams.count("/realtime_loop /robot/joint_states 17"), 1U);
@@ -129,13 +129,14 @@ TEST(FakeRobot, RefusesWhatItDoesNotKnowInOneLine) {
     EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
     return ended.err;
   };
-  EXPECT_THAT(refusal(robot_words({"--fault", "sulk"})), HasSubstr("there is no fault 'sulk'"));
-  EXPECT_THAT(refusal(robot_words({"--fault", "spikes=2"})), HasSubstr("spikes takes a number from 0 to 1, not '2'"));
-  EXPECT_THAT(refusal(robot_words({"--fault", "stall=-1"})), HasSubstr("stall takes a number from 0 on, not '-1'"));
-  EXPECT_THAT(refusal(robot_words({"--at", "soon"})), HasSubstr("takes 'start' or DESCENT:HEIGHT"));
-  EXPECT_THAT(refusal(robot_words({"--arm", "rubber"})), HasSubstr("--arm: "));
-  EXPECT_THAT(refusal(robot_words({"--start-at", "0.1,0.1"})), HasSubstr("--start-at: "));
-  EXPECT_THAT(refusal({robot_words().front()}), HasSubstr("add backend=fake_baxter"));
+  EXPECT_THAT(refusal(robot_arguments({"--fault", "sulk"})), HasSubstr("there is no fault 'sulk'"));
+  EXPECT_THAT(refusal(robot_arguments({"--fault", "spikes=2"})),
+              HasSubstr("spikes takes a number from 0 to 1, not '2'"));
+  EXPECT_THAT(refusal(robot_arguments({"--fault", "stall=-1"})), HasSubstr("stall takes a number from 0 on, not '-1'"));
+  EXPECT_THAT(refusal(robot_arguments({"--at", "soon"})), HasSubstr("takes 'start' or DESCENT:HEIGHT"));
+  EXPECT_THAT(refusal(robot_arguments({"--arm", "rubber"})), HasSubstr("--arm: "));
+  EXPECT_THAT(refusal(robot_arguments({"--start-at", "0.1,0.1"})), HasSubstr("--start-at: "));
+  EXPECT_THAT(refusal({robot_arguments().front()}), HasSubstr("add backend=fake_baxter"));
 }
 
 /// Returns the child processes of `pid`.
@@ -152,7 +153,7 @@ TEST(FakeRobot, LeavesNothingRunningAndKilledTakesItsCompanionsAlong) {
     std::vector<long> all;
     std::filesystem::path folder;
     {
-      RobotLab lab(robot_words({"--fault", "second_sender=state"}));
+      RobotLab lab(robot_arguments({"--fault", "second_sender=state"}));
       folder = lab.folder();
       all = children_of(lab.robot().pid());
       ASSERT_EQ(all.size(), 2U) << "nodes of their own";

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // All faults of the simulated robot, and the resulting state of arm, record and program.
+#include "command_lines.hpp"
+#include "fault_cases.hpp"
 #include "robot_lab.hpp"
-#include "robot_words.hpp"
 #include "support/programs.hpp"
 #include "support/sanitizers.hpp"
-#include "troubles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,13 +29,13 @@ void await_standstill(RobotLab& lab) {
   });
 }
 
-class FaultInATap : public testing::TestWithParam<Trouble> {};
+class FaultInATap : public testing::TestWithParam<FaultCase> {};
 
 TEST_P(FaultInATap, LeavesTheArmSafeTheTapLoggedAndTheReasonNamed) {
   if (kSanitized) GTEST_SKIP() << "the driver meets the same faults in the same process, where sanitizers see it, too";
-  const Trouble& given = GetParam();
-  RobotLab lab(robot_words({"--fault", given.fault, "--at", "2:8cm"}));
-  const Ended ended = lab.palpate(run_words(2), 60.0);
+  const FaultCase& given = GetParam();
+  RobotLab lab(robot_arguments({"--fault", given.fault, "--at", "2:8cm"}));
+  const Ended ended = lab.palpate(run_arguments(2), 60.0);
   EXPECT_EQ(ended.status, given.ends_run ? 1 : 0) << ended.err;
   if (given.ends_run) {
     EXPECT_THAT(ended.err, HasSubstr(given.reason));
@@ -69,15 +69,15 @@ TEST_P(FaultInATap, LeavesTheArmSafeTheTapLoggedAndTheReasonNamed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfTheRobot, FaultInATap, testing::ValuesIn(kTroubles),
+INSTANTIATE_TEST_SUITE_P(OfTheRobot, FaultInATap, testing::ValuesIn(kFaultCases),
                          [](const auto& trouble) { return name_of(trouble.param); });
 INSTANTIATE_TEST_SUITE_P(OfItsComputer, FaultInATap,
-                         testing::Values(Trouble{"RobotGone", "die", "the clock of the robot's network has stopped"}),
+                         testing::Values(FaultCase{"RobotGone", "die", "the clock of the robot's network has stopped"}),
                          [](const auto& trouble) { return name_of(trouble.param); });
 
 TEST(FaultOfInverseKinematics, EndsTheRunBeforeAnythingMoves) {
-  RobotLab lab(robot_words({"--fault", "ik_slow=5"}));
-  const Ended ended = lab.palpate(run_words(2, {"backend.inverse_kinematics=robot"}), 60.0);
+  RobotLab lab(robot_arguments({"--fault", "ik_slow=5"}));
+  const Ended ended = lab.palpate(run_arguments(2, {"backend.inverse_kinematics=robot"}), 60.0);
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, HasSubstr("IKService"));
   lab.end_robot();
@@ -97,8 +97,8 @@ class FaultBeforeFlight : public testing::TestWithParam<BeforeFlight> {};
 
 TEST_P(FaultBeforeFlight, IsRefusedInOneLineWithoutACommandAndWithoutARecord) {
   if (kSanitized) GTEST_SKIP() << "the checks meet the same faults in the same process, where sanitizers see them, too";
-  RobotLab lab(robot_words(GetParam().robot));
-  const Ended ended = lab.palpate(run_words(2, GetParam().run), 60.0);
+  RobotLab lab(robot_arguments(GetParam().robot));
+  const Ended ended = lab.palpate(run_arguments(2, GetParam().run), 60.0);
   EXPECT_EQ(ended.status, 1) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr(GetParam().reason));
   EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;

@@ -24,8 +24,8 @@ std::string answer(const std::string& third) {
 bool is_refused(const std::string& xml) {
   try {
     read_graph(xml);
-  } catch (const Unreached& trouble) {
-    EXPECT_EQ(trouble.why, Unreached::Why::nonsense);
+  } catch (const NetworkError& trouble) {
+    EXPECT_EQ(trouble.why, NetworkError::Why::nonsense);
     return true;
   }
   return false;

@@ -3,7 +3,7 @@
 // other.
 #include "baxter/body_bench.hpp"
 #include "fake_baxter/dynamics.hpp"
-#include "fake_baxter/mujoco.hpp"
+#include "fake_baxter/mujoco_arm.hpp"
 #include "fake_baxter/series_elastic.hpp"
 
 #include <palpate/random.hpp>

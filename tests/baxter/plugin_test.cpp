@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The plugin in a child process as in the program: loaded, created, destroyed, created again.
+#include "child_run.hpp"
 #include "children/arm_lock.hpp"
-#include "elsewhere.hpp"
+#include "command_lines.hpp"
 #include "record/tap_row.hpp"
 #include "robot_lab.hpp"
-#include "robot_words.hpp"
 #include "support/plugins.hpp"
 #include "support/testing.hpp"
 
@@ -27,8 +27,8 @@ constexpr const char* kOptions =
     "scene_pose: {corner: [50.7 cm, 6.7 cm], height: -17 cm, rotation: 10 deg}, force_sign: negative}";
 
 TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
-  RobotLab lab(robot_words());
-  const Elsewhere process = elsewhere(lab.environment(), [&] {
+  RobotLab lab(robot_arguments());
+  const ChildResult process = run_in_child(lab.environment(), [&] {
     const PluginHost host({plugin_folder()});
     std::string told;
     for (int i = 0; i < 2; ++i) {
@@ -48,7 +48,7 @@ TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
   });
   EXPECT_EQ(process.status, 0);
   // The test's own thread and roscpp's threads remain until the process ends.
-  const Elsewhere roscpp_alone = elsewhere(lab.environment(), [&] {
+  const ChildResult roscpp_alone = run_in_child(lab.environment(), [&] {
     const PluginHost host({plugin_folder()});
     make<Backend>(host, "baxter", kOptions).reset();
     return "left " + std::to_string(threads());
@@ -59,15 +59,16 @@ TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
 }
 
 TEST(RobotPlugin, DoesNotConnectToAnArmThatAnotherProcessHasInHand) {
-  RobotLab lab(robot_words());
+  RobotLab lab(robot_arguments());
   const std::string master = lab.environment().front();  // ROS_MASTER_URI=http://...
   const std::string uri = master.substr(master.find('=') + 1);
   const auto attempt = [&](const std::string& more) {
-    return elsewhere(lab.environment(),
-                     [&] {
-                       const PluginHost host({plugin_folder()});
-                       return error_of([&] { make<Backend>(host, "baxter", std::string(kOptions).insert(1, more)); });
-                     })
+    return run_in_child(
+               lab.environment(),
+               [&] {
+                 const PluginHost host({plugin_folder()});
+                 return error_of([&] { make<Backend>(host, "baxter", std::string(kOptions).insert(1, more)); });
+               })
         .printed;
   };
   std::optional<ArmLock> other;

@@ -19,16 +19,16 @@ TEST(RealTimeScheduling, HoldsForATapWhereItIsAllowedAndElseSaysWhatItTakes) {
   {
     const RealTime real(true);
     if (policy() == SCHED_FIFO) {
-      EXPECT_EQ(real.words(), "real-time scheduling: granted");
+      EXPECT_EQ(real.status(), "real-time scheduling: granted");
     } else {
       EXPECT_EQ(policy(), before);
-      EXPECT_THAT(real.words(), testing::HasSubstr("/etc/security/limits.d/palpate.conf"));
+      EXPECT_THAT(real.status(), testing::HasSubstr("/etc/security/limits.d/palpate.conf"));
     }
   }
   EXPECT_EQ(policy(), before);
   const RealTime simulated(false);
   EXPECT_EQ(policy(), before);
-  EXPECT_EQ(simulated.words(), "");
+  EXPECT_EQ(simulated.status(), "");
 }
 
 }  // namespace

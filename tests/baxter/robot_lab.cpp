@@ -66,8 +66,8 @@ bool RobotLab::start_master() {
   // Another master may have taken the port meanwhile and would also answer, so the process is compared.
   return comes_up(*master_, [&] {
     try {
-      return master_at(port_).greet(soon()) == master_->pid();
-    } catch (const baxter::Unreached&) {
+      return master_at(port_).process_id(soon()) == master_->pid();
+    } catch (const baxter::NetworkError&) {
       return false;
     }
   });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Whole runs on the simulated robot with a real master: reconstruction, and state after kills, interruptions and faults
 // that need a person.
+#include "command_lines.hpp"
 #include "robot_lab.hpp"
-#include "robot_words.hpp"
 #include "support/parts.hpp"
 #include "support/programs.hpp"
 #include "support/sanitizers.hpp"
@@ -46,7 +46,7 @@ void palpate_does(const RobotLab& lab, const std::vector<std::string>& words, do
   EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
 }
 
-std::vector<std::string> resume_words(const RobotLab& lab) { return {"resume", run_of(lab).string(), "--quiet"}; }
+std::vector<std::string> resume_arguments(const RobotLab& lab) { return {"resume", run_of(lab).string(), "--quiet"}; }
 
 /// Returns the path of a file in any folder below `runs`, or an empty path.
 fs::path found(const fs::path& runs, const char* name) {
@@ -106,7 +106,7 @@ double rmse_height(const fs::path& surface, const fs::path& truth) {
 }
 
 TEST(RobotRun, ReconstructsObjectIAsTheSimulatorDoesWithTheSameEffectsAndIsReplayedToTheLastDigitWithoutTheRobot) {
-  RobotLab lab(robot_words());
+  RobotLab lab(robot_arguments());
   const Ended ended = lab.palpate({"run", object_i(), "backend=fake_baxter"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "") << "ROS keeps to itself";
@@ -139,13 +139,13 @@ TEST(RobotRun, WorksInRealTimeAsWell) {
   RobotLab lab;
   // The tip starts low over the desk at the first tap's position; that tap takes seconds.
   lab.start_robot({object_i(), "backend=fake_baxter", "scene=object_i_arm", "--start-at", "0.04,0.07,0.07"});
-  palpate_does(lab, run_words(1, {"motion.hover=6cm"}));
+  palpate_does(lab, run_arguments(1, {"motion.hover=6cm"}));
   EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
 }
 
 TEST(RobotRun, OfAnArmWithMassesSpringsAndFrictionIsRecordedInARosbagAndADiaryBesideItsTaps) {
-  const RobotLab lab(robot_words({"--arm", "springs", "--friction", "0.05"}));
-  palpate_does(lab, run_words(1, {"backend.bag=true"}));
+  const RobotLab lab(robot_arguments({"--arm", "springs", "--friction", "0.05"}));
+  palpate_does(lab, run_arguments(1, {"backend.bag=true"}));
   EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
   EXPECT_THAT(text_of(run_of(lab) / "baxter.txt"), HasSubstr("\ntap 1: contact at "));
   std::set<std::string> topics;
@@ -164,8 +164,8 @@ TEST(RobotRun, OfAnArmWithMassesSpringsAndFrictionIsRecordedInARosbagAndADiaryBe
 }
 
 TEST(RobotRun, KilledInATapLeavesTheArmHoldingAndIsResumedWithTheTapUnknown) {
-  RobotLab lab(robot_words());
-  const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
+  RobotLab lab(robot_arguments());
+  const std::unique_ptr<Child> program = lab.start_palpate(run_arguments(4));
   ASSERT_TRUE(logged(lab, 3)) << "tap 2 is announced";
   ASSERT_TRUE(low(lab, 0.07)) << "on the way down";
   program->signal(SIGKILL);
@@ -173,7 +173,7 @@ TEST(RobotRun, KilledInATapLeavesTheArmHoldingAndIsResumedWithTheTapUnknown) {
   ASSERT_TRUE(eventually([&] { return lab.trace().back().at("mode") == "timed_out"; })) << "by its own time-out";
   EXPECT_LT(last_height(lab), 0.07);
 
-  palpate_does(lab, resume_words(lab));
+  palpate_does(lab, resume_arguments(lab));
   EXPECT_THAT(outcomes(lab), ElementsAre("contact", "unknown", "contact", "contact"));
 }
 
@@ -195,10 +195,10 @@ TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
   const char* wanted = std::getenv("PALPATE_KILLS");
   const int kills = wanted != nullptr ? std::atoi(wanted) : 3;
   const int taps = 2 * kills + 3;
-  RobotLab lab(robot_words());
+  RobotLab lab(robot_arguments());
   Random random(5, "run_test");
   const auto next_words = [&] {
-    return found(lab.folder() / "runs", "config.yaml").empty() ? run_words(taps) : resume_words(lab);
+    return found(lab.folder() / "runs", "config.yaml").empty() ? run_arguments(taps) : resume_arguments(lab);
   };
   for (int i = 0; i < kills; ++i) {
     const long before = lines(lab);
@@ -235,8 +235,8 @@ TEST(RobotRun, KilledAgainAndAgainMakesNoTapTwiceAndLosesNone) {
 TEST(RobotRun, InterruptedOrWithItsTerminalClosedHoldsRaisesTheArmLogsTheTapAndIsResumed) {
   // A closed terminal may send the signal twice.
   for (const std::vector<int>& signals : {std::vector<int>{SIGINT}, {SIGHUP, SIGHUP}}) {
-    const RobotLab lab(robot_words());
-    const std::unique_ptr<Child> program = lab.start_palpate(run_words(4));
+    const RobotLab lab(robot_arguments());
+    const std::unique_ptr<Child> program = lab.start_palpate(run_arguments(4));
     ASSERT_TRUE(logged(lab, 3));
     ASSERT_TRUE(low(lab, 0.07));
     for (const int signal : signals) program->signal(signal);
@@ -246,13 +246,13 @@ TEST(RobotRun, InterruptedOrWithItsTerminalClosedHoldsRaisesTheArmLogsTheTapAndI
     EXPECT_EQ(field(results(run_of(lab)).back(), "reason"), "interrupted; the arm was raised to the height of travel");
     EXPECT_NEAR(last_height(lab), 0.135, 0.011);
     EXPECT_THAT(lab.nodes(), ElementsAre("/end_effector_publisher", "/realtime_loop"));
-    palpate_does(lab, resume_words(lab));
+    palpate_does(lab, resume_arguments(lab));
     EXPECT_THAT(outcomes(lab), ElementsAre("contact", "aborted", "contact", "contact"));
   }
 }
 
 TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
-  RobotLab lab(robot_words());
+  RobotLab lab(robot_arguments());
   std::vector<std::string> words{program_file().string(), "run", object_i(), "backend=fake_baxter", "taps=2", "--step",
                                  "initial.count=2"};
   Terminal terminal(words, lab.folder(), lab.environment());
@@ -270,26 +270,26 @@ TEST(RobotRun, StepByStepMovesTheArmAfterEnterAndNotBefore) {
   EXPECT_EQ(terminal.wait(), 130) << terminal.screen();
   EXPECT_EQ(commanded(lab), moves) << "nothing was sent for the second tap";
   EXPECT_THAT(outcomes(lab), ElementsAre("contact"));
-  palpate_does(lab, resume_words(lab));
+  palpate_does(lab, resume_arguments(lab));
   EXPECT_THAT(outcomes(lab), ElementsAre("contact", "contact"));
 }
 
 TEST(RobotRun, IsRefusedWhileAnotherProgramCommandsTheArm) {
-  RobotLab lab(robot_words());
+  RobotLab lab(robot_arguments());
   const std::unique_ptr<Child> other = lab.start({probe_file().string(), "drive", "1000", "0"});
   ASSERT_TRUE(eventually([&] {
     const std::vector<Cells> trace = lab.trace();
     return !trace.empty() && trace.back().at("mode") == "following";
   }));
-  const Ended ended = lab.palpate(run_words(1), 60.0);
+  const Ended ended = lab.palpate(run_arguments(1), 60.0);
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.err, HasSubstr("the arm is also commanded by /probe"));
   EXPECT_FALSE(fs::exists(lab.folder() / "runs"));
 }
 
 TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
-  RobotLab lab(robot_words({"--fault", "estop=1", "--at", "2:8cm"}));
-  const Ended failed = lab.palpate(run_words(4));
+  RobotLab lab(robot_arguments({"--fault", "estop=1", "--at", "2:8cm"}));
+  const Ended failed = lab.palpate(run_arguments(4));
   EXPECT_EQ(failed.status, 1);
   EXPECT_THAT(failed.err, HasSubstr("the emergency stop is pressed"));
   const std::vector<std::string> again{"resume", run_of(lab).string(), "--retry-failed", "--quiet"};
@@ -303,10 +303,10 @@ TEST(RobotRun, CarriesOnAfterAFaultOnceSomebodyHasSeenToTheRobot) {
 }
 
 TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
-  RobotLab lab(robot_words());
-  const std::unique_ptr<Child> first = lab.start_palpate(run_words(40));  // ended after the others were rejected
+  RobotLab lab(robot_arguments());
+  const std::unique_ptr<Child> first = lab.start_palpate(run_arguments(40));  // ended after the others were rejected
   ASSERT_TRUE(logged(lab, 1));
-  const Ended second = lab.palpate(run_words(2, {"seed=2"}));
+  const Ended second = lab.palpate(run_arguments(2, {"seed=2"}));
   EXPECT_EQ(second.status, 75);
   EXPECT_THAT(second.err, StartsWith(lab.environment().front() + ": the arm left of http://"));
   const Ended sweep = lab.palpate({"sweep", object_i(), "backend=fake_baxter", "taps=2", "initial.count=2", "seed=3,4",
@@ -319,39 +319,39 @@ TEST(RobotRun, IsRefusedWhileAnotherMovesTheArmWhichGoesOn) {
   std::string master = lab.environment().front();
   master.replace(master.find("127.0.0.1"), 9, "localhost");
   std::vector<std::string> words{"/usr/bin/env", master, program_file().string()};
-  for (const std::string& word : run_words(2, {"seed=2"})) words.push_back(word);
+  for (const std::string& word : run_arguments(2, {"seed=2"})) words.push_back(word);
   const Ended third = Child(words, lab.folder(), lab.environment()).wait();
   EXPECT_EQ(third.status, 1);
   EXPECT_THAT(third.err, HasSubstr("joint_command: another palpate moves this arm, the node /palpate_"));
-  palpate_does(lab, run_words(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"}));  // a dry run moves nothing
+  palpate_does(lab, run_arguments(2, {"seed=2", "backend.dry_run=true", "--runs", "dry"}));  // a dry run moves nothing
   first->signal(SIGINT);
   const Ended ended = first->wait();
   EXPECT_EQ(ended.status, 130) << ended.err;
 }
 
 TEST(RobotSweep, TapsOneJobAfterTheOtherHoweverManyMayRunAtATime) {
-  const RobotLab lab(robot_words());
+  const RobotLab lab(robot_arguments());
   palpate_does(
       lab, {"sweep", object_i(), "backend=fake_baxter", "taps=2", "initial.count=2", "seed=1,2", "-j", "2", "--quiet"});
 }
 
 TEST(RobotRun, AsksTheRobotsInverseKinematicsIfItIsToldTo) {
-  const RobotLab lab(robot_words());
-  palpate_does(lab, run_words(2, {"backend.inverse_kinematics=robot"}));
+  const RobotLab lab(robot_arguments());
+  palpate_does(lab, run_arguments(2, {"backend.inverse_kinematics=robot"}));
   EXPECT_THAT(outcomes(lab), ElementsAre("contact", "contact"));
 }
 
 TEST(RobotRun, CallsAPlaceUnreachableWhereTheRobotsInverseKinematicsHasNoAnswer) {
-  RobotLab lab(robot_words({"--fault", "ik_invalid"}));
-  palpate_does(lab, run_words(2, {"backend.inverse_kinematics=robot"}));
+  RobotLab lab(robot_arguments({"--fault", "ik_invalid"}));
+  palpate_does(lab, run_arguments(2, {"backend.inverse_kinematics=robot"}));
   EXPECT_THAT(outcomes(lab), ElementsAre("unreachable", "unreachable"));
   lab.end_robot();
   EXPECT_EQ(lab.trace().back().at("commands"), "0");
 }
 
 TEST(RobotRun, ComputesEveryPoseOfTheAreaInADryRunAndMovesNothing) {
-  RobotLab lab(robot_words({"--fault", "disabled"}));
-  palpate_does(lab, run_words(2, {"backend.dry_run=true"}));
+  RobotLab lab(robot_arguments({"--fault", "disabled"}));
+  palpate_does(lab, run_arguments(2, {"backend.dry_run=true"}));
   EXPECT_THAT(outcomes(lab), ElementsAre("aborted", "aborted"));
   EXPECT_THAT(text_of(run_of(lab) / "baxter.txt"), StartsWith("dry run: all 169 places of the area can be reached"));
   lab.end_robot();

@@ -96,8 +96,8 @@ TEST(AForce, ThatIsRenewedEightOrTenTimesASecondIsExpectedWithinTheBoundAtTheFir
     std::smatch found;
     const std::regex line("tap 1: ([0-9.]+) mm/s.*at most ([0-9.]+) N are expected");
     ASSERT_TRUE(std::regex_search(desk.notes, found, line)) << desk.notes;
-    EXPECT_LT(std::stod(found[1]), 1e3 * Reaction::kSlowest) << "at a place where that matters";
-    EXPECT_LE(std::stod(found[2]), Reaction::kGreatestForce + 0.05) << every << ": " << desk.notes;
+    EXPECT_LT(std::stod(found[1]), 1e3 * ReactionTime::kSlowest) << "at a place where that matters";
+    EXPECT_LE(std::stod(found[2]), ReactionTime::kGreatestForce + 0.05) << every << ": " << desk.notes;
   }
 }
 

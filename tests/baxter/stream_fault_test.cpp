@@ -10,24 +10,24 @@ namespace {
 
 using fake_baxter::Body;
 using fake_baxter::Delivery;
-using fake_baxter::Said;
+using fake_baxter::RobotMessages;
 
 /// Returns the messages of one second by the period of their arrival.
-std::vector<std::vector<Said>> second(BodyBench& bench) {
+std::vector<std::vector<RobotMessages>> second(BodyBench& bench) {
   Delivery delivery;
-  std::vector<std::vector<Said>> out;
+  std::vector<std::vector<RobotMessages>> out;
   for (int i = 0; i < 100; ++i) {
     bench.hold(Body::kPeriod);
     out.push_back(delivery.take(bench.body));
-    for (const Said& said : out.back()) EXPECT_EQ(said.endpoint->received, bench.body.now());
+    for (const RobotMessages& said : out.back()) EXPECT_EQ(said.endpoint->received, bench.body.now());
   }
   return out;
 }
 
-std::vector<double> stamps(const std::vector<std::vector<Said>>& arrived) {
+std::vector<double> stamps(const std::vector<std::vector<RobotMessages>>& arrived) {
   std::vector<double> out;
   for (const auto& period : arrived) {
-    for (const Said& said : period) out.push_back(said.endpoint->stamp);
+    for (const RobotMessages& said : period) out.push_back(said.endpoint->stamp);
   }
   return out;
 }
@@ -72,7 +72,7 @@ TEST(FakeBody, ASlowEndpointComesAtItsRateAndTheOtherStreamsAtTheirs) {
     int endpoints = 0;
     for (int i = 0; i < 1000; ++i) {
       bench.hold(Body::kPeriod);
-      const Said said = bench.body.said();
+      const RobotMessages said = bench.body.messages();
       endpoints += said.endpoint ? 1 : 0;
       EXPECT_TRUE(said.joints && said.state && said.collision);
     }
@@ -122,7 +122,7 @@ TEST(FakeBody, SaysWhatItsCollisionAvoidanceKeepsAwayFrom) {
   const auto avoided = [](const char* fault) {
     BodyBench bench;
     if (*fault != '\0') bench.inject(fault);
-    return *bench.body.said().avoidance;
+    return *bench.body.messages().avoidance;
   };
   const auto nothing = avoided("");
   EXPECT_TRUE(!nothing.other_arm && nothing.objects.empty());
@@ -134,11 +134,11 @@ TEST(FakeBody, SaysWhatItsCollisionAvoidanceKeepsAwayFrom) {
 
 TEST(FakeBody, TheEffortsOfItsJointsHaveThePowerWithWhichItPresses) {
   BodyBench bench(kBare, kQuiet);
-  EXPECT_EQ(bench.body.said().effort.norm(), 0.0);
+  EXPECT_EQ(bench.body.messages().effort.norm(), 0.0);
   bench.lead({0.115, 0.115, -0.005}, 0.02);
   bench.hold(3.0);
   // For a small motion, the work of the joints equals that of the contact force.
-  const Said said = bench.body.said();
+  const RobotMessages said = bench.body.messages();
   const baxter::Joints joints = bench.body.joints();
   for (int i = 0; i < 7; ++i) {
     baxter::Joints moved = joints;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // New readings count, not reads: slow streams, a slow driver, and a driver that could not receive.
-#include "baxter/ros/pulse.hpp"
-#include "baxter/watch_bench.hpp"
+#include "baxter/guard_bench.hpp"
+#include "baxter/ros/heartbeat.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ TEST(AForce, ThatIsLookedAtAgainIsStillOneReading) {
   seen.endpoint->force.z() += 40.0;
   for (int i = 0; i < 6; ++i) {
     seen.now += 0.01;
-    EXPECT_THAT(rules.look(seen, kInside), IsNothing());
+    EXPECT_THAT(rules.check(seen, kInside), IsNothing());
     EXPECT_EQ(rules.fresh(), i == 0);
   }
 }
@@ -74,33 +74,33 @@ TEST(AGap, OfTheDriversOwnIsNotBlamedOnTheNetwork) {
   ASSERT_THAT(rules.at(1.0), IsNothing());
   Snapshot seen = sound(1.0, pose());
   seen.now = 1.15;  // without reads and reception
-  EXPECT_THAT(rules.look(seen, kInside), IsFault("this computer could not serve the arm for 0.15 s", Then::silence));
+  EXPECT_THAT(rules.check(seen, kInside), IsFault("this computer could not serve the arm for 0.15 s", Then::silence));
 
   Rules receiving;
-  for (seen.now = 1.0; seen.now < 1.1; seen.now += 0.01) ASSERT_THAT(receiving.look(seen, kInside), IsNothing());
+  for (seen.now = 1.0; seen.now < 1.1; seen.now += 0.01) ASSERT_THAT(receiving.check(seen, kInside), IsNothing());
   seen.now = 1.12;
-  EXPECT_THAT(receiving.look(seen, kInside), IsFault("check the network", Then::silence));
+  EXPECT_THAT(receiving.check(seen, kInside), IsFault("check the network", Then::silence));
   seen.own_gap = 0.12;
-  EXPECT_THAT(receiving.look(seen, kInside),
+  EXPECT_THAT(receiving.check(seen, kInside),
               IsFault("this computer could not serve the arm for 0.12 s", Then::silence));
 }
 
-TEST(Pulse, IsWithoutGapsWhileItBeats) {
-  Pulse pulse(100.0);
-  for (int i = 1; i <= 100; ++i) pulse.beat(100.0 + 0.005 * i);
-  EXPECT_EQ(pulse.longest(100.505), 0.0);
+TEST(Heartbeat, IsWithoutGapsWhileItBeats) {
+  Heartbeat heartbeat(100.0);
+  for (int i = 1; i <= 100; ++i) heartbeat.beat(100.0 + 0.005 * i);
+  EXPECT_EQ(heartbeat.longest(100.505), 0.0);
 }
 
-TEST(Pulse, KnowsTheGapThatIsGoingOnAndRemembersTheLongestOfTheLastSecond) {
-  Pulse pulse(0.0);
-  EXPECT_DOUBLE_EQ(pulse.longest(0.25), 0.25) << "before it has ended";
-  pulse.beat(0.25);
-  pulse.beat(0.30);
-  EXPECT_DOUBLE_EQ(pulse.longest(0.30), 0.25);
-  for (double now = 0.305; now < 1.2501; now += 0.005) pulse.beat(now);
-  EXPECT_DOUBLE_EQ(pulse.longest(1.25), 0.25);
-  pulse.beat(1.255);
-  EXPECT_NEAR(pulse.longest(1.255), 0.05, 1e-12) << "the longer one ended more than a second ago";
+TEST(Heartbeat, KnowsTheGapThatIsGoingOnAndRemembersTheLongestOfTheLastSecond) {
+  Heartbeat heartbeat(0.0);
+  EXPECT_DOUBLE_EQ(heartbeat.longest(0.25), 0.25) << "before it has ended";
+  heartbeat.beat(0.25);
+  heartbeat.beat(0.30);
+  EXPECT_DOUBLE_EQ(heartbeat.longest(0.30), 0.25);
+  for (double now = 0.305; now < 1.2501; now += 0.005) heartbeat.beat(now);
+  EXPECT_DOUBLE_EQ(heartbeat.longest(1.25), 0.25);
+  heartbeat.beat(1.255);
+  EXPECT_NEAR(heartbeat.longest(1.255), 0.05, 1e-12) << "the longer one ended more than a second ago";
 }
 
 }  // namespace

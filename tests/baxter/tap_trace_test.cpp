@@ -180,7 +180,7 @@ Watched watch_tap(const fake_baxter::Fault& fault, const fake_baxter::Trigger& t
     const Snapshot seen = robot.read();
     const double height = (to_scene * arm.tip(seen.joints->position).position).z();
     out.rows.push_back({robot.body.now(), height, -seen.endpoint->force.z(), 0});
-    out.told.push_back(-robot.body.said().endpoint->force.z());
+    out.told.push_back(-robot.body.messages().endpoint->force.z());
     out.pressing.push_back(robot.body.pressing());
     out.faulty.push_back(robot.body.active(fault.kind) != nullptr);
   };

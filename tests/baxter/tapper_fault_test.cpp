@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Faults in a tap, and the resulting state of the arm.
 #include "baxter/body_bench.hpp"
+#include "baxter/fault_cases.hpp"
 #include "baxter/tapper_bench.hpp"
-#include "baxter/troubles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,9 +43,9 @@ TEST(ATap, WithTheForceOfTheOtherSignIsStoppedAndSaysWhatToSet) {
   EXPECT_NEAR(bench.tip(), kHover, 0.01);
 }
 
-class TroubleInATap : public testing::TestWithParam<palpate::test::Trouble> {};
+class TroubleInATap : public testing::TestWithParam<palpate::test::FaultCase> {};
 
-void expect_safe(const palpate::test::Trouble& trouble, fake_baxter::MechanicsOptions::Type arm) {
+void expect_safe(const palpate::test::FaultCase& trouble, fake_baxter::MechanicsOptions::Type arm) {
   Bench bench(fake_options(), [&](test::BodyOptions& body) { body.mechanics.type = arm; });
   bench.check();
   ASSERT_EQ(bench.tap(kOnDesk).outcome, Outcome::contact);
@@ -87,7 +87,7 @@ TEST_P(TroubleInATap, LeavesTheArmWithMassesAsSafe) {
   expect_safe(GetParam(), fake_baxter::MechanicsOptions::Type::springs);
 }
 
-INSTANTIATE_TEST_SUITE_P(OnTheWayDown, TroubleInATap, testing::ValuesIn(palpate::test::kTroubles),
+INSTANTIATE_TEST_SUITE_P(OnTheWayDown, TroubleInATap, testing::ValuesIn(palpate::test::kFaultCases),
                          [](const auto& trouble) { return name_of(trouble.param); });
 
 TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedBeforeItCanJump) {

@@ -2,9 +2,9 @@
 // Messages for RViz.
 #include "baxter/ros/connect.hpp"
 
-#include "elsewhere.hpp"
+#include "child_run.hpp"
+#include "command_lines.hpp"
 #include "robot_lab.hpp"
-#include "robot_words.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -84,13 +84,13 @@ std::string told(const PointCloud2& cloud) {
 /// Returns the message that a late subscriber receives after `show`.
 template <class Message>
 std::string seen(const RobotLab& lab, const std::string& topic, const std::function<void(View&)>& show) {
-  return elsewhere(lab.environment(),
-                   [&] {
-                     const auto robot = baxter::connect({false, false});
-                     const std::unique_ptr<View> view = turned_view(*robot);
-                     show(*view);
-                     return seen_late<Message>(topic, [](const Message& message) { return told(message); });
-                   })
+  return run_in_child(lab.environment(),
+                      [&] {
+                        const auto robot = baxter::connect({false, false});
+                        const std::unique_ptr<View> view = turned_view(*robot);
+                        show(*view);
+                        return seen_late<Message>(topic, [](const Message& message) { return told(message); });
+                      })
       .printed;
 }
 

@@ -42,12 +42,12 @@ const Joints& tucked() {
 
 Body::Body(const Scene& scene, const BodyOptions& options)
     : scene_(scene),
-      ground_(scene, options.scene_pose),
+      scene_frame_(scene, options.scene_pose),
       tool_(Eigen::Vector3d(options.tool.tip)),
       gripper_({0.0, 0.0, options.tool.gripper}),
       seed_(options.seed),
       begin_(options.begin),
-      mechanics_(make_mechanics(options.mechanics, ground_, Eigen::Vector3d(options.tool.tip))),
+      mechanics_(make_mechanics(options.mechanics, scene_frame_, Eigen::Vector3d(options.tool.tip))),
       dynamics_(Eigen::Vector3d(options.tool.tip)),
       noise_(kForceNoise),
       normal_(Random(options.seed, "fake_baxter/noise")),
@@ -61,14 +61,14 @@ Body::Body(const Scene& scene, const BodyOptions& options)
   for (double& one : bias_.reshaped()) one = kBias * bias();
   for (double& one : bias_by_joints_.reshaped()) one = kBiasByJoints * bias();
 
-  stand(start_joints(options));
+  place(start_joints(options));
 }
 
 Joints Body::start_joints(const BodyOptions& options) const {
   const Area area = scene_.area();
   const Eigen::Vector3d above(area.width / 2, area.depth / 2, scene_.desk() + options.hover + kAbove);
   baxter::Pose pose;
-  pose.position = ground_.in_base(options.start_at.value_or(above));
+  pose.position = scene_frame_.in_base(options.start_at.value_or(above));
   pose.rotation = baxter::straight_down();
   const std::optional<Joints> found = tool_.solve(pose, untucked());
   if (!found)
@@ -76,18 +76,18 @@ Joints Body::start_joints(const BodyOptions& options) const {
   return *found;
 }
 
-Eigen::Vector3d Body::in_scene(const Joints& joints) const { return ground_.in_scene(tool_.tip(joints).position); }
+Eigen::Vector3d Body::in_scene(const Joints& joints) const { return scene_frame_.in_scene(tool_.tip(joints).position); }
 
 double Body::now() const { return begin_ + static_cast<double>(periods_) * kPeriod; }
 
 void Body::command(const Joints& target) {
   ++commands_;
   const double arrives = network_.arrival(now(), amount(FaultKind::delay), amount(FaultKind::jitter));
-  if (arrives <= now() + kSlack) return obey(target);
+  if (arrives <= now() + kSlack) return accept(target);
   sent_.push_back({target, arrives});
 }
 
-void Body::obey(const Joints& target) {
+void Body::accept(const Joints& target) {
   if (!target.allFinite() || active(FaultKind::drop_commands) != nullptr) return;
   target_ = target.cwiseMax(baxter::lower_limits()).cwiseMin(baxter::upper_limits());
   commanded_ = now();
@@ -157,18 +157,18 @@ void Body::begin(Armed& armed) {
       return set_command_timeout(armed.fault.amount);
     case FaultKind::tucked:
       assembly_.enable(false, true);
-      return stand(tucked());
+      return place(tucked());
     default:
       break;
   }
 }
 
 /// Moves the arm to `joints` at once.
-void Body::stand(const Joints& joints) {
+void Body::place(const Joints& joints) {
   target_ = joints;
   mechanics_->put(joints);
   hold(true);
-  hang();
+  apply_caught_tool();
   measure();
 }
 
@@ -205,12 +205,12 @@ void Body::follow() {
     reference_ += (target_ - reference_).cwiseMax(-most).cwiseMin(most);
   }
   mechanics_->advance(reference_);
-  hang();
+  apply_caught_tool();
 }
 
 /// Simulates a caught tool: a spring at the height of the contact that only pulls. The springs in the joints yield to
 /// it immediately, independently of the mechanics.
-void Body::hang() {
+void Body::apply_caught_tool() {
   arm_ = mechanics_->state();
   const Fault* caught = active(FaultKind::caught);
   if (caught == nullptr) return anchor_.reset();
@@ -227,7 +227,7 @@ void Body::hang() {
 
 /// Simulates the firmware's reflex. While the arm keeps pressing it is held repeatedly, and released in between for the
 /// time of a new detection.
-void Body::feel_reflex() {
+void Body::simulate_reflex() {
   if (now() < held_until_ + kLetGo - kSlack) return;
   if (!assembly_.state().enabled || std::abs(pressing()) <= kReflex) return;
   held_until_ = now() + kHeld;
@@ -247,7 +247,7 @@ void Body::measure() {
     force = *filtered_;
   }
   for (double& one : force.reshaped()) one += noise_ * normal_();
-  spoil(force);
+  apply_force_faults(force);
   if (active(FaultKind::freeze_endpoint) != nullptr && periods_ > 0) return;
   endpoint_.pose = pose;
   const Fault* slow = active(FaultKind::slow_force);
@@ -255,7 +255,7 @@ void Body::measure() {
 }
 
 /// Applies faults to the estimated force.
-void Body::spoil(Eigen::Vector3d& force) {
+void Body::apply_force_faults(Eigen::Vector3d& force) {
   if (const Fault* bias = active(FaultKind::bias)) force.z() -= bias->amount;
   if (const Fault* spikes = active(FaultKind::spikes)) {
     if (spikes_.uniform() < spikes->amount) force.z() -= kSpike;
@@ -272,31 +272,31 @@ void Body::spoil(Eigen::Vector3d& force) {
 void Body::step() {
   const double height_before = tip().z();
   ++periods_;
-  for (; !sent_.empty() && sent_.front().arrives <= now() + kSlack; sent_.pop_front()) obey(sent_.front().target);
+  for (; !sent_.empty() && sent_.front().arrives <= now() + kSlack; sent_.pop_front()) accept(sent_.front().target);
   const Mode mode = choose_mode();
   const bool brakes = mode == Mode::stopped || mode == Mode::disabled;
   if (mode != mode_ && mode != Mode::following) hold(brakes);
   mode_ = mode;
   follow();
-  feel_reflex();
+  simulate_reflex();
   watch_faults(height_before);
   measure();
 }
 
-Said Body::said() const {
-  Said out;
+RobotMessages Body::messages() const {
+  RobotMessages out;
   double stamp = now();
   for (const Armed& one : faults_) {
     if (one.fault.kind == FaultKind::stale_stamps && one.since) stamp = *one.since;
   }
-  const Fault* never = active(FaultKind::no_data);
-  const auto heard = [&](const char* stream) { return never == nullptr || never->text != stream; };
+  const Fault* muted = active(FaultKind::no_data);
+  const auto is_sent = [&](const char* stream) { return muted == nullptr || muted->text != stream; };
   const auto stamped = [&](auto reading) {
     reading.received = now();
     reading.stamp = stamp;
     return reading;
   };
-  if (heard("joints") && active(FaultKind::kill_joints) == nullptr) {
+  if (is_sent("joints") && active(FaultKind::kill_joints) == nullptr) {
     baxter::JointReading joints;
     joints.position = arm().position;
     if (const Fault* jump = active(FaultKind::jump_joints)) joints.position(1) += jump->amount;
@@ -306,16 +306,16 @@ Said Body::said() const {
   }
   const Fault* slow = active(FaultKind::slow_endpoint);
   const double rate = slow != nullptr ? slow->amount : 1.0 / kPeriod;
-  if (heard("endpoint") && active(FaultKind::kill_endpoint) == nullptr && due(periods_, rate)) {
+  if (is_sent("endpoint") && active(FaultKind::kill_endpoint) == nullptr && due(periods_, rate)) {
     out.endpoint = stamped(endpoint_);
     out.tip_speed = endpoint_speed_;
   }
-  if (heard("state") && active(FaultKind::kill_state) == nullptr) {
+  if (is_sent("state") && active(FaultKind::kill_state) == nullptr) {
     out.state = assembly_.state();
     out.state->received = now();
   }
-  if (heard("collision")) out.collision = stamped(baxter::CollisionReading{{}, now() < held_until_ - kSlack});
-  if (heard("avoidance") && due(periods_, kAvoidanceRate)) {
+  if (is_sent("collision")) out.collision = stamped(baxter::CollisionReading{{}, now() < held_until_ - kSlack});
+  if (is_sent("avoidance") && due(periods_, kAvoidanceRate)) {
     baxter::AvoidanceReading avoidance;
     const Fault* avoid = active(FaultKind::avoid);
     avoidance.other_arm = avoid != nullptr && avoid->text == "other_arm";

@@ -41,7 +41,7 @@ struct BodyOptions {
 };
 
 /// Messages of the robot at the end of a period; a silent stream is absent. `received` is the time of sending.
-struct Said {
+struct RobotMessages {
   std::optional<baxter::JointReading> joints;
   Joints speed = Joints::Zero();   ///< joints, rad/s
   Joints effort = Joints::Zero();  ///< joints, Nm, without gravity
@@ -97,7 +97,7 @@ class Body {
   void step();
 
   double now() const;
-  Said said() const;
+  RobotMessages messages() const;
 
   /// True state of the robot, independent of its messages.
   Mode mode() const { return mode_; }
@@ -127,17 +127,17 @@ class Body {
   void begin(Armed& armed);
   void watch_faults(double height_before);
   Mode choose_mode() const;
-  void obey(const Joints& target);
+  void accept(const Joints& target);
   void hold(bool brakes);
-  void stand(const Joints& joints);
+  void place(const Joints& joints);
   void follow();
-  void hang();
-  void feel_reflex();
+  void apply_caught_tool();
+  void simulate_reflex();
   void measure();
-  void spoil(Eigen::Vector3d& force);
+  void apply_force_faults(Eigen::Vector3d& force);
 
   const Scene& scene_;
-  Ground ground_;
+  SceneFrame scene_frame_;
   baxter::Arm tool_;     ///< its tip is that of the tool
   baxter::Arm gripper_;  ///< its tip is left_gripper
   std::uint64_t seed_;

@@ -16,20 +16,20 @@ void arrive(std::optional<Reading>& reading, double now) {
 
 }  // namespace
 
-std::vector<Said> Delivery::take(const Body& body) {
+std::vector<RobotMessages> Delivery::take(const Body& body) {
   const double now = body.now();
   waiting_.push_back(
-      {body.said(), network_.arrival(now, body.amount(FaultKind::delay), body.amount(FaultKind::jitter))});
+      {body.messages(), network_.arrival(now, body.amount(FaultKind::delay), body.amount(FaultKind::jitter))});
   const Fault* bursts = body.active(FaultKind::bursts);
   const bool between = bursts != nullptr && now < latest_ + bursts->amount - kSlack;
   if (between || body.active(FaultKind::stall) != nullptr) return {};
   const auto end =
       std::find_if(waiting_.begin(), waiting_.end(), [now](const Sent& sent) { return sent.arrives > now + kSlack; });
-  std::vector<Said> out;
+  std::vector<RobotMessages> out;
   for (auto it = waiting_.begin(); it != end; ++it) out.push_back(std::move(it->said));
   waiting_.erase(waiting_.begin(), end);
   if (!out.empty()) latest_ = now;
-  for (Said& said : out) {
+  for (RobotMessages& said : out) {
     arrive(said.joints, now);
     arrive(said.endpoint, now);
     arrive(said.state, now);

@@ -14,11 +14,11 @@ class Delivery {
   /// Returns the messages that arrive in this period, in the order of sending. Without a fault these are the messages
   /// of the period. The faults `delay` and `jitter` delay single messages, `stall` and `bursts` all of them. `received`
   /// becomes the time of arrival; stamps are unchanged. Must be called once per period.
-  std::vector<Said> take(const Body& body);
+  std::vector<RobotMessages> take(const Body& body);
 
  private:
   struct Sent {
-    Said said;
+    RobotMessages said;
     double arrives;  ///< s
   };
   std::vector<Sent> waiting_;

@@ -72,7 +72,7 @@ BodyOptions body_options(const Arguments& a, const baxter::BaxterOptions& baxter
 }
 
 /// Returns the role of the additional node of a fault, or an empty string.
-std::string companion_of(const Fault& fault) {
+std::string extra_node_of(const Fault& fault) {
   switch (fault.kind) {
     case FaultKind::second_sender:
       return "second_sender=" + fault.text;
@@ -100,19 +100,19 @@ int run(const Arguments& a) {
   const auto seed = static_cast<std::uint64_t>(config.options.seed);
   const std::unique_ptr<const Scene> scene = build_scene(config.options.scene, seed, host);
   Body body(*scene, body_options(a, baxter, seed));
-  Companion gripper("end_effector");
-  std::list<Beside> beside;
+  ExtraNode gripper("end_effector");
+  std::list<FaultNode> fault_nodes;
   for (const Fault& fault : faults) {
     body.inject(fault, starts_with_robot(fault.kind) ? Trigger{} : trigger);
-    const std::string role = companion_of(fault);
-    if (!role.empty()) beside.emplace_back(fault.kind, role);
+    const std::string role = extra_node_of(fault);
+    if (!role.empty()) fault_nodes.emplace_back(fault.kind, role);
   }
   NodeOptions node = a.node;
   for (const Fault& fault : faults) {
     if (fault.kind == FaultKind::bursts || fault.kind == FaultKind::stall) node.queue = kBurst;
   }
   const baxter::Arm arm({0.0, 0.0, baxter.tool.gripper});
-  serve(body, node, gripper, beside, arm, stop);
+  serve(body, node, gripper, fault_nodes, arm, stop);
   return 0;
 }
 
@@ -161,8 +161,7 @@ int run_main(int argc, char** argv) {
       "drawn from the config's seed; its backend sets the tool and the pose of the scene.",
       "fake_baxter"};
   Arguments a;
-  CLI::Option* companion = app.add_option("--companion", a.companion, "");
-  companion->group("");
+  app.add_option("--companion", a.companion, "")->group("");
   add_options(app, a);
   try {
     app.parse(argc, argv);
@@ -171,7 +170,7 @@ int run_main(int argc, char** argv) {
   } catch (const CLI::Error& trouble) {
     throw Error("", trouble.what(), "see fake_baxter --help");
   }
-  if (!a.companion.empty()) return serve_companion(a.companion);
+  if (!a.companion.empty()) return serve_extra_node(a.companion);
   if (a.config.empty()) throw Error("", "CONFIG is required", "see fake_baxter --help");
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);

@@ -16,9 +16,9 @@ namespace palpate::fake_baxter {
 using baxter::Joints;
 
 /// A scene at its pose `scene_pose` in the robot's frame. Keeps a reference to the scene.
-class Ground {
+class SceneFrame {
  public:
-  Ground(const Scene& scene, const baxter::ScenePoseOptions& place) : scene_(scene), frame_(place.frame()) {}
+  SceneFrame(const Scene& scene, const baxter::ScenePoseOptions& place) : scene_(scene), frame_(place.frame()) {}
 
   const Scene& scene() const { return scene_; }
   /// Convert a position between the robot's frame `base` and the scene's frame, metres.
@@ -75,9 +75,9 @@ class Mechanics {
 /// Selects the model of the arm.
 struct MechanicsOptions {
   enum class Type {
-    lagged,   ///< joints with lag, without mass: lagged.hpp
-    springs,  ///< rigid bodies and springs, by KDL: springs.hpp
-    mujoco    ///< the same arm, by MuJoCo: mujoco.hpp
+    lagged,   ///< joints with lag, without mass: lagged_arm.hpp
+    springs,  ///< rigid bodies and springs, by KDL: spring_arm.hpp
+    mujoco    ///< the same arm, by MuJoCo: mujoco_arm.hpp
   };
   Type type = Type::lagged;
   double friction = 0.0;  ///< Nm per joint; unused by `lagged`
@@ -85,9 +85,9 @@ struct MechanicsOptions {
 };
 
 /// Creates the model of the arm. `tip`: position of the tool's tip in the frame left_hand, metres. Contact stiffness
-/// and lag come from the effects of the scene in `ground`, of which the model keeps a copy. Throws Error if this build
-/// does not have the model.
-std::unique_ptr<Mechanics> make_mechanics(const MechanicsOptions& options, const Ground& ground,
+/// and lag come from the effects of the scene in `scene_frame`, of which the model keeps a copy. Throws Error if this
+/// build does not have the model.
+std::unique_ptr<Mechanics> make_mechanics(const MechanicsOptions& options, const SceneFrame& scene_frame,
                                           const Eigen::Vector3d& tip);
 
 }  // namespace palpate::fake_baxter

@@ -2,7 +2,7 @@
 #include "fake_baxter/node.hpp"
 
 #include "fake_baxter/delivery.hpp"
-#include "fake_baxter/inverse.hpp"
+#include "fake_baxter/ik_service.hpp"
 #include "fake_baxter/old_state.hpp"
 #include "fake_baxter/urdf.hpp"
 
@@ -161,7 +161,7 @@ class Trace {
   void write(const Body& body) {
     if (!out_.is_open()) return;
     const Eigen::Vector3d tip = body.tip();
-    const auto endpoint = body.said().endpoint;
+    const auto endpoint = body.messages().endpoint;
     const double said = endpoint ? endpoint->force.z() : std::numeric_limits<double>::quiet_NaN();
     out_ << fmt::format("{:.2f},{:.5f},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{},{},{}\n", body.now(), tip.x(), tip.y(),
                         tip.z(), body.set_point_height(), body.pressing(), said, name_of(body.mode()), body.commands(),
@@ -177,8 +177,9 @@ class Trace {
 
 class Node {
  public:
-  Node(Body& body, const NodeOptions& options, Companion& gripper, std::list<Beside>& beside, const baxter::Arm& arm)
-      : body_(body), options_(options), gripper_(gripper), beside_(beside), trace_(options.trace) {
+  Node(Body& body, const NodeOptions& options, ExtraNode& gripper, std::list<FaultNode>& fault_nodes,
+       const baxter::Arm& arm)
+      : body_(body), options_(options), gripper_(gripper), fault_nodes_(fault_nodes), trace_(options.trace) {
     join_network(options.rate > 0.0);
     node_.emplace();
     node_->setCallbackQueue(&queue_);
@@ -203,7 +204,7 @@ class Node {
     const ros::WallDuration period(Body::kPeriod / rate);
     ros::WallTime due = ros::WallTime::now();
     publish();
-    for (Beside& one : beside_) {
+    for (FaultNode& one : fault_nodes_) {
       if (body_.active(one.with) != nullptr) one.node.wait_until_up();
     }
     std::puts("ready");
@@ -304,7 +305,7 @@ class Node {
   }
 
   void publish() {
-    for (const Said& said : delivery_.take(body_)) {
+    for (const RobotMessages& said : delivery_.take(body_)) {
       if (said.endpoint) endpoint_.publish(message_of(*said.endpoint, said.tip_speed));
       if (said.joints) joints_.publish(message_of(*said.joints, said.speed, said.effort));
       if (said.state) publish_state_(*said.state);
@@ -315,7 +316,7 @@ class Node {
       gripper_.tell(body_.now());
       gripper_due_ = std::max(gripper_due_, body_.now() - kGripperPeriod) + kGripperPeriod;
     }
-    for (Beside& one : beside_) {
+    for (FaultNode& one : fault_nodes_) {
       if (body_.active(one.with) != nullptr) one.node.tell(body_.now());
     }
     // Published last, so that messages usually arrive before the time.
@@ -328,13 +329,13 @@ class Node {
 
   Body& body_;
   NodeOptions options_;
-  Companion& gripper_;
-  std::list<Beside>& beside_;
+  ExtraNode& gripper_;
+  std::list<FaultNode>& fault_nodes_;
   Delivery delivery_;
   Trace trace_;
   ros::CallbackQueue queue_;
   std::optional<ros::NodeHandle> node_;
-  std::optional<InverseKinematics> inverse_;
+  std::optional<IkService> inverse_;
   ros::Publisher endpoint_, joints_, collision_, avoidance_, properties_, clock_;
   std::function<void(const baxter::StateReading&)> publish_state_;
   std::vector<ros::Subscriber> heard_;
@@ -346,9 +347,9 @@ class Node {
 
 }  // namespace
 
-void serve(Body& body, const NodeOptions& options, Companion& gripper, std::list<Beside>& beside,
+void serve(Body& body, const NodeOptions& options, ExtraNode& gripper, std::list<FaultNode>& fault_nodes,
            const baxter::Arm& arm, const std::atomic<bool>& stop) {
-  Node(body, options, gripper, beside, arm).run(stop);
+  Node(body, options, gripper, fault_nodes, arm).run(stop);
 }
 
 }  // namespace palpate::fake_baxter

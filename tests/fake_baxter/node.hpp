@@ -3,7 +3,7 @@
 #pragma once
 
 #include "fake_baxter/body.hpp"
-#include "fake_baxter/companion.hpp"
+#include "fake_baxter/extra_node.hpp"
 
 #include <atomic>
 #include <list>
@@ -24,10 +24,10 @@ struct NodeOptions {
 };
 
 /// Additional node that starts with a fault.
-struct Beside {
-  Beside(FaultKind kind, const std::string& role) : with(kind), node(role) {}
+struct FaultNode {
+  FaultNode(FaultKind kind, const std::string& role) : with(kind), node(role) {}
   FaultKind with;
-  Companion node;
+  ExtraNode node;
 };
 
 /// Publishes the messages of `body` 100 times per second of its time and passes received messages to it, until `stop`.
@@ -36,7 +36,7 @@ struct Beside {
 /// With /clock, the time waits for the driver: while commands arrive, it is at most two periods ahead of the last one,
 /// unless none arrives for `patience`. So a driver on a busy machine is not late, and the end of a driver is still
 /// noticed.
-void serve(Body& body, const NodeOptions& options, Companion& gripper, std::list<Beside>& beside,
+void serve(Body& body, const NodeOptions& options, ExtraNode& gripper, std::list<FaultNode>& fault_nodes,
            const baxter::Arm& arm, const std::atomic<bool>& stop);
 
 }  // namespace palpate::fake_baxter

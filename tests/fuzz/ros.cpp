@@ -7,7 +7,7 @@ namespace palpate::fuzz {
 void xmlrpc(const std::string& bytes) {
   try {
     baxter::read_graph(bytes);
-  } catch (const baxter::Unreached&) {
+  } catch (const baxter::NetworkError&) {
   }
 }
 

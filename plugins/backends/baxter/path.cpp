@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/path.hpp"
 
-#include "baxter/words.hpp"
+#include "baxter/messages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -163,9 +163,10 @@ int check_reach(const Area& area, double spacing, const std::function<void(const
     }
   }
   if (missed == 0) return nx * ny;
-  throw trouble("scene_pose",
-                fmt::format("{} of {} places of the area cannot be reached, the first at {}", missed, nx * ny, first),
-                "move the middle of the area near x = 60 cm, y = 20 cm of base");
+  throw robot_error(
+      "scene_pose",
+      fmt::format("{} of {} places of the area cannot be reached, the first at {}", missed, nx * ny, first),
+      "move the middle of the area near x = 60 cm, y = 20 cm of base");
 }
 
 }  // namespace palpate::baxter

@@ -48,7 +48,7 @@ class Path {
 };
 
 /// Largest speed of a joint, rad/s. An arm that trails its set-point by 0.4 s is then 0.16 rad behind, less than
-/// Watch::kFollowing.
+/// MotionGuard::kFollowing.
 constexpr double kJointSpeed = 0.4;
 
 /// Thrown if no path exists; `reason` is one line.

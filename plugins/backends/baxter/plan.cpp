@@ -2,7 +2,7 @@
 // Checks and planning of Tapper while the arm does not move.
 #include "baxter/tapper.hpp"
 
-#include "baxter/words.hpp"
+#include "baxter/messages.hpp"
 #include "tapping/motion.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kPoseError = 0.001;    ///< m: largest position error of the ro
 constexpr double kTurnError = 0.02;     ///< rad: largest rotation error of the robot's inverse kinematics
 constexpr double kPatience = 1.0;       ///< s in which the data must become fresh when a tap begins
 /// Time in s to detect other programs that command the arm, and message rates that are too low.
-constexpr double kListen = Stream::kWindow + 0.05;
+constexpr double kListen = ReadingCounter::kWindow + 0.05;
 
 constexpr double kAgreement = 0.005;   ///< m between own kinematics and endpoint_state, which both use the same joints
 constexpr double kAgreedTurn = 0.035;  ///< rad between own kinematics and endpoint_state
@@ -37,15 +37,15 @@ void check_gripper(const JointReading& joints, const EndpointReading& endpoint, 
   const double turned = hand.rotation.angularDistance(endpoint.pose.rotation);
   if (aside <= kAgreement && std::abs(seen.z() - gripper) <= kAgreement && turned <= kAgreedTurn) return;
   if (aside <= kAgreement && turned <= kAgreedTurn) {
-    throw trouble("tool.gripper",
-                  fmt::format("the robot has left_gripper {} from left_hand, the config has it at {}",
-                              fine_centimetres(seen.z()), fine_centimetres(gripper)),
-                  "check what is mounted on the robot, then correct tool.gripper and tool.tip");
+    throw robot_error("tool.gripper",
+                      fmt::format("the robot has left_gripper {} from left_hand, the config has it at {}",
+                                  fine_centimetres(seen.z()), fine_centimetres(gripper)),
+                      "check what is mounted on the robot, then correct tool.gripper and tool.tip");
   }
-  throw trouble("tool.gripper",
-                fmt::format("joints and endpoint_state disagree by {} about the position of left_gripper",
-                            fine_centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm())),
-                "check that the arm is a Baxter's and that its gripper is mounted straight");
+  throw robot_error("tool.gripper",
+                    fmt::format("joints and endpoint_state disagree by {} about the position of left_gripper",
+                                fine_centimetres((seen - Eigen::Vector3d(0, 0, gripper)).norm())),
+                    "check that the arm is a Baxter's and that its gripper is mounted straight");
 }
 
 /// Returns lines for the run's log: settings that other programs left on the robot, and the mounted tool. Throws Error
@@ -65,8 +65,8 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
   if (seen.avoidance && (seen.avoidance->other_arm || !seen.avoidance->objects.empty())) {
     std::vector<std::string> from = seen.avoidance->objects;
     if (seen.avoidance->other_arm) from.insert(from.begin(), "the other arm");
-    throw trouble("collision_avoidance_state", "the robot pushes the arm away from " + listed(from),
-                  "move the other arm away, or the area forward");
+    throw robot_error("collision_avoidance_state", "the robot pushes the arm away from " + join_words(from),
+                      "move the other arm away, or the area forward");
   }
   const EndEffector& mounted = seen.end_effector;
   out.push_back(fmt::format(
@@ -92,63 +92,66 @@ double fastest(const BaxterOptions& options) {
 
 void Tapper::check() {
   const Area area = scene_.area();
-  if (options_.calibration && (bare().x < 0.0 || bare().y < 0.0 || bare().x > area.width || bare().y > area.depth)) {
-    throw trouble("calibration.at", "is outside the area", "choose a bare position inside the area");
+  if (options_.calibration && (calibration_target().x < 0.0 || calibration_target().y < 0.0 ||
+                               calibration_target().x > area.width || calibration_target().y > area.depth)) {
+    throw robot_error("calibration.at", "is outside the area", "choose a bare position inside the area");
   }
-  const std::optional<Fault> slow = listen();
-  await_fit(!options_.dry_run);
+  const std::optional<Fault> slow = check_rates();
+  await_readiness(!options_.dry_run);
   check_robot();
-  if (slow && !options_.dry_run) throw trouble("", slow->reason);
+  if (slow && !options_.dry_run) throw robot_error("", slow->reason);
   if (!options_.dry_run) {
     for (const std::string& line : check_settings(seen_)) note_(line);
   }
   try {
-    if (options_.calibration) column(bare());
+    if (options_.calibration) column(calibration_target());
     if (options_.dry_run) {
       const int places = check_reach(area, kReachSpacing, [this](const Target& place) { column(place); });
       note_(fmt::format("dry run: all {} places of the area can be reached, all the way down", places));
     }
   } catch (const NoPath& none) {
-    throw trouble("calibration.at", none.reason,
-                  "choose another position, or move the middle of the area near x = 60 cm, y = 20 cm of base");
+    throw robot_error("calibration.at", none.reason,
+                      "choose another position, or move the middle of the area near x = 60 cm, y = 20 cm of base");
   } catch (const Fault& fault) {
-    throw trouble("", fault.reason);
+    throw robot_error("", fault.reason);
   }
 }
 
 /// Compares the state of the robot with the config. In a dry run the robot may be disabled and the arm anywhere.
 void Tapper::check_robot() const {
   const bool moving = !options_.dry_run;
-  if (const std::optional<Fault> fault = Watch::fit(seen_, moving)) throw trouble("", fault->reason);
+  if (const std::optional<Fault> fault = MotionGuard::check_readiness(seen_, moving))
+    throw robot_error("", fault->reason);
   if (const int joint = beyond_limits(seen_.joints->position, 0.0); joint >= 0 && moving) {
-    throw trouble("", fmt::format("{} is beyond its limit", kJointNames[static_cast<std::size_t>(joint)]),
-                  "move the arm by hand");
+    throw robot_error("", fmt::format("{} is beyond its limit", kJointNames[static_cast<std::size_t>(joint)]),
+                      "move the arm by hand");
   }
   check_gripper(*seen_.joints, *seen_.endpoint, options_.tool.gripper);
   if (!moving) return;
   const std::string breach = workspace_.breach(tip_);
   if (!breach.empty()) {
-    throw trouble("", breach, "move the tool by hand to a position above the area; palpate moves the arm only there");
+    throw robot_error("", breach,
+                      "move the tool by hand to a position above the area; palpate moves the arm only there");
   }
   const Eigen::Vector3d down = arm_.tip(seen_.joints->position).rotation * Eigen::Vector3d::UnitZ();
   if (std::acos(std::clamp(-down.z(), -1.0, 1.0)) > kUpright) {
-    throw trouble("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
+    throw robot_error("", "the tool does not point down", "turn it by hand, within 20 degrees of the vertical");
   }
 }
 
 /// Returns a fault if the robot's messages arrive too rarely.
-std::optional<Fault> Tapper::listen() {
-  take(robot_.read());
-  watch_.begin();
+std::optional<Fault> Tapper::check_rates() {
+  store(robot_.read());
+  guard_.begin();
   const double end = seen_.now + kListen;
   std::optional<Fault> slow;
-  for (next_ = seen_.now; next_ < end && pass();) slow = watch_.listen(seen_);
+  for (next_ = seen_.now; next_ < end && next_period();) slow = guard_.check_rates(seen_);
   return slow;
 }
 
 std::vector<std::string> Tapper::describe(const TapRequest& request) {
   if (options_.dry_run) return {"dry run: nothing moves"};
-  take(robot_.read());
+  store(robot_.read());
   std::optional<Target> from;
   std::vector<std::string> out;
   if (seen_.joints) {
@@ -158,12 +161,12 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
     }
   }
   if (options_.calibration && !calibrated_) {
-    out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(bare()));
+    out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(calibration_target()));
   }
   const tapping::MotionOptions& wanted = options_.motion.of_request(request);
   const double stiffness = stiffness_at(request.target);
   tapping::MotionOptions motion = wanted;
-  measure_time();
+  update_timing();
   try {
     motion = bounded(wanted, stiffness);
   } catch (const Fault& slow) {
@@ -182,12 +185,13 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   return out;
 }
 
-/// Reads until the robot passes the rules of Watch::fit(), for at most kPatience seconds. The last snapshot is kept.
-void Tapper::await_fit(bool moving) {
-  take(robot_.read());
+/// Reads until the robot passes the rules of MotionGuard::check_readiness(), for at most kPatience seconds. The last
+/// snapshot is kept.
+void Tapper::await_readiness(bool moving) {
+  store(robot_.read());
   next_ = seen_.now;
   const double end = next_ + kPatience;
-  while (next_ < end && Watch::fit(seen_, moving) && pass()) continue;
+  while (next_ < end && MotionGuard::check_readiness(seen_, moving) && next_period()) continue;
 }
 
 Path Tapper::column(const Target& place) const {

@@ -19,10 +19,10 @@ namespace palpate::baxter {
 namespace {
 
 /// Log of the driver beside the run's record, one line per event, in the file `baxter.txt`.
-class Diary {
+class RunLog {
  public:
   /// An empty `directory` disables the log. The folder exists from the first tap on.
-  explicit Diary(std::string directory) : directory_(std::move(directory)) {}
+  explicit RunLog(std::string directory) : directory_(std::move(directory)) {}
 
   void note(const std::string& line) { waiting_ += line + '\n'; }
 
@@ -76,23 +76,23 @@ class Baxter final : public Backend {
   Baxter(const Options& options, const Context& context)
       : options_(options),
         scene_(context.scene),
-        diary_(context.directory),
+        log_(context.directory),
         arm_(options.dry_run ? ArmLock() : lock_of_arm()),
         robot_(connect({!options.dry_run, options.inverse_kinematics == Options::InverseKinematics::robot})),
         tapper_(options, context.scene, *robot_, context.interrupted,
-                [this](const std::string& line) { diary_.note(line); }) {
+                [this](const std::string& line) { log_.note(line); }) {
     tapper_.check();
     if (options.view) view_ = make_view(*robot_, options.scene_pose, scene_.area(), scene_.desk());
   }
 
   Contact tap(const TapRequest& request) override {
-    if (options_.bag && !begun_ && diary_.kept()) robot_->record(diary_.new_bag());
+    if (options_.bag && !begun_ && log_.kept()) robot_->record(log_.new_bag());
     if (view_) view_->target(request.target);
     const RealTime real_time(!robot_->read().simulated);
-    if (!begun_ && !real_time.words().empty()) diary_.note(real_time.words());
+    if (!begun_ && !real_time.status().empty()) log_.note(real_time.status());
     begun_ = true;
     Contact contact = tapper_.tap(request);
-    diary_.write();
+    log_.write();
     return contact;
   }
 
@@ -121,7 +121,7 @@ class Baxter final : public Backend {
  private:
   Options options_;
   const Scene& scene_;
-  Diary diary_;
+  RunLog log_;
   ArmLock arm_;  ///< held while connected
   std::unique_ptr<Robot> robot_;
   Tapper tapper_;

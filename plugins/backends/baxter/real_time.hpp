@@ -20,10 +20,10 @@ class RealTime {
     here.sched_priority = kPriority;
     const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &here);
     granted_ = refused == 0;
-    words_ = granted_ ? "real-time scheduling: granted"
-                      : std::string("real-time scheduling: not allowed (") + std::strerror(refused) +
-                            "); a line '@palpate - rtprio 20' in /etc/security/limits.d/palpate.conf allows it to the "
-                            "group palpate from the next login on";
+    status_ = granted_ ? "real-time scheduling: granted"
+                       : std::string("real-time scheduling: not allowed (") + std::strerror(refused) +
+                             "); a line '@palpate - rtprio 20' in /etc/security/limits.d/palpate.conf allows it to the "
+                             "group palpate from the next login on";
   }
   ~RealTime() {
     if (granted_) pthread_setschedparam(pthread_self(), policy_before_, &before_);
@@ -32,7 +32,7 @@ class RealTime {
   RealTime& operator=(const RealTime&) = delete;
 
   /// Returns a line for the run's log: whether it was granted, and the remedy. Empty with `wanted` false.
-  const std::string& words() const { return words_; }
+  const std::string& status() const { return status_; }
 
  private:
   /// Higher than ordinary threads, lower than the kernel's interrupt threads (50).
@@ -41,7 +41,7 @@ class RealTime {
   bool granted_ = false;
   int policy_before_ = 0;
   sched_param before_{};
-  std::string words_;
+  std::string status_;
 };
 
 }  // namespace palpate::baxter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Interface to a Baxter in plain numbers. The driver (tapper.*, watch.*) makes all decisions and does not use ROS. The
-// files in ros/ carry messages and decide nothing.
+// Interface to a Baxter in plain numbers. The driver (tapper.*, motion_guard.*) makes all decisions and does not use
+// ROS. The files in ros/ carry messages and decide nothing.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/tapper.hpp"
 
-#include "baxter/words.hpp"
+#include "baxter/messages.hpp"
 #include "tapping/motion.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
       arm_(Eigen::Map<const Eigen::Vector3d>(options.tool.tip)),
       planner_(options.scene_pose, arm_, [this](const Pose& tip, const Joints& seed) { return inverse(tip, seed); }),
       workspace_(workspace_of(options, scene)),
-      watch_(workspace_, options.force_stop),
+      guard_(workspace_, options.force_stop),
       sign_(options.sign() == ForceSign::learn      ? 0.0
             : options.sign() == ForceSign::positive ? 1.0
                                                     : -1.0) {}
@@ -100,7 +100,7 @@ Contact Tapper::attempt(const TapRequest& request) {
   if (options_.dry_run) return failed(Outcome::aborted, "dry run: the place can be reached, nothing moved");
   if (options_.calibration && !calibrated_) {
     TapRequest desk;
-    desk.target = bare();
+    desk.target = calibration_target();
     const Path way = column(desk.target);
     go_to(way.front());
     calibrate(descend(desk, gentle(motion_), way));
@@ -133,14 +133,14 @@ void Tapper::calibrate(const Contact& contact) {
 /// Moves the arm from its current position to joints `hover`: straight up to the height of travel if necessary, then
 /// along a line. Everything is planned before the first set-point, which equals the measured joints.
 void Tapper::go_to(const Joints& hover) {
-  watch_.begin();
-  expect_fit();
+  guard_.begin();
+  expect_readiness();
   const Joints start = seen_.joints->position;
   const Path up = way_up();
   const Path across = planner_.line(up.end(), hover);
-  expect_fit();  // the robot's inverse kinematics takes time
+  expect_readiness();  // the robot's inverse kinematics takes time
   next_ = seen_.now;
-  watch_.set_tare(force_at_rest(start), Watch::Zero::follows);
+  guard_.set_tare(force_at_rest(start), MotionGuard::Zero::follows);
   climb(up, sign_, {});
   motion_log_.emplace();
   follow(across, motion_.travel_speed, across.length());
@@ -191,9 +191,9 @@ void Tapper::settle(const Joints& goal) {
   throw Fault{"the arm did not come to rest at its target: check what holds it", Then::hold};
 }
 
-void Tapper::expect_fit() {
-  await_fit(true);
-  std::optional<Fault> fault = Watch::fit(seen_, true);
+void Tapper::expect_readiness() {
+  await_readiness(true);
+  std::optional<Fault> fault = MotionGuard::check_readiness(seen_, true);
   if (!fault) return;
   fault->then = Then::silence;  // the arm rests, and no set-point has been sent
   throw *fault;
@@ -204,27 +204,27 @@ void Tapper::step(const Joints& command) {
   if (!recovering_ && interrupted()) throw Fault{"interrupted", Then::retreat, false};
   const auto jump = [&](const Joints& from) { return (command - from).cwiseAbs().maxCoeff() > kStepClamp; };
   if (!command.allFinite() ||
-      (jump(seen_.joints->position) && jump(watch_.last_sent().value_or(seen_.joints->position)))) {
+      (jump(seen_.joints->position) && jump(guard_.last_sent().value_or(seen_.joints->position)))) {
     throw Fault{"a set-point would have jumped", Then::hold};
   }
   robot_.command(command);
-  watch_.sent(seen_.now, command);
+  guard_.record_command(seen_.now, command);
   // A missed period is skipped, because catching up would send several set-points at once.
   if (next_ + kPeriod <= seen_.now) next_ = seen_.now;
-  if (!pass()) throw standstill();
+  if (!next_period()) throw standstill();
   if (motion_log_) motion_log_->push_back({seen_.now, planner_.to_scene(arm_.tip(command).position), tip_});
-  if (std::optional<Fault> fault = watch_.look(seen_, tip_)) throw *fault;
+  if (std::optional<Fault> fault = guard_.check(seen_, tip_)) throw *fault;
 }
 
 /// Waits for the next period and reads. Returns false if the clock stands still.
-bool Tapper::pass() {
+bool Tapper::next_period() {
   next_ += kPeriod;
   if (!robot_.wait_until(next_)) return false;
-  take(robot_.read());
+  store(robot_.read());
   return true;
 }
 
-void Tapper::take(Snapshot seen) {
+void Tapper::store(Snapshot seen) {
   seen_ = std::move(seen);
   if (seen_.joints) tip_ = planner_.to_scene(arm_.tip(seen_.joints->position).position);
 }
@@ -238,16 +238,16 @@ std::string Tapper::recover(const Fault& fault) {
   // With an unknown sign, the force of the descent determines it.
   const double sign = sign_ != 0.0 ? sign_ : std::copysign(1.0, seen_.endpoint->force.z() - zero_.z());
   const auto presses = [&] { return sign * (seen_.endpoint->force.z() - zero_.z()); };
-  if (const auto other = stay(fault)) return silent(*other);
+  if (const auto other = hold_through_reflex(fault)) return silent(*other);
   if (fault.then == Then::hold) return where();
   try {
     for (int attempt = 1;; ++attempt) {
       try {
-        outlast_reflex();
+        await_reflex_end();
         // If the zero has moved, an apparent pull at rest does not count.
         const double zero = zero_.z() + sign * std::min(0.0, presses());
         climb(way_up(), sign, zero);
-        settle(*watch_.last_sent());
+        settle(*guard_.last_sent());
         return "the arm was raised to the height of travel";
       } catch (const Fault& again) {
         const bool pulled = again.then == Then::hold || presses() < -kPulls;
@@ -258,18 +258,18 @@ std::string Tapper::recover(const Fault& fault) {
     return where() + ", it could not be raised: " + none.reason;
   } catch (const Fault& other) {
     if (other.then == Then::silence) return silent(other);
-    if (const auto another = stay(other)) return silent(*another);
+    if (const auto another = hold_through_reflex(other)) return silent(*another);
     return where() + ", it was not raised: " + other.reason;
   }
 }
 
 /// Holds the arm at its position. If an object holds the tool and the reflex stopped the arm, the arm is held again
 /// after the reflex: its springs then pull less.
-std::optional<Fault> Tapper::stay(const Fault& fault) {
+std::optional<Fault> Tapper::hold_through_reflex(const Fault& fault) {
   if (const auto other = hold(seen_.joints->position)) return other;
   if (!fault.reflex || fault.then != Then::hold) return std::nullopt;
   try {
-    outlast_reflex();
+    await_reflex_end();
   } catch (const Fault& other) {
     if (other.then == Then::silence) return other;
   }
@@ -278,25 +278,25 @@ std::optional<Fault> Tapper::stay(const Fault& fault) {
 
 /// Waits without motion until the firmware's reflex ends. While the arm keeps pressing, the reflex fires again
 /// immediately. The arm then rises a little each time, until it presses with less than 16 N.
-void Tapper::outlast_reflex() {
-  watch_.begin();
-  watch_.expect_collision(true);
+void Tapper::await_reflex_end() {
+  guard_.begin();
+  guard_.expect_collision(true);
   next_ = seen_.now;
   const double patience = seen_.now + kReflexEnds;
   const Joints here = seen_.joints->position;
   while (seen_.now < patience && seen_.collision && seen_.collision->collision) step(here);
-  watch_.expect_collision(false);
+  guard_.expect_collision(false);
   step(seen_.joints->position);
 }
 
 /// Sends `joints` for kHeld seconds, or until a rule demands silence. Returns the fault of this rule, if any.
 std::optional<Fault> Tapper::hold(Joints joints) {
-  watch_.begin();
+  guard_.begin();
   next_ = seen_.now;
   for (double left = kHeld; left > 0.0; left -= kPeriod) {
     robot_.command(joints);
-    if (!pass()) return standstill();
-    std::optional<Fault> fault = watch_.look(seen_, tip_);
+    if (!next_period()) return standstill();
+    std::optional<Fault> fault = guard_.check(seen_, tip_);
     if (fault && fault->then == Then::silence) return fault;
   }
   return std::nullopt;

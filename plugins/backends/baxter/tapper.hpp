@@ -2,9 +2,9 @@
 // Motion of the arm in a tap: plan, travel, tare, descent until a contact, stop, rise; and the reactions to faults.
 #pragma once
 
+#include "baxter/motion_guard.hpp"
 #include "baxter/path.hpp"
-#include "baxter/reaction.hpp"
-#include "baxter/watch.hpp"
+#include "baxter/reaction_time.hpp"
 #include "tapping/guarded_tap.hpp"
 
 #include <palpate/backend.hpp>
@@ -54,53 +54,54 @@ class Tapper {
   /// Height of travel above `hover`, m. The arm descends from there to its rest before the tare, so that friction
   /// always has the same direction.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
-  static constexpr double kTurned = 0.01;  ///< m of a path over which most_pull() measures the rotation of the joints
+  static constexpr double kTurned =
+      0.01;  ///< m of a path over which largest_pull() measures the rotation of the joints
 
   Contact attempt(const TapRequest& request);
   Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
-  struct WayDown;
-  void lead(WayDown& way);
-  void expect_descent(const WayDown& way) const;
-  void slow_down(WayDown& way);
-  void tare(WayDown& way);
-  void feel_free(WayDown& way, double felt, double beside, bool coming_down);
-  Contact judge(const WayDown& way, const Contact& contact);
+  struct DescentState;
+  void update(DescentState& way);
+  void expect_following(const DescentState& way) const;
+  void slow_down(DescentState& way);
+  void tare(DescentState& way);
+  void evaluate_force(DescentState& way, double felt, double beside, bool coming_down);
+  Contact accept(const DescentState& way, const Contact& contact);
   void calibrate(const Contact& contact);
   void check_robot() const;
-  std::optional<Fault> listen();
-  void await_fit(bool moving);
-  void expect_fit();
+  std::optional<Fault> check_rates();
+  void await_readiness(bool moving);
+  void expect_readiness();
   void go_to(const Joints& hover);
   void follow(const Path& path, double speed, double end);
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
   void retreat(const Path& up, double sign, double zero, const Contact& contact);
   void rise(const Path& up, double gently, double sign, const std::optional<double>& zero);
-  void learn_rubbing(const Path& column);
-  double most_pull(const Path& way, double along) const;
-  static double turned(const Path& way, double along);
+  void measure_friction(const Path& column);
+  double largest_pull(const Path& way, double along) const;
+  static double rotation_per_metre(const Path& way, double along);
   double stiffness_at(const Target& place) const;
   double greatest_speed(double threshold, double stiffness, Fault::Then then) const;
-  void measure_time();
+  void update_timing();
   tapping::MotionOptions bounded(tapping::MotionOptions motion, double stiffness) const;
   void learn_moving(double difference);
   double greatest_rise() const;
   Eigen::Vector3d force_at_rest(const Joints& joints);
   std::string recover(const Fault& fault);
   static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
-  void outlast_reflex();
+  void await_reflex_end();
   Path way_up() const;
   void climb(const Path& up, double sign, const std::optional<double>& zero);
   void await_height(const Joints& top);
   Path column(const Target& place) const;
-  Target bare() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
+  Target calibration_target() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
   std::optional<Joints> inverse(const Pose& tip, const Joints& seed);
 
   void step(const Joints& command);
-  std::optional<Fault> stay(const Fault& fault);
+  std::optional<Fault> hold_through_reflex(const Fault& fault);
   std::optional<Fault> hold(Joints joints);
-  bool pass();
-  void take(Snapshot seen);
+  bool next_period();
+  void store(Snapshot seen);
   bool interrupted() const { return interrupted_ != nullptr && interrupted_->load(); }
   double height() const { return tip_.z(); }
   double travel_height() const { return scene_.desk() + motion_.hover; }
@@ -115,7 +116,7 @@ class Tapper {
   Arm arm_;
   Planner planner_;
   Workspace workspace_;
-  Watch watch_;
+  MotionGuard guard_;
   Snapshot seen_;
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  ///< measured tip in the scene's frame, m
   double next_ = 0.0;                              ///< s, start of the next period
@@ -129,12 +130,12 @@ class Tapper {
   struct {
     double beside = 0.0;
     double speed = 0.0;
-  } lately_;
-  std::optional<double> rubbing_;  ///< Nm of friction per joint, once measured
-  double shown_sign_ = 0.0;        ///< sign of the force at the last accepted contact; 0 if not determined
-  Reaction reaction_;
-  std::optional<std::vector<Reaction::Step>> motion_log_;  ///< receives every period while present
-  int told_ = 0;                                           ///< number of taps for which moving_ was logged
+  } last_moving_;
+  std::optional<double> friction_;  ///< Nm of friction per joint, once measured
+  double shown_sign_ = 0.0;         ///< sign of the force at the last accepted contact; 0 if not determined
+  ReactionTime reaction_;
+  std::optional<std::vector<ReactionTime::Step>> motion_log_;  ///< receives every period while present
+  int logged_ = 0;                                             ///< number of taps for which moving_ was logged
   std::optional<double> peak_;  ///< N, largest force against the tool in this tap; absent before the descent
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/bag.hpp"
 
-#include "baxter/words.hpp"
+#include "baxter/messages.hpp"
 
 #include <cstdio>
 #include <mutex>
@@ -26,7 +26,7 @@ Bag::~Bag() {
 }
 
 void Bag::open(const std::string& file) {
-  if (writer_) throw trouble(file, "a bag is already being recorded");
+  if (writer_) throw robot_error(file, "a bag is already being recorded");
   file_ = file;
   bag_ = std::make_unique<rosbag::Bag>();
   try {
@@ -34,7 +34,7 @@ void Bag::open(const std::string& file) {
     bag_->setCompression(rosbag::compression::LZ4);
   } catch (const std::exception& exception) {
     abandon_file();
-    throw trouble(file, fmt::format("cannot be recorded to: {}", exception.what()), "or set bag: false");
+    throw robot_error(file, fmt::format("cannot be recorded to: {}", exception.what()), "or set bag: false");
   }
   writer_.emplace(1);
   recording_ = true;

@@ -13,7 +13,7 @@
 namespace palpate::baxter {
 
 /// Requirements of a connection.
-struct Wishes {
+struct ConnectionOptions {
   bool commands = true;             ///< send set-points; without them nothing moves
   bool inverse_kinematics = false;  ///< use the robot's IKService
 };
@@ -24,7 +24,7 @@ struct Wishes {
 /// a connection itself end with the returned object.
 /// Throws Error (kind `run`) within five seconds of real time, with cause and remedy: no master, unresolvable host
 /// names, missing data, another robot or software version, messages with another md5 sum.
-std::unique_ptr<Robot> connect(const Wishes& wishes);
+std::unique_ptr<Robot> connect(const ConnectionOptions& options);
 
 /// Display for a person who watches the experiment: estimated surface, taps, area, and next target. Arguments are in
 /// metres in the scene's frame; the display uses the robot's frame `base`.

@@ -27,14 +27,14 @@ namespace {
 
 namespace asio = boost::asio;
 using XmlRpc::XmlRpcValue;
-using Why = Unreached::Why;
+using Why = NetworkError::Why;
 
 constexpr const char* kCaller = "/palpate";
 constexpr std::size_t kLongest =
     4'000'000;                        ///< bytes of an answer; the description of a whole network has about 10'000
 constexpr std::size_t kDeepest = 64;  ///< nested elements; that description has 17
 
-Unreached no_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
+NetworkError not_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
 
 /// Returns the first address of a name. With AI_NUMERICHOST no name server is used.
 Address first_address(const std::string& host, int flags) {
@@ -45,7 +45,7 @@ Address first_address(const std::string& host, int flags) {
   hints.ai_flags = flags;
   addrinfo* list = nullptr;
   const int error = getaddrinfo(host.c_str(), nullptr, &hints, &list);
-  if (error != 0) throw Unreached(Why::name, gai_strerror(error));
+  if (error != 0) throw NetworkError(Why::name, gai_strerror(error));
   Address out;
   std::memcpy(out.data(), list->ai_addr, std::min<std::size_t>(list->ai_addrlen, out.capacity()));
   freeaddrinfo(list);
@@ -55,7 +55,7 @@ Address first_address(const std::string& host, int flags) {
 // ---- XML-RPC: one query and one answer per connection ----
 
 /// Reads the body of an HTTP answer.
-std::string http_body(Wire& wire, Deadline deadline) {
+std::string http_body(TcpConnection& wire, Deadline deadline) {
   constexpr const char* kLength = "\r\ncontent-length:";
   std::string text;
   std::size_t head = std::string::npos;
@@ -63,21 +63,21 @@ std::string http_body(Wire& wire, Deadline deadline) {
     const std::string some = wire.receive_some(4096, deadline);
     text += some;
     if (some.empty() || std::string("HTTP/").compare(0, text.size(), text, 0, 5) != 0 || text.size() > kLongest) {
-      throw no_ros();
+      throw not_ros();
     }
   }
   std::string body = text.substr(head + 4);
   text.resize(head + 2);
   const auto field = boost::algorithm::ifind_first(text, kLength);
   const std::size_t length = field ? std::strtoul(&*field.begin() + std::strlen(kLength), nullptr, 10) : kLongest + 1;
-  if (length > kLongest) throw no_ros();
+  if (length > kLongest) throw not_ros();
   if (body.size() < length) body += wire.receive(length - body.size(), deadline);
   return body;
 }
 
 /// Returns whether elements are closed correctly and not nested too deeply. The library parses recursively, one step
 /// per nested value, and searches a member's name anywhere. So the name must come first in its member.
-bool is_sound(std::string_view xml) {
+bool is_well_formed(std::string_view xml) {
   std::vector<std::string_view> open;
   bool in_member = false;  // in a member, before its name
   for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
@@ -97,12 +97,12 @@ bool is_sound(std::string_view xml) {
 }
 
 /// Returns the unparsed answer to a query.
-std::string ask(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
-                Deadline deadline) {
+std::string call_method(const Address& address, const std::string& method, const std::vector<XmlRpcValue>& arguments,
+                        Deadline deadline) {
   std::string body = "<?xml version=\"1.0\"?>\r\n<methodCall><methodName>" + method + "</methodName>\r\n<params>";
   for (const XmlRpcValue& argument : arguments) body += "<param>" + argument.toXml() + "</param>";
   body += "</params></methodCall>\r\n";
-  Wire wire(address, deadline);
+  TcpConnection wire(address, deadline);
   wire.send("POST /RPC2 HTTP/1.1\r\nUser-Agent: palpate\r\nHost: ros\r\nContent-Type: text/xml\r\nContent-length: " +
                 std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" + body,
             deadline);
@@ -110,21 +110,21 @@ std::string ask(const Address& address, const std::string& method, const std::ve
 }
 
 /// Applies `read` to the third part of a ROS answer, or to an invalid value if the first part is not 1 (success).
-/// Throws Unreached if the answer has another form.
+/// Throws NetworkError if the answer has another form.
 template <class Read>
-auto understood(const std::string& xml, const Read& read) {
+auto parse_answer(const std::string& xml, const Read& read) {
   const std::size_t start = xml.find("<value>");
   int offset = static_cast<int>(start);
   try {
     XmlRpcValue parts;
-    if (start == std::string::npos || xml.find("<fault>") != std::string::npos || !is_sound(xml) ||
+    if (start == std::string::npos || xml.find("<fault>") != std::string::npos || !is_well_formed(xml) ||
         !parts.fromXml(xml, &offset) || parts.getType() != XmlRpcValue::TypeArray || parts.size() < 3) {
-      throw no_ros();
+      throw not_ros();
     }
     XmlRpcValue failure;
     return read(static_cast<int>(parts[0]) == 1 ? parts[2] : failure);
   } catch (const XmlRpc::XmlRpcException& exception) {
-    throw Unreached(Why::nonsense, "its answer is invalid: " + exception.getMessage());
+    throw NetworkError(Why::nonsense, "its answer is invalid: " + exception.getMessage());
   }
 }
 
@@ -149,15 +149,15 @@ std::size_t number_at(const std::string& bytes, std::size_t at) {
 }
 
 /// Receives a length and that many bytes.
-std::string receive_block(Wire& wire, Deadline deadline) {
+std::string receive_block(TcpConnection& wire, Deadline deadline) {
   const std::size_t length = number_at(wire.receive(4, deadline), 0);
-  if (length > kLongest) throw no_ros();
+  if (length > kLongest) throw not_ros();
   return wire.receive(length, deadline);
 }
 
 using Header = std::map<std::string, std::string>;
 
-Header exchange_headers(Wire& wire, const Header& ours, Deadline deadline) {
+Header exchange_headers(TcpConnection& wire, const Header& ours, Deadline deadline) {
   std::string fields;
   for (const auto& [key, value] : ours) fields += number(key.size() + 1 + value.size()) + key + "=" + value;
   wire.send(number(fields.size()) + fields, deadline);
@@ -165,13 +165,13 @@ Header exchange_headers(Wire& wire, const Header& ours, Deadline deadline) {
   Header theirs;
   for (std::size_t at = 0; at + 4 <= answer.size();) {
     const std::size_t length = number_at(answer, at);
-    if (length > answer.size() - at - 4) throw no_ros();
+    if (length > answer.size() - at - 4) throw not_ros();
     const std::string field = answer.substr(at + 4, length);
     const std::size_t equals = field.find('=');
     if (equals != std::string::npos) theirs[field.substr(0, equals)] = field.substr(equals + 1);
     at += 4 + length;
   }
-  if (theirs.count("error") != 0) throw Unreached(Why::nonsense, "it refuses: " + theirs["error"]);
+  if (theirs.count("error") != 0) throw NetworkError(Why::nonsense, "it refuses: " + theirs["error"]);
   return theirs;
 }
 
@@ -181,7 +181,7 @@ Deadline within(std::chrono::milliseconds longest, Deadline deadline) {
   return std::min(deadline, Steady::now() + longest);
 }
 
-std::thread deaf_thread(const std::function<void()>& run) {
+std::thread thread_without_signals(const std::function<void()>& run) {
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -194,13 +194,13 @@ Address look_up(const std::string& host, int port, Deadline deadline) {
   Address out;
   try {
     out = first_address(host, AI_NUMERICHOST);
-  } catch (const Unreached&) {
+  } catch (const NetworkError&) {
     // A started look-up cannot be cancelled; its thread ends by itself.
     const auto task = std::make_shared<std::packaged_task<Address()>>([host] { return first_address(host, 0); });
     std::future<Address> found = task->get_future();
-    deaf_thread([task] { (*task)(); }).detach();
+    thread_without_signals([task] { (*task)(); }).detach();
     if (found.wait_until(deadline) != std::future_status::ready) {
-      throw Unreached(Why::name, "looking up its host takes too long");
+      throw NetworkError(Why::name, "looking up its host takes too long");
     }
     out = found.get();
   }
@@ -211,7 +211,7 @@ Address look_up(const std::string& host, int port, Deadline deadline) {
 /// Runs the operation that `begin` starts, until `deadline`. Returns the number of bytes; 0 if the other side closed
 /// the connection.
 template <class Begin>
-std::size_t Wire::finish(Deadline deadline, const Begin& begin) {
+std::size_t TcpConnection::finish(Deadline deadline, const Begin& begin) {
   boost::system::error_code error;
   std::size_t bytes = 0;
   begin([&](const boost::system::error_code& outcome, std::size_t count = 0) {
@@ -223,47 +223,47 @@ std::size_t Wire::finish(Deadline deadline, const Begin& begin) {
   if (!io_.stopped()) {
     socket_.close(error);
     io_.run();
-    throw Unreached(Why::silent, "no answer in time");
+    throw NetworkError(Why::silent, "no answer in time");
   }
   if (error == asio::error::eof) return 0;
-  if (error) throw Unreached(Why::refused, error.message());
+  if (error) throw NetworkError(Why::refused, error.message());
   return bytes;
 }
 
-Wire::Wire(const Address& address, Deadline deadline) {
+TcpConnection::TcpConnection(const Address& address, Deadline deadline) {
   // The socket is created here with SOCK_CLOEXEC, so that child processes do not inherit it. Asio would omit the flag.
   const int opened = ::socket(address.data()->sa_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (opened < 0) throw Unreached(Why::refused, std::strerror(errno));
+  if (opened < 0) throw NetworkError(Why::refused, std::strerror(errno));
   socket_.assign(address.protocol(), opened);
   finish(deadline, [&](const auto& done) { socket_.async_connect(address, done); });
 }
 
-void Wire::send(const std::string& bytes, Deadline deadline) {
+void TcpConnection::send(const std::string& bytes, Deadline deadline) {
   finish(deadline, [&](const auto& done) { asio::async_write(socket_, asio::buffer(bytes), done); });
 }
 
-std::string Wire::receive_some(std::size_t most, Deadline deadline) {
+std::string TcpConnection::receive_some(std::size_t most, Deadline deadline) {
   std::string bytes(most, '\0');
   bytes.resize(finish(deadline, [&](const auto& done) { socket_.async_read_some(asio::buffer(bytes), done); }));
   return bytes;
 }
 
-std::string Wire::receive(std::size_t bytes, Deadline deadline) {
+std::string TcpConnection::receive(std::size_t bytes, Deadline deadline) {
   std::string all(bytes, '\0');
   if (finish(deadline, [&](const auto& done) { asio::async_read(socket_, asio::buffer(all), done); }) < bytes) {
-    throw Unreached(Why::nonsense, "the connection was ended");
+    throw NetworkError(Why::nonsense, "the connection was ended");
   }
   return all;
 }
 
-std::optional<Place> parse_uri(const std::string& uri, const std::string& scheme) {
+std::optional<HostPort> parse_uri(const std::string& uri, const std::string& scheme) {
   static const std::regex form("([a-z]+)://([^:/ \t]+):([0-9]{1,5})/?");
   constexpr std::size_t kLongestUri = 1000;  // the library parses recursively, one step per character
   std::smatch parts;
   if (uri.size() > kLongestUri || !std::regex_match(uri, parts, form) || parts[1] != scheme) return {};
   const int port = std::stoi(parts[3]);
   if (port < 1 || port > 65535) return {};
-  return Place{parts[2], port};
+  return HostPort{parts[2], port};
 }
 
 const std::vector<std::string>& Graph::of(const Nodes& nodes, std::string_view name) {
@@ -272,54 +272,54 @@ const std::vector<std::string>& Graph::of(const Nodes& nodes, std::string_view n
   return found == nodes.end() ? nobody : found->second;
 }
 
-int Master::greet(Deadline deadline) const {
-  return understood(ask(address_, "getPid", {XmlRpcValue(kCaller)}, deadline),
-                    [](XmlRpcValue& pid) { return static_cast<int>(pid); });
+int Master::process_id(Deadline deadline) const {
+  return parse_answer(call_method(address_, "getPid", {XmlRpcValue(kCaller)}, deadline),
+                      [](XmlRpcValue& pid) { return static_cast<int>(pid); });
 }
 
 Graph read_graph(const std::string& xml) {
-  return understood(xml, [](XmlRpcValue& state) {
+  return parse_answer(xml, [](XmlRpcValue& state) {
     return Graph{nodes_of(state[0]), nodes_of(state[1]), nodes_of(state[2])};
   });
 }
 
 Graph Master::graph(Deadline deadline) const {
-  return read_graph(ask(address_, "getSystemState", {XmlRpcValue(kCaller)}, deadline));
+  return read_graph(call_method(address_, "getSystemState", {XmlRpcValue(kCaller)}, deadline));
 }
 
-std::optional<std::string> Master::told(const char* method, const std::string& name, Deadline deadline) const {
-  return understood(ask(address_, method, {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline),
-                    [](XmlRpcValue& value) -> std::optional<std::string> {
-                      if (value.getType() != XmlRpcValue::TypeString) return {};
-                      return static_cast<std::string&>(value);
-                    });
+std::optional<std::string> Master::query(const char* method, const std::string& name, Deadline deadline) const {
+  return parse_answer(call_method(address_, method, {XmlRpcValue(kCaller), XmlRpcValue(name)}, deadline),
+                      [](XmlRpcValue& value) -> std::optional<std::string> {
+                        if (value.getType() != XmlRpcValue::TypeString) return {};
+                        return static_cast<std::string&>(value);
+                      });
 }
 
-Offer ask_publisher(const Place& node, const std::string& topic, Deadline deadline) {
+MessageType query_publisher(const HostPort& node, const std::string& topic, Deadline deadline) {
   XmlRpcValue protocols;
   protocols[0][0] = std::string("TCPROS");
-  const std::string xml = ask(look_up(node.host, node.port, deadline), "requestTopic",
-                              {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
-  return understood(xml, [&](XmlRpcValue& way) {
+  const std::string xml = call_method(look_up(node.host, node.port, deadline), "requestTopic",
+                                      {XmlRpcValue(kCaller), XmlRpcValue(topic), protocols}, deadline);
+  return parse_answer(xml, [&](XmlRpcValue& way) {
     if (way.getType() != XmlRpcValue::TypeArray || way.size() < 3) {
-      throw Unreached(Why::nonsense, "the node denies that it publishes the topic");
+      throw NetworkError(Why::nonsense, "the node denies that it publishes the topic");
     }
-    Wire wire(look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline), deadline);
+    TcpConnection wire(look_up(static_cast<std::string&>(way[1]), static_cast<int>(way[2]), deadline), deadline);
     Header answer = exchange_headers(
         wire, {{"callerid", kCaller}, {"topic", topic}, {"md5sum", "*"}, {"type", "*"}, {"message_definition", ""}},
         deadline);
-    return Offer{answer["type"], answer["md5sum"]};
+    return MessageType{answer["type"], answer["md5sum"]};
   });
 }
 
 std::string call_service(const Address& address, const std::string& name, const std::string& md5,
                          const std::string& request, Deadline deadline) {
-  Wire wire(address, deadline);
+  TcpConnection wire(address, deadline);
   exchange_headers(wire, {{"callerid", kCaller}, {"service", name}, {"md5sum", md5}, {"persistent", "0"}}, deadline);
   wire.send(request, deadline);
   const bool served = wire.receive(1, deadline)[0] != 0;
   std::string answer = receive_block(wire, deadline);
-  if (!served) throw Unreached(Why::nonsense, "the service failed" + (answer.empty() ? answer : ": " + answer));
+  if (!served) throw NetworkError(Why::nonsense, "the service failed" + (answer.empty() ? answer : ": " + answer));
   return answer;
 }
 

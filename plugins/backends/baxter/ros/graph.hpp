@@ -28,27 +28,27 @@ using Address = boost::asio::ip::tcp::endpoint;
 Deadline within(std::chrono::milliseconds longest, Deadline deadline);
 
 /// Network error of a query. Callers inside ros/ convert it to an Error for the user.
-struct Unreached : std::runtime_error {
+struct NetworkError : std::runtime_error {
   enum class Why {
     name,      ///< the host name has no address
     refused,   ///< the host or the network rejected the connection
     silent,    ///< no answer before the deadline
     nonsense,  ///< the answer violates the protocol, or is an error
   };
-  Unreached(Why reason, const std::string& words) : std::runtime_error(words), why(reason) {}
+  NetworkError(Why reason, const std::string& words) : std::runtime_error(words), why(reason) {}
   Why why;
 };
 
 /// Starts a thread with all signals blocked, so that signals reach the threads of the program.
-std::thread deaf_thread(const std::function<void()>& run);
+std::thread thread_without_signals(const std::function<void()>& run);
 
-/// Returns the address of a host name or number. Throws Unreached (`name`), also when the deadline passes.
+/// Returns the address of a host name or number. Throws NetworkError (`name`), also when the deadline passes.
 Address look_up(const std::string& host, int port, Deadline deadline);
 
-/// TCP connection with a deadline per operation. All members throw Unreached.
-class Wire {
+/// TCP connection with a deadline per operation. All members throw NetworkError.
+class TcpConnection {
  public:
-  Wire(const Address& address, Deadline deadline);
+  TcpConnection(const Address& address, Deadline deadline);
 
   void send(const std::string& bytes, Deadline deadline);
 
@@ -68,13 +68,13 @@ class Wire {
 };
 
 /// Host and port of a URI such as http://host:port/ or rosrpc://host:port.
-struct Place {
+struct HostPort {
   std::string host;
   int port = 0;
 };
 
 /// Returns nullopt unless `uri` has the form scheme://host:port, with an optional slash at the end.
-std::optional<Place> parse_uri(const std::string& uri, const std::string& scheme);
+std::optional<HostPort> parse_uri(const std::string& uri, const std::string& scheme);
 
 /// Nodes of the network per topic and service.
 struct Graph {
@@ -86,37 +86,37 @@ struct Graph {
   static const std::vector<std::string>& of(const Nodes& nodes, std::string_view name);
 };
 
-/// Parses the master's answer to getSystemState (XML-RPC). Throws Unreached.
+/// Parses the master's answer to getSystemState (XML-RPC). Throws NetworkError.
 Graph read_graph(const std::string& xml);
 
-/// Queries to the ROS master. All members throw Unreached.
+/// Queries to the ROS master. All members throw NetworkError.
 class Master {
  public:
   explicit Master(const Address& address) : address_(address) {}
 
   /// Returns the master's process id; an answer proves that it is a ROS master.
-  int greet(Deadline deadline) const;
+  int process_id(Deadline deadline) const;
   Graph graph(Deadline deadline) const;
   /// Returns the answer to a query by name: the value of a parameter (`getParam`), or the URI of a node (`lookupNode`)
   /// or of a service (`lookupService`). Returns nullopt if the name is unknown or the value is not a string.
-  std::optional<std::string> told(const char* method, const std::string& name, Deadline deadline) const;
+  std::optional<std::string> query(const char* method, const std::string& name, Deadline deadline) const;
 
  private:
   Address address_;
 };
 
 /// Type and md5 sum of the messages of a publisher.
-struct Offer {
+struct MessageType {
   std::string type;
   std::string md5;
 };
 
 /// Subscribes to `topic` at a node with any message type, reads the type from the answer, and disconnects. Throws
-/// Unreached.
-Offer ask_publisher(const Place& node, const std::string& topic, Deadline deadline);
+/// NetworkError.
+MessageType query_publisher(const HostPort& node, const std::string& topic, Deadline deadline);
 
 /// Calls a service once. `request` and the result are serialised ROS messages; the request begins with its length. If
-/// the service fails, Unreached contains its error text. Throws Unreached.
+/// the service fails, NetworkError contains its error text. Throws NetworkError.
 std::string call_service(const Address& address, const std::string& name, const std::string& md5,
                          const std::string& request, Deadline deadline);
 

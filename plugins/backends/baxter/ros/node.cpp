@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/node.hpp"
 
-#include "baxter/words.hpp"
+#include "baxter/messages.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -52,25 +52,25 @@ std::string own_name(Deadline deadline) {
   const std::string ip = variable("ROS_IP");
   const std::string name = variable("ROS_HOSTNAME");
   if (!ip.empty() && !name.empty()) {
-    throw trouble("ROS_IP=" + ip, "is set together with ROS_HOSTNAME=" + name, "unset one of them");
+    throw robot_error("ROS_IP=" + ip, "is set together with ROS_HOSTNAME=" + name, "unset one of them");
   }
   if (!ip.empty() && !is_own_address(ip)) {
-    throw trouble("ROS_IP=" + ip, "is not an address of this machine, so the robot cannot reach it",
-                  "set it to the address of the interface on the robot's network (ip -brief address)");
+    throw robot_error("ROS_IP=" + ip, "is not an address of this machine, so the robot cannot reach it",
+                      "set it to the address of the interface on the robot's network (ip -brief address)");
   }
   if (!name.empty()) {
     try {
       look_up(name, 1, within(kLookUp, deadline));
-    } catch (const Unreached& reason) {
-      throw trouble("ROS_HOSTNAME=" + name, fmt::format("does not resolve ({})", reason.what()),
-                    "set ROS_IP to this machine's address instead");
+    } catch (const NetworkError& reason) {
+      throw robot_error("ROS_HOSTNAME=" + name, fmt::format("does not resolve ({})", reason.what()),
+                        "set ROS_IP to this machine's address instead");
     }
   }
   return ip.empty() ? name : ip;
 }
 
 /// Drops the messages of roscpp's XML-RPC library on stderr.
-class Nothing : public XmlRpc::XmlRpcErrorHandler {
+class SilentErrorHandler : public XmlRpc::XmlRpcErrorHandler {
   void error(const char*) override {}
 };
 
@@ -83,7 +83,7 @@ class Node {
     ROSCONSOLE_AUTOINIT;
     ros::console::set_logger_level("ros", ros::console::levels::Fatal);
     ros::console::notifyLoggerLevelsChanged();
-    static Nothing nothing;
+    static SilentErrorHandler nothing;
     XmlRpc::XmlRpcErrorHandler::setErrorHandler(&nothing);
     ros::master::setRetryTimeout(ros::WallDuration(1.0));
     try {
@@ -91,14 +91,14 @@ class Node {
                 ros::init_options::NoSigintHandler | ros::init_options::AnonymousName | ros::init_options::NoRosout);
       ros::start();
     } catch (const std::exception& exception) {
-      throw trouble(network.where(), fmt::format("roscpp does not start: {}", exception.what()),
-                    "check the variables ROS_*");
+      throw robot_error(network.where(), fmt::format("roscpp does not start: {}", exception.what()),
+                        "check the variables ROS_*");
     }
   }
 
   ~Node() {
     forget_silent_master();
-    ros::PollManager::instance()->shutdown();  // stops the connection thread, see give_up()
+    ros::PollManager::instance()->shutdown();  // stops the connection thread, see run_on_connection_thread()
     ros::shutdown();
     ros::waitForShutdown();
   }
@@ -119,34 +119,35 @@ void point_roscpp_at(const std::string& master) { ros::master::init({{"__master"
 Network find_network(Deadline deadline) {
   const std::string uri = variable("ROS_MASTER_URI");
   if (uri.empty()) {
-    throw trouble("ROS_MASTER_URI", "is not set",
-                  "set it to the robot's master, http://<the robot's name>.local:11311");
+    throw robot_error("ROS_MASTER_URI", "is not set",
+                      "set it to the robot's master, http://<the robot's name>.local:11311");
   }
   const std::string where = "ROS_MASTER_URI=" + uri;
-  const std::optional<Place> place = parse_uri(uri, "http");
-  if (!place) throw trouble(where, "is not of the form http://host:port", "as in http://011305P0001.local:11311");
+  const std::optional<HostPort> place = parse_uri(uri, "http");
+  if (!place) throw robot_error(where, "is not of the form http://host:port", "as in http://011305P0001.local:11311");
   const std::string name = own_name(deadline);
   try {
     const Master master(look_up(place->host, place->port, within(kLookUp, deadline)));
-    master.greet(within(kAnswer, deadline));
+    master.process_id(within(kAnswer, deadline));
     return {uri, master, name};
-  } catch (const Unreached& reason) {
+  } catch (const NetworkError& reason) {
     throw unreachable(where, "the master", *place, reason, "start the robot, or correct the variable");
   }
 }
 
-Error unreachable(const std::string& where, const std::string& who, const Place& place, const Unreached& reason,
+Error unreachable(const std::string& where, const std::string& who, const HostPort& place, const NetworkError& reason,
                   const std::string& remedy) {
   switch (reason.why) {
-    case Unreached::Why::name:
-      return trouble(
+    case NetworkError::Why::name:
+      return robot_error(
           where, fmt::format("{} is on the host {}, which does not resolve here ({})", who, place.host, reason.what()),
           "check the cable to the robot; names in .local need mDNS (libnss-mdns) or a line in /etc/hosts");
-    case Unreached::Why::silent:
-      return trouble(where, fmt::format("{} at {}:{} does not answer in time", who, place.host, place.port),
-                     "check that the robot is on and that no firewall blocks the connection");
+    case NetworkError::Why::silent:
+      return robot_error(where, fmt::format("{} at {}:{} does not answer in time", who, place.host, place.port),
+                         "check that the robot is on and that no firewall blocks the connection");
     default:
-      return trouble(where, fmt::format("{} is not at {}:{} ({})", who, place.host, place.port, reason.what()), remedy);
+      return robot_error(where, fmt::format("{} is not at {}:{} ({})", who, place.host, place.port, reason.what()),
+                         remedy);
   }
 }
 
@@ -154,12 +155,12 @@ void start_node(const Network& network) {
   static const Node node(network);
   running = &node;
   if (node.network.uri != network.uri) {
-    throw trouble(network.where(),
-                  "this process is already a node of " + node.network.uri + " and cannot change its master",
-                  "start another process");
+    throw robot_error(network.where(),
+                      "this process is already a node of " + node.network.uri + " and cannot change its master",
+                      "start another process");
   }
   if (!ros::ok()) {
-    throw trouble(network.where(), "the ROS node of this process was told to shut down", "start it again");
+    throw robot_error(network.where(), "the ROS node of this process was told to shut down", "start it again");
   }
   point_roscpp_at(network.uri);  // an earlier connection may have marked it as gone
 }
@@ -169,13 +170,13 @@ std::string node_name() { return ros::this_node::getName(); }
 void forget_silent_master() {
   if (running == nullptr) return;
   try {
-    running->network.master.greet(Steady::now() + kFarewell);
-  } catch (const Unreached&) {
+    running->network.master.process_id(Steady::now() + kFarewell);
+  } catch (const NetworkError&) {
     point_roscpp_at("http://127.0.0.1:9");  // discard port: no server listens there
   }
 }
 
-void give_up(const std::function<void()>& connections) {
+void run_on_connection_thread(const std::function<void()>& connections) {
   std::atomic<bool> begun = false;
   std::promise<void> done;
   const auto once = [&] {

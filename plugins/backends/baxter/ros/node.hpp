@@ -26,7 +26,7 @@ struct Network {
 Network find_network(Deadline deadline);
 
 /// Converts a network error to an Error about `who` at `place`. `remedy` is the remedy if the host does not speak ROS.
-Error unreachable(const std::string& where, const std::string& who, const Place& place, const Unreached& reason,
+Error unreachable(const std::string& where, const std::string& who, const HostPort& place, const NetworkError& reason,
                   const std::string& remedy);
 
 /// Starts roscpp, once per process. The node leaves the network at the end of the process. Throws Error if roscpp does
@@ -44,6 +44,6 @@ void forget_silent_master();
 
 /// Runs `connections` on roscpp's connection thread and waits for its end. Closing connections on another thread may
 /// crash if a header arrives or a peer disconnects meanwhile (ros_comm, issues 1939 and 2032).
-void give_up(const std::function<void()>& connections);
+void run_on_connection_thread(const std::function<void()>& connections);
 
 }  // namespace palpate::baxter

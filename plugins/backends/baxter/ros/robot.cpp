@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include "baxter/messages.hpp"
 #include "baxter/ros/bag.hpp"
-#include "baxter/ros/link.hpp"
-#include "baxter/ros/pulse.hpp"
-#include "baxter/words.hpp"
+#include "baxter/ros/connection.hpp"
+#include "baxter/ros/heartbeat.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -50,7 +50,7 @@ constexpr double kAlmostNow = 0.03;
 /// counted, not dropped. A longer queue would take longer to process.
 constexpr std::uint32_t kBacklog = 10;
 /// Longest wait of the spinner thread for a message.
-const ros::WallDuration kSpin(0.5 * Pulse::kNoted);
+const ros::WallDuration kSpin(0.5 * Heartbeat::kNoted);
 
 /// Time for an answer of the robot's inverse kinematics, within the promised second.
 constexpr milliseconds kSolve(900);
@@ -84,14 +84,14 @@ double steady_seconds() { return std::chrono::duration<double>(Steady::now().tim
 constexpr std::size_t kArm = kJointNames.size();
 
 /// Joints of the left arm in a message with named joints.
-struct ArmPart {
+struct ArmJoints {
   std::size_t count = 0;  ///< number of the arm's joints in the message
   std::string malformed;  ///< error text if joints or positions are missing; else empty
   Joints position = Joints::Zero();
 };
 
-ArmPart arm_part(const sensor_msgs::JointState& message) {
-  ArmPart part;
+ArmJoints arm_joints(const sensor_msgs::JointState& message) {
+  ArmJoints part;
   for (std::size_t joint = 0; joint < kArm; ++joint) {
     const auto found = std::find(message.name.begin(), message.name.end(), kJointNames[joint]);
     if (found == message.name.end()) continue;
@@ -106,16 +106,16 @@ ArmPart arm_part(const sensor_msgs::JointState& message) {
   return part;
 }
 
-class RosRobot final : public Link {
+class RosRobot final : public RosConnection {
  public:
   RosRobot(const Network& network, bool commands, std::optional<double> tool_mass)
-      : bag_(std::make_shared<Bag>()), master_(network.master), pulse_(steady_seconds()) {
+      : bag_(std::make_shared<Bag>()), master_(network.master), heartbeat_(steady_seconds()) {
     latest_.end_effector.mass = tool_mass;
     handle_.setCallbackQueue(&queue_);
     listen();
     if (commands) {
       // Another sender of set-points moves the same arm.
-      subscribe<msgs::JointCommand>(kCommandTopic, [](const auto&, const Heard& heard, Snapshot& latest) {
+      subscribe<msgs::JointCommand>(kCommandTopic, [](const auto&, const MessageInfo& heard, Snapshot& latest) {
         add_once(latest.commanders, heard.sender);
       });
       command_publisher_ = handle_.advertise<msgs::JointCommand>(kCommandTopic, 1);
@@ -123,7 +123,7 @@ class RosRobot final : public Link {
       command_.names.assign(kJointNames.begin(), kJointNames.end());
       command_.command.resize(kArm);
     }
-    spinner_ = deaf_thread([this] { spin(); });
+    spinner_ = thread_without_signals([this] { spin(); });
   }
 
   ~RosRobot() override {
@@ -131,7 +131,7 @@ class RosRobot final : public Link {
     stop_ = true;
     queue_.disable();
     spinner_.join();
-    give_up([this] {
+    run_on_connection_thread([this] {
       for (ros::Subscriber& subscriber : subscribers_) subscriber.shutdown();
       command_publisher_.shutdown();
     });
@@ -142,7 +142,7 @@ class RosRobot final : public Link {
     Snapshot snapshot = latest_;
     snapshot.now = clock_.now();
     snapshot.simulated = ros::Time::isSimTime();
-    snapshot.own_gap = pulse_.longest(steady_seconds());
+    snapshot.own_gap = heartbeat_.longest(steady_seconds());
     return snapshot;
   }
 
@@ -202,17 +202,17 @@ class RosRobot final : public Link {
       ros::serialization::IStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
                                          static_cast<std::uint32_t>(bytes.size()));
       ros::serialization::deserialize(stream, response);
-    } catch (const Unreached& reason) {
-      throw trouble(kSolverService, reason.what());
+    } catch (const NetworkError& reason) {
+      throw robot_error(kSolverService, reason.what());
     } catch (const ros::Exception& exception) {
-      throw trouble(kSolverService, std::string("its answer cannot be read: ") + exception.what());
+      throw robot_error(kSolverService, std::string("its answer cannot be read: ") + exception.what());
     }
     if (response.isValid.size() != 1 || response.joints.size() != 1 || response.result_type.size() != 1) {
-      throw trouble(kSolverService, "its answer has not one part for one pose");
+      throw robot_error(kSolverService, "its answer has not one part for one pose");
     }
     if (response.isValid[0] == 0 || response.result_type[0] == msgs::SolvePositionIKResponse::RESULT_INVALID) return {};
-    const ArmPart part = arm_part(response.joints[0]);
-    if (!part.malformed.empty()) throw trouble(kSolverService, "its answer has " + part.malformed);
+    const ArmJoints part = arm_joints(response.joints[0]);
+    if (!part.malformed.empty()) throw robot_error(kSolverService, "its answer has " + part.malformed);
     return part.position;
   }
 
@@ -226,15 +226,15 @@ class RosRobot final : public Link {
   /// elsewhere.
   std::string answer(const std::string& request, Deadline deadline) {
     const char* md5 = ros::service_traits::MD5Sum<msgs::SolvePositionIK>::value();
-    const auto uri = master_.told("lookupService", kSolverService, deadline);
-    if (!uri) throw Unreached(Unreached::Why::refused, "no node offers it");
+    const auto uri = master_.query("lookupService", kSolverService, deadline);
+    if (!uri) throw NetworkError(NetworkError::Why::refused, "no node offers it");
     const auto place = parse_uri(*uri, "rosrpc");
-    if (!place) throw Unreached(Unreached::Why::nonsense, "the master has it at " + *uri);
+    if (!place) throw NetworkError(NetworkError::Why::nonsense, "the master has it at " + *uri);
     return call_service(look_up(place->host, place->port, deadline), kSolverService, md5, request, deadline);
   }
 
   /// Sender and reception time of a message.
-  struct Heard {
+  struct MessageInfo {
     std::string sender;
     double received;
 
@@ -245,7 +245,8 @@ class RosRobot final : public Link {
     }
   };
 
-  /// Subscribes to `topic`. `take` stores a message; its arguments are the message, its Heard and the latest snapshot.
+  /// Subscribes to `topic`. `take` stores a message; its arguments are the message, its MessageInfo and the latest
+  /// snapshot.
   template <class Message, class Take>
   void subscribe(const char* topic, const Take& take) {
     using Event = ros::MessageEvent<const Message>;
@@ -259,7 +260,8 @@ class RosRobot final : public Link {
         return;
       }
       const std::lock_guard lock(mutex_);
-      take(*event.getConstMessage(), Heard{event.getPublisherName(), clock_.received(event.getReceiptTime())}, latest_);
+      take(*event.getConstMessage(), MessageInfo{event.getPublisherName(), clock_.received(event.getReceiptTime())},
+           latest_);
     };
     subscribers_.push_back(handle_.subscribe<const Event&>(topic, kBacklog, heard, ros::VoidConstPtr(),
                                                            ros::TransportHints().tcpNoDelay()));
@@ -268,7 +270,7 @@ class RosRobot final : public Link {
   void listen() {
     subscribe<sensor_msgs::JointState>(kJointTopic, take_joints);
     subscribe<msgs::EndpointState>(kEndpointTopic,
-                                   [](const msgs::EndpointState& message, const Heard& heard, Snapshot& latest) {
+                                   [](const msgs::EndpointState& message, const MessageInfo& heard, Snapshot& latest) {
                                      const auto& at = message.pose.position;
                                      const auto& turn = message.pose.orientation;
                                      const auto& force = message.wrench.force;
@@ -281,24 +283,26 @@ class RosRobot final : public Link {
                                    });
     subscribe<msgs::AssemblyState>(kStateTopic, take_state);
     subscribe<msgs::CollisionDetectionState>(
-        kCollisionTopic, [](const auto& message, const Heard& heard, Snapshot& latest) {
+        kCollisionTopic, [](const auto& message, const MessageInfo& heard, Snapshot& latest) {
           latest.collision = CollisionReading{heard.next(message, latest.collision), message.collision_state != 0};
           add_once(latest.senders.collision, heard.sender);
         });
     subscribe<msgs::CollisionAvoidanceState>(
-        kAvoidanceTopic, [](const auto& message, const Heard& heard, Snapshot& latest) {
+        kAvoidanceTopic, [](const auto& message, const MessageInfo& heard, Snapshot& latest) {
           latest.avoidance =
               AvoidanceReading{heard.next(message, latest.avoidance), message.other_arm != 0, message.collision_object};
           add_once(latest.senders.avoidance, heard.sender);
         });
-    subscribe<msgs::EndEffectorProperties>(kEndEffectorTopic, [](const auto& message, const Heard&, Snapshot& latest) {
-      latest.end_effector.product = boost::trim_copy(message.manufacturer + " " + message.product);
-    });
+    subscribe<msgs::EndEffectorProperties>(
+        kEndEffectorTopic, [](const auto& message, const MessageInfo&, Snapshot& latest) {
+          latest.end_effector.product = boost::trim_copy(message.manufacturer + " " + message.product);
+        });
     for (const auto& [topic, setting] : {std::pair(kSpeedRatioTopic, &Snapshot::speed_ratio),
                                          std::pair(kCommandTimeoutTopic, &Snapshot::command_timeout)}) {
-      subscribe<std_msgs::Float64>(topic, [kept = setting](const auto& message, const Heard& heard, Snapshot& latest) {
-        latest.*kept = Setting{message.data, heard.sender};
-      });
+      subscribe<std_msgs::Float64>(topic,
+                                   [kept = setting](const auto& message, const MessageInfo& heard, Snapshot& latest) {
+                                     latest.*kept = Setting{message.data, heard.sender};
+                                   });
     }
     if (ros::Time::isSimTime()) listen_to_clock();
   }
@@ -315,15 +319,15 @@ class RosRobot final : public Link {
                                                            ros::TransportHints().tcpNoDelay()));
   }
 
-  static void take_joints(const sensor_msgs::JointState& message, const Heard& heard, Snapshot& latest) {
-    const ArmPart part = arm_part(message);
+  static void take_joints(const sensor_msgs::JointState& message, const MessageInfo& heard, Snapshot& latest) {
+    const ArmJoints part = arm_joints(message);
     if (part.count == 0) return;  // joints of the gripper or of the other arm
     if (!part.malformed.empty()) return malformed(latest, fmt::format("{} has {}", kJointTopic, part.malformed));
     latest.joints = JointReading{heard.next(message, latest.joints), part.position};
     add_once(latest.senders.joints, heard.sender);
   }
 
-  static void take_state(const msgs::AssemblyState& message, const Heard& heard, Snapshot& latest) {
+  static void take_state(const msgs::AssemblyState& message, const MessageInfo& heard, Snapshot& latest) {
     add_once(latest.senders.state, heard.sender);
     if (message.estop_button > msgs::AssemblyState::ESTOP_BUTTON_RELEASED ||
         message.estop_source > msgs::AssemblyState::ESTOP_SOURCE_BRAIN) {
@@ -349,7 +353,7 @@ class RosRobot final : public Link {
     while (!stop_) {
       queue_.callAvailable(kSpin);
       const std::lock_guard lock(mutex_);
-      pulse_.beat(steady_seconds());
+      heartbeat_.beat(steady_seconds());
     }
   }
 
@@ -373,15 +377,15 @@ class RosRobot final : public Link {
   msgs::JointCommand command_;
   Master master_;
   std::mutex mutex_;
-  Snapshot latest_;  ///< guarded by mutex_; `now` and `own_gap` are not used
-  Pulse pulse_;      ///< of the spinner thread; guarded by mutex_
+  Snapshot latest_;      ///< guarded by mutex_; `now` and `own_gap` are not used
+  Heartbeat heartbeat_;  ///< of the spinner thread; guarded by mutex_
   std::atomic<bool> stop_{false};
   std::thread spinner_;
 };
 
 }  // namespace
 
-const std::array<Topic, 3>& Link::needed() {
+const std::array<Topic, 3>& RosConnection::needed() {
   const auto topic = [](const char* name, auto message) {
     return Topic{name, traits::datatype(message), traits::md5sum(message)};
   };
@@ -391,7 +395,7 @@ const std::array<Topic, 3>& Link::needed() {
   return topics;
 }
 
-std::unique_ptr<Link> make_link(const Network& network, bool commands, std::optional<double> tool_mass) {
+std::unique_ptr<RosConnection> make_connection(const Network& network, bool commands, std::optional<double> tool_mass) {
   return std::make_unique<RosRobot>(network, commands, tool_mass);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "baxter/ros/link.hpp"
+#include "baxter/ros/connection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ class RosView final : public View {
 
   ~RosView() override {
     forget_silent_master();
-    give_up([this] {
+    run_on_connection_thread([this] {
       surface_publisher_.shutdown();
       taps_publisher_.shutdown();
     });
@@ -141,7 +141,7 @@ class RosView final : public View {
 }  // namespace
 
 std::unique_ptr<View> make_view(Robot& robot, const ScenePoseOptions& place, const Area& area, double desk) {
-  return std::make_unique<RosView>(dynamic_cast<Link&>(robot).bag(), place, area, desk);
+  return std::make_unique<RosView>(dynamic_cast<RosConnection&>(robot).bag(), place, area, desk);
 }
 
 }  // namespace palpate::baxter

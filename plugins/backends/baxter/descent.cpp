@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+// Descent of Tapper: rest, speed limit, descent, rise, and acceptance of the contact.
+#include "baxter/messages.hpp"
+#include "baxter/tapper.hpp"
+#include "tapping/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace palpate::baxter {
+namespace {
+
+using tapping::newtons;
+using Then = Fault::Then;
+
+/// Upper limit of consecutive readings of a pull until it is a fault. The count is kPulledFor seconds of new readings,
+/// within these limits.
+constexpr double kPulled = 6.0;
+constexpr double kFewestPulled = 3.0;
+constexpr double kPulledFor = 0.12;
+constexpr double kEvenFrom = 0.7;  ///< s until an arm that trails its set-point by 0.35 s descends at constant speed
+constexpr double kEvenTo = 1.0;    ///< s: end of the average of the force, later with fewer than kFewestEven readings
+constexpr std::size_t kFewestEven = 10;
+/// Conditions for an arm that falls behind without a contact. A blocked arm presses with at least half of stiffness
+/// times lag, and the measured force must exceed the threshold by kPressed (N). A lag below kLeastBehind (m) may come
+/// from a posture that sags more.
+constexpr double kPressed = 2.0;
+constexpr double kLeastBehind = 0.003;
+constexpr int kQuiet = 3;            ///< consecutive readings within half the threshold; a contact has fewer
+constexpr double kSteady = 1.5;      ///< N between the means of both halves; noise of 1.5 N causes 0.55 N
+constexpr double kLeastMoved = 2.5;  ///< N: least limit of the zero's change in a tap; noise causes 0.4 N
+
+/// Mean force along z while the arm, which trails its set-point, descends at constant speed. Without a result if the
+/// force rises meanwhile, because a contact may begin.
+class EvenDescent {
+ public:
+  /// Takes a reading `time` seconds after the set-point began to descend. Returns the mean once it is complete.
+  std::optional<double> add(double time, double force) {
+    if (time < kEvenFrom) forces_.clear();
+    if (time < kEvenFrom || done_) return std::nullopt;
+    done_ = time >= kEvenTo && forces_.size() >= kFewestEven;
+    if (!done_) forces_.push_back(force);
+    if (!done_) return std::nullopt;
+    const std::vector<double> forces = std::exchange(forces_, {});
+    const auto count = static_cast<Eigen::Index>(forces.size());
+    const Eigen::Map<const Eigen::VectorXd> all(forces.data(), count);
+    const double rise = all.tail(count - count / 2).mean() - all.head(count / 2).mean();
+    return std::abs(rise) < kSteady ? std::optional<double>(all.mean()) : std::nullopt;
+  }
+
+ private:
+  std::vector<double> forces_;
+  bool done_ = false;
+};
+
+/// Periods with a constant speed of descent: all up to now, and those up to the last detection.
+struct EvenPeriods {
+  std::vector<ReactionTime::Period> now;
+  std::vector<double> lags;  ///< m by which the tip trails its set-point in each period
+  double least_lag = 0.0;    ///< m, minimum of lags
+  std::vector<ReactionTime::Period> at_notice;
+  int noticed = 0;
+  double begin = 0.0;  ///< s
+
+  /// Adds a period. `even_for`: seconds since the set-point descends at constant speed; 0 if it does not.
+  void add(const ReactionTime::Period& period, double set_point, double even_for) {
+    if (even_for < kEvenFrom) clear();
+    if (even_for < kEvenFrom || period.time < begin) return;
+    const double lag = period.height - set_point;
+    least_lag = now.empty() ? lag : std::min(least_lag, lag);
+    now.push_back(period);
+    lags.push_back(lag);
+  }
+  void clear() {
+    now.clear();
+    lags.clear();
+  }
+  /// Starts again after a change of speed at `time`, as soon as the arm descends at constant speed.
+  void restart(double time) {
+    clear();
+    begin = time + kEvenFrom;
+  }
+  /// Returns the lag of the tip `ago` seconds before the last period, minus the least lag, in metres; 0 without such a
+  /// period.
+  double behind(double ago) const {
+    for (std::size_t i = now.size(); i > 0; --i) {
+      if (now[i - 1].time <= now.back().time - ago) return lags[i - 1] - least_lag;
+    }
+    return 0.0;
+  }
+  void notice(int count) {
+    noticed = count;
+    at_notice = now;
+  }
+};
+
+/// Guarded tap for an unknown sign of the force. Two taps, one per sign, run in parallel until one of them detects a
+/// contact. That tap continues, and its sign is the robot's if the contact is accepted.
+class SignedTap {
+  struct One {
+    double sign;
+    tapping::GuardedTap tap;
+    double set_point = 0.0;
+  };
+
+ public:
+  /// `sign`: sign of the force when an object presses the tool upwards, 1 or -1; 0 if unknown.
+  SignedTap(const tapping::MotionOptions& motion, const tapping::Descent& descent, double sign) {
+    const tapping::GuardedTap tap(motion, descent, tapping::GuardedTap::Arm::real);
+    taps_ = sign != 0.0 ? std::vector<One>{{sign, tap}} : std::vector<One>{{-1.0, tap}, {1.0, tap}};
+  }
+
+  /// Calls GuardedTap::next() with the force as the robot reports it.
+  double next(double height, double force, bool fresh) {
+    for (One& one : taps_) one.set_point = one.tap.next(height, one.sign * force, fresh);
+    if (taps_.size() == 2 && taps_.front().set_point != taps_.back().set_point) {
+      // The tap with the contact puts its set-point at the height of the arm.
+      const bool second = taps_.back().set_point == height;
+      taps_.erase(second ? taps_.begin() : taps_.begin() + 1);
+    }
+    return taps_.front().set_point;
+  }
+
+  void slow_to(double speed) {
+    for (One& one : taps_) one.tap.slow_to(speed);
+  }
+  const tapping::GuardedTap& tap() const { return taps_.front().tap; }
+  /// Returns the zero of the force along z, with the robot's sign.
+  double zero() const { return taps_.front().sign * tap().zero(); }
+  /// Returns 0 as long as the sign is unknown.
+  double sign() const { return taps_.size() == 1 ? taps_.front().sign : 0.0; }
+
+ private:
+  std::vector<One> taps_;
+};
+
+}  // namespace
+
+/// State of a descent: plan, position, and measured forces.
+struct Tapper::DescentState {
+  const Path& column;
+  tapping::MotionOptions motion;  ///< limited to the allowed speed
+  double stiffness;               ///< N/m, stiffness of the arm
+  tapping::Descent plan;
+  SignedTap tap;
+  Eigen::Vector3d at_hover;  ///< N, force at the first tare
+  Joints command;
+  double set_point = plan.hover;
+  double speed = motion.speed;
+  bool tared = false;
+  bool goes_up = false;
+  std::vector<Eigen::Vector3d> tare = {};  ///< readings of the current tare
+  EvenDescent even = {};
+  std::optional<double> moving = {};  ///< N along z by which a free descent reads more than rest
+  EvenPeriods periods = {};
+  int pulled = 0;  ///< consecutive readings
+  int quiet = 0;   ///< consecutive readings
+
+  Joints at(double height) const { return column.at(plan.hover + kFromAbove - height); }
+};
+
+Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& wanted, const Path& column) {
+  if (!friction_) measure_friction(column);
+  rest_from_above(column);
+  const double stiffness = stiffness_at(request.target);
+  update_timing();
+  const tapping::MotionOptions motion = bounded(wanted, stiffness);
+  note_(fmt::format(
+      "tap {}: {:.1f} mm/s on springs of {:.1f} kN/m; a contact is detected after {:.0f} ms and stopped {:.0f} ms "
+      "later, messages are up to {:.0f} ms late; at most {} are expected",
+      request.number, 1e3 * motion.speed, 1e-3 * stiffness, 1e3 * reaction_.noticing(), 1e3 * reaction_.stopping(),
+      1e3 * reaction_.lateness(), newtons(reaction_.expected_force(motion.threshold, motion.speed, stiffness))));
+  last_moving_ = {std::abs(moving_), motion.speed};
+  const tapping::Descent plan = tapping::plan_descent(motion, scene_.desk(), request.predicted);
+  DescentState way{column, motion, stiffness, plan, SignedTap(motion, plan, sign_), seen_.endpoint->force, {}};
+  way.command = way.at(plan.hover);
+  while (!way.tap.tap().done()) {
+    update(way);
+    step(way.command);
+  }
+  const Contact contact = way.tap.tap().result();
+  retreat(column.back(plan.hover + kFromAbove - height()), way.tap.sign(), way.tap.zero(), contact);
+  return contact.outcome == Outcome::contact ? accept(way, contact) : contact;
+}
+
+/// Executes one period of a descent: evaluates the force and sets the next command.
+void Tapper::update(DescentState& way) {
+  const bool taring = way.tap.tap().taring();
+  const bool coming_down = way.tap.tap().coming_down();
+  const double beside = coming_down ? moving_ : 0.0;
+  const double felt = seen_.endpoint->force.z() - beside;
+  update_timing();
+  way.periods.add({seen_.now, height()}, way.set_point, way.tap.tap().even_for());
+  const double before = std::exchange(way.set_point, way.tap.next(height(), felt, guard_.fresh()));
+  if (way.tap.tap().noticed() > way.periods.noticed) way.periods.notice(way.tap.tap().noticed());
+  if (!taring && !way.tap.tap().presses_no_further()) slow_down(way);
+  const double sign = way.tap.sign();
+  // Called once per rise, because a new expectation resets the count of pulling readings.
+  if (way.set_point > before && !way.goes_up && sign != 0.0) {
+    const double along = std::clamp(way.plan.hover + kFromAbove - height(), 0.0, way.column.length() - kTurned);
+    guard_.expect_rise(MotionGuard::Rise{way.tap.zero(), sign, largest_pull(way.column, along)});
+  }
+  if (way.set_point < before) guard_.expect_rise(std::nullopt);
+  if (way.set_point != before) way.goes_up = way.set_point > before;
+  // A set-point at the height of the arm means stop. Commanding the measured joints stops every joint, not only the
+  // tip.
+  if (way.set_point == height() && way.set_point != before) {
+    way.command = seen_.joints->position;
+  } else if (way.set_point != before) {
+    way.command = way.at(way.set_point);
+  }
+  if (taring) return tare(way);
+  if (guard_.fresh()) evaluate_force(way, felt, beside, coming_down);
+  expect_following(way);
+}
+
+/// Throws Fault if the arm falls behind its set-point without a contact force. It would jump down to its set-point when
+/// it comes free.
+void Tapper::expect_following(const DescentState& way) const {
+  if (way.quiet < kQuiet || way.tap.tap().done()) return;
+  const double behind = way.periods.behind(reaction_.noticing() + reaction_.lateness());
+  if (behind < std::max(kLeastBehind, 2.0 * (way.motion.threshold + kPressed) / way.stiffness)) return;
+  throw Fault{fmt::format("the arm does not follow: it stays {:.1f} mm behind its set-point without a contact force. "
+                          "Check what blocks it, and whether other programs command it",
+                          1e3 * behind),
+              Then::hold};
+}
+
+/// Reduces the speed if later messages or rarer renewals of the force leave less time to stop.
+void Tapper::slow_down(DescentState& way) {
+  const double greatest = greatest_speed(way.motion.threshold, way.stiffness, Then::retreat);
+  if (greatest >= way.speed) return;
+  way.speed = greatest;
+  way.tap.slow_to(greatest);
+  way.periods.restart(seen_.now);
+}
+
+/// Averages the readings of a tare and passes the zero to the safety rules, because the bias of the force depends on
+/// the pose.
+void Tapper::tare(DescentState& way) {
+  if (guard_.fresh()) way.tare.push_back(seen_.endpoint->force);
+  way.pulled = 0;
+  if (way.tap.tap().taring() || way.tap.tap().done()) return;
+  const Eigen::Vector3d sum = std::accumulate(way.tare.begin(), way.tare.end(), Eigen::Vector3d(0, 0, 0));
+  zero_ = sum / static_cast<double>(std::exchange(way.tare, {}).size());
+  if (!std::exchange(way.tared, true)) way.at_hover = zero_;
+  guard_.set_tare(zero_);
+}
+
+/// Evaluates a new reading during the descent. `felt`: force along z minus `beside` (N), the part that the motion
+/// causes.
+void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool coming_down) {
+  const double zero = way.tap.zero();
+  const double against = sign_ == 0.0 ? std::abs(felt - zero) : sign_ * (felt - zero);
+  peak_ = std::max(peak_.value_or(0.0), against);
+  const bool two_stage = way.motion.type == tapping::MotionOptions::Type::two_stage;
+  const double least = two_stage ? std::min(way.motion.threshold, way.motion.fine_threshold) : way.motion.threshold;
+  way.quiet = std::abs(felt - zero) < 0.5 * least ? way.quiet + 1 : 0;
+  // While the arm stops at a contact the force belongs to the contact, and noise may raise it above force_stop.
+  if (way.tap.tap().presses_no_further()) {
+    guard_.forget_tare();
+  } else {
+    guard_.set_tare({zero_.x(), zero_.y(), zero + beside});
+  }
+  // Measured once, high above the desk. Lower, the bias of another pose would count as that of the motion, and near the
+  // expected surface a soft contact would.
+  if (!way.moving && way.plan.start >= way.plan.hover) {
+    const auto mean = way.even.add(way.tap.tap().even_for(), seen_.endpoint->force.z());
+    if (mean) way.moving = *mean - zero_.z();
+    if (mean) last_moving_ = {std::abs(*way.moving), way.speed};
+  }
+  // Friction of a rising arm has the opposite sign, so only a descent counts.
+  way.pulled = coming_down && sign_ * (felt - zero) < -way.motion.threshold ? way.pulled + 1 : 0;
+  if (way.pulled < std::clamp(kPulledFor / guard_.renewals().seconds(), kFewestPulled, kPulled)) return;
+  throw Fault{
+      "the force fell by more than the threshold although nothing can pull: its zero moved, or force_sign is wrong",
+      Then::retreat};
+}
+
+/// Accepts the contact if the force at rest equals that before the tap. Sideways the limit is larger, because the
+/// robot's estimate is worst there. Learns from an accepted contact.
+Contact Tapper::accept(const DescentState& way, const Contact& contact) {
+  rest_from_above(way.column);
+  const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;
+  const double most = std::max(kLeastMoved, 0.5 * way.motion.threshold);
+  if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop)) {
+    return failed(Outcome::aborted,
+                  "the force did not return to its zero after the tool was clear: its zero moved during the tap, and "
+                  "the contact may be false");
+  }
+  if (way.moving) learn_moving(*way.moving);
+  // Other motions do not measure the height of the onset.
+  const bool at_onset = way.motion.type == tapping::MotionOptions::Type::continuous;
+  reaction_.learn_noticing(way.periods.at_notice, at_onset ? std::optional<double>(contact.height) : std::nullopt,
+                           way.motion.threshold, way.stiffness);
+  shown_sign_ = way.tap.sign();
+  return contact;
+}
+
+}  // namespace palpate::baxter
