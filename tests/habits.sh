@@ -31,10 +31,10 @@ git grep -nE '^#include "(config|plugin|scene|view|gp|experiment|space|record|sw
   sed 's|:.*"\(.*\)"|: a plugin includes \1, which is not for plugins|' >"$found/plugins" || true
 
 # Files of others are read by the bounded reader alone (shared/reading): regular ones, up to a limit, through no link in a
-# record. record/files.cpp and recorded.cpp open what they write; the devices named here are nobody's.
+# record. record/files.cpp and record_files.cpp open what they write; the devices named here are nobody's.
 git grep -nE 'std::i?fstream|fopen *\(|(^|[ =(!])::open(at)?\(|directory_iterator|opendir *\(|LoadFile *\(' -- \
   'framework/*.[ch]pp' 'plugins/*.[ch]pp' |
-  grep -vE '^(framework/shared/reading/reading|framework/core/record/files|plugins/programs/recorded)\.cpp:' |
+  grep -vE '^(framework/shared/reading/reading|framework/core/record/files|plugins/programs/record_files)\.cpp:' |
   grep -vE '"/dev/(null|full)"' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: opens a file or lists a folder itself, which is for shared/reading|' >"$found/reading" || true
 

@@ -48,11 +48,11 @@ class NoSigpipe {
   sigset_t before_{};
 };
 
-/// Waits for `events` of a descriptor until `until`, but at most for kGlance. Returns whether an event occurred.
-bool glance(const Descriptor& descriptor, short events, Clock::time_point until) {
+/// Waits for `events` of a descriptor until `until`, but at most for kPollInterval. Returns whether an event occurred.
+bool wait_for_event(const Descriptor& descriptor, short events, Clock::time_point until) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
                     std::chrono::milliseconds(1);  // rounded up to avoid a busy loop at the end
-  const auto wait = std::clamp(left, std::chrono::milliseconds(0), kGlance);
+  const auto wait = std::clamp(left, std::chrono::milliseconds(0), kPollInterval);
   pollfd one{descriptor.number(), events, 0};
   return ::poll(&one, 1, until <= Clock::now() ? 0 : static_cast<int>(wait.count())) > 0;
 }
@@ -81,7 +81,7 @@ bool carries(pid_t pid, const std::string& mark) {
 
 }  // namespace
 
-Child::Child(Program program, const std::string& diary, const Descriptor& kept) : diary_(diary) {
+Child::Child(Program program, const std::string& stderr_file, const Descriptor& kept) : stderr_(stderr_file) {
   static std::atomic<int> count{0};
   // Each plugin has its own copy of this counter, whose address is unique in the process.
   const auto whose = reinterpret_cast<std::uintptr_t>(&count);
@@ -91,7 +91,7 @@ Child::Child(Program program, const std::string& diary, const Descriptor& kept) 
   std::optional<Pipe> in = open_pipe();
   std::optional<Pipe> out = open_pipe();
   if (!in || !out) fail("command", "cannot open a pipe");
-  std::vector<int> files{in->to_read.number(), out->to_write.number(), diary_.descriptor().number()};
+  std::vector<int> files{in->to_read.number(), out->to_write.number(), stderr_.descriptor().number()};
   if (kept) files.push_back(kept.number());
   program.environment.insert(program.environment.begin(), mark_);
   pid_ = spawn(program, files);
@@ -102,18 +102,18 @@ Child::Child(Program program, const std::string& diary, const Descriptor& kept) 
 }
 
 Child::~Child() {
-  find_kin();
+  find_descendants();
   input_.close();
   if (!wait_for_end()) {
     ::kill(-pid_, SIGTERM);
     wait_for_end();
   }
   // The group is killed before the program is reaped, as long as its process id cannot be reused.
-  end_kin();
-  diary_.trim();
+  kill_descendants();
+  stderr_.trim();
 }
 
-Child::Heard Child::send(const std::string& text, const Patience& patience) {
+Child::ReadResult Child::send(const std::string& text, const WaitLimit& limit) {
   const NoSigpipe quiet;
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t wrote = ::write(input_.number(), text.data() + done, text.size() - done);
@@ -121,68 +121,68 @@ Child::Heard Child::send(const std::string& text, const Patience& patience) {
       done += static_cast<std::size_t>(wrote);
       continue;
     }
-    if (errno != EAGAIN && errno != EINTR) return Heard::ended;
-    if (patience.broken_off()) return Heard::interrupted;
-    if (Clock::now() >= patience.until) return Heard::late;
+    if (errno != EAGAIN && errno != EINTR) return ReadResult::ended;
+    if (limit.stopped()) return ReadResult::interrupted;
+    if (Clock::now() >= limit.until) return ReadResult::late;
     // The program may write while it reads, so its output is read here to keep its pipe from filling up.
     pollfd ends[]{{input_.number(), POLLOUT, 0}, {output_.number(), POLLIN, 0}};
-    ::poll(ends, heard_.size() < kMostHeard ? 2 : 1, static_cast<int>(kGlance.count()));
+    ::poll(ends, buffer_.size() < kMostBuffered ? 2 : 1, static_cast<int>(kPollInterval.count()));
     if ((ends[1].revents & POLLIN) != 0) read_some();
   }
-  return Heard::line;
+  return ReadResult::complete;
 }
 
 ssize_t Child::read_some() {
   std::array<char, 65536> some;
   const ssize_t got = ::read(output_.number(), some.data(), some.size());
-  if (got > 0) heard_.append(some.data(), static_cast<std::size_t>(got));
+  if (got > 0) buffer_.append(some.data(), static_cast<std::size_t>(got));
   return got;
 }
 
-std::optional<Child::Heard> Child::hear_more(const Patience& patience) {
-  if (patience.broken_off()) return Heard::interrupted;
+std::optional<Child::ReadResult> Child::read_more(const WaitLimit& limit) {
+  if (limit.stopped()) return ReadResult::interrupted;
   // Checked before the pipe is read. After an end of the program all its output is then already in the pipe.
   const bool over = gone();
-  if (glance(output_, POLLIN, over ? Clock::now() : patience.until)) {
-    if (read_some() == 0) return Heard::ended;
+  if (wait_for_event(output_, POLLIN, over ? Clock::now() : limit.until)) {
+    if (read_some() == 0) return ReadResult::ended;
   } else if (over) {  // a descendant keeps the pipe open
-    return Heard::ended;
-  } else if (Clock::now() >= patience.until) {
-    return Heard::late;
+    return ReadResult::ended;
+  } else if (Clock::now() >= limit.until) {
+    return ReadResult::late;
   }
   return std::nullopt;
 }
 
-Child::Heard Child::hear(std::string& line, const Patience& patience) {
+Child::ReadResult Child::read(std::string& line, const WaitLimit& limit) {
   for (;;) {
-    diary_.trim();
-    const auto end = heard_.find('\n');
-    line = heard_.substr(0, end);
-    if (line.size() > kLongestLine) return Heard::too_long;
+    stderr_.trim();
+    const auto end = buffer_.find('\n');
+    line = buffer_.substr(0, end);
+    if (line.size() > kLongestLine) return ReadResult::too_long;
     if (end != std::string::npos) {
-      heard_.erase(0, end + 1);
-      return Heard::line;
+      buffer_.erase(0, end + 1);
+      return ReadResult::complete;
     }
-    if (const auto heard = hear_more(patience)) return *heard;
+    if (const auto heard = read_more(limit)) return *heard;
   }
 }
 
-Child::Heard Child::hear(std::string& bytes, std::size_t count, const Patience& patience) {
+Child::ReadResult Child::read(std::string& bytes, std::size_t count, const WaitLimit& limit) {
   for (;;) {
-    diary_.trim();
-    if (heard_.size() >= count) {
-      bytes = heard_.substr(0, count);
-      heard_.erase(0, count);
-      return Heard::line;
+    stderr_.trim();
+    if (buffer_.size() >= count) {
+      bytes = buffer_.substr(0, count);
+      buffer_.erase(0, count);
+      return ReadResult::complete;
     }
-    if (const auto heard = hear_more(patience)) {
-      bytes = heard_;
+    if (const auto heard = read_more(limit)) {
+      bytes = buffer_;
       return *heard;
     }
   }
 }
 
-std::string Child::fate() {
+std::string Child::describe_end() {
   if (!wait_for_end()) return "closed its stdin or stdout";
   siginfo_t info{};
   if (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0) return "ended";
@@ -191,7 +191,7 @@ std::string Child::fate() {
     const char* name = ::sigdescr_np(info.si_status);
     how = "was ended by signal " + std::to_string(info.si_status) + (name ? std::string(" (") + name + ")" : "");
   }
-  const std::string words = diary_.last_words();
+  const std::string words = stderr_.last_words();
   return words.empty() ? how : how + ", its last output: " + shown(words);
 }
 
@@ -205,41 +205,41 @@ bool Child::gone() const {
 bool Child::wait_for_end() {
   const auto until = Clock::now() + kGrace;
   while (!gone()) {
-    diary_.trim();
+    stderr_.trim();
     if (Clock::now() >= until) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
 }
 
-/// Adds the present descendants of the program to kin_. Called before the program is asked to end, so that descendants
-/// without the mark are known when their parents end.
-void Child::find_kin() {
+/// Adds the present descendants of the program to descendants_. Called before the program is asked to end, so that
+/// descendants without the mark are known when their parents end.
+void Child::find_descendants() {
   const auto all = processes();
-  kin_.insert(pid_);
-  for (std::size_t before = 0; before != kin_.size();) {
-    before = kin_.size();
+  descendants_.insert(pid_);
+  for (std::size_t before = 0; before != descendants_.size();) {
+    before = descendants_.size();
     for (const auto& [pid, parent] : all) {
-      if (kin_.count(pid) != 0) continue;
+      if (descendants_.count(pid) != 0) continue;
       const bool left_behind = parent == ::getpid() && carries(pid, mark_);
-      if (kin_.count(parent) != 0 || left_behind) kin_.insert(pid);
+      if (descendants_.count(parent) != 0 || left_behind) descendants_.insert(pid);
     }
   }
 }
 
 /// Kills the program, its group and all descendants with SIGKILL, and reaps those that are children of this process.
 /// The program must not have been reaped.
-void Child::end_kin() {
+void Child::kill_descendants() {
   // The loop repeats until no descendant is left. A killed process may just have started another one, and orphans
   // become children of this process. A recorded process id counts only with such a parent, because ids are reused. A
   // process in a blocked driver may never end, so the number of passes is limited.
   constexpr int kLooks = 2000;
   for (int i = 0; i < kLooks; ++i) {
-    find_kin();
+    find_descendants();
     bool left = false;
     for (const auto& [pid, parent] : processes()) {
-      const bool near = parent == ::getpid() || kin_.count(parent) != 0;
-      if (!near || kin_.count(pid) == 0) continue;
+      const bool near = parent == ::getpid() || descendants_.count(parent) != 0;
+      if (!near || descendants_.count(pid) == 0) continue;
       ::kill(pid, SIGKILL);
       left = true;
     }
@@ -247,7 +247,7 @@ void Child::end_kin() {
     ::kill(-pid_, SIGKILL);
     ::usleep(1000);
   }
-  for (const pid_t pid : kin_) ::waitpid(pid, nullptr, WNOHANG);
+  for (const pid_t pid : descendants_) ::waitpid(pid, nullptr, WNOHANG);
 }
 
 }  // namespace palpate::programs

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "children/child_process.hpp"
-#include "programs/recorded.hpp"
+#include "programs/record_files.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -28,33 +28,33 @@ class Child {
   /// Longest accepted line in bytes, so that a missing line end cannot fill the memory.
   static constexpr std::size_t kLongestLine = 65536;
   /// Largest amount of output in bytes that is buffered during a send; more stays in the pipe.
-  static constexpr std::size_t kMostHeard = std::size_t{64} << 20;
+  static constexpr std::size_t kMostBuffered = std::size_t{64} << 20;
   /// Time limit of each step of the end: after closing stdin, and after SIGTERM.
   static constexpr std::chrono::milliseconds kGrace{1000};
 
-  enum class Heard { line, ended, late, interrupted, too_long };
+  enum class ReadResult { complete, ended, late, interrupted, too_long };
 
-  /// Starts `program`. Its stderr is appended to the file `diary`, or dropped if the name is empty. The program
+  /// Starts `program`. Its stderr is appended to the file `stderr_file`, or dropped if the name is empty. The program
   /// inherits the descriptor `kept`, if any. Throws Error if the start fails.
-  Child(Program program, const std::string& diary, const Descriptor& kept);
+  Child(Program program, const std::string& stderr_file, const Descriptor& kept);
   /// Closes stdin, which asks the program to end, and waits for kGrace; then sends SIGTERM to the group, and finally
   /// SIGKILL to all descendants. No process of the program remains.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Writes `text` and buffers output that arrives meanwhile. Returns Heard::line after all is written, Heard::ended if
-  /// the program does not read any more.
-  Heard send(const std::string& text, const Patience& patience);
+  /// Writes `text` and buffers output that arrives meanwhile. Returns ReadResult::complete after all is written,
+  /// ReadResult::ended if the program does not read any more.
+  ReadResult send(const std::string& text, const WaitLimit& limit);
   /// Takes the next line of stdout, without its line end. After `ended`, `too_long` and `late`, `line` is the
   /// incomplete rest.
-  Heard hear(std::string& line, const Patience& patience);
-  /// Takes the next `count` bytes of stdout and returns Heard::line. After `ended` and `late`, `bytes` is the
+  ReadResult read(std::string& line, const WaitLimit& limit);
+  /// Takes the next `count` bytes of stdout and returns ReadResult::complete. After `ended` and `late`, `bytes` is the
   /// incomplete rest, which also stays in the buffer.
-  Heard hear(std::string& bytes, std::size_t count, const Patience& patience);
+  ReadResult read(std::string& bytes, std::size_t count, const WaitLimit& limit);
   /// Returns a text about the end: "ended with exit status 3, its last output: ...". Waits up to kGrace for the end.
   /// Returns "closed its stdin or stdout" if the program still runs.
-  std::string fate();
+  std::string describe_end();
 
   pid_t pid() const { return pid_; }
 
@@ -63,19 +63,19 @@ class Child {
   bool wait_for_end();
   /// Reads available output into the buffer; returns the result of read().
   ssize_t read_some();
-  /// Waits for more output. Returns nullopt if there was some, or after kGlance without any.
-  std::optional<Heard> hear_more(const Patience& patience);
+  /// Waits for more output. Returns nullopt if there was some, or after kPollInterval without any.
+  std::optional<ReadResult> read_more(const WaitLimit& limit);
 
   // Descendants of the program: all processes that it or they started, even in other groups or sessions, or orphaned.
-  void find_kin();
-  void end_kin();
+  void find_descendants();
+  void kill_descendants();
 
-  Diary diary_;
-  std::string mark_;     ///< NAME=VALUE in the environment, inherited by all descendants
-  std::set<pid_t> kin_;  ///< known descendants and the program itself
-  Descriptor input_;     ///< write end of stdin
-  Descriptor output_;    ///< read end of stdout
-  std::string heard_;    ///< output that is not taken yet
+  StderrLog stderr_;
+  std::string mark_;             ///< NAME=VALUE in the environment, inherited by all descendants
+  std::set<pid_t> descendants_;  ///< known descendants and the program itself
+  Descriptor input_;             ///< write end of stdin
+  Descriptor output_;            ///< read end of stdout
+  std::string buffer_;           ///< output that is not taken yet
   pid_t pid_ = -1;
 };
 

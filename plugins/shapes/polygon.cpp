@@ -17,7 +17,7 @@ bool within_box(const Point& a, const Point& b, const Point& p) {
 }
 
 /// Returns whether two segments have a common point.
-bool meet(const Point& a, const Point& b, const Point& c, const Point& d) {
+bool intersect(const Point& a, const Point& b, const Point& c, const Point& d) {
   const double c_side = cross(a, b, c);
   const double d_side = cross(a, b, d);
   const double a_side = cross(c, d, a);
@@ -41,7 +41,7 @@ std::string number(std::size_t i) { return std::to_string(i + 1); }
 
 /// Returns an error text if `outline` is not the outline of a solid: too few points, crossing edges, or no area; else
 /// an empty string.
-std::string trouble_of_outline(const Outline& outline) {
+std::string outline_error(const Outline& outline) {
   constexpr std::size_t kMostPoints = 2000;
   const std::size_t n = outline.size();
   if (n < 3) return "needs three points or more";
@@ -56,7 +56,7 @@ std::string trouble_of_outline(const Outline& outline) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;  // neighbours
-      if (meet(outline[i], next(outline, i), outline[j], next(outline, j))) {
+      if (intersect(outline[i], next(outline, i), outline[j], next(outline, j))) {
         return "edge " + number(i) + " meets edge " + number(j);
       }
     }
@@ -65,10 +65,10 @@ std::string trouble_of_outline(const Outline& outline) {
 }
 
 /// Returns an error text if `hole` is not inside `outline`, both valid outlines; else an empty string.
-std::string trouble_of_hole(const Outline& outline, const Outline& hole) {
+std::string hole_error(const Outline& outline, const Outline& hole) {
   for (std::size_t i = 0; i < hole.size(); ++i) {
     for (std::size_t j = 0; j < outline.size(); ++j) {
-      if (meet(hole[i], next(hole, i), outline[j], next(outline, j))) {
+      if (intersect(hole[i], next(hole, i), outline[j], next(outline, j))) {
         return "its edge " + number(i) + " meets edge " + number(j) + " of the outline";
       }
     }
@@ -90,15 +90,15 @@ struct PolygonOptions : Options {
               "x, y of the corners of the outline, in order. The rectangle around the corners is centred at `at`")
             .in(Unit::metre)
             .needed());
-    const std::string trouble = trouble_of_outline(outline);
-    fields.require(trouble.empty(), "outline", trouble);
+    const std::string wrong = outline_error(outline);
+    fields.require(wrong.empty(), "outline", wrong);
     fields.table(
         hole,
         Field("hole", "x, y of the corners of a hole within the outline, in order; [] for no hole").in(Unit::metre));
-    if (trouble.empty() && !hole.empty()) {
-      std::string hole_trouble = trouble_of_outline(hole);
-      if (hole_trouble.empty()) hole_trouble = trouble_of_hole(outline, hole);
-      fields.require(hole_trouble.empty(), "hole", hole_trouble);
+    if (wrong.empty() && !hole.empty()) {
+      std::string wrong_hole = outline_error(hole);
+      if (wrong_hole.empty()) wrong_hole = hole_error(outline, hole);
+      fields.require(wrong_hole.empty(), "hole", wrong_hole);
     }
     list_height(height, fields);
   }

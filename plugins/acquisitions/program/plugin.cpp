@@ -225,7 +225,7 @@ class ProgramAcquisition final : public Acquisition {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Heard = Child::Heard;
+  using ReadResult = Child::ReadResult;
 
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
     child_.reset();
@@ -256,22 +256,22 @@ class ProgramAcquisition final : public Acquisition {
       keep_program();
       child_ = std::make_unique<Child>(std::move(program), in_record(".stderr.txt"), Descriptor());
     }
-    const programs::Patience patience{
+    const programs::WaitLimit limit{
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),
         context_.interrupted};
     std::string bytes;
     // Output before the request is not an answer to it.
-    if (child_->hear(bytes, 1, {Clock::now(), context_.interrupted}) == Heard::line)
+    if (child_->read(bytes, 1, {Clock::now(), context_.interrupted}) == ReadResult::complete)
       fail("printed more than its scores", "print other text to stderr");
-    check(child_->send(ask(fields, arrays, out.size()), patience), {});
+    check(child_->send(ask(fields, arrays, out.size()), limit), {});
     try {
-      check(child_->hear(bytes, kNpyStart, patience), bytes);
-      check(child_->hear(bytes, program::header_length(bytes), patience), bytes);
+      check(child_->read(bytes, kNpyStart, limit), bytes);
+      check(child_->read(bytes, program::header_length(bytes), limit), bytes);
       program::check_header(bytes, out.size());
     } catch (const std::runtime_error& wrong) {
       fail(fmt::format("answered with {}: {}", wrong.what(), shown(bytes)), kCorrect);
     }
-    check(child_->hear(bytes, static_cast<std::size_t>(out.size()) * sizeof(double), patience), bytes);
+    check(child_->read(bytes, static_cast<std::size_t>(out.size()) * sizeof(double), limit), bytes);
     std::memcpy(out.data(), bytes.data(), bytes.size());
     for (Eigen::Index i = 0; i < out.size(); ++i) {
       if (!std::isfinite(out(i)))
@@ -297,19 +297,19 @@ class ProgramAcquisition final : public Acquisition {
   }
 
   /// Fails unless the expected output has arrived; `bytes` is the output instead.
-  void check(Heard heard, const std::string& bytes) const {
+  void check(ReadResult heard, const std::string& bytes) const {
     switch (heard) {
-      case Heard::line:
+      case ReadResult::complete:
         return;
-      case Heard::ended:
-        fail_ended(child_->fate());
-      case Heard::late:
+      case ReadResult::ended:
+        fail_ended(child_->describe_end());
+      case ReadResult::late:
         fail(bytes.empty() ? std::string("sent no scores in time") +
                                  (answered_ ? "" : " and has never sent any, check that it flushes its output")
                            : "sent incomplete scores until the deadline",
              "correct it, or raise acquisition.deadline; then run 'palpate resume --retry-failed'");
-      case Heard::too_long:
-      case Heard::interrupted:
+      case ReadResult::too_long:
+      case ReadResult::interrupted:
         fail("was interrupted", "run 'palpate resume' to continue");
     }
   }

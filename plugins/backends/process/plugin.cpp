@@ -37,13 +37,14 @@ struct ProcessOptions : Options {
     const auto words = programs::list_command(command, fields);
     if (words && checksum.empty()) checksum = programs::content_of(*words).checksum;
     programs::list_checksum(checksum, fields);
-    fields.real(deadline,
-                Field("deadline",
-                      "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")
-                    .in(Unit::second)
-                    .above(0)
-                    .at_most(86400)
-                    .from("longer than motion.timeout, which the program itself should report"));
+    fields.real(
+        deadline,
+        Field("deadline",
+              "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")
+            .in(Unit::second)
+            .above(0)
+            .at_most(86400)
+            .from("longer than motion.timeout, which the program itself should report"));
     fields.real(start, Field("start", "time added to the deadline of a tap that has to start the program")
                            .in(Unit::second)
                            .at_least(0)
@@ -114,7 +115,7 @@ class Process final : public Backend {
 
   static constexpr const char* kLock = "process.lock";
 
-  programs::Patience patience(Clock::time_point begin, double seconds) const {
+  programs::WaitLimit patience(Clock::time_point begin, double seconds) const {
     return {begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)), context_.interrupted};
   }
 
@@ -125,19 +126,19 @@ class Process final : public Backend {
 
   /// Starts the program. If taps are not repeatable, it first waits until no program of an earlier attempt runs,
   /// because two must not move one arm. If one still runs at the end of `patience`, child_ stays empty.
-  void start(const programs::Patience& patience) {
+  void start(const programs::WaitLimit& patience) {
     Descriptor lock;
     if (!options_.repeatable && !context_.directory.empty()) {
-      lock = programs::locked(recorded(kLock), patience);
+      lock = programs::lock_file(recorded(kLock), patience);
       if (!lock) return;
     }
     child_ = std::make_unique<Child>(Program{words_, file_}, recorded("process.stderr.txt"), lock);
-    if (lock) programs::note_holder(lock, child_->pid());
+    if (lock) programs::write_holder(lock, child_->pid());
   }
 
   process::Answer left_behind() const {
     if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
-    process::Answer answer = failed("of an earlier attempt, process " + programs::noted_holder(recorded(kLock)) +
+    process::Answer answer = failed("of an earlier attempt, process " + programs::read_holder(recorded(kLock)) +
                                     ", is still running: end it");
     answer.contact.ends_run = true;
     return answer;
@@ -149,32 +150,32 @@ class Process final : public Backend {
 
   bool may_restart() const { return options_.repeatable || options_.restart; }
 
-  process::Answer ask(const TapRequest& request, const programs::Patience& patience) {
+  process::Answer ask(const TapRequest& request, const programs::WaitLimit& patience) {
     std::string line;
     process::Answer answer;
     // A line before the request is not an answer to it. The arm must not move then.
-    Child::Heard heard = child_->hear(line, {Clock::now(), context_.interrupted});
-    if (heard == Child::Heard::line) return failed("printed more than its answer: " + programs::shown(line));
-    if (heard == Child::Heard::late) {
+    Child::ReadResult heard = child_->read(line, {Clock::now(), context_.interrupted});
+    if (heard == Child::ReadResult::complete) return failed("printed more than its answer: " + programs::shown(line));
+    if (heard == Child::ReadResult::late) {
       tapping::MotionOptions motion = options_.motion.of_request(request);
       heard = child_->send(process::ask_line(request, context_, motion), patience);
-      if (heard == Child::Heard::line) heard = child_->hear(line, patience);
+      if (heard == Child::ReadResult::complete) heard = child_->read(line, patience);
     }
     switch (heard) {
-      case Child::Heard::line:
+      case Child::ReadResult::complete:
         answer = process::read_answer(line, request.number, bounds_of(options_.motion.of_request(request)));
         answered_ = true;
         if (!answer.in_step && !may_restart()) answer.contact.ends_run = true;
         return answer;
-      case Child::Heard::ended:
-        return failed(child_->fate());
-      case Child::Heard::late:
+      case Child::ReadResult::ended:
+        return failed(child_->describe_end());
+      case Child::ReadResult::late:
         return failed(
             line.empty() ? not_answered() : "sent an incomplete answer until the deadline: " + programs::shown(line),
             Outcome::timeout);
-      case Child::Heard::too_long:
+      case Child::ReadResult::too_long:
         return failed("answered with a line that is too long: " + programs::shown(line));
-      case Child::Heard::interrupted:
+      case Child::ReadResult::interrupted:
         break;
     }
     return interrupted();

@@ -24,7 +24,7 @@ constexpr double kFinest = 1e-8;  ///< metres, smallest stride of the search
 /// Returns the maximum of height(dx, dy) - rise(distance) over a disc, at least `least`. `rise` is the height of the
 /// tool's surface above its lowest point at a distance from its axis; it never decreases with the distance.
 template <class Height, class Rise>
-double search(Height height, double radius, double least, Rise rise) {
+double maximum_over_disc(Height height, double radius, double least, Rise rise) {
   double best = least;
   double at_x = 0.0;
   double at_y = 0.0;
@@ -62,28 +62,28 @@ double search(Height height, double radius, double least, Rise rise) {
 /// Returns the height of the tool's lowest point when any part of it touches. height_at(dx, dy) is the height of the
 /// scene at a distance from the tool's axis, at most `highest`.
 template <class Height>
-double touched(const Effects& effects, double highest, const Height& height_at) {
+double touch_height(const Effects& effects, double highest, const Height& height_at) {
   double height = height_at(0.0, 0.0);
   if (effects.tip_radius) {
     const double radius = effects.tip_radius->radius;
-    height = search(height_at, radius, height, [radius](double distance) {
+    height = maximum_over_disc(height_at, radius, height, [radius](double distance) {
       return radius - std::sqrt(std::max(0.0, radius * radius - distance * distance));
     });
   }
   // The comparison with `highest` avoids most searches, because objects are rarely taller than the shaft's end.
   if (effects.shaft && highest - effects.shaft->length > height)
-    height = search(height_at, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
+    height = maximum_over_disc(height_at, effects.shaft->radius, height, [&](double) { return effects.shaft->length; });
   return height;
 }
 
 /// Returns the distance along `line` at which any part of the tool touches. `free` returns the free length of a
 /// parallel line.
 template <class Free>
-double along(const Effects& effects, const Line& line, const Free& free) {
+double touch_distance(const Effects& effects, const Line& line, const Free& free) {
   const Eigen::Vector3d one = line.direction.unitOrthogonal();
   const Eigen::Vector3d other = line.direction.cross(one);
   // Distances are negated, because a near obstacle corresponds to a high surface.
-  return -touched(effects, 0.0, [&](double dx, double dy) {
+  return -touch_height(effects, 0.0, [&](double dx, double dy) {
     return -free({line.origin + dx * one + dy * other, line.direction});
   });
 }
@@ -120,20 +120,20 @@ void Arm::follow(double set_point) {
 }
 
 double contact_height(const Scene& scene, const Effects& effects, double x, double y) {
-  return touched(effects, scene.highest(), [&](double dx, double dy) { return scene.height(x + dx, y + dy); });
+  return touch_height(effects, scene.highest(), [&](double dx, double dy) { return scene.height(x + dx, y + dy); });
 }
 
 double contact_along(const Scene& scene, const Effects& effects, const Line& line) {
-  return along(effects, line, [&](const Line& beside) {
+  return touch_distance(effects, line, [&](const Line& beside) {
     return std::min(scene.first_intersection(beside), distance_down_to(scene.desk(), beside));
   });
 }
 
 double desk_along(const Scene& scene, const Effects& effects, const Line& line) {
-  return along(effects, line, [&](const Line& beside) { return distance_down_to(scene.desk(), beside); });
+  return touch_distance(effects, line, [&](const Line& beside) { return distance_down_to(scene.desk(), beside); });
 }
 
-double outlier(const ForeignObjects& effect, std::uint64_t seed, double x, double y) {
+double foreign_object_height(const ForeignObjects& effect, std::uint64_t seed, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x / effect.size));
   const auto row = static_cast<std::int64_t>(std::floor(y / effect.size));
   constexpr std::int64_t kColumns = 1 << 20;  // upper limit of the number of columns in an area
@@ -141,7 +141,8 @@ double outlier(const ForeignObjects& effect, std::uint64_t seed, double x, doubl
   return random.uniform() < effect.probability ? effect.height * random.uniform() : 0.0;
 }
 
-Touch::Touch(const Effects& effects, double surface, bool desk, double hover, double threshold, Random random)
+ContactModel::ContactModel(const Effects& effects, double surface, bool desk, double hover, double threshold,
+                           Random random)
     : surface_(surface), hover_(hover), stiffness_(kRigidArm), jerk_(kJerk * threshold), normal_(random) {
   if (effects.force_noise) noise_ = effects.force_noise->deviation;
   if (effects.stiffness) {
@@ -158,7 +159,7 @@ Touch::Touch(const Effects& effects, double surface, bool desk, double hover, do
 }
 
 /// Returns the force that is measured now: the force `late_` periods ago, interpolated linearly.
-double Touch::heard(double force) {
+double ContactModel::delayed(double force) {
   if (late_ <= 0.0) return force;
   forces_.push_back(force);
   const double at = static_cast<double>(forces_.size() - 1) - late_;
@@ -168,12 +169,12 @@ double Touch::heard(double force) {
   return share > 0.0 ? (1.0 - share) * forces_[before] + share * forces_[before + 1] : forces_[before];
 }
 
-tapping::Sample Touch::feel(double position) {
+tapping::Sample ContactModel::measure(double position) {
   const double pressed = std::max(0.0, surface_ - position);
   const double contact = stiffness_ * pressed;
   force_ = contact;
   peak_ = std::max(peak_, contact);
-  tapping::Sample out{pressed > 0.0 ? surface_ - contact * give_ : position, heard(blind_ ? 0.0 : contact)};
+  tapping::Sample out{pressed > 0.0 ? surface_ - contact * give_ : position, delayed(blind_ ? 0.0 : contact)};
   out.force += drift_ * (hover_ - position);
   if (noise_ > 0.0) out.force += noise_ * normal_();
   if (position < jerk_at_ && jerk_left_ > 0) {

@@ -75,25 +75,25 @@ double desk_along(const Scene& scene, const Effects& effects, const Line& line);
 
 /// Returns the height in metres of a foreign object at (x, y), nearly everywhere 0. The value depends only on seed and
 /// position.
-double outlier(const ForeignObjects& effect, std::uint64_t seed, double x, double y);
+double foreign_object_height(const ForeignObjects& effect, std::uint64_t seed, double x, double y);
 
 /// Model of contact and force sensor in one tap: a spring at `surface`, and a sensor with noise, drift, latency, missed
 /// and false contacts.
-class Touch {
+class ContactModel {
  public:
   /// `surface`: height in metres at which the tool touches; `desk`: whether the bare desk is touched; `hover`: start of
   /// the descent. `random` is the source of all draws.
-  Touch(const Effects& effects, double surface, bool desk, double hover, double threshold, Random random);
+  ContactModel(const Effects& effects, double surface, bool desk, double hover, double threshold, Random random);
 
   /// Returns the measured height (m) and force (N) if the joints would put the tip at `position` (m).
-  tapping::Sample feel(double position);
+  tapping::Sample measure(double position);
 
   /// Return the present and the largest true force, N, even of a contact that the sensor misses.
   double force() const { return force_; }
   double peak() const { return peak_; }
 
  private:
-  double heard(double force);
+  double delayed(double force);
 
   double surface_;
   double hover_;

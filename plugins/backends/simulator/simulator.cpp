@@ -93,7 +93,8 @@ Contact Simulator::tap_along(const TapRequest& request) const {
   constexpr double kAsExact = 1e-6;  // m, more than the accuracy of both searches
   const bool desk = effects.stiffness && along > desk_along(scene, effects, true_line) - kAsExact;
   const Eigen::Vector3d met = true_line.origin + std::min(along, length) * true_line.direction;
-  if (effects.foreign_objects) along -= outlier(*effects.foreign_objects, context_.seed, met.x(), met.y());
+  if (effects.foreign_objects)
+    along -= foreign_object_height(*effects.foreign_objects, context_.seed, met.x(), met.y());
   const Descending way{motion, {length, length, 0.0}};
   const bool met_any = along <= length;
   const double left = met_any ? std::max(0.0, length - along) : -motion.overrun;
@@ -116,7 +117,8 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& ta
   double surface = contact_height(scene, effects, x, y);
   const bool desk = surface <= scene_.desk();
   if (effects.foreign_objects) {
-    surface = std::min(surface + outlier(*effects.foreign_objects, context_.seed, x, y), tap.descent.hover);
+    surface =
+        std::min(surface + foreign_object_height(*effects.foreign_objects, context_.seed, x, y), tap.descent.hover);
   }
   Contact contact = moves_ ? simulated_tap(request.number, tap, surface, desk) : ideal_tap(tap, surface);
   contact.seconds += tapping::travel_seconds(tap.motion, request);
@@ -129,20 +131,20 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& ta
 Contact Simulator::simulated_tap(int number, const Descending& tap, double surface, bool desk) const {
   using tapping::GuardedTap;
   const Effects& effects = scene_.effects();
-  Touch touch(effects, surface, desk, tap.descent.hover, tap.motion.threshold,
-              context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
+  ContactModel sensor(effects, surface, desk, tap.descent.hover, tap.motion.threshold,
+                      context_.random("simulator/touch", static_cast<std::uint64_t>(number)));
   Arm arm(effects.joint_lag, GuardedTap::kPeriod, tap.descent.hover);
   GuardedTap guarded(tap.motion, tap.descent);
   const std::optional<double>& limit = tap.motion.force_limit;
   tapping::Sample felt{};
   while (!guarded.done()) {
-    felt = touch.feel(arm.position());
-    if (limit && touch.force() > tapping::kOwnStop * *limit && !guarded.stopping()) guarded.give_up(felt.height);
+    felt = sensor.measure(arm.position());
+    if (limit && sensor.force() > tapping::kOwnStop * *limit && !guarded.stopping()) guarded.give_up(felt.height);
     arm.follow(guarded.next(felt.height, felt.force));
   }
   Contact contact = guarded.result();
   contact.seconds = guarded.seconds() + tapping::retreat_seconds(tap.motion, tap.descent, felt.height);
-  contact.peak = touch.peak();
+  contact.peak = sensor.peak();
   return contact;
 }
 

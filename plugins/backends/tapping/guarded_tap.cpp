@@ -53,7 +53,7 @@ GuardedTap::GuardedTap(const MotionOptions& motion, const Descent& descent, Arm 
 double GuardedTap::next(double height, double force, bool fresh) {
   if (done()) return set_point_;
   ++periods_;
-  if (fresh) feel(height, force);
+  if (fresh) evaluate(height, force);
   if (seconds() > motion_.timeout) {
     finish({Outcome::timeout, 0.0, 0.0, 0.0, kTooLong});
     return set_point_;
@@ -74,7 +74,7 @@ bool GuardedTap::react(double height) {
     case Stage::descend:
     case Stage::pause:
     case Stage::bottom:
-      touched(height);
+      start_reaction(height);
       return true;
     case Stage::fine:
       finish({Outcome::contact, height, peak_, 0.0, {}});
@@ -165,7 +165,7 @@ void GuardedTap::give_up(double height) {
 }
 
 /// Evaluates a new reading according to the stage.
-void GuardedTap::feel(double height, double force) {
+void GuardedTap::evaluate(double height, double force) {
   const bool in_pause = arm_ == Arm::real && stage_ == Stage::pause && waited(motion_.pause - motion_.tare);
   const bool stopped =
       (stage_ == Stage::stop || stage_ == Stage::rest) && (!waited(kWatched + kPeriod) || !averaged(kFewestWatched));
@@ -290,7 +290,7 @@ void GuardedTap::enter(Stage stage) {
   }
 }
 
-void GuardedTap::touched(double height) {
+void GuardedTap::start_reaction(double height) {
   first_ = height;
   ++noticed_;
   // If the arm trails its set-point, keeping the set-point would increase the force.

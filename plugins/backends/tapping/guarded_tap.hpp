@@ -114,14 +114,14 @@ class GuardedTap {
  private:
   enum class Stage { tare, approach, clear, descend, pause, rest, back_off, unwind, settle, fine, stop, bottom, done };
 
-  void feel(double height, double force);
+  void evaluate(double height, double force);
   bool react(double height);
   void advance(double height);
   void finish_tare();
   void tare_in_pause();
   void conclude_at_rest(double height);
   void enter(Stage stage);
-  void touched(double height);
+  void start_reaction(double height);
   void conclude_at_onset();
   struct Rise {
     double height;  ///< m, onset

@@ -31,7 +31,7 @@ std::string descent(const MotionOptions& motion, double desk, const TapRequest& 
                      steps ? " in steps of " + centimetres(motion.step) : "", centimetres(desk - plan.floor));
 }
 
-std::string touch(const MotionOptions& motion) {
+std::string contact(const MotionOptions& motion) {
   std::string first = fmt::format("stop at {} above the tare: a contact", newtons(motion.threshold));
   if (motion.type != MotionOptions::Type::two_stage) return first;
   return fmt::format("{}; then {} back and again at {} to {}", first, centimetres(motion.back_off),
@@ -40,13 +40,13 @@ std::string touch(const MotionOptions& motion) {
 
 /// Error in s of the detection time; a moving arm errs by speed times this. An estimate for arms like Baxter's, see
 /// `latency` in configs/effects/standard.yaml.
-constexpr double kMoment = 0.015;
+constexpr double kTimeError = 0.015;
 /// Error in metres of the height of a resting arm; see `pose_noise` in configs/effects/standard.yaml.
-constexpr double kPlace = 0.001;
+constexpr double kHeightError = 0.001;
 
-class Several final : public Motions {
+class MotionList final : public Motions {
  public:
-  Several(std::vector<MotionOptions> motions, double desk) : motions_(std::move(motions)), desk_(desk) {}
+  MotionList(std::vector<MotionOptions> motions, double desk) : motions_(std::move(motions)), desk_(desk) {}
 
   int count() const override { return static_cast<int>(motions_.size()); }
 
@@ -60,8 +60,8 @@ class Several final : public Motions {
 
   double deviation(int number) const override {
     const MotionOptions& motion = at(number);
-    return math::hypot(kPlace,
-                       kMoment * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed));
+    return math::hypot(kHeightError,
+                       kTimeError * (motion.type == MotionOptions::Type::two_stage ? motion.fine_speed : motion.speed));
   }
 
  private:
@@ -269,7 +269,7 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
 }
 
 std::unique_ptr<Motions> motions(const BackendMotion& motion, double desk) {
-  return motion.of.empty() ? nullptr : std::make_unique<Several>(motion.of, desk);
+  return motion.of.empty() ? nullptr : std::make_unique<MotionList>(motion.of, desk);
 }
 
 std::string centimetres(double length) { return fmt::format("{:.1f} cm", 100.0 * length); }
@@ -282,7 +282,7 @@ std::vector<std::string> describe(const MotionOptions& motion, double desk, cons
                                   const std::optional<Target>& from) {
   return {fmt::format("travel {}to {} at {} above the desk, {}", from ? "from " + place(*from) + " " : "",
                       place(request.target), centimetres(motion.hover), per_second(motion.travel_speed)),
-          descent(motion, desk, request), touch(motion)};
+          descent(motion, desk, request), contact(motion)};
 }
 
 }  // namespace palpate::tapping

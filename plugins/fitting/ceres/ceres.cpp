@@ -37,7 +37,7 @@ constexpr double kFine = 1e-4;
 constexpr double kGrowth = 1.1;
 
 /// Result of an ascent.
-struct Spot {
+struct AscentResult {
   Eigen::VectorXd x;
   double value = 0.0;
   bool valid = false;      ///< whether value and gradient were always finite
@@ -63,9 +63,9 @@ struct Memory {
 };
 
 /// Negative objective in the coordinates of a metric, as a function for Ceres.
-class Descent final : public ceres::FirstOrderFunction {
+class NegativeObjective final : public ceres::FirstOrderFunction {
  public:
-  Descent(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric)
+  NegativeObjective(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric)
       : objective_(objective), start_(start), metric_(metric) {}
 
   int NumParameters() const override { return objective_.size(); }
@@ -98,7 +98,8 @@ Eigen::VectorXd within_limits(Eigen::VectorXd x, const std::vector<Expectation>&
 /// Ascends from `start` by BFGS with a Wolfe line search (ceres::GradientProblem), until all entries of the gradient in
 /// the coordinates of `metric` are at most `tolerance`. x = start + metric u, so a metric near the square root of the
 /// inverse curvature saves steps. Without knowledge it is the identity.
-Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric, double tolerance) {
+AscentResult ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::MatrixXd& metric,
+                    double tolerance) {
   ceres::GradientProblemSolver::Options options;
   options.logging_type = ceres::SILENT;
   options.line_search_direction_type = ceres::BFGS;
@@ -106,7 +107,7 @@ Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::Mat
   options.gradient_tolerance = tolerance;
   options.function_tolerance = 1e-10;
   options.parameter_tolerance = 1e-10;
-  const ceres::GradientProblem problem(new Descent(objective, start, metric));
+  const ceres::GradientProblem problem(new NegativeObjective(objective, start, metric));
   Eigen::VectorXd u = Eigen::VectorXd::Zero(start.size());
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, u.data(), &summary);
@@ -118,18 +119,18 @@ Spot ascend(Objective& objective, const Eigen::VectorXd& start, const Eigen::Mat
           metric};
 }
 
-/// Returns a metric from the curvature at `spot`, by differences of gradients.
-Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& spot) {
+/// Returns a metric from the curvature at `result`, by differences of gradients.
+Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& result) {
   constexpr double kStep =
       1e-3;  // in logarithms: large compared with rounding, small compared with changes of the curvature
   constexpr double kFlattest = 1e-3;  // smaller curvatures are replaced by this
-  const Eigen::Index size = spot.size();
+  const Eigen::Index size = result.size();
   Eigen::MatrixXd curvature(size, size);
   Eigen::VectorXd here(size);
   double value = 0.0;
-  if (!objective.evaluate(spot.data(), &value, here.data())) return Eigen::MatrixXd::Identity(size, size);
+  if (!objective.evaluate(result.data(), &value, here.data())) return Eigen::MatrixXd::Identity(size, size);
   for (Eigen::Index i = 0; i < size; ++i) {
-    Eigen::VectorXd there = spot;
+    Eigen::VectorXd there = result;
     there(i) += kStep;
     Eigen::VectorXd slope(size);
     if (!objective.evaluate(there.data(), &value, slope.data())) return Eigen::MatrixXd::Identity(size, size);
@@ -186,16 +187,16 @@ Eigen::VectorXd random_start(const std::vector<Expectation>& expectations, Rando
   return within_limits(x, expectations);
 }
 
-bool better(const Spot& a, const Spot& b) { return a.valid && (!b.valid || a.value > b.value); }
+bool better(const AscentResult& a, const AscentResult& b) { return a.valid && (!b.valid || a.value > b.value); }
 
 /// Describes the results of all starts.
-std::string describe(const std::vector<Spot>& spots, const Model& model) {
+std::string describe(const std::vector<AscentResult>& results, const Model& model) {
   std::string values;
-  for (const Spot& spot : spots) {
+  for (const AscentResult& result : results) {
     values += values.empty() ? "" : " / ";
-    values += spot.valid ? fmt::format("{:.6g}", model.total(spot.value)) : "nothing";
+    values += result.valid ? fmt::format("{:.6g}", model.total(result.value)) : "nothing";
   }
-  return fmt::format("{} {}: {}", spots.size(), spots.size() == 1 ? "start" : "starts", values);
+  return fmt::format("{} {}: {}", results.size(), results.size() == 1 ? "start" : "starts", values);
 }
 
 }  // namespace
@@ -233,7 +234,7 @@ class Ceres final : public Fitting {
     double value_now = 0.0;
     const bool known = objective.evaluate(now.data(), &value_now, nullptr);
 
-    const Spot best = optimum(model, objective, expected, now, known, problem.memory, random, summary);
+    const AscentResult best = optimum(model, objective, expected, now, known, problem.memory, random, summary);
     summary.evaluations += objective.evaluations();
     if (model.used.size() < problem.outputs.size()) summary.reason += "; outputs without information were left out";
     if (best.valid && (!known || best.value > value_now)) {
@@ -275,12 +276,12 @@ class Ceres final : public Fitting {
 
   /// Returns the optimum by an ascent from the present values `now` if one suffices, else by a search. `known`: whether
   /// the objective is finite at `now`. Updates `memory`, which may be null, and reason and evaluations of `summary`.
-  Spot optimum(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
-               const Eigen::VectorXd& now, bool known, std::vector<double>* memory, Random& random,
-               FitSummary& summary) const {
+  AscentResult optimum(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
+                       const Eigen::VectorXd& now, bool known, std::vector<double>* memory, Random& random,
+                       FitSummary& summary) const {
     const Memory last = memory != nullptr ? Memory::of(*memory, now.size()) : Memory();
     const auto taps = static_cast<double>(model.size());
-    Spot best;
+    AscentResult best;
     const bool one_optimum = options_.priors == Options::Priors::touch;
     if (known && one_optimum && taps >= last.searched && taps < kGrowth * last.searched) {
       best = ascend(objective, now, last.metric, kFine);
@@ -288,10 +289,10 @@ class Ceres final : public Fitting {
     }
     const bool searched = !best.converged;
     if (searched) {
-      const std::vector<Spot> spots = search(model, objective, expected, now, random, summary.evaluations);
-      best = spots.front();
+      const std::vector<AscentResult> results = search(model, objective, expected, now, random, summary.evaluations);
+      best = results.front();
       summary.reason =
-          best.valid ? best.reason + "; from " + describe(spots, model) : "no ascent reached a finite value";
+          best.valid ? best.reason + "; from " + describe(results, model) : "no ascent reached a finite value";
     }
     if (memory != nullptr && best.valid) {
       // After a search with few points, the metric is that of its start, which may be far from the optimum.
@@ -303,27 +304,28 @@ class Ceres final : public Fitting {
 
   /// Returns the optima of all ascents, the best first. `objective` belongs to `model`. Evaluations of objectives for a
   /// part of the points are added to `evaluations`.
-  std::vector<Spot> search(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
-                           const Eigen::VectorXd& now, Random& random, int& evaluations) const {
-    std::vector<Spot> spots;
+  std::vector<AscentResult> search(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
+                                   const Eigen::VectorXd& now, Random& random, int& evaluations) const {
+    std::vector<AscentResult> results;
     if (model.size() <= kPart) {
       for (std::int64_t i = 0; i < options_.starts; ++i) {
         const Eigen::VectorXd start =
             i == 0 ? look_around(objective, model, now, expected) : random_start(expected, random);
-        spots.push_back(ascend(objective, start, metric_at(objective, start), kFine));
+        results.push_back(ascend(objective, start, metric_at(objective, start), kFine));
       }
     } else {
       // A part of the points determines region and curvature; all points decide between the optima of the part.
       const Model part = part_of(model, kPart / 2);
       Objective rough = objective_of(part, expected);
-      spots = search(part, rough, expected, now, random, evaluations);
-      for (Spot& spot : spots) spot.valid = spot.valid && objective.evaluate(spot.x.data(), &spot.value, nullptr);
-      std::sort(spots.begin(), spots.end(), better);
-      spots.front() = ascend(objective, spots.front().x, metric_at(rough, spots.front().x), kFine);
+      results = search(part, rough, expected, now, random, evaluations);
+      for (AscentResult& result : results)
+        result.valid = result.valid && objective.evaluate(result.x.data(), &result.value, nullptr);
+      std::sort(results.begin(), results.end(), better);
+      results.front() = ascend(objective, results.front().x, metric_at(rough, results.front().x), kFine);
       evaluations += rough.evaluations();
     }
-    std::sort(spots.begin(), spots.end(), better);
-    return spots;
+    std::sort(results.begin(), results.end(), better);
+    return results;
   }
 
   Options options_;

@@ -42,7 +42,7 @@ void carry(Form& form, const Target& to, double cosine, double sine) {
 
 }  // namespace
 
-Target drawn_inside(const Form& form, Random& random) {
+Target random_position(const Form& form, Random& random) {
   double u, v;
   do {
     u = 2.0 * random.uniform() - 1.0;
@@ -209,7 +209,7 @@ void Prior::draw_hole(Primitive& primitive, Random& random) const {
   }
   primitive.fit = Primitive::Fit::free;
   primitive.hole = draw_form(form.a, random);
-  const Target centre = drawn_inside(form, random);
+  const Target centre = random_position(form, random);
   primitive.hole.x = centre.x;
   primitive.hole.y = centre.y;
 }

@@ -56,7 +56,7 @@ struct Form {
 };
 
 /// Returns a uniform random position in a form.
-Target drawn_inside(const Form& form, Random& random);
+Target random_position(const Form& form, Random& random);
 
 /// Returns whether two forms overlap, by separating axes. Also true for some ellipses that nearly touch.
 bool overlap(const Form& one, const Form& other);

@@ -79,7 +79,7 @@ class Choice {
   double weight_ = 0.0;
 };
 
-int chosen(const ShortList<Primitive>& primitives, Random& random) {
+int random_index(const ShortList<Primitive>& primitives, Random& random) {
   return static_cast<int>(random.index(static_cast<std::size_t>(primitives.size())));
 }
 
@@ -107,7 +107,7 @@ bool draw_about_taps(Primitive& out, const Prior& prior, const Taps& taps, Rando
   out = prior.draw_whole(random);
   out.form.x = taps[tap].x;
   out.form.y = taps[tap].y;
-  const Target centre = drawn_inside(out.form, random);
+  const Target centre = random_position(out.form, random);
   out.form.x = centre.x;
   out.form.y = centre.y;
   out.density = prior.density(out);
@@ -126,7 +126,7 @@ void add(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& 
 void remove(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, Random& random) {
   const int count = from.primitives.size();
   if (count == 0) return;
-  const int index = chosen(from.primitives, random);
+  const int index = random_index(from.primitives, random);
   const Primitive& primitive = from.primitives[index];
   if (primitive.hollow) return;
   const double reverse = prior.settings().expected / count * ratio_about_taps(primitive.form, prior, taps);
@@ -138,7 +138,7 @@ void remove(Proposal& out, const Hypothesis& from, const Prior& prior, const Tap
 /// Replaces a random primitive by a new one.
 void replace(Proposal& out, const Hypothesis& from, const Prior& prior, const Taps& taps, Random& random) {
   if (from.primitives.size() == 0) return;
-  const int index = chosen(from.primitives, random);
+  const int index = random_index(from.primitives, random);
   Primitive& primitive = out.change(from, index);
   if (primitive.hollow) return;
   const double before = ratio_about_taps(primitive.form, prior, taps);
@@ -149,7 +149,7 @@ void replace(Proposal& out, const Hypothesis& from, const Prior& prior, const Ta
 /// Draws a hole from the prior, or removes one. The densities of prior and proposal cancel.
 void change_hole(Proposal& out, const Hypothesis& from, bool adds, const Prior& prior, Random& random) {
   if (from.primitives.size() == 0) return;
-  const int index = chosen(from.primitives, random);
+  const int index = random_index(from.primitives, random);
   if (from.primitives[index].hollow == adds || from.primitives[index].form.a < prior.settings().min_width) return;
   Primitive& primitive = out.change(from, index);
   if (adds) prior.draw_hole(primitive, random);
@@ -266,7 +266,7 @@ constexpr double kReplace = 0.01;
 constexpr double kNotOfForms = 2.0 * (kAddOrRemove + kMakeOrFillHole) + kReplace;
 
 /// Draws a push from the prior. density() returns its density up to a constant factor.
-Push drawn_push(const Area& area, Random& random) {
+Push draw_push(const Area& area, Random& random) {
   Push out;
   out.origin_x = 0.5 * area.width;
   out.origin_y = 0.5 * area.depth;
@@ -348,7 +348,7 @@ void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int
       out.push = Push();
       out.ratio = 1.0 / ratio(from.push.before);
     } else {
-      out.push = drawn_push(prior.settings().area, random);
+      out.push = draw_push(prior.settings().area, random);
       const int among = random.uniform() < 0.5 ? latest : taps - 1;
       out.push.before = taps - 1 - static_cast<int>(random.index(static_cast<std::size_t>(among)));
       out.ratio = ratio(out.push.before);

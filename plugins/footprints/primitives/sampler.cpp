@@ -141,7 +141,7 @@ Sampler::Sampler(const Prior& prior, const SamplerSettings& settings, Random ran
       random_(random),
       sample_seed_(random_.bits()),
       likelihood_(settings),
-      mover_(prior, settings),
+      chain_(prior, settings),
       undiscovered_(prior_, random_) {
   particles_.resize(static_cast<std::size_t>(settings.particles));
   for (std::size_t i = 0; i < particles_.size(); ++i)
@@ -184,10 +184,10 @@ double Sampler::add(const Touch& touch) {
   if (touch.on && 2.0 * p_found > p_label) doubled_until_ = taps.size() + kDoubledTaps;
   const bool doubled = taps.size() < doubled_until_;
   resample(weights, sum, static_cast<std::size_t>(doubled ? 2 * settings_.particles : settings_.particles));
-  if (touch.on && p_new > 0.0) find(covering, p_new);
+  if (touch.on && p_new > 0.0) discover(covering, p_new);
   undiscovered_.add(touch, likelihood_.labels(settings_.position_noise > 0.0));
   const int times = count_moves(sum * sum / (sum_of_squares * before));
-  for (Particle& particle : particles_) mover_.move(particle, times, likelihood_, random_);
+  for (Particle& particle : particles_) chain_.move(particle, times, likelihood_, random_);
   compare_undiscovered();
   return p_label / before;
 }
@@ -201,7 +201,7 @@ void Sampler::compare_undiscovered() {
 }
 
 /// Adds an undiscovered primitive at the tap to each particle, with its probability given the label.
-void Sampler::find(const Undiscovered::Covering& covering, double p_new) {
+void Sampler::discover(const Undiscovered::Covering& covering, double p_new) {
   const Taps& taps = likelihood_.taps();
   const int tap = taps.size() - 1;
   Taps seen;
@@ -281,7 +281,7 @@ int Sampler::count_moves(double effective_share) const {
   return std::min(settings_.most_moves, static_cast<int>(std::ceil(std::max(1.0, sum / size()) * each)));
 }
 
-void Mover::move(Particle& particle, int times, Likelihood& likelihood, Random& random) {
+void MarkovChain::move(Particle& particle, int times, Likelihood& likelihood, Random& random) {
   const Taps& taps = likelihood.taps();
   const double noise = settings_.position_noise > 0.0 ? kNoiseMoves : 0.0;
   const double push = settings_.push_probability > 0.0 && taps.size() > 1 ? kPushMoves : 0.0;
@@ -307,7 +307,7 @@ void Mover::move(Particle& particle, int times, Likelihood& likelihood, Random& 
 
 /// Accepts or rejects the proposal by Metropolis and Hastings in two steps: labels first, then heights, which take
 /// longer (delayed acceptance: Christen and Fox 2005). `taps`: positions after the push of the proposal.
-bool Mover::accept(Particle& particle, const Taps& taps, Likelihood& likelihood, Random& random) {
+bool MarkovChain::accept(Particle& particle, const Taps& taps, Likelihood& likelihood, Random& random) {
   const Proposal& proposal = proposal_;
   // The density of a long push may underflow, so the ratio is limited.
   const double ratio = std::min(proposal.ratio / (1.0 - random.uniform()), std::numeric_limits<double>::max());

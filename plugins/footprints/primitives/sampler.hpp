@@ -93,9 +93,9 @@ class Likelihood {
 };
 
 /// Markov chain that moves a particle.
-class Mover {
+class MarkovChain {
  public:
-  Mover(const Prior& prior, const SamplerSettings& settings) : prior_(prior), settings_(settings) {}
+  MarkovChain(const Prior& prior, const SamplerSettings& settings) : prior_(prior), settings_(settings) {}
 
   /// Proposes `times` moves and applies the accepted ones.
   void move(Particle& particle, int times, Likelihood& likelihood, Random& random);
@@ -153,14 +153,14 @@ class Sampler {
     double shift = 0.0;  ///< metres
   };
   MeanPush mean_push() const;
-  double acceptance_rate() const { return mover_.acceptance_rate(); }
+  double acceptance_rate() const { return chain_.acceptance_rate(); }
 
   int size() const { return static_cast<int>(particles_.size()); }
   const std::vector<Particle>& particles() const { return particles_; }
 
  private:
   void resample(const std::vector<double>& weights, double sum, std::size_t count);
-  void find(const Undiscovered::Covering& covering, double p_new);
+  void discover(const Undiscovered::Covering& covering, double p_new);
   int count_moves(double effective_share) const;
   /// Compares the undiscovered primitives with eight particles.
   void compare_undiscovered();
@@ -175,7 +175,7 @@ class Sampler {
   Random random_;
   std::uint64_t sample_seed_;
   Likelihood likelihood_;
-  Mover mover_;
+  MarkovChain chain_;
   Undiscovered undiscovered_;
   std::vector<Particle> particles_;
   int doubled_until_ = 0;  ///< number of taps until which the number of particles is doubled

@@ -12,7 +12,7 @@ namespace {
 constexpr int kDraws = 8192;
 
 /// Draws an index with probability proportional to its weight, from cumulative weights.
-std::size_t drawn_index(const std::vector<std::uint64_t>& cumulative, Random& random) {
+std::size_t draw_index(const std::vector<std::uint64_t>& cumulative, Random& random) {
   const auto at = static_cast<std::uint64_t>(static_cast<double>(cumulative.back()) * random.uniform());
   const auto index = std::upper_bound(cumulative.begin(), cumulative.end(), at) - cumulative.begin();
   return std::min(static_cast<std::size_t>(index), cumulative.size() - 1);
@@ -54,7 +54,7 @@ void Undiscovered::for_each_near(Draws& draws, const Target& position, double re
 }
 
 const Primitive& Undiscovered::Covering::draw(Random& random) const {
-  return *primitives_[drawn_index(cumulative_, random)];
+  return *primitives_[draw_index(cumulative_, random)];
 }
 
 Undiscovered::Covering Undiscovered::covering(const Target& position) const {
@@ -141,7 +141,7 @@ std::vector<Undiscovered::Member> Undiscovered::draw(int count, Random& random) 
   std::vector<Member> out;
   for (int set = 0; set < count; ++set) {
     double time = pause();
-    for (; time < rate; time += pause()) out.push_back({set, &draws_[drawn_index(cumulative, random)].primitive});
+    for (; time < rate; time += pause()) out.push_back({set, &draws_[draw_index(cumulative, random)].primitive});
   }
   return out;
 }

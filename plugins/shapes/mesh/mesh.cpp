@@ -66,27 +66,27 @@ class Mesh final : public Shape {
   /// position on it is computed in double precision.
   double first_intersection(const Line& line) const override {
     const RTCRayHit ray = cast(line, 0.0F);
-    return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : meeting(line, ray.hit.primID).at;
+    return ray.hit.geomID == RTC_INVALID_GEOMETRY_ID ? kInfinity : hit_at(line, ray.hit.primID).at;
   }
 
   /// Parts of a mesh may overlap, so a point is inside where more surfaces were entered than left. If the triangles are
   /// not oriented consistently, entries and exits alternate.
   std::vector<Stretch> intervals(const Line& line) const override {
-    std::call_once(looked_at_, [this] { oriented_ = is_oriented(); });
+    std::call_once(orientation_checked_, [this] { oriented_ = is_oriented(); });
     // Adjacent triangles are hit within rounding of each other; a step passes over all of them.
     const auto step = static_cast<float>(4e-6 * radius_);
-    std::vector<Meeting> met;
+    std::vector<Hit> hits;
     int balance = 0;
     for (float from = 0.0F;;) {
       const RTCRayHit ray = cast(line, from);
       if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
-      met.push_back(meeting(line, ray.hit.primID));
-      balance += met.back().enters ? 1 : -1;
+      hits.push_back(hit_at(line, ray.hit.primID));
+      balance += hits.back().enters ? 1 : -1;
       from = ray.ray.tfar + step;
     }
     std::vector<Stretch> out;
     int depth = 0;
-    for (const Meeting& one : met) {
+    for (const Hit& one : hits) {
       const bool was = depth != 0;
       // The balance is not 0 if a step passed over one side of a wedge.
       depth = oriented_ && balance == 0 ? depth + (one.enters ? 1 : -1) : 1 - depth;
@@ -150,11 +150,11 @@ class Mesh final : public Shape {
     return forth == back;
   }
 
-  struct Meeting {
+  struct Hit {
     double at;
     bool enters;  ///< for corners in counter-clockwise order, seen from outside
   };
-  Meeting meeting(const Line& line, unsigned number) const {
+  Hit hit_at(const Line& line, unsigned number) const {
     const auto& triangle = mesh_.corners[number];
     const Vector3d a = mesh_.points[triangle[0]] - line.origin;
     const Vector3d b = mesh_.points[triangle[1]] - line.origin;
@@ -179,7 +179,7 @@ class Mesh final : public Shape {
   std::vector<Box> boxes_;  ///< around each group of kFew consecutive points
   Vector3d centre_;
   double radius_;  ///< radius of a sphere around all points
-  mutable std::once_flag looked_at_;
+  mutable std::once_flag orientation_checked_;
   mutable bool oriented_ = false;
   std::shared_ptr<RTCDeviceTy> device_;
   std::shared_ptr<RTCSceneTy> scene_;

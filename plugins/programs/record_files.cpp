@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "programs/recorded.hpp"
+#include "programs/record_files.hpp"
 
 #include "reading/reading.hpp"
 
@@ -46,14 +46,15 @@ void keep_copy(const std::string& file, const std::string& text) {
 }
 
 // An empty name stands for an empty file, without anything to cut.
-Diary::Diary(const std::string& file) : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)) {
+StderrLog::StderrLog(const std::string& file)
+    : file_(open_recorded(file.empty() ? "/dev/null" : file, O_RDWR | O_APPEND)) {
   begin_ = size();
   const std::string note = read(kFirst, kFirst + kNoteLength);
   long long before = 0;
   if (std::sscanf(note.c_str(), kNote, &before) == 1 && note == note_of(before)) left_out_ = before;
 }
 
-void Diary::trim() {
+void StderrLog::trim() {
   const off_t end = size();
   const off_t noted = kFirst + (left_out_ > 0 ? kNoteLength : 0);
   if (end <= noted + 2 * kLast) return;
@@ -66,7 +67,7 @@ void Diary::trim() {
   begin_ = std::min(begin_, kFirst);
 }
 
-std::string Diary::last_words() const {
+std::string StderrLog::last_words() const {
   constexpr off_t kEnough = 1024;
   const off_t end = size();
   std::string text = read(std::max(begin_, end - kEnough), end);
@@ -74,32 +75,32 @@ std::string Diary::last_words() const {
   return text.substr(text.find_last_of('\n') + 1);
 }
 
-off_t Diary::size() const { return ::lseek(file_.number(), 0, SEEK_END); }
+off_t StderrLog::size() const { return ::lseek(file_.number(), 0, SEEK_END); }
 
-std::string Diary::read(off_t begin, off_t end) const {
+std::string StderrLog::read(off_t begin, off_t end) const {
   std::string out(static_cast<std::size_t>(std::max<off_t>(0, end - begin)), '\0');
   const ssize_t got = ::pread(file_.number(), out.data(), out.size(), begin);
   out.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
   return out;
 }
 
-Descriptor locked(const std::string& file, const Patience& patience) {
+Descriptor lock_file(const std::string& file, const WaitLimit& limit) {
   Descriptor lock = open_recorded(file, O_RDWR);
   // The lock is polled, because a blocking wait cannot be interrupted.
   while (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) fail(file, "cannot be locked");
-    if (patience.broken_off() || std::chrono::steady_clock::now() >= patience.until) return {};
-    std::this_thread::sleep_for(kGlance);
+    if (limit.stopped() || std::chrono::steady_clock::now() >= limit.until) return {};
+    std::this_thread::sleep_for(kPollInterval);
   }
   return lock;
 }
 
-void note_holder(const Descriptor& lock, pid_t holder) {
+void write_holder(const Descriptor& lock, pid_t holder) {
   // A failure only makes the process id in a later message unknown.
   if (::ftruncate(lock.number(), 0) == 0) write_all(lock, std::to_string(holder) + '\n');
 }
 
-std::string noted_holder(const std::string& file) {
+std::string read_holder(const std::string& file) {
   constexpr std::uintmax_t kMostBytes = 64;
   const std::string text = read_bounded(file, kMostBytes, Origin::record).text;
   const std::string holder = text.substr(0, text.find('\n'));

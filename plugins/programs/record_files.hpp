@@ -18,26 +18,26 @@ namespace palpate::programs {
 [[noreturn]] void fail(const std::string& where, const std::string& what);
 
 /// Interval in which waits check for an interruption.
-constexpr std::chrono::milliseconds kGlance{20};
+constexpr std::chrono::milliseconds kPollInterval{20};
 
 /// End of a wait, and its interruption by the user.
-struct Patience {
+struct WaitLimit {
   std::chrono::steady_clock::time_point until;
   const std::atomic<bool>* interrupted = nullptr;  ///< may be null
 
-  bool broken_off() const { return interrupted != nullptr && interrupted->load(); }
+  bool stopped() const { return interrupted != nullptr && interrupted->load(); }
 };
 
 /// The stderr of a program, limited to its beginning and its end. The program appends to the file by itself, so nothing
 /// is lost if this process ends. Beyond the limits the middle is removed, and a line with the number of removed bytes
 /// replaces it.
-class Diary {
+class StderrLog {
  public:
   static constexpr off_t kFirst = off_t{256} * 1024;  ///< bytes kept of the beginning
   static constexpr off_t kLast = off_t{256} * 1024;   ///< least number of bytes kept of the end
 
   /// Opens or creates `file`, which may contain output of earlier programs. An empty name keeps nothing. Throws Error.
-  explicit Diary(const std::string& file);
+  explicit StderrLog(const std::string& file);
 
   const Descriptor& descriptor() const { return file_; }
 
@@ -59,14 +59,14 @@ class Diary {
 /// Replaces the content of `file` by `text`. Throws Error.
 void keep_copy(const std::string& file, const std::string& text);
 
-/// Creates and locks `file`. Returns an empty descriptor if another program holds the lock until the end of `patience`.
+/// Creates and locks `file`. Returns an empty descriptor if another program holds the lock until the end of `limit`.
 /// A program that inherits the descriptor keeps the lock until it and all descendants with the descriptor have ended,
 /// even if this process ends. Throws Error if `file` cannot be created or locked.
-Descriptor locked(const std::string& file, const Patience& patience);
+Descriptor lock_file(const std::string& file, const WaitLimit& limit);
 
 /// Writes the process id of the lock's holder, for messages of later attempts.
-void note_holder(const Descriptor& lock, pid_t holder);
+void write_holder(const Descriptor& lock, pid_t holder);
 /// Returns the process id in `file`, or "?".
-std::string noted_holder(const std::string& file);
+std::string read_holder(const std::string& file);
 
 }  // namespace palpate::programs
