@@ -2,9 +2,9 @@
 // The objective of fits, values and gradients, against the definitions: whole matrices in extended precision, points
 // really left out, and differences of values.
 #include "objective.hpp"
+#include "strip_matrix.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/testing.hpp"
-#include "symmetric.hpp"
 
 #include <Eigen/Dense>
 
@@ -117,7 +117,7 @@ class FitObjective : public testing::TestWithParam<Setting> {
                GetParam().fit_means,
                {}};
   std::vector<double> x_;
-  std::vector<Expectation> expectations_;
+  std::vector<HyperPrior> expectations_;
 };
 
 TEST_P(FitObjective, IsTheDensityByDefinition) {
@@ -182,8 +182,8 @@ TEST_P(FitObjective, HasTheGradientThatDifferencesHave) {
 INSTANTIATE_TEST_SUITE_P(Every, FitObjective, testing::ValuesIn(settings()),
                          [](const auto& one) { return one.param.name; });
 
-Strips strips_of(const Eigen::MatrixXd& matrix) {
-  Strips out(matrix.rows());
+StripMatrix strips_of(const Eigen::MatrixXd& matrix) {
+  StripMatrix out(matrix.rows());
   for (Eigen::Index j = 0; j < matrix.rows(); ++j) out.put(j, matrix.col(j).tail(matrix.rows() - j / 8 * 8));
   return out;
 }
@@ -202,7 +202,7 @@ TEST_P(FitMatrices, InvertWhatTheyFactorisedToTheBytesThatWereWrittenDown) {
     for (Eigen::Index i = 0; i < k.size(); ++i) {  // Eigen has other bytes on ARM
       for (Eigen::Index m = 0; m < n; ++m) k.data()[i] += a.data()[i / n * n + m] * a.data()[i % n * n + m];
     }
-    Strips matrix = strips_of(k);
+    StripMatrix matrix = strips_of(k);
     std::vector<double> reciprocals;
     ASSERT_TRUE(factorise(matrix, reciprocals)) << n;
     const Eigen::MatrixXd factor = matrix.mirrored().triangularView<Eigen::Lower>();
@@ -212,7 +212,7 @@ TEST_P(FitMatrices, InvertWhatTheyFactorisedToTheBytesThatWereWrittenDown) {
     Eigen::VectorXd x = b;
     solve_lower(matrix, x);
     EXPECT_LT((factor * x - b).cwiseAbs().maxCoeff(), 1e-12) << n;
-    Strips upper(n);
+    StripMatrix upper(n);
     invert_transposed(matrix, reciprocals, upper);
     multiply_upper(upper, x);
     EXPECT_LT((k * x - b).cwiseAbs().maxCoeff(), 1e-11) << n;
@@ -231,10 +231,10 @@ TEST_P(FitMatrices, RefuseWhatIsNotPositiveDefinite) {
   for (const Eigen::Index n : {2, 9, 70}) {
     Eigen::MatrixXd indefinite = Eigen::MatrixXd::Identity(n, n);
     indefinite(n - 1, 0) = indefinite(0, n - 1) = 2.0;
-    Strips matrix = strips_of(indefinite);
+    StripMatrix matrix = strips_of(indefinite);
     EXPECT_FALSE(factorise(matrix, reciprocals)) << n;
     for (const double nothing : {std::nan(""), HUGE_VAL}) {
-      Strips wrong = strips_of(Eigen::MatrixXd::Constant(n, n, nothing));
+      StripMatrix wrong = strips_of(Eigen::MatrixXd::Constant(n, n, nothing));
       EXPECT_FALSE(factorise(wrong, reciprocals)) << n;
     }
   }

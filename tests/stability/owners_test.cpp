@@ -153,7 +153,7 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
   for (const double noise : kNoises) {
     const double ratio = std::max(noise, 1e-12) / 0.1;
     const std::vector<double> x{std::log(GetParam().length_scale), 2.0 * std::log(ratio), 0.0};
-    std::vector<fitting::Expectation> expectations;
+    std::vector<fitting::HyperPrior> expectations;
     for (const double one : x) expectations.push_back({one, 0.7, one - 50.0, one + 50.0});
     Objective objective(model, Measure::log_marginal_likelihood, expectations, false);
     double value = 0.0;

@@ -33,7 +33,7 @@ class ExchangeBench {
   }
 
   bool exchange(const Particle& from, Particle& to, int most = kMostPrimitives) const {
-    return footprints::exchange(from, taps_, most, to);
+    return footprints::resample_partially(from, taps_, most, to);
   }
 
   /// Expects the rows of its primitives.

@@ -87,7 +87,7 @@ class NegativeObjective final : public ceres::FirstOrderFunction {
   const Eigen::MatrixXd& metric_;
 };
 
-Eigen::VectorXd within_limits(Eigen::VectorXd x, const std::vector<Expectation>& expectations) {
+Eigen::VectorXd within_limits(Eigen::VectorXd x, const std::vector<HyperPrior>& expectations) {
   for (std::size_t i = 0; i < expectations.size(); ++i) {
     double& one = x(static_cast<Eigen::Index>(i));
     one = std::clamp(one, expectations[i].least, expectations[i].most);
@@ -145,7 +145,7 @@ Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& result) {
 /// Returns a deterministic start: the best of `now` and a grid of length scales and noises, each with its best signals.
 /// A likelihood has a wide flat region of pure noise, which no ascent leaves.
 Eigen::VectorXd look_around(Objective& objective, const Model& model, const Eigen::VectorXd& now,
-                            const std::vector<Expectation>& expectations) {
+                            const std::vector<HyperPrior>& expectations) {
   constexpr int kLengths = 4;
   constexpr std::array<double, 2> kNoises{1e-3, 1e-1};  // squared noise ratios of a clean and of a noisy surface
   const std::vector<KernelParameter> parameters = model.kernel.parameters();
@@ -179,7 +179,7 @@ Eigen::VectorXd look_around(Objective& objective, const Model& model, const Eige
 }
 
 /// Returns a uniform random start within two standard deviations of the priors.
-Eigen::VectorXd random_start(const std::vector<Expectation>& expectations, Random& random) {
+Eigen::VectorXd random_start(const std::vector<HyperPrior>& expectations, Random& random) {
   Eigen::VectorXd x(static_cast<Eigen::Index>(expectations.size()));
   for (std::size_t i = 0; i < expectations.size(); ++i) {
     x(static_cast<Eigen::Index>(i)) = expectations[i].centre + (4.0 * random.uniform() - 2.0) * expectations[i].spread;
@@ -221,7 +221,7 @@ class Ceres final : public Fitting {
       summary.reason = "the targets equal the mean and contain no information";
       return summary;
     }
-    const std::vector<Expectation> expected = expectations(model);
+    const std::vector<HyperPrior> expected = expectations(model);
     if (options_.priors == Options::Priors::none &&
         model.size() * model.outputs() <= static_cast<Eigen::Index>(expected.size())) {
       summary.reason = "without priors there must be more taps than hyperparameters";
@@ -251,14 +251,14 @@ class Ceres final : public Fitting {
   }
 
  private:
-  std::vector<Expectation> expectations(const Model& model) const {
+  std::vector<HyperPrior> expectations(const Model& model) const {
     // A scene has desk and objects, with steps that no stationary kernel follows. Its taps look smoother than the rest
     // of the surface. So with few taps the likelihood alone favours too long length scales and too small signals, with
     // too small uncertainty. Results with and without priors are in framework/docs/runs.md.
     const auto log_normal = [](double median, double spread, double factor) {
-      return Expectation{math::log(median), spread, math::log(median / factor), math::log(median * factor)};
+      return HyperPrior{math::log(median), spread, math::log(median / factor), math::log(median * factor)};
     };
-    std::vector<Expectation> out;
+    std::vector<HyperPrior> out;
     for (const KernelParameter& one : model.kernel.parameters()) {
       out.push_back(one.unit == Unit::metre ? log_normal(side_ / 12.0, 0.4, 1e4) : log_normal(1.0, 1.0, 1e3));
     }
@@ -270,13 +270,13 @@ class Ceres final : public Fitting {
     return out;
   }
 
-  Objective objective_of(const Model& model, const std::vector<Expectation>& expected) const {
+  Objective objective_of(const Model& model, const std::vector<HyperPrior>& expected) const {
     return {model, options_.objective, expected, options_.priors == Options::Priors::touch};
   }
 
   /// Returns the optimum by an ascent from the present values `now` if one suffices, else by a search. `known`: whether
   /// the objective is finite at `now`. Updates `memory`, which may be null, and reason and evaluations of `summary`.
-  AscentResult optimum(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
+  AscentResult optimum(const Model& model, Objective& objective, const std::vector<HyperPrior>& expected,
                        const Eigen::VectorXd& now, bool known, std::vector<double>* memory, Random& random,
                        FitSummary& summary) const {
     const Memory last = memory != nullptr ? Memory::of(*memory, now.size()) : Memory();
@@ -304,7 +304,7 @@ class Ceres final : public Fitting {
 
   /// Returns the optima of all ascents, the best first. `objective` belongs to `model`. Evaluations of objectives for a
   /// part of the points are added to `evaluations`.
-  std::vector<AscentResult> search(const Model& model, Objective& objective, const std::vector<Expectation>& expected,
+  std::vector<AscentResult> search(const Model& model, Objective& objective, const std::vector<HyperPrior>& expected,
                                    const Eigen::VectorXd& now, Random& random, int& evaluations) const {
     std::vector<AscentResult> results;
     if (model.size() <= kPart) {

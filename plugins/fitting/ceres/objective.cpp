@@ -94,7 +94,7 @@ void take(const Eigen::VectorXd& x, const Model& model, FitProblem& problem) {
   }
 }
 
-Objective::Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors)
+Objective::Objective(const Model& model, Measure measure, const std::vector<HyperPrior>& expectations, bool priors)
     : model_(model),
       measure_(measure),
       expectations_(expectations),
@@ -305,7 +305,7 @@ double Objective::expectations(const double* x, double* gradient) const {
   double sum = 0.0;
   const auto points = static_cast<double>(model_.size());
   for (std::size_t i = 0; i < expectations_.size(); ++i) {
-    const Expectation& one = expectations_[i];
+    const HyperPrior& one = expectations_[i];
     if (priors_) {
       const double z = (x[i] - one.centre) / one.spread;
       sum -= 0.5 * (z * z + kLogTwoPi) + math::log(one.spread);

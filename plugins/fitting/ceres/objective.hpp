@@ -2,7 +2,7 @@
 // Data of a fit, and its objective as a function of the logarithms of the hyperparameters, with gradient.
 #pragma once
 
-#include "symmetric.hpp"
+#include "strip_matrix.hpp"
 
 #include <palpate/fitting.hpp>
 #include <palpate/types.hpp>
@@ -54,7 +54,7 @@ enum class Measure { log_marginal_likelihood, leave_one_out };
 
 /// Prior of one hyperparameter on the scale of the search: a normal density, and limits with smooth walls. The walls
 /// ensure a maximum if a likelihood grows without bound.
-struct Expectation {
+struct HyperPrior {
   double centre = 0.0;
   double spread = 1.0;
   double least = 0.0;
@@ -69,7 +69,7 @@ class Objective {
  public:
   /// `expectations`: one per hyperparameter. With `priors` false, only their limits are used. The first and third
   /// argument must outlive the object.
-  Objective(const Model& model, Measure measure, const std::vector<Expectation>& expectations, bool priors);
+  Objective(const Model& model, Measure measure, const std::vector<HyperPrior>& expectations, bool priors);
 
   int size() const { return static_cast<int>(expectations_.size()); }
   int evaluations() const { return evaluations_; }
@@ -99,14 +99,14 @@ class Objective {
 
   const Model& model_;
   Measure measure_;
-  const std::vector<Expectation>& expectations_;
+  const std::vector<HyperPrior>& expectations_;
   bool priors_;
   int evaluations_ = 0;
 
   Eigen::Index parameters_;          ///< number of kernel parameters
-  Strips matrix_;                    ///< in turn K, its factor L, its inverse, and dF/dK
+  StripMatrix matrix_;               ///< in turn K, its factor L, its inverse, and dF/dK
   std::vector<double> reciprocals_;  ///< reciprocals of the diagonal of L
-  Strips upper_;                     ///< L^-T; only with a gradient
+  StripMatrix upper_;                ///< L^-T; only with a gradient
   Points places_;                    ///< points padded to whole strips by repeating the last one
   std::vector<Line> slopes_;  ///< dK / d log parameter, of each strip what is not right of its tile of the diagonal:
                               ///< all columns by the first parameter, then those by the next

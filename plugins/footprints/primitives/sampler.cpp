@@ -37,7 +37,7 @@ void copy_row(const TapRows& from, int row, TapRows& to, int to_row) {
 
 }  // namespace
 
-bool exchange(const Particle& from, const Taps& taps, int most, Particle& to) {
+bool resample_partially(const Particle& from, const Taps& taps, int most, Particle& to) {
   if (from.hypothesis.push || to.hypothesis.push || from.hypothesis.noisy != to.hypothesis.noisy) return false;
   const std::array<const Particle*, 2> sides{&from, &to};
   struct Member {
@@ -251,7 +251,7 @@ void Sampler::resample(const std::vector<double>& weights, double sum, std::size
   for (std::size_t i = 0; i < weights.size(); ++i) {
     for (int more = copies[i]; more > 1; --more) {
       Particle& other = next_free(particles_[i]);
-      if (exchange(particles_[i], likelihood_.taps(), prior_.settings().most, other)) {
+      if (resample_partially(particles_[i], likelihood_.taps(), prior_.settings().most, other)) {
         likelihood_.weigh(other);
       } else {
         other = particles_[i];

@@ -61,7 +61,7 @@ struct Particle {
 ///
 /// An approximation: the resampling weights are not corrected for the primitives that stay; the moves that follow
 /// correct the particles. A calibration with the default moves showed no error at 0.003.
-bool exchange(const Particle& from, const Taps& taps, int most, Particle& to);
+bool resample_partially(const Particle& from, const Taps& taps, int most, Particle& to);
 
 /// Taps and their likelihood under a hypothesis.
 class Likelihood {

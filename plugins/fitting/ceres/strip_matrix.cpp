@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "symmetric.hpp"
+#include "strip_matrix.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "symmetric.cpp"
+#define HWY_TARGET_INCLUDE "strip_matrix.cpp"
 #include "math/highway.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -66,8 +66,8 @@ HWY_INLINE void multiply(const double* const* a, const double* b, Index depth, d
 /// Computes the tiles (s, j) of C for strips s in [first, last): += or -= A_s B_j^T, over the columns [from, to) of A
 /// and B.
 template <bool kPlus>
-HWY_INLINE void update(Strips& c, const Strips& a, const Strips& b, Index first, Index last, Index j, Index from,
-                       Index to) {
+HWY_INLINE void update(StripMatrix& c, const StripMatrix& a, const StripMatrix& b, Index first, Index last, Index j,
+                       Index from, Index to) {
   const double* in[kPacks];
   double* out[kPacks];
   Index packs = 0;
@@ -125,7 +125,7 @@ HWY_INLINE void solve_tile(double* x, const double* lower, const double* recipro
 
 // The factorisation proceeds by panels. Contributions of earlier panels are complete when a panel starts. So within a
 // panel each column of tiles depends only on columns of the same panel.
-bool factorise(Strips& matrix, double* reciprocals) {
+bool factorise(StripMatrix& matrix, double* reciprocals) {
   const Index strips = matrix.strips();
   for (Index panel = 0; panel < strips; panel += kPanel) {
     const Index end = std::min(panel + kPanel, strips);
@@ -146,7 +146,7 @@ bool factorise(Strips& matrix, double* reciprocals) {
 }
 
 // L^-T results from applying the factorisation of K to rows of the identity below K.
-void invert_transposed(const Strips& factor, const double* reciprocals, Strips& out) {
+void invert_transposed(const StripMatrix& factor, const double* reciprocals, StripMatrix& out) {
   const Index strips = factor.strips();
   for (Index panel = 0; panel < strips; panel += kPanel) {
     const Index end = std::min(panel + kPanel, strips);
@@ -163,7 +163,7 @@ void invert_transposed(const Strips& factor, const double* reciprocals, Strips& 
   }
 }
 
-void square_upper(const Strips& upper, Strips& out) {
+void square_upper(const StripMatrix& upper, StripMatrix& out) {
   const Index strips = upper.strips();
   for (Index panel = 0; panel < strips; panel += kPanel) {
     const Index end = std::min(panel + kPanel, strips);
@@ -176,7 +176,7 @@ void square_upper(const Strips& upper, Strips& out) {
 }
 
 /// Adds columns [from, to) of strip `s` times b[from], ... to the line `out`.
-void times(const Strips& matrix, Index s, Index from, Index to, const double* b, double* out) {
+void times(const StripMatrix& matrix, Index s, Index from, Index to, const double* b, double* out) {
   for (Index p = 0; p < kPacksOfLine; ++p) {
     const auto column = [&](Index k) { return at(matrix.at(s, k)->numbers + p * kLanes); };
     Vector sum = at(out + p * kLanes);
@@ -200,7 +200,7 @@ namespace palpate::fitting {
 
 using Eigen::Index;
 
-void Strips::put(Index j, const Eigen::VectorXd& values) {
+void StripMatrix::put(Index j, const Eigen::VectorXd& values) {
   const double* from = values.data();
   const Index first = j / 8;
   const Index whole = size_ / 8;
@@ -211,7 +211,7 @@ void Strips::put(Index j, const Eigen::VectorXd& values) {
   }
 }
 
-Eigen::MatrixXd Strips::mirrored() const {
+Eigen::MatrixXd StripMatrix::mirrored() const {
   Eigen::MatrixXd out(size_, size_);
   for (Index j = 0; j < size_; ++j) {
     for (Index i = j; i < size_; ++i) out(i, j) = out(j, i) = (*this)(i, j);
@@ -219,7 +219,7 @@ Eigen::MatrixXd Strips::mirrored() const {
   return out;
 }
 
-bool factorise(Strips& matrix, std::vector<double>& reciprocals) {
+bool factorise(StripMatrix& matrix, std::vector<double>& reciprocals) {
   const Index strips = matrix.strips();
   const Index n = matrix.size();
   for (Index j = 0; j < 8 * strips && n % 8 > 0; ++j) {
@@ -232,7 +232,7 @@ bool factorise(Strips& matrix, std::vector<double>& reciprocals) {
          std::all_of(reciprocals.begin(), reciprocals.end(), [](double one) { return one > 0.0; });
 }
 
-void solve_lower(const Strips& factor, VectorOut b) {
+void solve_lower(const StripMatrix& factor, VectorOut b) {
   for (Index s = 0; s < factor.strips(); ++s) {
     Line sum{};
     PALPATE_DISPATCH(times)(factor, s, 0, 8 * s, b.data(), sum.numbers);
@@ -245,7 +245,7 @@ void solve_lower(const Strips& factor, VectorOut b) {
   }
 }
 
-void invert_transposed(const Strips& factor, const std::vector<double>& reciprocals, Strips& out) {
+void invert_transposed(const StripMatrix& factor, const std::vector<double>& reciprocals, StripMatrix& out) {
   const Index strips = factor.strips();
   for (Index s = 0; s < strips; ++s) {
     std::fill(out.at(s, 0), out.at(s, 0) + 8 * strips, Line{});
@@ -254,7 +254,7 @@ void invert_transposed(const Strips& factor, const std::vector<double>& reciproc
   PALPATE_DISPATCH(invert_transposed)(factor, reciprocals.data(), out);
 }
 
-void multiply_upper(const Strips& upper, VectorOut b) {
+void multiply_upper(const StripMatrix& upper, VectorOut b) {
   for (Index s = 0; s < upper.strips(); ++s) {
     Line sum{};
     PALPATE_DISPATCH(times)(upper, s, 8 * s, upper.size(), b.data(), sum.numbers);
@@ -262,7 +262,7 @@ void multiply_upper(const Strips& upper, VectorOut b) {
   }
 }
 
-void square_upper(const Strips& upper, Strips& out) {
+void square_upper(const StripMatrix& upper, StripMatrix& out) {
   for (Index s = 0; s < upper.strips(); ++s) std::fill(out.at(s, 0), out.at(s, 0) + 8 * (s + 1), Line{});
   PALPATE_DISPATCH(square_upper)(upper, out);
 }

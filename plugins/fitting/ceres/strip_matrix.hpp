@@ -18,9 +18,9 @@ struct alignas(64) Line {
 
 /// A square matrix of n rows, stored in strips of eight rows, column by column. A tile is eight columns of a strip.
 /// Rows and columns beyond n, up to a whole tile, are 0 unless stated otherwise.
-class Strips {
+class StripMatrix {
  public:
-  explicit Strips(Eigen::Index n)
+  explicit StripMatrix(Eigen::Index n)
       : size_(n), strips_((n + 7) / 8), lines_(static_cast<std::size_t>(strips_ * stride())) {}
 
   Eigen::Index size() const { return size_; }
@@ -49,18 +49,18 @@ class Strips {
 /// Replaces K by L with L L^T = K, on and below the diagonal. Entries above it in diagonal tiles are undefined. Rows
 /// beyond n become those of the identity, and `reciprocals` those of the diagonal. Returns false, with undefined
 /// content, if K is not positive definite or not finite.
-bool factorise(Strips& matrix, std::vector<double>& reciprocals);
+bool factorise(StripMatrix& matrix, std::vector<double>& reciprocals);
 
 /// Computes L^-1 b in place, for n numbers.
-void solve_lower(const Strips& factor, VectorOut b);
+void solve_lower(const StripMatrix& factor, VectorOut b);
 
 /// Computes L^-T on and above the diagonal, from the result of factorise(). `out` has the size of `factor`.
-void invert_transposed(const Strips& factor, const std::vector<double>& reciprocals, Strips& out);
+void invert_transposed(const StripMatrix& factor, const std::vector<double>& reciprocals, StripMatrix& out);
 
 /// Computes U b in place, for an upper triangle U.
-void multiply_upper(const Strips& upper, VectorOut b);
+void multiply_upper(const StripMatrix& upper, VectorOut b);
 
 /// Computes U U^T on and below the diagonal and in all diagonal tiles. For U = L^-T the result is K^-1.
-void square_upper(const Strips& upper, Strips& out);
+void square_upper(const StripMatrix& upper, StripMatrix& out);
 
 }  // namespace palpate::fitting
