@@ -181,20 +181,21 @@ std::string in_letters(const State& state) {
 
 TEST(FakeBody, IsReadyOnlyWhileItIsEnabledAndStoppedByAnythingButItsButtonDoesNotKnowTheButton) {
   BodyBench bench(kBare, kQuiet);
-  const std::pair<const char*, const char*> script[] = {{"enable", "REsx 0 0"},
-                                                        {"disable", "resx 0 0"},
-                                                        {"enable", "REsx 0 0"},
-                                                        {"error", "reSX 2 3"},
-                                                        {"enable", "reSX 2 3"},
-                                                        {"reset", "resx 0 0"},
-                                                        {"enable", "REsx 0 0"},
-                                                        {"stop", "reSx 2 2"},
-                                                        {"reset", "resx 0 0"},
-                                                        {"complaint", "resX 0 0"},  // an error of a component, which
-                                                                                    // Rethink's tools call non-fatal
-                                                        {"enable", "REsX 0 0"},
-                                                        {"reset", "resX 0 0"},
-                                                        {"enable", "REsX 0 0"}};
+  const std::pair<const char*, const char*> script[] = {
+      {"enable", "REsx 0 0"},
+      {"disable", "resx 0 0"},
+      {"enable", "REsx 0 0"},
+      {"error", "reSX 2 3"},
+      {"enable", "reSX 2 3"},
+      {"reset", "resx 0 0"},
+      {"enable", "REsx 0 0"},
+      {"stop", "reSx 2 2"},
+      {"reset", "resx 0 0"},
+      // An error of a component, which Rethink's tools call non-fatal.
+      {"complaint", "resX 0 0"},
+      {"enable", "REsX 0 0"},
+      {"reset", "resX 0 0"},
+      {"enable", "REsX 0 0"}};
   for (const auto& [act, state] : script) {
     const std::string word = act;
     if (word == "enable" || word == "disable") {

@@ -30,7 +30,7 @@ struct Kind {
   double noticed;                  ///< s after which nothing may be sent; infinity if sending is correct
   bool may_press;                  ///< whether more than 16 N are possible: see below
   double aside;                    ///< m by which the tip may move sideways while it is low
-  bool misleads;                   ///< whether the driver receives wrong joints and cannot know the tip's position
+  bool misleads;                   ///< whether the driver receives wrong joints, hence a wrong position of the tip
 };
 
 constexpr double kNever = std::numeric_limits<double>::infinity();

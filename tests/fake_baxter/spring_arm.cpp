@@ -91,7 +91,7 @@ void SpringArm::step(const Joints& reference) {
   state_.depth = std::max(state_.depth, depth);
 }
 
-/// The robot knows the weight of its arm, and interprets all other torques of its springs as a force on the tip.
+/// The robot subtracts the weight of its arm, and interprets all other torques of its springs as a force on the tip.
 void SpringArm::measure() {
   const Joints weight = dynamics_.weight(state_.position);
   state_.felt = estimate_force(dynamics_.jacobian(state_.position), weight - state_.effort);

@@ -39,10 +39,10 @@ class Tapper {
   /// Returns the sign of the force if taps determined it: `positive` or `negative`, else empty.
   std::string learnt_sign() const;
 
-  /// Checks all conditions for the first motion. Throws Error (kind `run`) with cause and remedy: calibration tap
-  /// outside the area, forbidden state of the robot, second sender, stale or invalid data, joint beyond its limit,
-  /// wrong position of left_gripper, arm not above the area with its tool down, settings of other programs, unreachable
-  /// positions.
+  /// Checks all conditions for the first motion. Throws Error (kind `run`) with cause and remedy:
+  /// - forbidden state of the robot, second sender, stale or invalid data, settings of other programs;
+  /// - joint beyond its limit, wrong position of left_gripper, arm not above the area with its tool down;
+  /// - unreachable positions, calibration tap outside the area.
   void check();
 
  private:

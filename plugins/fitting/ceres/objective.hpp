@@ -108,14 +108,15 @@ class Objective {
   std::vector<double> reciprocals_;  ///< reciprocals of the diagonal of L
   StripMatrix upper_;                ///< L^-T; only with a gradient
   Points places_;                    ///< points padded to whole strips by repeating the last one
-  std::vector<Line> slopes_;  ///< dK / d log parameter, of each strip what is not right of its tile of the diagonal:
-                              ///< all columns by the first parameter, then those by the next
+  /// Derivatives of K by the log of each parameter, per strip up to its diagonal tile: all columns for the first
+  /// parameter, then those for the next.
+  std::vector<Line> slopes_;
   Eigen::VectorXd own_;       ///< n: diagonal of K
   Eigen::MatrixXd standard_;  ///< n x m: (targets - mean) / signal
-  Eigen::MatrixXd solved_;    ///< rows of whole strips x m: L^-1 standard, the unknown constant integrated out;
-                              ///< with a gradient K^-1 of it
-  Eigen::VectorXd squares_;   ///< m: standard^T K^-1 standard
-  Eigen::VectorXd ones_;  ///< as solved_, for 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
+  /// L^-1 standard_ in whole strips, with an unknown constant integrated out; K^-1 standard_ after invert().
+  Eigen::MatrixXd solved_;
+  Eigen::VectorXd squares_;  ///< m: standard^T K^-1 standard
+  Eigen::VectorXd ones_;     ///< as solved_, for 1 / sqrt(1 / mean_ratio^2 + 1^T K^-1 1); only with an unknown constant
   double log_determinant_ = 0.0;
   double noise_ = 0.0;  ///< squared noise ratio
 };

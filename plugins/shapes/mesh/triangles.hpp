@@ -32,10 +32,11 @@ struct Triangles {
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< indices of points
 };
 
-/// Reads a surface, merges equal points and moves it into place. Throws Error, its place the file, in these cases:
-/// errors of read_file() and import_triangles(); coordinates that are not finite; a size above 2 m or below 1 mm; a
-/// distance from the origin at which single precision is coarser than 1e-6 m; triangles without area or listed twice;
-/// and, unless allowed, holes, that is, edges of only one triangle.
+/// Reads a surface, merges equal points and moves it into place. Throws Error with the file as its place:
+/// - errors of read_file() and import_triangles();
+/// - coordinates that are not finite, a size above 2 m or below 1 mm, or a distance from the origin at which single
+///   precision is coarser than 1e-6 m;
+/// - triangles without area or listed twice, and, unless allowed, holes: edges of only one triangle.
 Triangles read_surface(const MeshOptions& options);
 
 }  // namespace palpate::shapes
