@@ -8,7 +8,7 @@
 
 namespace palpate::acquisitions {
 
-struct MixtureOptions : Options {
+struct SumOptions : Options {
   std::vector<PluginChoice> acquisitions;
   void list(Fields& fields) override {
     fields.plugins(acquisitions, "acquisition",
@@ -19,7 +19,7 @@ struct MixtureOptions : Options {
 
 class Sum final : public Acquisition {
  public:
-  using Options = MixtureOptions;
+  using Options = SumOptions;
   Sum(const Options& options, const Context& context) {
     for (const PluginChoice& one : options.acquisitions) parts_.push_back(context.create<Acquisition>(one));
   }

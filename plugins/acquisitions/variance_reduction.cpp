@@ -50,7 +50,7 @@ Counts common(const std::uint64_t* here, const Words& holds) {
 }
 
 /// Returns at most `most` elements, evenly spaced.
-std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
+std::vector<int> sample_of(const std::vector<int>& all, std::size_t most) {
   const std::size_t step = (all.size() + most - 1) / most;
   std::vector<int> out;
   for (std::size_t i = step / 2; i < all.size(); i += step) out.push_back(all[i]);
@@ -70,7 +70,7 @@ std::vector<int> some_of(const std::vector<int>& all, std::size_t most) {
 /// last objects would be found late or never, while known outlines are refined to the millimetre. The largest score
 /// grows by the same factor, so that it keeps its weight in sums with other acquisitions. Benefits and costs:
 /// framework/docs/clutter.md.
-struct ForesightOptions : Options {
+struct VarianceReductionOptions : Options {
   double new_object_weight = 1.5;
   void list(Fields& fields) override {
     fields.real(new_object_weight,
@@ -83,7 +83,7 @@ struct ForesightOptions : Options {
 
 class VarianceReduction final : public Acquisition {
  public:
-  using Options = ForesightOptions;
+  using Options = VarianceReductionOptions;
   VarianceReduction(const Options& options, const Context&) : options_(options) {}
 
   Quantities reads() const override { return Quantity::probability | Quantity::outlines; }
@@ -98,7 +98,7 @@ class VarianceReduction final : public Acquisition {
     const double area = belief.area().width * belief.area().depth;
     const double larger = std::max(1.0, std::sqrt(area) / kUsualSide);
     out = options_.new_object_weight * larger * sample.to_find;
-    const double settled = look_ahead(sample, area / static_cast<double>(out.size()), out);
+    const double settled = add_reductions(sample, area / static_cast<double>(out.size()), out);
     divide_by(settled > 0.0 ? std::max(settled, out.maxCoeff() / larger) : out.maxCoeff(), out);
   }
 
@@ -112,7 +112,7 @@ class VarianceReduction final : public Acquisition {
   }
 
   /// Adds the reductions for known outlines to `out` and returns the largest one.
-  static double look_ahead(const OutlineSample& sample, double extent_of_place, VectorOut out) {
+  static double add_reductions(const OutlineSample& sample, double extent_of_place, VectorOut out) {
     const std::vector<std::uint64_t> all(static_cast<std::size_t>(sample.holds.rows()), ~std::uint64_t{0});
     const Counts held = common(all.data(), sample.holds);
     std::vector<int> open;  // positions with uncertain coverage
@@ -122,13 +122,13 @@ class VarianceReduction final : public Acquisition {
     // On a fine grid, a part of the positions and of the taps is sufficient.
     constexpr std::size_t kPlaces = 128;
     constexpr std::size_t kTaps = 512;
-    const std::vector<int> places = some_of(open, kPlaces);
+    const std::vector<int> places = sample_of(open, kPlaces);
     if (places.empty()) return 0.0;
     const double each = extent_of_place * static_cast<double>(open.size()) / static_cast<double>(places.size());
     const Words others = sample.holds(Eigen::all, places);
     const Eigen::ArrayXd held_by = held(places).cast<double>();
     double most = 0.0;
-    for (const int x : some_of(open, kTaps)) {
+    for (const int x : sample_of(open, kTaps)) {
       const double of_x = held(x);
       const Eigen::ArrayXd covariances =
           common(sample.holds.col(x).data(), others).cast<double>() - of_x / sample.count * held_by;

@@ -18,7 +18,7 @@ namespace palpate::test {
 namespace {
 
 constexpr int kAttempts = 5;
-constexpr double kPatience = 300.0;  // s until a program must have started or ended
+constexpr double kProcessTimeout = 300.0;  // s until a program must have started or ended
 constexpr const char* kTrace = "trace.csv";
 
 /// The master at a port of this machine, and the deadline of its answers.
@@ -28,7 +28,7 @@ baxter::Deadline soon() { return baxter::Steady::now() + std::chrono::seconds(5)
 /// Polls until `holds` is true or the program has ended, because the progress of another process causes no event.
 template <class Condition>
 bool comes_up(const Child& child, const Condition& holds) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kProcessTimeout);
   while (child.running() && std::chrono::steady_clock::now() < end) {
     if (holds()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));  // interval between two checks
@@ -56,7 +56,7 @@ RobotLab::~RobotLab() {
   if (robot_ && robot_->pid() > 0) end_robot();
   if (!master_) return;
   master_->signal(SIGTERM);
-  master_->wait(kPatience);
+  master_->wait(kProcessTimeout);
 }
 
 bool RobotLab::start_master() {
@@ -104,7 +104,7 @@ Ended RobotLab::end_robot() {
   robot_->signal(SIGTERM);
   // Moved out first, so that robot_ is empty also after an exception.
   const std::unique_ptr<Child> robot = std::move(robot_);
-  return robot->wait(kPatience);
+  return robot->wait(kProcessTimeout);
 }
 
 std::vector<Cells> RobotLab::trace() const {

@@ -15,7 +15,7 @@
 namespace palpate::fake_baxter {
 namespace {
 
-using namespace baxter::description;
+using namespace baxter::geometry;
 using baxter::array_of;
 using baxter::frame;
 

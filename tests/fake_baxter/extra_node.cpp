@@ -29,7 +29,7 @@
 namespace palpate::fake_baxter {
 namespace {
 
-constexpr int kPatience = 10'000;  // ms
+constexpr int kStartTimeout = 10'000;  // ms
 
 /// Receives the next stamp. Returns false if the other end has closed.
 bool told(double& stamp) {
@@ -150,7 +150,7 @@ void ExtraNode::wait_until_up() {
   char up = 0;
   int ready = -1;
   do {
-    ready = ::poll(&wait, 1, kPatience);
+    ready = ::poll(&wait, 1, kStartTimeout);
   } while (ready < 0 && errno == EINTR);
   if (ready != 1 || ::recv(socket_, &up, 1, 0) != 1) throw Error("", "a companion does not come up");
 }

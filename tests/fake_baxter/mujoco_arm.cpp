@@ -18,7 +18,7 @@
 namespace palpate::fake_baxter {
 namespace {
 
-using namespace baxter::description;
+using namespace baxter::geometry;
 
 constexpr double kGravity = 9.81;  // m/s^2
 constexpr double kStep = 2e-4;     // s: MuJoCo's contacts are best if they may be harder than the objects

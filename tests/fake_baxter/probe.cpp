@@ -31,7 +31,7 @@ using baxter_core_msgs::EndpointState;
 using baxter_core_msgs::JointCommand;
 using sensor_msgs::JointState;
 
-constexpr double kPatience = 20.0;  // s of real time
+constexpr double kTimeout = 20.0;  // s of real time
 
 class Probe {
  public:
@@ -45,9 +45,9 @@ class Probe {
     hear<CollisionAvoidanceState>("/robot/limb/left/collision_avoidance_state", [](const auto&) {});
   }
 
-  /// Processes messages until `holds` is true. Returns false after kPatience.
+  /// Processes messages until `holds` is true. Returns false after kTimeout.
   bool until(const std::function<bool()>& holds) {
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kPatience);
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kTimeout);
     while (!holds()) {
       if (ros::WallTime::now() > end) return false;
       queue_.callAvailable(ros::WallDuration(0.0002));

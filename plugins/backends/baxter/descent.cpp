@@ -16,22 +16,22 @@ namespace {
 using tapping::newtons;
 using Then = Fault::Then;
 
-/// Upper limit of consecutive readings of a pull until it is a fault. The count is kPulledFor seconds of new readings,
+/// Upper limit of consecutive readings of a pull until it is a fault. The count is kPullTime seconds of new readings,
 /// within these limits.
-constexpr double kPulled = 6.0;
-constexpr double kFewestPulled = 3.0;
-constexpr double kPulledFor = 0.12;
+constexpr double kMostPullReadings = 6.0;
+constexpr double kFewestPullReadings = 3.0;
+constexpr double kPullTime = 0.12;
 constexpr double kEvenFrom = 0.7;  ///< s until an arm that trails its set-point by 0.35 s descends at constant speed
 constexpr double kEvenTo = 1.0;    ///< s: end of the average of the force, later with fewer than kFewestEven readings
 constexpr std::size_t kFewestEven = 10;
 /// Conditions for an arm that falls behind without a contact. A blocked arm presses with at least half of stiffness
-/// times lag, and the measured force must exceed the threshold by kPressed (N). A lag below kLeastBehind (m) may come
+/// times lag, and the measured force must exceed the threshold by kBlockedForce (N). A lag below kLeastLag (m) may come
 /// from a posture that sags more.
-constexpr double kPressed = 2.0;
-constexpr double kLeastBehind = 0.003;
-constexpr int kQuiet = 3;            ///< consecutive readings within half the threshold; a contact has fewer
-constexpr double kSteady = 1.5;      ///< N between the means of both halves; noise of 1.5 N causes 0.55 N
-constexpr double kLeastMoved = 2.5;  ///< N: least limit of the zero's change in a tap; noise causes 0.4 N
+constexpr double kBlockedForce = 2.0;
+constexpr double kLeastLag = 0.003;
+constexpr int kQuietReadings = 3;         ///< consecutive readings within half the threshold; a contact has fewer
+constexpr double kSteadyForce = 1.5;      ///< N between the means of both halves; noise of 1.5 N causes 0.55 N
+constexpr double kLeastZeroChange = 2.5;  ///< N: least limit of the zero's change in a tap; noise causes 0.4 N
 
 /// Mean force along z while the arm, which trails its set-point, descends at constant speed. Without a result if the
 /// force rises meanwhile, because a contact may begin.
@@ -48,7 +48,7 @@ class EvenDescent {
     const auto count = static_cast<Eigen::Index>(forces.size());
     const Eigen::Map<const Eigen::VectorXd> all(forces.data(), count);
     const double rise = all.tail(count - count / 2).mean() - all.head(count / 2).mean();
-    return std::abs(rise) < kSteady ? std::optional<double>(all.mean()) : std::nullopt;
+    return std::abs(rise) < kSteadyForce ? std::optional<double>(all.mean()) : std::nullopt;
   }
 
  private:
@@ -200,7 +200,7 @@ void Tapper::update(DescentState& way) {
   const double sign = way.tap.sign();
   // Called once per rise, because a new expectation resets the count of pulling readings.
   if (way.set_point > before && !way.goes_up && sign != 0.0) {
-    const double along = std::clamp(way.plan.hover + kFromAbove - height(), 0.0, way.column.length() - kTurned);
+    const double along = std::clamp(way.plan.hover + kFromAbove - height(), 0.0, way.column.length() - kRotationWindow);
     guard_.expect_rise(MotionGuard::Rise{way.tap.zero(), sign, largest_pull(way.column, along)});
   }
   if (way.set_point < before) guard_.expect_rise(std::nullopt);
@@ -220,9 +220,9 @@ void Tapper::update(DescentState& way) {
 /// Throws Fault if the arm falls behind its set-point without a contact force. It would jump down to its set-point when
 /// it comes free.
 void Tapper::expect_following(const DescentState& way) const {
-  if (way.quiet < kQuiet || way.tap.tap().done()) return;
+  if (way.quiet < kQuietReadings || way.tap.tap().done()) return;
   const double behind = way.periods.behind(reaction_.noticing() + reaction_.lateness());
-  if (behind < std::max(kLeastBehind, 2.0 * (way.motion.threshold + kPressed) / way.stiffness)) return;
+  if (behind < std::max(kLeastLag, 2.0 * (way.motion.threshold + kBlockedForce) / way.stiffness)) return;
   throw Fault{fmt::format("the arm does not follow: it stays {:.1f} mm behind its set-point without a contact force. "
                           "Check what blocks it, and whether other programs command it",
                           1e3 * behind),
@@ -274,7 +274,7 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
   }
   // Friction of a rising arm has the opposite sign, so only a descent counts.
   way.pulled = coming_down && sign_ * (felt - zero) < -way.motion.threshold ? way.pulled + 1 : 0;
-  if (way.pulled < std::clamp(kPulledFor / guard_.renewals().seconds(), kFewestPulled, kPulled)) return;
+  if (way.pulled < std::clamp(kPullTime / guard_.renewals().seconds(), kFewestPullReadings, kMostPullReadings)) return;
   throw Fault{
       "the force fell by more than the threshold although nothing can pull: its zero moved, or force_sign is wrong",
       Then::retreat};
@@ -285,7 +285,7 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
 Contact Tapper::accept(const DescentState& way, const Contact& contact) {
   rest_from_above(way.column);
   const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;
-  const double most = std::max(kLeastMoved, 0.5 * way.motion.threshold);
+  const double most = std::max(kLeastZeroChange, 0.5 * way.motion.threshold);
   if (!(std::abs(moved.z()) < most && moved.head<2>().norm() < options_.force_stop)) {
     return failed(Outcome::aborted,
                   "the force did not return to its zero after the tool was clear: its zero moved during the tap, and "

@@ -24,20 +24,20 @@ constexpr double kMostMoving = 0.8;  ///< fraction of the threshold; a larger di
 
 /// Clearance in m at which a slow rise ends: the tool is free, and the friction of the joints has changed its
 /// direction.
-constexpr double kClear = 0.005;
-constexpr double kFarther =
+constexpr double kClearance = 0.005;
+constexpr double kExtraRise =
     0.01;  ///< m of additional slow rise while the arm still presses, because an onset is inexact
 constexpr double kReversalFriction = 1.4;  ///< ratio of friction during a reversal to friction at rest
-constexpr double kGentle = 0.01;           ///< m/s: a caught arm of 6.4 kN/m gains 2 N in three readings
-constexpr double kSpeedUp = 0.15;          ///< m/s^2, after the slow rise
+constexpr double kGentleSpeed = 0.01;      ///< m/s: a caught arm of 6.4 kN/m gains 2 N in three readings
+constexpr double kAcceleration = 0.15;     ///< m/s^2, after the slow rise
 /// Additional pull in N of a faster rise, from its speed and from a zero that changes by 50 N/m.
-constexpr double kFaster = 2.0;
-constexpr double kMovingNoise = 0.5;      ///< N: two standard deviations of the mean of 30 readings
-constexpr double kLatest = 0.2;           ///< weight of the last reading in a moving average of the force
-constexpr double kToRest = 0.015;         ///< m/s of the last centimetre before a rest, where no object is expected
-constexpr double kFirstThreshold = 5.0;   ///< N, until the first measured contact
-constexpr double kLargestFriction = 0.5;  ///< Nm per joint; more means that something touches the arm
-constexpr double kStiffest = 8000.0;      ///< N/m, assumed for an unknown posture
+constexpr double kSpeedPull = 2.0;
+constexpr double kMovingNoise = 0.5;          ///< N: two standard deviations of the mean of 30 readings
+constexpr double kSmoothing = 0.2;            ///< weight of the last reading in a moving average of the force
+constexpr double kSpeedToRest = 0.015;        ///< m/s of the last centimetre before a rest, where no object is expected
+constexpr double kFirstThreshold = 5.0;       ///< N, until the first measured contact
+constexpr double kLargestFriction = 0.5;      ///< Nm per joint; more means that something touches the arm
+constexpr double kLargestStiffness = 8000.0;  ///< N/m, assumed for an unknown posture
 
 /// Returns the median of each component; needs at least one reading.
 Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
@@ -55,7 +55,7 @@ Eigen::Vector3d median(std::vector<Eigen::Vector3d> readings) {
 
 /// Returns the sum of all joint rotations per metre of path at `along`, rad/m.
 double Tapper::rotation_per_metre(const Path& way, double along) {
-  const double end = std::min(way.length(), along + kTurned);
+  const double end = std::min(way.length(), along + kRotationWindow);
   return (way.at(end) - way.at(along)).lpNorm<1>() / std::max(end - along, 1e-3);
 }
 
@@ -64,7 +64,7 @@ double Tapper::rotation_per_metre(const Path& way, double along) {
 /// measured after a descent.
 void Tapper::rest_from_above(const Path& column) {
   settle(column.front());
-  follow(column, std::min(motion_.speed, kToRest), kFromAbove);
+  follow(column, std::min(motion_.speed, kSpeedToRest), kFromAbove);
   settle(column.at(kFromAbove));
 }
 
@@ -76,7 +76,7 @@ double Tapper::stiffness_at(const Target& place) const {
     joints = arm_.solve(planner_.pose(place, height), joints.value_or(untucked()));
     if (joints) out = std::max(out, arm_.vertical_stiffness(*joints));
   }
-  return out > 0.0 ? out : kStiffest;
+  return out > 0.0 ? out : kLargestStiffness;
 }
 
 /// Returns the speed (m/s) at which no contact is expected to exceed ReactionTime::kGreatestForce. Throws Fault with
@@ -124,7 +124,7 @@ void Tapper::measure_friction(const Path& column) {
   rest_from_above(column);
   const double down = force_at_rest(column.at(kFromAbove)).z();
   const Path up = column.back(kFromAbove);
-  follow(up, std::min(motion_.speed, kToRest), up.length());
+  follow(up, std::min(motion_.speed, kSpeedToRest), up.length());
   settle(up.end());
   friction_ =
       std::min(kLargestFriction, std::abs(down - force_at_rest(up.end()).z()) / 2 / rotation_per_metre(up, 0.0));
@@ -139,49 +139,49 @@ double Tapper::largest_pull(const Path& way, double along) const {
   return motion_.threshold + beside + kReversalFriction * 2 * *friction_ * rotation_per_metre(way, along);
 }
 
-/// Returns the speed in m/s at which a free rise reads at most kFaster N less than at the known speed. The difference
-/// grows with the speed.
+/// Returns the speed in m/s at which a free rise reads at most kSpeedPull N less than at the known speed. The
+/// difference grows with the speed.
 double Tapper::greatest_rise() const {
   const double surely = last_moving_.beside - kMovingNoise;
   if (surely <= 0.0) return motion_.retreat_speed;
-  return std::min(motion_.retreat_speed, last_moving_.speed * (1.0 + kFaster / surely));
+  return std::min(motion_.retreat_speed, last_moving_.speed * (1.0 + kSpeedPull / surely));
 }
 
 /// Rises from a contact or its end, where only a pull is a fault. `zero`: force along z at the contact, N.
 void Tapper::retreat(const Path& up, double sign, double zero, const Contact& contact) {
   guard_.forget_tare();
-  const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kGently - kClear;
-  rise(up, std::clamp(touched - height(), 0.0, kMostGentle) + kClear, sign, zero);
+  const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kGentleRise - kClearance;
+  rise(up, std::clamp(touched - height(), 0.0, kMostGentleRise) + kClearance, sign, zero);
 }
 
-/// Rises slowly until the tip is `gently` metres higher, or up to kFarther metres more while the tool presses; then
+/// Rises slowly until the tip is `gently` metres higher, or up to kExtraRise metres more while the tool presses; then
 /// faster. During the slow part pressure disappears and friction changes its direction. Afterwards the zero follows the
 /// pose. `zero`: force along z of a free arm, N; if absent, the force after the slow part.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = largest_pull(up, 0.0);
   if (sign != 0.0 && zero) guard_.expect_rise(MotionGuard::Rise{*zero, sign, limit});
   const double clear = height() + gently;
-  const double surely = clear + kFarther;
+  const double surely = clear + kExtraRise;
   // A pull is detected as late as a contact.
   const double stiffness = arm_.vertical_stiffness(seen_.joints->position);
-  double speed = std::min(
-      {motion_.speed, kGentle, std::max(reaction_.slowest(), reaction_.greatest_speed(motion_.threshold, stiffness))});
+  double speed = std::min({motion_.speed, kGentleSpeed,
+                           std::max(reaction_.slowest(), reaction_.greatest_speed(motion_.threshold, stiffness))});
   Eigen::Vector3d force = seen_.endpoint->force;
   const auto set_free = [&] {
     guard_.set_tare(force, MotionGuard::Zero::follows);
     if (sign == 0.0) return;
-    const double most = zero ? limit + kFaster : motion_.threshold + kFaster;
+    const double most = zero ? limit + kSpeedPull : motion_.threshold + kSpeedPull;
     guard_.expect_rise(MotionGuard::Rise{zero.value_or(force.z()), sign, most, MotionGuard::Zero::follows});
   };
   bool free = false;
   for (double along = 0.0; along < up.length();) {
     along = up.advance(along, speed, kPeriod);
     step(up.at(along));
-    if (guard_.fresh()) force += kLatest * (seen_.endpoint->force - force);
+    if (guard_.fresh()) force += kSmoothing * (seen_.endpoint->force - force);
     const bool presses = zero && sign * (force.z() - *zero) > motion_.threshold;
     if (height() < (presses ? surely : clear)) continue;
     if (!std::exchange(free, true)) set_free();
-    speed = std::min(greatest_rise(), speed + kSpeedUp * kPeriod);
+    speed = std::min(greatest_rise(), speed + kAcceleration * kPeriod);
   }
   await_height(up.end());
   if (!free) set_free();

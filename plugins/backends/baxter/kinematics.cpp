@@ -11,7 +11,7 @@
 namespace palpate::baxter {
 namespace {
 
-using namespace description;
+using namespace geometry;
 
 constexpr double kAccuracy = 1e-6;
 constexpr int kIterations = 100;

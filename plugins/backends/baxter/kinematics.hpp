@@ -11,7 +11,7 @@
 namespace palpate::baxter {
 
 /// Geometry and stiffness of the joints. Source of the geometry: Rethink's baxter.urdf 1.2.0.
-namespace description {
+namespace geometry {
 
 constexpr double kHalfPi = 1.57079632679;  // rounded as in baxter.urdf
 
@@ -38,7 +38,7 @@ constexpr double kHand = 0.11355;  // m from left_wrist to left_hand, along z
 /// Stiffness of the springs between motors and joints, Nm/rad. Source: Rethink's hardware specification.
 constexpr double kSprings[] = {843, 843, 843, 843, 250, 250, 250};
 
-}  // namespace description
+}  // namespace geometry
 
 /// The arm with a tool fixed to its flange (frame `left_hand`). Const methods may be called from several threads,
 /// except solve().

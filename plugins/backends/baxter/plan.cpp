@@ -13,13 +13,13 @@ namespace {
 
 using Then = Fault::Then;
 
-constexpr double kLimitMargin = 0.03;   ///< rad: margin of planned joints to their limits
-constexpr double kReachSpacing = 0.02;  ///< m between the positions of a dry run
-constexpr double kPoseError = 0.001;    ///< m: largest position error of the robot's inverse kinematics
-constexpr double kTurnError = 0.02;     ///< rad: largest rotation error of the robot's inverse kinematics
-constexpr double kPatience = 1.0;       ///< s in which the data must become fresh when a tap begins
+constexpr double kLimitMargin = 0.03;      ///< rad: margin of planned joints to their limits
+constexpr double kReachSpacing = 0.02;     ///< m between the positions of a dry run
+constexpr double kPoseError = 0.001;       ///< m: largest position error of the robot's inverse kinematics
+constexpr double kTurnError = 0.02;        ///< rad: largest rotation error of the robot's inverse kinematics
+constexpr double kReadinessTimeout = 1.0;  ///< s in which the data must become fresh when a tap begins
 /// Time in s to detect other programs that command the arm, and message rates that are too low.
-constexpr double kListen = ReadingCounter::kWindow + 0.05;
+constexpr double kRateWindow = ReadingCounter::kWindow + 0.05;
 
 constexpr double kAgreement = 0.005;   ///< m between own kinematics and endpoint_state, which both use the same joints
 constexpr double kAgreedTurn = 0.035;  ///< rad between own kinematics and endpoint_state
@@ -143,7 +143,7 @@ void Tapper::check_robot() const {
 std::optional<Fault> Tapper::check_rates() {
   store(robot_.read());
   guard_.begin();
-  const double end = seen_.now + kListen;
+  const double end = seen_.now + kRateWindow;
   std::optional<Fault> slow;
   for (next_ = seen_.now; next_ < end && next_period();) slow = guard_.check_rates(seen_);
   return slow;
@@ -185,12 +185,12 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
   return out;
 }
 
-/// Reads until the robot passes the rules of MotionGuard::check_readiness(), for at most kPatience seconds. The last
-/// snapshot is kept.
+/// Reads until the robot passes the rules of MotionGuard::check_readiness(), for at most kReadinessTimeout seconds. The
+/// last snapshot is kept.
 void Tapper::await_readiness(bool moving) {
   store(robot_.read());
   next_ = seen_.now;
-  const double end = next_ + kPatience;
+  const double end = next_ + kReadinessTimeout;
   while (next_ < end && MotionGuard::check_readiness(seen_, moving) && next_period()) continue;
 }
 

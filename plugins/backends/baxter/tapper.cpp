@@ -18,17 +18,17 @@ using ForceSign = BaxterOptions::ForceSign;
 using Then = Fault::Then;
 
 constexpr double kStepClamp = 0.05;  ///< rad: largest distance of a set-point from the last one and from the arm
-constexpr double kAtGoal = 0.015;    ///< rad: settled errors are up to 0.008
-constexpr double kStill = 0.002;     ///< rad within kStillFor
-constexpr double kStillFor = 0.1;    ///< s
-constexpr double kSettling = 5.0;    ///< s: after a stop the arm needs two
+constexpr double kArrivalTolerance = 0.015;  ///< rad: settled errors are up to 0.008
+constexpr double kRestTolerance = 0.002;     ///< rad within kRestTime
+constexpr double kRestTime = 0.1;            ///< s
+constexpr double kSettlingTimeout = 5.0;     ///< s: after a stop the arm needs two
 
-constexpr double kHeld = 0.5;         ///< s for which the measured joints are sent at a stop
-constexpr double kReflexEnds = 4.0;   ///< s: the firmware's own stop lasts two
-constexpr int kReflexes = 20;         ///< reflexes of the firmware that are tolerated while a pressing arm rises
-constexpr double kPulls = 3.5;        ///< N below zero that friction can cause in an arm that presses
-constexpr double kAboveTravel = 0.3;  ///< m: largest height above the height of travel
-constexpr double kBelowFloor = 0.01;  ///< m: largest depth below the end of a descent
+constexpr double kHoldTime = 0.5;       ///< s for which the measured joints are sent at a stop
+constexpr double kReflexTimeout = 4.0;  ///< s: the firmware's own stop lasts two
+constexpr int kMaxReflexes = 20;        ///< reflexes of the firmware that are tolerated while a pressing arm rises
+constexpr double kFrictionPull = 3.5;   ///< N below zero that friction can cause in an arm that presses
+constexpr double kAboveTravel = 0.3;    ///< m: largest height above the height of travel
+constexpr double kBelowFloor = 0.01;    ///< m: largest depth below the end of a descent
 
 /// Limits speed and threshold for the first contact with a desk of unknown hardness.
 tapping::MotionOptions gentle(tapping::MotionOptions motion) {
@@ -152,7 +152,7 @@ void Tapper::go_to(const Joints& hover) {
 /// Rises along `up` from the end of an earlier run or fault. `sign`: sign of the force when an object presses the tool
 /// upwards, 0 if unknown. `zero`: see rise().
 void Tapper::climb(const Path& up, double sign, const std::optional<double>& zero) {
-  if (up.length() > 0.0) rise(up, kGently, sign, zero);
+  if (up.length() > 0.0) rise(up, kGentleRise, sign, zero);
 }
 
 /// Waits until the arm has reached the height of its set-point. A sideways motion before that would cut the corner and
@@ -160,7 +160,7 @@ void Tapper::climb(const Path& up, double sign, const std::optional<double>& zer
 void Tapper::await_height(const Joints& top) {
   const double begin = seen_.now;
   while (height() < travel_height() - kNearTravel) {
-    if (seen_.now > begin + kSettling) {
+    if (seen_.now > begin + kSettlingTimeout) {
       throw Fault{"the arm did not reach the height of travel: check what holds it", Then::hold};
     }
     step(top);
@@ -179,14 +179,14 @@ void Tapper::settle(const Joints& goal) {
   const double begin = seen_.now;
   Joints then = seen_.joints->position;
   double since = begin;
-  while (seen_.now < begin + kSettling) {
+  while (seen_.now < begin + kSettlingTimeout) {
     step(goal);
     const Joints& now = seen_.joints->position;
-    if ((now - then).cwiseAbs().maxCoeff() > kStill) {
+    if ((now - then).cwiseAbs().maxCoeff() > kRestTolerance) {
       then = now;
       since = seen_.now;
     }
-    if (seen_.now - since >= kStillFor && (now - goal).cwiseAbs().maxCoeff() < kAtGoal) return;
+    if (seen_.now - since >= kRestTime && (now - goal).cwiseAbs().maxCoeff() < kArrivalTolerance) return;
   }
   throw Fault{"the arm did not come to rest at its target: check what holds it", Then::hold};
 }
@@ -250,8 +250,8 @@ std::string Tapper::recover(const Fault& fault) {
         settle(*guard_.last_sent());
         return "the arm was raised to the height of travel";
       } catch (const Fault& again) {
-        const bool pulled = again.then == Then::hold || presses() < -kPulls;
-        if (!again.reflex || pulled || attempt == kReflexes) throw;
+        const bool pulled = again.then == Then::hold || presses() < -kFrictionPull;
+        if (!again.reflex || pulled || attempt == kMaxReflexes) throw;
       }
     }
   } catch (const NoPath& none) {
@@ -282,18 +282,18 @@ void Tapper::await_reflex_end() {
   guard_.begin();
   guard_.expect_collision(true);
   next_ = seen_.now;
-  const double patience = seen_.now + kReflexEnds;
+  const double patience = seen_.now + kReflexTimeout;
   const Joints here = seen_.joints->position;
   while (seen_.now < patience && seen_.collision && seen_.collision->collision) step(here);
   guard_.expect_collision(false);
   step(seen_.joints->position);
 }
 
-/// Sends `joints` for kHeld seconds, or until a rule demands silence. Returns the fault of this rule, if any.
+/// Sends `joints` for kHoldTime seconds, or until a rule demands silence. Returns the fault of this rule, if any.
 std::optional<Fault> Tapper::hold(Joints joints) {
   guard_.begin();
   next_ = seen_.now;
-  for (double left = kHeld; left > 0.0; left -= kPeriod) {
+  for (double left = kHoldTime; left > 0.0; left -= kPeriod) {
     robot_.command(joints);
     if (!next_period()) return standstill();
     std::optional<Fault> fault = guard_.check(seen_, tip_);

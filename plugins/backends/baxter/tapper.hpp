@@ -48,13 +48,14 @@ class Tapper {
  private:
   static constexpr double kPeriod = tapping::GuardedTap::kPeriod;
   static constexpr double kNearTravel = 0.01;  ///< m by which the tip may be below the height of travel
-  static constexpr double kGently = 0.01;      ///< m of a slow rise for an arm that may press
-  static constexpr double kMostGentle = 0.02;  ///< m: upper limit of that rise, because supported objects yield less
+  static constexpr double kGentleRise = 0.01;  ///< m of a slow rise for an arm that may press
+  static constexpr double kMostGentleRise =
+      0.02;  ///< m: upper limit of that rise, because supported objects yield less
   static constexpr const char* kSilent = "no more commands are sent, the arm stays where it is";
   /// Height of travel above `hover`, m. The arm descends from there to its rest before the tare, so that friction
   /// always has the same direction.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
-  static constexpr double kTurned =
+  static constexpr double kRotationWindow =
       0.01;  ///< m of a path over which largest_pull() measures the rotation of the joints
 
   Contact attempt(const TapRequest& request);

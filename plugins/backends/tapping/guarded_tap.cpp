@@ -13,13 +13,13 @@ namespace {
 /// Consecutive readings above the threshold that make a contact; fewer may be noise.
 constexpr int kConsecutive = 3;
 /// Distance in m at which the arm counts as arrived at its goal. An arm also counts as arrived if it has not approached
-/// by kNear for kHeldUp seconds, because something blocks it.
-constexpr double kNear = 0.001;
-constexpr double kHeldUp = 2.0;
+/// by kArrivalTolerance for kBlockedTime seconds, because something blocks it.
+constexpr double kArrivalTolerance = 0.001;
+constexpr double kBlockedTime = 2.0;
 /// Lag in s of the arm behind its set-point; the arm does not move before.
-constexpr double kTrail = 0.35;
+constexpr double kArmLag = 0.35;
 /// Time in s after which the arm descends at constant speed.
-constexpr double kEven = 0.7;
+constexpr double kConstantSpeedTime = 0.7;
 
 /// Averages groups of consecutive samples, so that at most kMostSamples remain. The search for an onset takes quadratic
 /// time while the arm waits.
@@ -177,7 +177,7 @@ void GuardedTap::evaluate(double height, double force) {
   const bool descending = stage_ == Stage::descend || stage_ == Stage::bottom;
   if (arm_ == Arm::real && descending) {
     zero_ = free_.line(height).at(height);
-    if (even_for() >= kEven) free_.add({height, force});
+    if (even_for() >= kConstantSpeedTime) free_.add({height, force});
   }
   const double felt = force - zero_;
   peak_ = std::max(peak_, felt);
@@ -245,7 +245,7 @@ GuardedTap::Rise GuardedTap::rise() const {
   return {is_contact ? *found : first_, is_contact, slope};
 }
 
-bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for() >= kTrail; }
+bool GuardedTap::coming_down() const { return stage_ == Stage::stop || even_for() >= kArmLag; }
 
 double GuardedTap::even_for() const {
   const bool even = stage_ == Stage::descend || stage_ == Stage::fine;
@@ -323,11 +323,11 @@ bool GuardedTap::ramp(double goal, double speed) {
 /// that it should leave.
 bool GuardedTap::arrived(double height) {
   const double gap = std::abs(height - set_point_);
-  if (gap < gap_ - kNear) {
+  if (gap < gap_ - kArrivalTolerance) {
     gap_ = gap;
     nearer_ = periods_;
   }
-  return gap < kNear || static_cast<double>(periods_ - nearer_) * kPeriod >= kHeldUp;
+  return gap < kArrivalTolerance || static_cast<double>(periods_ - nearer_) * kPeriod >= kBlockedTime;
 }
 
 /// Returns whether `seconds` have passed in this stage. Half a period is added, so that rounding does not matter: 0.5 s
