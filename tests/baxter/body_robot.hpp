@@ -76,8 +76,8 @@ class BodyRobot final : public Robot {
   std::vector<double> commanded;       ///< s, times of the commands
   std::vector<double> heights;         ///< m, height of the tip after each period
   std::function<void()> every_period;  ///< called after each period
-  std::function<std::optional<Joints>(const Pose&, const Joints&)>
-      answer;                            ///< replaces the correct answer of inverse kinematics
+  /// Replaces the correct answer of inverse kinematics
+  std::function<std::optional<Joints>(const Pose&, const Joints&)> answer;
   std::function<void(Snapshot&)> spoil;  ///< changes a snapshot before it is returned
   std::function<double()> late;          ///< s by which a wait ends late
   int asked = 0;

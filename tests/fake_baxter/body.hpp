@@ -108,9 +108,8 @@ class Body {
   const ArmState& arm() const { return arm_; }
   double pressing() const { return arm().pressing; }  ///< N, upwards on the tool; negative if the tool is caught
   long commands() const { return commands_; }         ///< number of received commands
-  double latest_command() const {
-    return commanded_;
-  }  ///< s, time of the last command; before the first, a time far in the past
+  /// s, time of the last command; before the first, a time far in the past
+  double latest_command() const { return commanded_; }
   double command_timeout() const { return timeout_; }
   double speed_ratio() const { return speed_ratio_; }
 

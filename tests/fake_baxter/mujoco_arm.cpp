@@ -25,8 +25,8 @@ constexpr double kStep = 2e-4;     // s: MuJoCo's contacts are best if they may 
 constexpr int kInPeriod = 50;      // steps
 constexpr int kTogether = 5;       // steps that are combined if nothing is near the tip
 constexpr double kNear = 0.005;    // m of the tip above the scene, more than it moves in a period
-constexpr double kPlate =
-    0.02;  // kg, mass of the plate under the tip, small enough for its spring to determine the force
+// kg, mass of the plate under the tip, small enough for its spring to determine the force
+constexpr double kPlate = 0.02;
 constexpr double kClear = 0.002;   // m of the tip above the scene, more than it bounces
 constexpr double kRadius = 0.004;  // m, of the tip
 

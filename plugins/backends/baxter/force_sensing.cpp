@@ -25,8 +25,8 @@ constexpr double kMostMoving = 0.8;  ///< fraction of the threshold; a larger di
 /// Clearance in m at which a slow rise ends: the tool is free, and the friction of the joints has changed its
 /// direction.
 constexpr double kClearance = 0.005;
-constexpr double kExtraRise =
-    0.01;  ///< m of additional slow rise while the arm still presses, because an onset is inexact
+/// m of additional slow rise while the arm still presses, because an onset is inexact
+constexpr double kExtraRise = 0.01;
 constexpr double kReversalFriction = 1.4;  ///< ratio of friction during a reversal to friction at rest
 constexpr double kGentleSpeed = 0.01;      ///< m/s: a caught arm of 6.4 kN/m gains 2 N in three readings
 constexpr double kAcceleration = 0.15;     ///< m/s^2, after the slow rise

@@ -16,8 +16,8 @@ namespace palpate::baxter {
 /// arm keeps pressing while a contact is detected and the motion stops, so a threshold must be lower.
 constexpr double kGreatestThreshold = 10.0;
 constexpr double kGreatestStop = 15.0;
-constexpr double kLeastThreshold =
-    3.0;  ///< N: twice the noise of the simulated robot; no noise of a real one is published
+/// N: twice the noise of the simulated robot; no noise of a real one is published
+constexpr double kLeastThreshold = 3.0;
 constexpr double kShortestTare = 0.1;  ///< s
 constexpr double kSlowest = 0.01;      ///< m/s, for motions without a timeout
 constexpr double kFastest = 0.1;  ///< m/s downwards: after a contact the arm moves on for about a third of a second

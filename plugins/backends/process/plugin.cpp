@@ -37,14 +37,13 @@ struct ProcessOptions : Options {
     const auto words = programs::list_command(command, fields);
     if (words && checksum.empty()) checksum = programs::content_of(*words).checksum;
     programs::list_checksum(checksum, fields);
-    fields.real(
-        deadline,
-        Field("deadline",
-              "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")
-            .in(Unit::second)
-            .above(0)
-            .at_most(86400)
-            .from("longer than motion.timeout, which the program itself should report"));
+    fields.real(deadline,
+                Field("deadline",
+                      "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")
+                    .in(Unit::second)
+                    .above(0)
+                    .at_most(86400)
+                    .from("longer than motion.timeout, which the program itself should report"));
     fields.real(start, Field("start", "time added to the deadline of a tap that has to start the program")
                            .in(Unit::second)
                            .at_least(0)

@@ -39,8 +39,8 @@ double maximum_over_disc(Height height, double radius, double least, Rise rise) 
     return true;
   };
   for (int ring = 1; ring <= kRings; ++ring) {
-    const double distance =
-        radius * ring / kRings * (1.0 - 1e-12);  // slightly inside, so that rounding does not exclude the rim
+    // Slightly inside, so that rounding does not exclude the rim
+    const double distance = radius * ring / kRings * (1.0 - 1e-12);
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
       const double angle = 2.0 * kPi * spoke / kSpokes;
       attempt(distance * math::cos(angle), distance * math::sin(angle));

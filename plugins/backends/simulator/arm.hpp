@@ -102,10 +102,10 @@ class ContactModel {
   double noise_ = 0.0;  ///< N, standard deviation
   double drift_ = 0.0;  ///< N/m, drawn per tap
   bool blind_ = false;
-  double jerk_at_ =
-      -std::numeric_limits<double>::infinity();  ///< height of a false contact; without one below any floor
-  double jerk_;                                  ///< N, force of a false contact
-  int jerk_left_ = 5;                            ///< remaining periods of a false contact: 50 ms in total
+  /// Height of a false contact; without one below any floor
+  double jerk_at_ = -std::numeric_limits<double>::infinity();
+  double jerk_;        ///< N, force of a false contact
+  int jerk_left_ = 5;  ///< remaining periods of a false contact: 50 ms in total
   double force_ = 0.0;
   double peak_ = 0.0;
   double late_ = 0.0;           ///< latency of the force in periods

@@ -121,8 +121,8 @@ class Stationary final : public Kernel {
   }
 
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
-    const Eigen::Index next =
-        b.rows() * slopes.outerStride();  // from the derivatives by one parameter to those by the next
+    // From the derivatives by one parameter to those by the next
+    const Eigen::Index next = b.rows() * slopes.outerStride();
     const Pairs both = of_both_axes(a, b);
     for_blocks(a.rows(), b.rows(), {&value, &slopes}, [&](Eigen::Index first, Eigen::Index count) {
       Numbers k(place(value, first), count);
