@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Taps after which a spring holds the tool at the contact, like a handle, tape or a magnet.
-#include "baxter/body_bench.hpp"
-#include "baxter/tapper_bench.hpp"
+#include "baxter/spring_desk.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -16,57 +15,17 @@ using fake_baxter::MechanicsOptions;
 using test::fake_options;
 using test::kHover;
 using test::kOnDesk;
+using test::SpringDesk;
 using testing::HasSubstr;
 using testing::StartsWith;
 using MotionType = tapping::MotionOptions::Type;
 
-/// An arm with springs over a hard desk, and the results of its taps.
-class HardDesk {
- public:
-  explicit HardDesk(double friction, const BaxterOptions& options = fake_options())
-      : scene_(palpate::test::scene_of("[]", "{stiffness: {object: 20000 N/m}}")),
-        robot(*scene_, body(friction)),
-        tapper_(options, *scene_, robot, nullptr, [](const std::string&) {}) {
-    robot.every_period = [this] {
-      const bool reflex = robot.body.mode() == Body::Mode::reflex;
-      reflexes += reflex && !before_ ? 1 : 0;
-      before_ = reflex;
-      pull = std::max(pull, -robot.body.pressing());
-    };
-  }
-
-  Contact tap(const Target& place) {
-    TapRequest request;
-    request.number = ++taps_;
-    request.target = place;
-    return tapper_.tap(request);
-  }
-  void wait(double seconds) { robot.wait_until(robot.body.now() + seconds); }
-
- private:
-  static test::BodyOptions body(double friction) {
-    test::BodyOptions out = test::body_options(fake_options());
-    out.mechanics = {MechanicsOptions::Type::springs, friction, 1e-3};
-    return out;
-  }
-
-  std::unique_ptr<const Scene> scene_;
-
- public:
-  test::BodyRobot robot;
-  int reflexes = 0;   ///< number of the firmware's reflexes
-  double pull = 0.0;  ///< N, largest force that held the tool
-
- private:
-  Tapper tapper_;
-  int taps_ = 0;
-  bool before_ = false;
-};
+constexpr double kHard = 20000.0;  // N/m, desk
 
 TEST(ACaughtTool, IsHeldWhereItIsAndToldAndNotPulledAgainstTheReflex) {
   for (const double friction : {0.0, 0.2, 0.4}) {       // Nm
     for (const double stiffness : {3000.0, 20000.0}) {  // N/m
-      HardDesk bench(friction);
+      SpringDesk bench(kHard, fake_options(), friction);
       ASSERT_EQ(bench.tap({0.06, 0.03}).outcome,
                 Outcome::contact);  // from which the driver learns the robot's properties
       bench.robot.body.inject({FaultKind::caught, stiffness, {}});
@@ -95,7 +54,7 @@ TEST(ACaughtTool, IsNoticedInAFirstTapBeforeTheReflexWithAnyMotionAndSign) {
       for (const double friction : {0.0, 0.2}) {  // Nm
         options.motion.type = type;
         options.force_sign = sign;
-        HardDesk bench(friction, options);
+        SpringDesk bench(kHard, options, friction);
         bench.robot.body.inject({FaultKind::caught, 3000.0, {}});
         EXPECT_THAT(bench.tap(kOnDesk).reason, StartsWith("the tool is caught: it is pulled with "));
         EXPECT_EQ(bench.reflexes, 0) << static_cast<int>(type) << ", " << friction << " Nm";
@@ -106,7 +65,7 @@ TEST(ACaughtTool, IsNoticedInAFirstTapBeforeTheReflexWithAnyMotionAndSign) {
 }
 
 TEST(ACaughtTool, IsFreedByAPersonAndTheNextTapGoesOn) {
-  HardDesk bench(0.0);
+  SpringDesk bench(kHard, fake_options(), 0.0);
   bench.robot.body.inject({FaultKind::caught, 3000.0, {}});
   ASSERT_THAT(bench.tap(kOnDesk).reason, StartsWith("the tool is caught"));
   const Contact again = bench.tap(kOnDesk);
@@ -121,7 +80,7 @@ TEST(ACaughtTool, IsFreedByAPersonAndTheNextTapGoesOn) {
 TEST(ACaughtTool, IsNoticedBeforeTheReflexHoweverSoftlyItIsHeld) {
   for (const double friction : {0.0, 0.4}) {                                      // Nm
     for (const double stiffness : {150.0, 200.0, 300.0, 450.0, 600.0, 1000.0}) {  // N/m
-      HardDesk bench(friction);
+      SpringDesk bench(kHard, fake_options(), friction);
       const std::string where = fmt::format("{} Nm, {} N/m", friction, stiffness);
       ASSERT_EQ(bench.tap({0.06, 0.03}).outcome, Outcome::contact) << where;
       bench.robot.body.inject({FaultKind::caught, stiffness, {}});
@@ -138,7 +97,7 @@ TEST(ACaughtTool, IsNoticedBeforeTheReflexHoweverSoftlyItIsHeld) {
 TEST(AnArmThatIsFree, IsNotHeldByTheFrictionOfItsJoints) {
   for (const Target& place :
        {Target{0.02, 0.21}, Target{0.21, 0.02}}) {  // positions with the most and the least friction
-    HardDesk bench(0.4);
+    SpringDesk bench(kHard, fake_options(), 0.4);
     for (int tap = 0; tap < 2; ++tap) {
       const Contact contact = bench.tap(place);
       EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;

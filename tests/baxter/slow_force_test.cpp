@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Taps of robots that rarely renew their force or become too slow during a tap, and taps of very soft objects.
-#include "baxter/body_bench.hpp"
-#include "baxter/tapper_bench.hpp"
+#include "baxter/spring_desk.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -16,61 +15,17 @@ using fake_baxter::Body;
 using fake_baxter::FaultKind;
 using fake_baxter::parse_fault;
 using test::fake_options;
+using test::SpringDesk;
 using testing::AnyOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 
 constexpr double kHard = 20000.0;  // N/m
 
-/// An arm with springs over a bare desk of this stiffness, with its forces and times.
-class Desk {
- public:
-  explicit Desk(double stiffness, const BaxterOptions& options = fake_options())
-      : scene_(palpate::test::scene_of("[]", fmt::format("{{stiffness: {{object: {} N/m}}}}", stiffness))),
-        robot(*scene_, springs(options)),
-        tapper(options, *scene_, robot, nullptr, [this](const std::string& note) { notes += note + "\n"; }) {
-    robot.every_period = [this] {
-      const double presses = robot.body.pressing();
-      peak = std::max(peak, presses);
-      lowest = std::min(lowest, robot.body.tip().z());
-      if (presses > 0.0 && !touched) touched = robot.body.now();
-    };
-  }
-
-  Contact tap() {
-    TapRequest request;
-    request.number = ++taps_;
-    request.target = {0.03 + 0.03 * taps_, 0.05};
-    touched.reset();
-    peak = 0.0;
-    lowest = 1.0;
-    return tapper.tap(request);
-  }
-  void inject(const std::string& fault) { robot.body.inject(parse_fault(fault)); }
-
- private:
-  static test::BodyOptions springs(const BaxterOptions& options) {
-    test::BodyOptions out = test::body_options(options);
-    out.mechanics.type = fake_baxter::MechanicsOptions::Type::springs;
-    return out;
-  }
-
-  std::unique_ptr<const Scene> scene_;
-  int taps_ = 0;
-
- public:
-  std::string notes;
-  test::BodyRobot robot;
-  Tapper tapper;
-  double peak = 0.0;    ///< N, in this tap
-  double lowest = 1.0;  ///< m, lowest tip in this tap
-  std::optional<double> touched;
-};
-
 TEST(AForce, ThatIsRenewedTwentyOrTenTimesASecondIsTappedWith) {
   for (const int every : {5, 10}) {
     for (const double stiffness : {1000.0, kHard}) {
-      Desk desk(stiffness);
+      SpringDesk desk(stiffness);
       desk.inject(fmt::format("slow_force={}", every));
       desk.tapper.check();
       for (int i = 0; i < 3; ++i) {
@@ -88,7 +43,7 @@ TEST(AForce, ThatIsRenewedEightOrTenTimesASecondIsExpectedWithinTheBoundAtTheFir
   BaxterOptions options = fake_options();
   options.scene_pose.corner[0] = 0.4;  // 8.4 kN/m, stiffer than any position of a usual area
   for (const int every : {10, 12}) {
-    Desk desk(kHard, options);
+    SpringDesk desk(kHard, options);
     desk.inject(fmt::format("slow_force={}", every));
     desk.tapper.check();
     EXPECT_EQ(desk.tap().outcome, Outcome::contact) << every;
@@ -105,7 +60,7 @@ TEST(ARobot, ThatMayBeTooSlowIsRejectedBeforeItsFirstTapWithWhatIsAssumed) {
   BaxterOptions options = fake_options();
   options.scene_pose.corner[0] = 0.36;
   options.scene_pose.corner[1] = 0.2;  // even stiffer
-  Desk desk(kHard, options);
+  SpringDesk desk(kHard, options);
   desk.inject("slow_force=10");
   desk.inject("jitter=0.07");
   const Contact contact = desk.tap();
@@ -119,7 +74,7 @@ TEST(ARobot, ThatMayBeTooSlowIsRejectedBeforeItsFirstTapWithWhatIsAssumed) {
 
 TEST(AForce, ThatIsRenewedSeldomAndFreezesAtAContactIsFoundBeforeTheReflex) {
   for (const int every : {1, 2, 5, 10}) {
-    Desk desk(kHard);
+    SpringDesk desk(kHard);
     if (every > 1) desk.inject(fmt::format("slow_force={}", every));
     ASSERT_EQ(desk.tap().outcome, Outcome::contact) << every;
     desk.robot.body.inject({FaultKind::freeze_endpoint, 0.0, {}}, {1, 0.0002});
@@ -147,7 +102,7 @@ TEST(AnArm, ThatPressesOnSomethingHardIsNotTakenForOneThatStands) {
     options.motion.threshold = one.threshold;
     options.motion.fine_threshold = one.fine_threshold;
     options.motion.timeout = 120.0;
-    Desk desk(kHard, options);
+    SpringDesk desk(kHard, options);
     if (one.filter > 0.0) desk.inject(fmt::format("wrench_filter={}", one.filter));
     for (int tap = 0; tap < 3; ++tap) {
       const Contact contact = desk.tap();
@@ -159,7 +114,7 @@ TEST(AnArm, ThatPressesOnSomethingHardIsNotTakenForOneThatStands) {
 TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasuredFigure) {
   BaxterOptions options = fake_options();
   options.motion.threshold = 10.0;
-  Desk desk(kHard, options);
+  SpringDesk desk(kHard, options);
   desk.inject("slow_force=10");
   ASSERT_EQ(desk.tap().outcome, Outcome::contact) << "at 5 N, while nothing was measured";
   const Contact contact = desk.tap();
@@ -171,7 +126,7 @@ TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasure
 TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigure) {
   BaxterOptions options = fake_options();
   options.motion.threshold = 10.0;
-  Desk desk(kHard, options);
+  SpringDesk desk(kHard, options);
   ASSERT_EQ(desk.tap().outcome, Outcome::contact);
   // The first active fault in the list counts.
   for (const auto& [delay, height] : {std::pair{0.27, 0.06}, {0.18, 0.08}, {0.09, 0.1}}) {
@@ -190,7 +145,7 @@ TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThan25SecondsAndTol
     // The floor is far below the desk, so only the force ends the descent.
     BaxterOptions options = fake_options();
     options.motion.overrun = 0.1;
-    Desk desk(stiffness, options);
+    SpringDesk desk(stiffness, options);
     for (int i = 0; i < 2; ++i) {
       const Contact contact = desk.tap();
       const double took = desk.robot.body.now() - desk.touched.value();
@@ -208,7 +163,7 @@ TEST(SomethingSoft, BelowThePromisedStiffnessIsToldByThePapersMotionToo) {
   BaxterOptions options = fake_options();
   options.motion.type = tapping::MotionOptions::Type::paper;
   options.motion.overrun = 0.1;
-  Desk desk(250.0, options);
+  SpringDesk desk(250.0, options);
   const Contact contact = desk.tap();
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, HasSubstr("a contact is too soft: its force rises by 1"));

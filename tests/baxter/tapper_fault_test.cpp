@@ -2,6 +2,7 @@
 // Faults in a tap, and the resulting state of the arm.
 #include "baxter/body_bench.hpp"
 #include "baxter/fault_cases.hpp"
+#include "baxter/spring_desk.hpp"
 #include "baxter/tapper_bench.hpp"
 
 #include <gmock/gmock.h>
@@ -192,22 +193,16 @@ TEST(AFault, RaisesTheArmWithoutTheRobotsInverseKinematics) {
 
 /// Returns the largest force in N of an arm with springs on 8 kN/m, with a fault that begins at 2 N.
 double hardest_press(const char* fault, std::string& reason) {
-  const auto scene = palpate::test::scene_of("[]", "{stiffness: {object: 8000 N/m}}");
-  test::BodyOptions body = test::body_options(fake_options());
-  body.mechanics = {fake_baxter::MechanicsOptions::Type::springs, 0.0, 1e-3};
-  test::BodyRobot robot(*scene, body);
-  Tapper tapper(fake_options(), *scene, robot, nullptr, [](const std::string&) {});
+  test::SpringDesk desk(8000.0);
   double peak = 0.0;
-  robot.every_period = [&] {
-    peak = std::max(peak, robot.body.arm().peak);
-    if (robot.body.pressing() > 2.0 && !robot.body.faulty()) robot.body.inject(fake_baxter::parse_fault(fault));
+  desk.robot.every_period = [&] {
+    peak = std::max(peak, desk.robot.body.arm().peak);
+    if (desk.robot.body.pressing() > 2.0 && !desk.robot.body.faulty()) desk.inject(fault);
   };
-  TapRequest request;
-  request.target = kOnDesk;
-  const Contact contact = tapper.tap(request);
+  const Contact contact = desk.tap(kOnDesk);
   reason = contact.reason;
   EXPECT_TRUE(contact.ends_run);
-  robot.wait_until(robot.body.now() + 3.0);
+  desk.wait(3.0);
   return peak;
 }
 
