@@ -45,10 +45,7 @@ class Wave final : public Shape {
   }
 
   double first_intersection(const Line& line) const override {
-    Interval box;
-    box.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
-    box.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
-    box.clip(line.origin.z(), line.direction.z(), 0.0, o_.height + o_.amplitude);
+    const Interval box = box_interval(line);
     if (box.empty() || clearance(line, box.begin) <= 0.0) return box.first();
     for (double from = box.begin; from < box.end;) {
       const double to = std::min(box.end, next_turn(line, from));
@@ -59,10 +56,7 @@ class Wave final : public Shape {
   }
 
   std::vector<Stretch> intervals(const Line& line) const override {
-    Interval box;
-    box.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
-    box.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
-    box.clip(line.origin.z(), line.direction.z(), 0.0, o_.height + o_.amplitude);
+    const Interval box = box_interval(line);
     std::vector<Stretch> all;
     for (double from = box.begin; from < box.end;) {
       const double to = std::min(box.end, next_turn(line, from));
@@ -81,6 +75,15 @@ class Wave final : public Shape {
   }
 
  private:
+  /// Returns the interval of the line within the box around the block.
+  Interval box_interval(const Line& line) const {
+    Interval out;
+    out.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
+    out.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
+    out.clip(line.origin.z(), line.direction.z(), 0.0, o_.height + o_.amplitude);
+    return out;
+  }
+
   double height_at(double s) const { return o_.height + o_.amplitude * math::cos(2.0 * kPi * s / o_.period); }
 
   /// Returns the height above the top of the line's point at x.

@@ -77,14 +77,14 @@ std::vector<std::string> check_settings(const Snapshot& seen) {
 }
 
 /// Returns the largest speed of GuardedTap within a column, m/s.
-double fastest(const tapping::MotionOptions& motion) {
-  double out = std::max(motion.speed, motion.type == tapping::MotionOptions::Type::two_stage ? motion.fine_speed : 0.0);
-  if (motion.adaptive_hover) out = std::max(out, motion.adaptive_hover->speed);
-  return out;
-}
 double fastest(const BaxterOptions& options) {
   double out = 0.0;
-  for (int i = 0; i < options.motion.count(); ++i) out = std::max(out, fastest(options.motion.at(i)));
+  for (int i = 0; i < options.motion.count(); ++i) {
+    const tapping::MotionOptions& motion = options.motion.at(i);
+    const bool two_stage = motion.type == tapping::MotionOptions::Type::two_stage;
+    out = std::max({out, motion.speed, two_stage ? motion.fine_speed : 0.0,
+                    motion.adaptive_hover ? motion.adaptive_hover->speed : 0.0});
+  }
   return out;
 }
 
@@ -92,8 +92,8 @@ double fastest(const BaxterOptions& options) {
 
 void Tapper::check() {
   const Area area = scene_.area();
-  if (options_.calibration && (calibration_target().x < 0.0 || calibration_target().y < 0.0 ||
-                               calibration_target().x > area.width || calibration_target().y > area.depth)) {
+  if (options_.calibration && (desk_target().x < 0.0 || desk_target().y < 0.0 || desk_target().x > area.width ||
+                               desk_target().y > area.depth)) {
     throw robot_error("calibration.at", "is outside the area", "choose a bare position inside the area");
   }
   const std::optional<Fault> slow = check_rates();
@@ -104,7 +104,7 @@ void Tapper::check() {
     for (const std::string& line : check_settings(seen_)) note_(line);
   }
   try {
-    if (options_.calibration) column(calibration_target());
+    if (options_.calibration) column(desk_target());
     if (options_.dry_run) {
       const int places = check_reach(area, kReachSpacing, [this](const Target& place) { column(place); });
       note_(fmt::format("dry run: all {} places of the area can be reached, all the way down", places));
@@ -161,7 +161,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
     }
   }
   if (options_.calibration && !calibrated_) {
-    out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(calibration_target()));
+    out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(desk_target()));
   }
   const tapping::MotionOptions& wanted = options_.motion.of_request(request);
   const double stiffness = stiffness_at(request.target);

@@ -32,10 +32,6 @@ void keep(std::deque<Value>& values, Value value, std::size_t most) {
   if (values.size() > most) values.pop_front();
 }
 
-double most(const std::deque<double>& values, double without) {
-  return values.empty() ? without : *std::max_element(values.begin(), values.end());
-}
-
 /// Line through heights over time, fitted by least squares.
 struct Line {
   double height, time;  ///< m and s of the centre
@@ -161,7 +157,9 @@ double ReactionTime::noticing() const {
   return std::max({sum / weights + 2.0 / std::sqrt(weights), surely, renewals}) + tapping::GuardedTap::kPeriod;
 }
 
-double ReactionTime::trailing() const { return most(trailing_, kFirstTrailing); }
+double ReactionTime::trailing() const {
+  return trailing_.empty() ? kFirstTrailing : *std::max_element(trailing_.begin(), trailing_.end());
+}
 
 /// An arm that trails less than the joints of a Baxter is not a Baxter; all of its trailing time may then be delay.
 double ReactionTime::stopping() const {

@@ -100,7 +100,7 @@ Contact Tapper::attempt(const TapRequest& request) {
   if (options_.dry_run) return failed(Outcome::aborted, "dry run: the place can be reached, nothing moved");
   if (options_.calibration && !calibrated_) {
     TapRequest desk;
-    desk.target = calibration_target();
+    desk.target = desk_target();
     const Path way = column(desk.target);
     go_to(way.front());
     calibrate(descend(desk, gentle(motion_), way));

@@ -49,14 +49,14 @@ class Tapper {
   static constexpr double kPeriod = tapping::GuardedTap::kPeriod;
   static constexpr double kNearTravel = 0.01;  ///< m by which the tip may be below the height of travel
   static constexpr double kGentleRise = 0.01;  ///< m of a slow rise for an arm that may press
-  static constexpr double kMostGentleRise =
-      0.02;  ///< m: upper limit of that rise, because supported objects yield less
+  /// m: upper limit of that rise, because supported objects yield less
+  static constexpr double kMostGentleRise = 0.02;
   static constexpr const char* kSilent = "no more commands are sent, the arm stays where it is";
   /// Height of travel above `hover`, m. The arm descends from there to its rest before the tare, so that friction
   /// always has the same direction.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
-  static constexpr double kRotationWindow =
-      0.01;  ///< m of a path over which largest_pull() measures the rotation of the joints
+  /// m of a path over which largest_pull() measures the rotation of the joints
+  static constexpr double kRotationWindow = 0.01;
 
   Contact attempt(const TapRequest& request);
   Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
@@ -95,7 +95,7 @@ class Tapper {
   void climb(const Path& up, double sign, const std::optional<double>& zero);
   void await_height(const Joints& top);
   Path column(const Target& place) const;
-  Target calibration_target() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
+  Target desk_target() const { return {options_.calibration->at[0], options_.calibration->at[1]}; }
   std::optional<Joints> inverse(const Pose& tip, const Joints& seed);
 
   void step(const Joints& command);

@@ -98,9 +98,7 @@ void GuardedTap::advance(double height) {
       if (ramp(goal_, motion_.adaptive_hover->speed) && arrived(height)) enter(Stage::descend);
       break;
     case Stage::descend:
-      if (ramp(goal_, motion_.speed)) {
-        enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
-      }
+      if (ramp(goal_, motion_.speed)) enter(motion_.type == MotionOptions::Type::paper ? Stage::pause : Stage::bottom);
       break;
     case Stage::pause:
       if (waited(motion_.pause)) enter(set_point_ <= descent_.floor ? Stage::bottom : Stage::descend);

@@ -121,8 +121,8 @@ AscentResult ascend(Objective& objective, const Eigen::VectorXd& start, const Ei
 
 /// Returns a metric from the curvature at `result`, by differences of gradients.
 Eigen::MatrixXd metric_at(Objective& objective, const Eigen::VectorXd& result) {
-  constexpr double kStep =
-      1e-3;  // in logarithms: large compared with rounding, small compared with changes of the curvature
+  // In logarithms: large compared with rounding, small compared with changes of the curvature
+  constexpr double kStep = 1e-3;
   constexpr double kFlattest = 1e-3;  // smaller curvatures are replaced by this
   const Eigen::Index size = result.size();
   Eigen::MatrixXd curvature(size, size);
@@ -215,18 +215,14 @@ class Ceres final : public Fitting {
   }
 
   FitSummary fit(FitProblem& problem, Random& random) const override {
-    FitSummary summary;
     const Model model = model_of(problem, options_.mean == Options::Mean::fit);
-    if (model.outputs() == 0) {
-      summary.reason = "the targets equal the mean and contain no information";
-      return summary;
-    }
+    if (model.outputs() == 0) return {false, false, 0.0, 0, "the targets equal the mean and contain no information"};
     const std::vector<HyperPrior> expected = expectations(model);
     if (options_.priors == Options::Priors::none &&
         model.size() * model.outputs() <= static_cast<Eigen::Index>(expected.size())) {
-      summary.reason = "without priors there must be more taps than hyperparameters";
-      return summary;
+      return {false, false, 0.0, 0, "without priors there must be more taps than hyperparameters"};
     }
+    FitSummary summary;
     std::vector<double> old;
     for (const KernelParameter& one : problem.kernel.parameters()) old.push_back(one.value);
     const Eigen::VectorXd now = present(problem, model);

@@ -160,9 +160,7 @@ double Sampler::add(const Touch& touch) {
   const double p_new = 1.0 - math::exp(-covering.rate());
   std::vector<double> weights;
   weights.reserve(particles_.size());
-  double sum = 0.0;
-  double sum_of_squares = 0.0;
-  double p_label = 0.0;
+  double sum = 0.0, sum_of_squares = 0.0, p_label = 0.0;
   for (Particle& particle : particles_) {
     const LabelModel& labels = likelihood_.labels(particle.hypothesis.noisy);
     const LabelModel::Step step = likelihood_.add_latest(particle);
@@ -188,16 +186,12 @@ double Sampler::add(const Touch& touch) {
   undiscovered_.add(touch, likelihood_.labels(settings_.position_noise > 0.0));
   const int times = count_moves(sum * sum / (sum_of_squares * before));
   for (Particle& particle : particles_) chain_.move(particle, times, likelihood_, random_);
-  compare_undiscovered();
-  return p_label / before;
-}
-
-void Sampler::compare_undiscovered() {
   constexpr std::size_t kCompared = 8;
   std::vector<const Hypothesis*> known;
   for (std::size_t k = 0; k < kCompared; ++k)
     known.push_back(&particles_[k * particles_.size() / kCompared].hypothesis);
   undiscovered_.compare(known);
+  return p_label / before;
 }
 
 /// Adds an undiscovered primitive at the tap to each particle, with its probability given the label.

@@ -162,8 +162,6 @@ class Sampler {
   void resample(const std::vector<double>& weights, double sum, std::size_t count);
   void discover(const Undiscovered::Covering& covering, double p_new);
   int count_moves(double effective_share) const;
-  /// Compares the undiscovered primitives with eight particles.
-  void compare_undiscovered();
   /// Computes spans_ for these positions.
   void prepare(const PointsView& positions);
   /// Calls visit(tap, labels, step, on) for each tap with a loss in each particle.

@@ -3,15 +3,13 @@
 // flat triangles, so intersections with lines are exact up to rounding.
 #include "grid.hpp"
 #include "shapes/mesh/options.hpp"
+#include "shapes/solid.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
-#include <palpate/shape.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,7 +17,6 @@
 namespace palpate::shapes {
 
 using Eigen::Index;
-using Eigen::Vector3d;
 
 struct HeightMapOptions : Options {
   std::string file;
@@ -88,8 +85,6 @@ class HeightMap final : public Shape {
   }
 
  private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
   /// Returns a range as first index and length: from one before the first true entry to one after the last, if these
   /// exist.
   template <class Holds>
@@ -133,22 +128,11 @@ class HeightMap final : public Shape {
 
   /// Returns the part of the line above the rectangle, between the desk and the highest node; nullopt if there is none.
   std::optional<Stretch> clipped(const Line& line) const {
-    Stretch out{-kInfinity, kInfinity};
-    const std::array<double, 3> low{-half_length_, -half_width_, 0.0};
-    const std::array<double, 3> high{half_length_, half_width_, highest_};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double at = line.origin(static_cast<Index>(i));
-      const double slope = line.direction(static_cast<Index>(i));
-      if (slope == 0.0) {
-        if (at < low[i] || at > high[i]) return std::nullopt;
-        continue;
-      }
-      const double one = (low[i] - at) / slope;
-      const double other = (high[i] - at) / slope;
-      out.begin = std::max(out.begin, std::min(one, other));
-      out.end = std::min(out.end, std::max(one, other));
-    }
-    return out.begin <= out.end ? std::optional(out) : std::nullopt;
+    Interval out;
+    out.clip(line.origin.x(), line.direction.x(), -half_length_, half_length_);
+    out.clip(line.origin.y(), line.direction.y(), -half_width_, half_width_);
+    out.clip(line.origin.z(), line.direction.z(), 0.0, highest_);
+    return out.empty() ? std::nullopt : std::optional(Stretch{out.begin, out.end});
   }
 
   /// Returns the positions within `part` where the line changes from one triangle to the next, in order, with both

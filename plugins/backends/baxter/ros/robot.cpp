@@ -30,20 +30,18 @@ namespace {
 namespace msgs = baxter_core_msgs;
 namespace traits = ros::message_traits;
 
-using std::chrono::microseconds;
-using std::chrono::milliseconds;
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
 /// Longest time for which a simulated clock may stand still.
-constexpr seconds kStandstill(2);
+constexpr auto kStandstill = 2s;
 /// Sleep between reads of a simulated clock. With a clock 20 times as fast as real time, a waiting loop is at most 4 ms
 /// late.
-constexpr microseconds kSimulatedNap(150);
+constexpr auto kSimulatedNap = 150us;
 /// Tolerance in s for rounding, because a simulated clock advances in steps.
 constexpr double kRounding = 1e-6;
 /// Real time that messages get to catch up with a simulated clock, which may be ahead of them on a busy machine.
 /// kAlmostNow is the sufficient age in s of simulated time.
-constexpr milliseconds kCatchUp(50);
+constexpr auto kCatchUp = 50ms;
 constexpr double kAlmostNow = 0.03;
 
 /// Length of the message queue: a tenth of a second at 100 Hz. Messages that wait while this program is busy are
@@ -53,7 +51,7 @@ constexpr std::uint32_t kBacklog = 10;
 const ros::WallDuration kSpin(0.5 * Heartbeat::kNoted);
 
 /// Time for an answer of the robot's inverse kinematics, within the promised second.
-constexpr milliseconds kSolve(900);
+constexpr auto kSolve = 900ms;
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
