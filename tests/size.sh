@@ -23,14 +23,14 @@ framework/include 807 0
 framework/lab 2690 16
 framework/python 695 609
 framework/shared 1376 0
-plugins 33 161
-plugins/acquisitions 799 89
+plugins 33 78
+plugins/acquisitions 799 96 # each folder builds itself
 plugins/backends 5791 528
-plugins/fitting 953 0
-plugins/footprints 2422 0
-plugins/kernels 547 0
-plugins/programs 520 0
-plugins/shapes 2026 0
+plugins/fitting 953 18 # each folder builds itself
+plugins/footprints 2422 15 # each folder builds itself
+plugins/kernels 547 9 # each folder builds itself
+plugins/programs 520 14 # each folder builds itself
+plugins/shapes 2026 28 # each folder builds itself
 plugins/starters 203 28
 tests 0 1874 # reasons for counts of instructions, campaigns by name, checks of packages for ARM
 tests/bad_plugins 447 49
