@@ -24,10 +24,10 @@ using namespace palpate;
 struct Arguments {
   std::string taps;
   int grid = 47;
-  PosteriorSettings::Kind engine = PosteriorSettings::Kind::automatic;
+  EngineSettings::Kind engine = EngineSettings::Kind::automatic;
   int repeat = 1;
   int threads = 1;
-  double tolerance = PosteriorSettings{}.tolerance;
+  double tolerance = EngineSettings{}.tolerance;
   std::string maps;
 };
 
@@ -37,7 +37,7 @@ long peak_rss_bytes() {
   return usage.ru_maxrss * 1024;
 }
 
-void write_maps(const std::string& file, const Candidates& candidates, const test::Process& process) {
+void write_maps(const std::string& file, const Candidates& candidates, const test::GaussianProcess& process) {
   const Eigen::VectorXd mean = process.mean(0);
   const Eigen::VectorXd variance = process.variance(0);
   const Eigen::VectorXd weight = process.mean(1);
@@ -54,7 +54,7 @@ void write_maps(const std::string& file, const Candidates& candidates, const tes
 void run(const Arguments& arguments) {
   const palpate::benchmark::Taps taps = palpate::benchmark::read_taps(arguments.taps);
   const Candidates candidates = palpate::benchmark::square(arguments.grid);
-  PosteriorSettings settings;
+  EngineSettings settings;
   settings.engine = arguments.engine;
   settings.tolerance = arguments.tolerance;
   settings.taps = static_cast<int>(taps.places.rows());
@@ -63,7 +63,7 @@ void run(const Arguments& arguments) {
   const std::shared_ptr<Kernel> kernel = palpate::benchmark::make_kernel();
   std::vector<double> totals;
   palpate::benchmark::Replay best;
-  std::unique_ptr<test::Process> process;
+  std::unique_ptr<test::GaussianProcess> process;
   for (int i = 0; i < arguments.repeat; ++i) {
     process.reset();
     palpate::benchmark::Replay one = palpate::benchmark::replay(taps, candidates, kernel, settings, &process);
@@ -96,7 +96,7 @@ void run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app("Replays taps on a posterior engine: height and label GP, choice of the best u w after every tap");
   Arguments arguments;
-  using Kind = PosteriorSettings::Kind;
+  using Kind = EngineSettings::Kind;
   const std::map<std::string, Kind> engines{
       {"auto", Kind::automatic}, {"dense", Kind::dense}, {"grid", Kind::grid}, {"lowrank", Kind::lowrank}};
   app.add_option("--taps", arguments.taps, "x,y,height,on_object; the first three are the initial taps")->required();

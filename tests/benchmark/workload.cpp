@@ -52,14 +52,14 @@ std::shared_ptr<Kernel> make_kernel() {
 }
 
 Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
-              const PosteriorSettings& settings, std::unique_ptr<test::Process>* last) {
+              const EngineSettings& settings, std::unique_ptr<test::GaussianProcess>* last) {
   Replay out;
   const auto count = static_cast<std::size_t>(taps.places.rows());
   out.choices.reserve(count);
   out.seconds.reserve(count);
   const auto start = Clock::now();
-  const std::vector<ProcessSettings> outputs(2, {1.0, 1e-2, 0.0, 0.0});
-  auto process = std::make_unique<test::Process>(kernel, outputs, candidates, settings);
+  const std::vector<GpSettings> outputs(2, {1.0, 1e-2, 0.0, 0.0});
+  auto process = std::make_unique<test::GaussianProcess>(kernel, outputs, candidates, settings);
   process->show(2);
   Eigen::VectorXd uncertainty(candidates.size());
   Eigen::VectorXd weight(candidates.size());

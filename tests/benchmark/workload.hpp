@@ -2,7 +2,7 @@
 // The workloads of the posterior: recorded taps, replayed as an experiment would meet them.
 #pragma once
 
-#include "support/process.hpp"
+#include "support/gaussian_process.hpp"
 
 #include <filesystem>
 #include <vector>
@@ -37,6 +37,6 @@ constexpr int kInitialTaps = 3;
 /// Brings the taps one by one to a height and a label GP of unit variance and noise variance 1e-4, and chooses
 /// the best of u w after each, the initial ones apart.
 Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
-              const PosteriorSettings& settings, std::unique_ptr<test::Process>* last = nullptr);
+              const EngineSettings& settings, std::unique_ptr<test::GaussianProcess>* last = nullptr);
 
 }  // namespace palpate::benchmark

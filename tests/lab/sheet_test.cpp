@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/figures/sheet.hpp"
 
-#include "support/process.hpp"
+#include "support/gaussian_process.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 #include "stability/check.hpp"
 
 #include "stability/reference.hpp"
+#include "support/gaussian_process.hpp"
 #include "support/mocks.hpp"
 #include "support/plugins.hpp"
-#include "support/process.hpp"
 #include "support/support.hpp"
 
 #include <fmt/format.h>
@@ -17,14 +17,14 @@
 namespace palpate::stability {
 namespace {
 
-using test::Process;
+using test::GaussianProcess;
 using test::scattered;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// `sound` becomes false if there ever was a number that is none.
-Process processed(const Problem& problem, const Candidates& candidates, const PosteriorSettings& posterior,
-                  bool& sound) {
+GaussianProcess processed(const Problem& problem, const Candidates& candidates, const EngineSettings& posterior,
+                          bool& sound) {
   const Case& one = problem.one;
   // Before a fit the matrix is as singular as can be.
   const double length_scale = one.refit ? 1e4 * kSide : one.length_scale();
@@ -32,7 +32,7 @@ Process processed(const Problem& problem, const Candidates& candidates, const Po
   const double noise = one.refit ? 0.0 : one.noise();
   const auto kernel =
       test::make<Kernel>(test::shared_host(), one.kernel, fmt::format("{{length_scale: {} m}}", length_scale));
-  Process process(kernel, {signal, noise, one.mean, one.mean_ratio}, candidates, posterior);
+  GaussianProcess process(kernel, {signal, noise, one.mean, one.mean_ratio}, candidates, posterior);
   for (Eigen::Index i = 0; i < problem.values.size(); ++i) {
     process.add({problem.places(i, 0), problem.places(i, 1)}, problem.values(i));
     sound &= process.mean().allFinite() && process.variance().allFinite() && std::isfinite(process.error_bound());
@@ -57,7 +57,7 @@ struct Answer {
   std::string trouble;
 };
 
-std::string trouble_of(const Process& process, const Answer& answer, const Case& one, bool sound) {
+std::string trouble_of(const GaussianProcess& process, const Answer& answer, const Case& one, bool sound) {
   const bool finite = sound && answer.mean.allFinite() && answer.variance.allFinite() && answer.tap_mean.allFinite() &&
                       std::isfinite(process.log_marginal_likelihood()) && std::isfinite(process.condition());
   if (!finite) return "not a number";
@@ -69,18 +69,18 @@ std::string trouble_of(const Process& process, const Answer& answer, const Case&
 
 struct Engine {
   const char* name;
-  PosteriorSettings::Kind kind;
+  EngineSettings::Kind kind;
 };
-constexpr std::array<Engine, 4> kEngines{{{"dense", PosteriorSettings::Kind::dense},
-                                          {"grid", PosteriorSettings::Kind::grid},
-                                          {"lowrank", PosteriorSettings::Kind::lowrank},
-                                          {"auto", PosteriorSettings::Kind::automatic}}};
+constexpr std::array<Engine, 4> kEngines{{{"dense", EngineSettings::Kind::dense},
+                                          {"grid", EngineSettings::Kind::grid},
+                                          {"lowrank", EngineSettings::Kind::lowrank},
+                                          {"auto", EngineSettings::Kind::automatic}}};
 
 /// The places that are asked about: the probes, and then taps.
 Points asked(const Problem& problem, const Engine& engine) {
   // A product grid has the square of them as candidates: there, the taps are left out where they are many.
   constexpr Eigen::Index kFew = 40;
-  const bool all = engine.kind == PosteriorSettings::Kind::dense || problem.places.rows() <= kFew;
+  const bool all = engine.kind == EngineSettings::Kind::dense || problem.places.rows() <= kFew;
   const Eigen::Index taps = all ? problem.places.rows() : 0;
   Points out(problem.probes.rows() + taps, 2);
   out << problem.probes, problem.places.topRows(taps);
@@ -90,7 +90,7 @@ Points asked(const Problem& problem, const Engine& engine) {
 Answer answered(const Problem& problem, const Engine& engine) {
   const Case& one = problem.one;
   const Points places = asked(problem, engine);
-  const bool dense = engine.kind == PosteriorSettings::Kind::dense;
+  const bool dense = engine.kind == EngineSettings::Kind::dense;
   const Candidates candidates = dense ? scattered(places) : product_grid(places.col(0), places.col(1));
   // Of a product grid, the places lie on the diagonal.
   const Eigen::Index step = dense ? 1 : places.rows() + 1;
@@ -99,11 +99,11 @@ Answer answered(const Problem& problem, const Engine& engine) {
                                                                                  Eigen::InnerStride<>(step))
                           .cast<long double>());
   };
-  PosteriorSettings posterior;
+  EngineSettings posterior;
   posterior.engine = engine.kind;
   posterior.taps = one.points;
   bool sound = true;
-  const Process process = processed(problem, candidates, posterior, sound);
+  const GaussianProcess process = processed(problem, candidates, posterior, sound);
   const LongVector mean = (at_places(process.mean()).array() - one.mean) / one.signal;
   const LongVector variance = at_places(process.variance()) / one.signal / one.signal;
   const Eigen::Index probes = problem.probes.rows();
@@ -122,7 +122,7 @@ double greatest(const LongVector& vector) { return static_cast<double>(vector.cw
 std::string exceeds(const Row& row) {
   if (!(row.mean_error <= row.mean_bound)) return "mean";
   if (!(row.variance_error <= row.variance_bound)) return "variance";
-  const double more = row.engine == "lowrank" ? PosteriorSettings{}.tolerance : 0.0;
+  const double more = row.engine == "lowrank" ? EngineSettings{}.tolerance : 0.0;
   if (!(row.residual <= kResidualLimit * row.n_eps() + more)) return "residual";
   return {};
 }
@@ -151,7 +151,7 @@ void compare(const Problem& problem, const Spectrum& spectrum, const Answer& ans
     row.variance_bound = std::min({bound, backward * truth.weights / one.prior(), kVarianceCap});
   }
   if (row.engine == "lowrank") {
-    const double more = PosteriorSettings{}.tolerance * row.condition;
+    const double more = EngineSettings{}.tolerance * row.condition;
     row.mean_bound += std::min(more, kMeanCap);
     row.variance_bound += std::min(more, kVarianceCap);
   }
@@ -178,7 +178,7 @@ std::vector<Row> check(const Case& one) {
   std::optional<Reference> exact;
   std::vector<Row> rows;
   for (const Engine& engine : kEngines) {
-    if (engine.kind != PosteriorSettings::Kind::dense && !separable) continue;
+    if (engine.kind != EngineSettings::Kind::dense && !separable) continue;
     const Answer answer = answered(problem, engine);
     // All engines meet the same matrix, and thus most often raise the same jitter.
     if (!jitter || *jitter != answer.jitter) {

@@ -3,7 +3,7 @@
 // little where there are none. tests/stability_matrix.py is the long form.
 #include "gp/doubt.hpp"
 
-#include "support/process.hpp"
+#include "support/gaussian_process.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -87,7 +87,7 @@ TEST_P(OutlierModel, IsFiniteAndAsGoodAsTheProcessItself) {
     for (const double noise : {1e-12, 1e-9, 1e-7, 1e-5, 1e-3, 0.05}) {
       for (const char* const length : {"1 mm", "3 cm", "50 cm", "20 m"}) {
         const auto kernel = make<Kernel>(shared_host(), "rbf", fmt::format("{{length_scale: {}}}", length));
-        Process process(kernel, ProcessSettings{0.1, noise, 0.0, 1.0}, candidates);
+        GaussianProcess process(kernel, GpSettings{0.1, noise, 0.0, 1.0}, candidates);
         for (Eigen::Index i = 0; i < count; ++i)
           process.add({places(i, 0), places(i, 1)}, surface(places(i, 0), places(i, 1)));
         DoubtedSurface judged(candidates);

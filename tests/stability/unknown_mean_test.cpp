@@ -3,13 +3,13 @@
 // constant is nothing but a constant added to every covariance.
 #include "stability/oracle.hpp"
 #include "stability/reference.hpp"
-#include "support/process.hpp"
+#include "support/gaussian_process.hpp"
 #include "support/testing.hpp"
 
 namespace palpate::stability {
 namespace {
 
-using test::Process;
+using test::GaussianProcess;
 using test::scattered;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -26,10 +26,10 @@ Case with(double mean_ratio, int points, double signal, double mean) {
   return one;
 }
 
-Process processed(const Problem& problem, const Candidates& candidates) {
+GaussianProcess processed(const Problem& problem, const Candidates& candidates) {
   const Case& one = problem.one;
   const auto kernel = test::make<Kernel>(test::shared_host(), one.kernel, "{length_scale: 2.3 cm}");
-  Process process(kernel, {one.signal, one.noise(), one.mean, one.mean_ratio}, candidates);
+  GaussianProcess process(kernel, {one.signal, one.noise(), one.mean, one.mean_ratio}, candidates);
   for (Eigen::Index i = 0; i < problem.values.size(); ++i) {
     process.add({problem.places(i, 0), problem.places(i, 1)}, problem.values(i));
   }
@@ -43,7 +43,7 @@ TEST(UnknownMean, MeanVarianceAndLikelihoodAgreeWithTheOracle) {
         const Case one = with(ratio, points, signal, 0.25 * signal);
         const Problem problem(one);
         const Candidates candidates = scattered(problem.probes);
-        const Process process = processed(problem, candidates);
+        const GaussianProcess process = processed(problem, candidates);
         Oracle oracle(one, problem.places, problem.values);
         ASSERT_TRUE(oracle.factorise(0.0));
         // n eps cond of the covariance without the constant: what the constant adds is computed apart.
@@ -68,7 +68,7 @@ TEST(UnknownMean, OfNoKnowledgeAtAllFollowsTheLevelOfTheData) {
   Problem problem(one);
   problem.values.array() += 1000.0;
   const Candidates candidates = scattered(problem.probes);
-  const Process process = processed(problem, candidates);
+  const GaussianProcess process = processed(problem, candidates);
   const Eigen::Index far = problem.probes.rows() - 1;
   const Case plain = with(0.0, 30, 1.0, 0.0);
   EXPECT_NEAR(process.mean()(far), 1000.0, 1.0) << "far from all taps it stays at their level";

@@ -22,7 +22,7 @@ struct Workload {
 void PrintTo(const Workload& one, std::ostream* out) { *out << one.name; }
 
 struct Limit {
-  PosteriorSettings::Kind engine;
+  EngineSettings::Kind engine;
   double mean, variance;
 };
 
@@ -47,17 +47,17 @@ TEST_P(WorkloadAccuracy, IsThatPromisedForEveryEngine) {
   for (Eigen::Index i = 0; i < taps.places.rows(); ++i) {
     truth.add({taps.places(i, 0), taps.places(i, 1)}, {taps.answers(i, 0), taps.answers(i, 1)});
   }
-  using Kind = PosteriorSettings::Kind;
+  using Kind = EngineSettings::Kind;
   // After a thousand taps rounding is 5e-11. Of dense, the memory of W3 would be 1.7 GB.
   std::vector<Limit> limits{{Kind::grid, 1e-10, 1e-13}, {Kind::lowrank, 5e-9, 1e-12}};
   if (workload.grid < 400) limits.push_back({Kind::dense, 1e-10, 1e-13});
   for (const Instructions set : math::instruction_sets()) {
     const OnInstructions here(set);
     for (const Limit& limit : limits) {
-      PosteriorSettings settings;
+      EngineSettings settings;
       settings.engine = limit.engine;
       settings.taps = static_cast<int>(taps.places.rows());
-      std::unique_ptr<Process> process;
+      std::unique_ptr<GaussianProcess> process;
       benchmark::replay(taps, candidates, benchmark::make_kernel(), settings, &process);
       const double mean_error =
           std::max(apart(truth.mean(0), process->mean(0)(chosen)), apart(truth.mean(1), process->mean(1)(chosen)));

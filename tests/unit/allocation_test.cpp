@@ -50,13 +50,12 @@ namespace {
 TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
   if (test::kSanitized) GTEST_SKIP() << "under a sanitizer the allocator cannot be counted";
   const Candidates candidates = grid_by_count({0.23, 0.23}, 60);
-  for (const auto kind :
-       {PosteriorSettings::Kind::dense, PosteriorSettings::Kind::grid, PosteriorSettings::Kind::lowrank}) {
-    PosteriorSettings settings;
+  for (const auto kind : {EngineSettings::Kind::dense, EngineSettings::Kind::grid, EngineSettings::Kind::lowrank}) {
+    EngineSettings settings;
     settings.engine = kind;
     settings.taps = 80;
-    Process process(test::make<Kernel>(test::shared_host(), "rbf"),
-                    std::vector<ProcessSettings>(2, {1.0, 1e-2, 0.0, 0.0}), candidates, settings);
+    GaussianProcess process(test::make<Kernel>(test::shared_host(), "rbf"),
+                            std::vector<GpSettings>(2, {1.0, 1e-2, 0.0, 0.0}), candidates, settings);
     process.show(2);
     Eigen::VectorXd map(candidates.size());
     Random random(1, "allocation_test");

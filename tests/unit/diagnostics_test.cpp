@@ -24,7 +24,7 @@ TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
                scripted(answers));
   run.experiment.ask(Quantity::weight | Quantity::height);
   const RunResult result = run.experiment.result();
-  const Process* const process = run.experiment.belief().height_gp().process;
+  const GaussianProcess* const process = run.experiment.belief().height_gp().process;
   ASSERT_NE(process, nullptr);
   ASSERT_EQ(run.experiment.belief().label_gp().process, process);
   ASSERT_GT(process->jitter_raised(), 0);

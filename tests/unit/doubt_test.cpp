@@ -2,8 +2,8 @@
 // The surface of taps some of which may lie: its maps, made of many candidates at once, against each place by itself.
 #include "gp/doubt.hpp"
 
+#include "support/gaussian_process.hpp"
 #include "support/plugins.hpp"
-#include "support/process.hpp"
 #include "support/testing.hpp"
 
 #include <cmath>
@@ -21,7 +21,7 @@ TEST_P(Doubted, MapsAreAtEachPlaceWhatItsOwnTestimonySays) {
   const int taps = GetParam();
   const Candidates candidates = lattice_of(19, 17);  // no whole number of what is computed together
   const std::shared_ptr<Kernel> kernel = test::make<Kernel>(test::shared_host(), "rbf", "{length_scale: 3 cm}");
-  test::Process process(kernel, ProcessSettings{0.1, 0.006, 0.02, 1.0}, candidates);
+  test::GaussianProcess process(kernel, GpSettings{0.1, 0.006, 0.02, 1.0}, candidates);
   for (int i = 0; i < taps; ++i) {
     const Target place{0.01 + 0.0137 * (i % 13), 0.012 + 0.011 * (i % 11)};
     process.add(place, i % 5 == 3 ? 0.3 : 0.05 + 0.02 * std::sin(40.0 * place.x));
@@ -46,10 +46,10 @@ TEST_P(Doubted, MapsAreAtEachPlaceWhatItsOwnTestimonySays) {
 struct ExactTaps {
   Candidates candidates = lattice_of(5, 5);
   std::shared_ptr<Kernel> kernel;
-  test::Process process;
+  test::GaussianProcess process;
   ExactTaps(const char* length_scale, double rough, double noise = 1e-9)
       : kernel(test::make<Kernel>(test::shared_host(), "rbf", length_scale)),
-        process(kernel, ProcessSettings{0.1, noise, 0.0, 1.0}, candidates) {
+        process(kernel, GpSettings{0.1, noise, 0.0, 1.0}, candidates) {
     for (int i = 0; i < 24; ++i)
       process.add({0.01 + 0.0137 * (i % 13), 0.012 + 0.011 * (i % 11)}, 0.05 + (i % 2 == 0 ? rough : -rough));
   }

@@ -10,11 +10,11 @@ namespace {
 TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
   const Data data = draw(60);
   const Candidates candidates = grid(40, 40);
-  const Process exact = processed(data, candidates, settings_of(Kind::dense));
+  const GaussianProcess exact = processed(data, candidates, settings_of(Kind::dense));
   for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-13}) {
-    PosteriorSettings settings = settings_of(Kind::lowrank);
+    EngineSettings settings = settings_of(Kind::lowrank);
     settings.tolerance = tolerance;
-    const Process process = processed(data, candidates, settings);
+    const GaussianProcess process = processed(data, candidates, settings);
     const double rounding = 1e-12;
     const double error =
         std::max({apart(process.mean(0), exact.mean(0)) / 2.0, apart(process.mean(1), exact.mean(1)) / 0.5,
@@ -30,18 +30,18 @@ TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
 TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
   const Data data = draw(20);
   const Candidates candidates = grid(40, 40);
-  PosteriorSettings settings = settings_of(Kind::lowrank);
+  EngineSettings settings = settings_of(Kind::lowrank);
   settings.tolerance = 1e-7;
   std::vector<double> bounds;
   for (const double factor : {1e-4, 1.0, 1e4}) {
     const std::string options = fmt::format("{{factor: {}, kernel: {{type: rbf, length_scale: 3 cm}}}}", factor);
     const auto kernel = test::make<Kernel>(test::shared_host(), "scale", options);
     const double deviation = std::sqrt(factor);
-    const ProcessSettings output{1.0, 0.05 * deviation, 0.0, 0.0};
-    Process exact(kernel, output, candidates, settings_of(Kind::dense));
-    Process process(kernel, output, candidates, settings);
+    const GpSettings output{1.0, 0.05 * deviation, 0.0, 0.0};
+    GaussianProcess exact(kernel, output, candidates, settings_of(Kind::dense));
+    GaussianProcess process(kernel, output, candidates, settings);
     for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
-      for (Process* one : {&exact, &process}) {
+      for (GaussianProcess* one : {&exact, &process}) {
         one->add({data.places(i, 0), data.places(i, 1)}, deviation * data.values(i, 0));
       }
     }
@@ -62,8 +62,8 @@ TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
         candidates.target(static_cast<int>(random.index(static_cast<std::uint64_t>(candidates.size()))));
     data.places.row(i) << place.x, place.y;
   }
-  const Process exact = processed(data, candidates, settings_of(Kind::dense));
-  const Process process = processed(data, candidates, settings_of(Kind::lowrank));
+  const GaussianProcess exact = processed(data, candidates, settings_of(Kind::dense));
+  const GaussianProcess process = processed(data, candidates, settings_of(Kind::lowrank));
   EXPECT_LT(apart(process.relative_variance(), exact.relative_variance()), 1e-12);
   EXPECT_LT(apart(process.mean(0), exact.mean(0)), 1e-10);
   EXPECT_LT(process.error_bound(), 1e-9);
@@ -75,10 +75,10 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
   const auto matern = test::make<Kernel>(test::shared_host(), "matern32");
   const auto engine = [](const std::shared_ptr<Kernel>& kernel, const Candidates& candidates, int taps,
                          double accuracy) {
-    PosteriorSettings settings;
+    EngineSettings settings;
     settings.taps = taps;
     settings.accuracy = accuracy;
-    const Process process(kernel, kOutputs, candidates, settings);
+    const GaussianProcess process(kernel, kOutputs, candidates, settings);
     return std::string(process.engine()) + ": " + process.engine_reason();
   };
   EXPECT_EQ(engine(matern, square, 300, 1e-9), "dense: the kernel is not separable");
@@ -95,10 +95,10 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
 TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
   const Data data = draw(30);
   const Candidates candidates = grid(30, 30);
-  PosteriorSettings settings = settings_of(Kind::automatic);
+  EngineSettings settings = settings_of(Kind::automatic);
   settings.taps = 300;
   settings.accuracy = 1e-13;  // some taps keep to it
-  Process process(rbf(), kOutputs, candidates, settings);
+  GaussianProcess process(rbf(), kOutputs, candidates, settings);
   process.show(2);
   ASSERT_STREQ(process.engine(), "lowrank");
   add_all(process, data, [&] { EXPECT_LE(process.error_bound(), settings.accuracy); });
@@ -113,8 +113,8 @@ TEST(Engine, ThatCannotServeIsRefusedWithTheReason) {
   const Candidates square = grid(3, 3);
   const Candidates any = scattered(Points::Random(20, 2));
   for (const Kind kind : {Kind::grid, Kind::lowrank}) {
-    EXPECT_THROW(Process(matern, kOutputs, square, settings_of(kind)), Error);
-    EXPECT_THROW(Process(rbf(), kOutputs, any, settings_of(kind)), Error);
+    EXPECT_THROW(GaussianProcess(matern, kOutputs, square, settings_of(kind)), Error);
+    EXPECT_THROW(GaussianProcess(rbf(), kOutputs, any, settings_of(kind)), Error);
     EXPECT_THAT(objection(settings_of(kind), *matern, square),
                 testing::HasSubstr("not a product of a factor along x and a factor along y"));
     EXPECT_THAT(objection(settings_of(kind), *rbf(), any), testing::HasSubstr("product grid"));

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "support/arrays.hpp"
-#include "support/process.hpp"
+#include "support/gaussian_process.hpp"
 #include "support/testing.hpp"
 #include "support/textbook.hpp"
 
@@ -11,7 +11,7 @@
 
 namespace palpate::test {
 
-using Kind = PosteriorSettings::Kind;
+using Kind = EngineSettings::Kind;
 
 struct Data {
   Points places;
@@ -47,41 +47,41 @@ inline std::shared_ptr<Kernel> rbf(const std::string& options = "{length_scale: 
   return make<Kernel>(shared_host(), "rbf", options);
 }
 
-inline const std::vector<ProcessSettings> kOutputs{{2.0, 0.1, 0.25, 0.0}, {0.5, 0.025, 0.5, 0.0}};
+inline const std::vector<GpSettings> kOutputs{{2.0, 0.1, 0.25, 0.0}, {0.5, 0.025, 0.5, 0.0}};
 
-inline PosteriorSettings settings_of(Kind kind) {
-  PosteriorSettings out;
+inline EngineSettings settings_of(Kind kind) {
+  EngineSettings out;
   out.engine = kind;
   return out;
 }
 
 /// Adds all taps, and calls `after` after each.
 inline void add_all(
-    Process& process, const Data& data, const std::function<void()>& after = [] {}) {
+    GaussianProcess& process, const Data& data, const std::function<void()>& after = [] {}) {
   for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
     process.add({data.places(i, 0), data.places(i, 1)}, data.values.row(i).transpose());
     after();
   }
 }
 
-inline Process processed(const Data& data, const Candidates& candidates, const PosteriorSettings& settings,
-                         const std::shared_ptr<Kernel>& kernel = rbf(),
-                         const std::vector<ProcessSettings>& outputs = kOutputs) {
-  Process process(kernel, outputs, candidates, settings);
+inline GaussianProcess processed(const Data& data, const Candidates& candidates, const EngineSettings& settings,
+                                 const std::shared_ptr<Kernel>& kernel = rbf(),
+                                 const std::vector<GpSettings>& outputs = kOutputs) {
+  GaussianProcess process(kernel, outputs, candidates, settings);
   process.show(2);
   add_all(process, data);
   return process;
 }
 
 /// Maps of both outputs and their variance are the same to the last bit.
-inline void expect_same_maps(const Process& one, const Process& other) {
+inline void expect_same_maps(const GaussianProcess& one, const GaussianProcess& other) {
   for (const int output : {0, 1}) EXPECT_TRUE(same_bytes(one.mean(output), other.mean(output))) << output;
   EXPECT_TRUE(same_bytes(one.variance(), other.variance()));
 }
 
 /// One output in long double, with the framework's kernel.
 inline Textbook<long double> by_the_book(const Kernel& kernel, const Data& data, const Points& probes,
-                                         const ProcessSettings& output, Eigen::Index column) {
+                                         const GpSettings& output, Eigen::Index column) {
   const auto covariance = [&kernel, output](const Target& a, const Target& b) {
     Eigen::MatrixXd k(1, 1);
     kernel.covariance(Points{{a.x, a.y}}, Points{{b.x, b.y}}, k);

@@ -30,9 +30,9 @@ TEST_P(EveryEngine, EqualsTheTextbookFormulasOnGridsOfAnyShape) {
   for (const Candidates& candidates : grids) {
     const std::string columns = fmt::format("{} x {} at x = {}", candidates.columns, candidates.rows, candidates.xs(0));
     const auto kernel = rbf();
-    const Process process = processed(data, candidates, settings_of(GetParam()), kernel);
+    const GaussianProcess process = processed(data, candidates, settings_of(GetParam()), kernel);
     for (int output = 0; output < 2; ++output) {
-      const ProcessSettings& settings = kOutputs[static_cast<std::size_t>(output)];
+      const GpSettings& settings = kOutputs[static_cast<std::size_t>(output)];
       const auto book = by_the_book(*kernel, data, candidates.points, settings, output);
       // The taps lie between the places of the grid, where `lowrank` knows less, and says so.
       const double signal = settings.signal;
@@ -52,7 +52,7 @@ TEST_P(EveryEngine, ServesEverySeparableKernel) {
         "{kernels: [{type: scale, factor: 3, kernel: {type: rbf, length_scale: 4 cm}}]}"}) {
     const auto kernel = test::make<Kernel>(test::shared_host(), "product", options);
     ASSERT_TRUE(kernel->separable());
-    const Process process = processed(data, candidates, settings_of(GetParam()), kernel);
+    const GaussianProcess process = processed(data, candidates, settings_of(GetParam()), kernel);
     const auto book = by_the_book(*kernel, data, candidates.points, kOutputs[0], 0);
     const Eigen::VectorXd mean = book.mean().array() + kOutputs[0].mean;
     EXPECT_LT(apart(process.mean(0), mean), 1e-11) << options;
@@ -63,15 +63,15 @@ TEST_P(EveryEngine, ServesEverySeparableKernel) {
 TEST_P(EveryEngine, HasTheSameBytesWhetherMapsFollowEveryChangeOrAllAtOnce) {
   const Data data = draw(30);
   const Candidates candidates = regular(24, 18);
-  Process followed(rbf(), kOutputs, candidates, settings_of(GetParam()));
-  palpate::Process behind(rbf(), kOutputs, candidates, settings_of(GetParam()));
+  GaussianProcess followed(rbf(), kOutputs, candidates, settings_of(GetParam()));
+  palpate::GaussianProcess behind(rbf(), kOutputs, candidates, settings_of(GetParam()));
   Eigen::VectorXd shares = Eigen::VectorXd::Ones(30);
   Eigen::VectorXd heights = data.values.col(0);
   Points places = data.places;
   shares(3) = 0.4;
   heights(7) += 0.1;
   places(11, 0) += 0.02;
-  for (palpate::Process* process : std::initializer_list<palpate::Process*>{&followed, &behind}) {
+  for (palpate::GaussianProcess* process : std::initializer_list<palpate::GaussianProcess*>{&followed, &behind}) {
     const auto follow = [&] {
       if (process == &followed) process->update_maps();
     };
@@ -108,11 +108,11 @@ TEST_P(EveryEngine, HasTheSameBytesWhetherMapsFollowEveryChangeOrAllAtOnce) {
 TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {
   const Data data = draw(30);
   const Candidates candidates = regular(90, 70);
-  const Process alone = processed(data, candidates, settings_of(GetParam()));
+  const GaussianProcess alone = processed(data, candidates, settings_of(GetParam()));
   for (const int threads : {2, 3}) {
-    PosteriorSettings settings = settings_of(GetParam());
+    EngineSettings settings = settings_of(GetParam());
     settings.workers = std::make_shared<Workers>(threads);
-    const Process together = processed(data, candidates, settings);
+    const GaussianProcess together = processed(data, candidates, settings);
     expect_same_maps(alone, together);
   }
 }
@@ -120,10 +120,10 @@ TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {
 TEST_P(EveryEngine, IsTheSameWithinRoundingOnEveryInstructionSet) {
   const Data data = draw(30);
   const Candidates candidates = regular(91, 70);
-  const Process widest = processed(data, candidates, settings_of(GetParam()));
+  const GaussianProcess widest = processed(data, candidates, settings_of(GetParam()));
   for (const Instructions set : math::instruction_sets()) {
     const OnInstructions on(set);
-    const Process other = processed(data, candidates, settings_of(GetParam()));
+    const GaussianProcess other = processed(data, candidates, settings_of(GetParam()));
     EXPECT_LT(apart(widest.mean(0), other.mean(0)), 1e-11) << math::name_of(set);
     EXPECT_LT(apart(widest.relative_variance(), other.relative_variance()), 1e-12) << math::name_of(set);
   }
@@ -132,8 +132,8 @@ TEST_P(EveryEngine, IsTheSameWithinRoundingOnEveryInstructionSet) {
 TEST_P(EveryEngine, ShowsAnOutputThatIsReadLateAsItWouldHaveBeen) {
   const Data data = draw(20);
   const Candidates candidates = grid(20, 20);
-  const Process early = processed(data, candidates, settings_of(GetParam()));
-  Process late(rbf(), kOutputs, candidates, settings_of(GetParam()));
+  const GaussianProcess early = processed(data, candidates, settings_of(GetParam()));
+  GaussianProcess late(rbf(), kOutputs, candidates, settings_of(GetParam()));
   add_all(late, data);
   late.show(2);
   expect_same_maps(early, late);
@@ -142,14 +142,14 @@ TEST_P(EveryEngine, ShowsAnOutputThatIsReadLateAsItWouldHaveBeen) {
 TEST_P(EveryEngine, IsAfterAFitWhatItWouldBeIfItHadBegunSo) {
   const Data data = draw(20);
   const Candidates candidates = grid(20, 31);
-  Process fitted = processed(data, candidates, settings_of(GetParam()));
+  GaussianProcess fitted = processed(data, candidates, settings_of(GetParam()));
   Random random(1, "engine_test");
   const ChangingFit stretching([](FitProblem& problem) {
     problem.kernel.set_parameters(Eigen::Vector2d(0.04, 0.02));
     for (FitOutput& output : problem.outputs) output.signal *= 2.0;
   });
   fitted.fit(stretching, random);
-  const Process fresh =
+  const GaussianProcess fresh =
       processed(data, candidates, settings_of(GetParam()), rbf("{length_scale: 4 cm, length_scale_y: 2 cm}"),
                 {{4.0, 0.2, 0.25, 0.0}, {1.0, 0.05, 0.5, 0.0}});
   expect_same_maps(fitted, fresh);

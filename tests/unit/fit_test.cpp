@@ -76,7 +76,7 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
   }
   const auto& height = *shared->experiment.belief().height_gp().process;
   const TapBelief::Output label = shared->experiment.belief().label_gp();
-  const ProcessSettings& weight = label.process->settings(label.output);
+  const GpSettings& weight = label.process->settings(label.output);
   EXPECT_EQ(&height, label.process) << "two outputs of one process";
   EXPECT_EQ(height.settings().signal, 0.25);
   EXPECT_EQ(height.settings().mean, 0.125);

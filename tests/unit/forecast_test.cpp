@@ -2,7 +2,7 @@
 // What error is expected, and whether a run that stops for it was right to.
 #include "experiment/forecast.hpp"
 
-#include "support/process.hpp"
+#include "support/gaussian_process.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/stopping.hpp"
@@ -60,7 +60,7 @@ struct Bench {
   Candidates candidates;
   std::unique_ptr<const Scene> scene;
   Context context;
-  Process process;
+  GaussianProcess process;
 };
 
 TEST(VarianceRatio, IsTheLikeliestOneWithTheHeightItselfForOneMoreTap) {

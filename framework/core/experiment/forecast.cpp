@@ -20,8 +20,8 @@ double expected_square(const Eigen::VectorXd& probability, const Eigen::VectorXd
   return (p * variance.array() + wrong_outline * mean.array().square()).mean();
 }
 
-double variance_ratio(const Process& heights, double square) {
-  const ProcessSettings& settings = heights.settings();
+double variance_ratio(const GaussianProcess& heights, double square) {
+  const GpSettings& settings = heights.settings();
   const int level = settings.mean_ratio > 0.0 ? 1 : 0;  // taken out of the heights, it costs one of them
   return (square / (settings.signal * settings.signal) + heights.misfit()) /
          (1 + heights.size() - heights.redundant_taps() - level);

@@ -52,7 +52,7 @@ double expected_square(const Eigen::VectorXd& probability, const Eigen::VectorXd
 
 /// By what the variances of `heights` are to be multiplied so that they fit its taps, of which those on an object
 /// have the mean square `square` (square metres) above the desk.
-double variance_ratio(const Process& heights, double square);
+double variance_ratio(const GaussianProcess& heights, double square);
 
 /// Takes in the hits of a run, and forecasts.
 class Forecaster {

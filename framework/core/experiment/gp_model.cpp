@@ -13,9 +13,8 @@
 
 namespace palpate {
 
-GpModel::GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting,
-                 const ProcessSettings& settings, const PosteriorSettings& posterior, const Candidates& candidates,
-                 const Context& context)
+GpModel::GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const GpSettings& settings,
+                 const EngineSettings& posterior, const Candidates& candidates, const Context& context)
     : data_(data),
       kernel_choice_(kernel),
       fitting_choice_(fitting),
@@ -28,7 +27,7 @@ GpModel::GpModel(const Data& data, const PluginChoice& kernel, const PluginChoic
   if (!refusal.empty()) throw Error(fitting.options->place.text(), refusal);
   const std::string why = objection(posterior_, *kernel_, candidates_);
   if (!why.empty()) {
-    const char* const engine = posterior_.engine == PosteriorSettings::Kind::grid ? "grid" : "lowrank";
+    const char* const engine = posterior_.engine == EngineSettings::Kind::grid ? "grid" : "lowrank";
     throw Error("engine.type", fmt::format("{} cannot be used with the kernel {}: {}", engine, kernel.type, why),
                 "engine: {type: dense} serves every kernel");
   }
@@ -48,7 +47,7 @@ bool GpModel::is_fitted_within(int taps) const {
 
 bool GpModel::show(int output) {
   if (!process_) {
-    process_ = std::make_unique<Process>(kernel_, outputs_, candidates_, posterior_);
+    process_ = std::make_unique<GaussianProcess>(kernel_, outputs_, candidates_, posterior_);
   } else if (process_->shown() > output) {
     return false;
   }

@@ -6,7 +6,7 @@
 #include "experiment/contact_log.hpp"
 #include "experiment/phases.hpp"
 #include "gp/candidates.hpp"
-#include "gp/process.hpp"
+#include "gp/gaussian_process.hpp"
 
 #include <palpate/plugin.hpp>
 
@@ -27,11 +27,11 @@ class GpModel {
 
   /// Creates the plugins. `candidates` and `context` must outlive the model. Throws Error if the fitting or the engine
   /// cannot work with the kernel.
-  GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const ProcessSettings& settings,
-          const PosteriorSettings& posterior, const Candidates& candidates, const Context& context);
+  GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const GpSettings& settings,
+          const EngineSettings& posterior, const Candidates& candidates, const Context& context);
 
   /// Adds a second output, the labels. Only before show().
-  void add_labels(const ProcessSettings& settings) { outputs_.push_back(settings); }
+  void add_labels(const GpSettings& settings) { outputs_.push_back(settings); }
 
   /// Whether a fit is due after any of the first `taps` contacts.
   bool is_fitted_within(int taps) const;
@@ -40,7 +40,7 @@ class GpModel {
   bool show(int output);
   bool is_built() const { return process_ != nullptr; }
   bool shows(int output) const { return process_ && process_->shown() > output; }
-  const Process& process() const { return *process_; }
+  const GaussianProcess& process() const { return *process_; }
   /// The fit after the latest contact; null if none was due then.
   const FitSummary* last_fit() const { return fit_at_ > 0 && fit_at_ == process_->size() ? &fit_ : nullptr; }
   int failed_fits() const { return failed_fits_; }
@@ -78,13 +78,13 @@ class GpModel {
 
   Data data_;
   PluginChoice kernel_choice_, fitting_choice_;
-  PosteriorSettings posterior_;
+  EngineSettings posterior_;
   const Candidates& candidates_;
   const Context& context_;
   std::shared_ptr<Kernel> kernel_;
   std::shared_ptr<Fitting> fitting_;
-  std::vector<ProcessSettings> outputs_;
-  std::unique_ptr<Process> process_;
+  std::vector<GpSettings> outputs_;
+  std::unique_ptr<GaussianProcess> process_;
   bool stale_ = false;
   FitSummary fit_;
   int fit_at_ = 0;  ///< number of data at the latest fit

@@ -42,7 +42,7 @@ class LabelMap {
   explicit LabelMap(bool clip) : clip_(clip) {}
 
   /// Reads the map of an output, after `taps` taps. Throws Error for values that are not finite.
-  void update(const Process& process, int output, int taps);
+  void update(const GaussianProcess& process, int output, int taps);
 
   /// The mean of the labels.
   const Eigen::VectorXd& mean() const { return mean_; }
@@ -58,6 +58,6 @@ class LabelMap {
 
 /// Sets `out` to the posterior mean of output 0 in the frame of the scene, metres. Throws Error for values that are not
 /// finite.
-void read_surface(const Process& process, double desk, int taps, Eigen::VectorXd& out);
+void read_surface(const GaussianProcess& process, double desk, int taps, Eigen::VectorXd& out);
 
 }  // namespace palpate

@@ -18,9 +18,9 @@ constexpr double kLevelWithOutliers = 1.0;
 
 namespace {
 
-PosteriorSettings posterior_settings(const ExperimentOptions& options, int prior_points) {
-  PosteriorSettings out;
-  out.engine = static_cast<PosteriorSettings::Kind>(options.engine.type);
+EngineSettings posterior_settings(const ExperimentOptions& options, int prior_points) {
+  EngineSettings out;
+  out.engine = static_cast<EngineSettings::Kind>(options.engine.type);
   out.accuracy = std::min(options.engine.accuracy, 0.1 * options.tie_tolerance);
   out.tolerance = options.engine.tolerance;
   out.taps = static_cast<int>(options.taps) + prior_points;
@@ -32,10 +32,10 @@ bool same(const PluginChoice& a, const PluginChoice& b) {
   return a.type == b.type && a.options->canonical() == b.options->canonical();
 }
 
-GpModel make_height_gp(const ExperimentOptions& options, const PosteriorSettings& posterior,
-                       const Candidates& candidates, const Context& context, bool only_objects) {
+GpModel make_height_gp(const ExperimentOptions& options, const EngineSettings& posterior, const Candidates& candidates,
+                       const Context& context, bool only_objects) {
   const HeightOptions& height = options.height;
-  ProcessSettings settings{height.signal, height.noise, 0.0};
+  GpSettings settings{height.signal, height.noise, 0.0};
   if (only_objects) settings.mean_ratio = height.outlier_probability ? kLevelWithOutliers : kFreeLevel;
   const GpModel::Data data{only_objects ? "fitting/surface" : "fitting/height", false, only_objects};
   return {data,
@@ -62,7 +62,7 @@ TapBelief::TapBelief(const ExperimentOptions& options, const Candidates& candida
       label_map_(options.label.clip) {
   const HeightOptions& height = options.height;
   const LabelOptions& label = options.label;
-  ProcessSettings settings{label.signal, label.noise, label.prior_mean};
+  GpSettings settings{label.signal, label.noise, label.prior_mean};
   if (label.hyperparameters != LabelOptions::Hyperparameters::shared) {
     const PluginChoice kernel = label.kernel.value_or(options.kernel);
     labels_.emplace(GpModel::Data{"fitting/weight", true}, kernel, label.fitting.value_or(options.fitting), settings,

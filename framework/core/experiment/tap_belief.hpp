@@ -88,7 +88,7 @@ class TapBelief final : public Belief {
 
   /// One output of a process.
   struct Output {
-    const Process* process = nullptr;
+    const GaussianProcess* process = nullptr;
     int output = 0;
     const FitSummary* last_fit = nullptr;  ///< the fit after the latest tap; null if none was due then
     explicit operator bool() const { return process != nullptr; }
@@ -153,7 +153,7 @@ class TapBelief final : public Belief {
   const Context& context_;
   PhaseClock& clock_;
   ContactLog log_;
-  PosteriorSettings posterior_;
+  EngineSettings posterior_;
   HeightModel heights_;
   std::optional<GpModel> labels_;  ///< none: output 1 of heights_
   LabelMap label_map_;

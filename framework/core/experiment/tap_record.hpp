@@ -29,15 +29,15 @@ enum class Source { initial, acquisition, fallback, caller };
 constexpr const char* kOfCaller = "of the caller's scores: ";
 
 /// A process as it stood when a tap was chosen.
-struct ProcessState {
+struct GpState {
   std::vector<KernelParameter> kernel;
-  ProcessSettings settings;
+  GpSettings settings;
   double log_marginal_likelihood = 0.0;
   double jitter = 0.0;
   double condition = 1.0;
-  std::string engine;             ///< that keeps the maps
-  std::string engine_reason;      ///< why that one, one line
-  double error_bound = 0.0;       ///< of what the engine adds to the rounding of dense: see Process::error_bound()
+  std::string engine;         ///< that keeps the maps
+  std::string engine_reason;  ///< why that one, one line
+  double error_bound = 0.0;   ///< of what the engine adds to the rounding of dense: see GaussianProcess::error_bound()
   std::optional<FitSummary> fit;  ///< the fit after the latest of its taps; absent if none was due then
 };
 
@@ -49,8 +49,8 @@ struct FootprintState {
 
 /// All models as they stood, as far as the loop had built them, and how good they were.
 struct ModelState {
-  std::optional<ProcessState> height_gp, label_gp;
-  std::optional<ProcessState> surface_gp;  ///< of `surface: two_part`
+  std::optional<GpState> height_gp, label_gp;
+  std::optional<GpState> surface_gp;  ///< of `surface: two_part`
   std::optional<FootprintState> footprint;
   std::optional<Forecast> forecast;                                 ///< where a stop rule asks for it
   std::optional<double> expected_rmse;                              ///< metres; of a tap for observers alone: see Watch

@@ -11,10 +11,10 @@ namespace {
 
 constexpr Quantities kErrorsRead = Quantity::height | Quantity::probability;
 
-ProcessState state_of(const TapBelief::Output& one) {
-  const Process& process = *one.process;
+GpState state_of(const TapBelief::Output& one) {
+  const GaussianProcess& process = *one.process;
   const int output = one.output;
-  ProcessState out;
+  GpState out;
   out.kernel = process.kernel().parameters();
   out.settings = process.settings(output);
   out.log_marginal_likelihood = process.log_marginal_likelihood(output);
@@ -169,10 +169,10 @@ RunResult Watch::result(TapBelief& belief) {
   } else if (belief.surface_gp()) {
     belief.build(Quantity::height);  // what is told of a process is of its maps, too
   }
-  std::vector<const Process*> counted;  // one process may have several outputs
-  const auto take = [&](const TapBelief::Output& one, std::optional<ProcessState>& state) {
+  std::vector<const GaussianProcess*> counted;  // one process may have several outputs
+  const auto take = [&](const TapBelief::Output& one, std::optional<GpState>& state) {
     if (!one) return;
-    const Process& process = *one.process;
+    const GaussianProcess& process = *one.process;
     state = state_of(one);
     FactorReport factors{state->jitter, process.jitter_raised(), process.pivoted(), process.redundant_taps()};
     if (std::find(counted.begin(), counted.end(), &process) != counted.end()) {

@@ -26,8 +26,9 @@ constexpr double kStrong = 2.3;
 
 }  // namespace
 
-void DoubtedSurface::judge(const Process& process, const VectorView& suspicion, const Eigen::VectorXd& roughness) {
-  const ProcessSettings& settings = process.settings();
+void DoubtedSurface::judge(const GaussianProcess& process, const VectorView& suspicion,
+                           const Eigen::VectorXd& roughness) {
+  const GpSettings& settings = process.settings();
   judged_ = process.size() > 0 && settings.noise > 0.0;
   judgement_.doubt = suspicion;
   report_.jitter = 0.0;
@@ -69,7 +70,7 @@ void DoubtedSurface::forget() {
   covered_ = 0;
 }
 
-void DoubtedSurface::cover(const Process& process) {
+void DoubtedSurface::cover(const GaussianProcess& process) {
   const Eigen::Index taps = process.size();
   if (generation_ != process.generation()) covered_ = 0;
   generation_ = process.generation();
@@ -87,7 +88,7 @@ void DoubtedSurface::cover(const Process& process) {
   }
 }
 
-void DoubtedSurface::read_mean(const Process& process, Eigen::VectorXd& out) {
+void DoubtedSurface::read_mean(const GaussianProcess& process, Eigen::VectorXd& out) {
   if (!judged_) return process.read_mean(0, out);
   cover(process);
   out = covariances_.leftCols(covered_) * judgement_.a.segment(1, covered_) +
@@ -95,7 +96,7 @@ void DoubtedSurface::read_mean(const Process& process, Eigen::VectorXd& out) {
   out.array() += judgement_.a(0) + process.settings().mean;
 }
 
-void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out) {
+void DoubtedSurface::read_variance(const GaussianProcess& process, Eigen::VectorXd& out) {
   if (!judged_) return process.read_variance(0, out);
   cover(process);
   // z^T b z by half of the products, as b is symmetric, and so many candidates at a time that theirs stay in the cache.
@@ -119,7 +120,7 @@ void DoubtedSurface::read_variance(const Process& process, Eigen::VectorXd& out)
   out = out.cwiseMax(0.0);
 }
 
-DoubtedSurface::Height DoubtedSurface::at(const Process& process, int candidate) const {
+DoubtedSurface::Height DoubtedSurface::at(const GaussianProcess& process, int candidate) const {
   const auto place = candidates_.points.middleRows(candidate, 1);
   const Points closer = place / kBroader;
   const Eigen::Index taps = this->taps();

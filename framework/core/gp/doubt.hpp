@@ -3,8 +3,8 @@
 #pragma once
 
 #include "gp/candidates.hpp"
+#include "gp/gaussian_process.hpp"
 #include "gp/lies.hpp"
-#include "gp/process.hpp"
 
 namespace palpate {
 
@@ -22,7 +22,7 @@ class DoubtedSurface {
   /// taken for outliers. So the evidence is compared with that of a rough arm's noise. Where the evidence is
   /// strong for that, the outliers are those that even a rough arm does not explain, and the surface is that of the
   /// process, which follows the heights as closely as its own noise says.
-  void judge(const Process& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
+  void judge(const GaussianProcess& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
 
   /// To be called before another process is judged.
   void forget();
@@ -44,16 +44,16 @@ class DoubtedSurface {
 
   // Of the process that was judged, in the unit of the targets and its square; noise excluded.
   /// Over the candidates; these size `out`.
-  void read_mean(const Process& process, Eigen::VectorXd& out);
-  void read_variance(const Process& process, Eigen::VectorXd& out);
+  void read_mean(const GaussianProcess& process, Eigen::VectorXd& out);
+  void read_variance(const GaussianProcess& process, Eigen::VectorXd& out);
   /// At one of them, without any map.
   struct Height {
     double mean, variance;
   };
-  Height at(const Process& process, int candidate) const;
+  Height at(const GaussianProcess& process, int candidate) const;
 
  private:
-  void cover(const Process& process);
+  void cover(const GaussianProcess& process);
 
   const Candidates& candidates_;
   Judgement judgement_;

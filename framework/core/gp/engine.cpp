@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-using Kind = PosteriorSettings::Kind;
+using Kind = EngineSettings::Kind;
 
 /// An engine by its kind, and why that one.
 struct Choice {
@@ -18,8 +18,7 @@ struct Choice {
   std::string reason;
 };
 
-Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
-                   double error) {
+Choice choose_kind(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates, double error) {
   if (settings.engine != Kind::automatic) return {settings.engine, "chosen by engine.type"};
   if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
   if (!candidates.is_grid()) return {Kind::dense, "the candidates are not a product grid"};
@@ -45,14 +44,14 @@ Choice choose_kind(const PosteriorSettings& settings, const Kernel& kernel, cons
 
 }  // namespace
 
-std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates) {
+std::string objection(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates) {
   if (settings.engine == Kind::automatic || settings.engine == Kind::dense) return {};
   if (!kernel.separable()) return "the kernel is not a product of a factor along x and a factor along y";
   if (!candidates.is_grid()) return "the candidates are not a product grid";
   return {};
 }
 
-EngineChoice choose_engine(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
+EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates,
                            double error) {
   Choice choice = choose_kind(settings, kernel, candidates, error);
   const std::shared_ptr<Workers>& workers = settings.workers;

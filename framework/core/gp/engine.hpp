@@ -84,7 +84,7 @@ std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const
 std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
                                      const Candidates& candidates, double tolerance);
 
-struct PosteriorSettings {
+struct EngineSettings {
   enum class Kind { automatic, dense, grid, lowrank };
 
   Kind engine = Kind::automatic;
@@ -103,12 +103,12 @@ struct EngineChoice {
 
 /// Why these settings cannot be used with this kernel, the end of a sentence; empty if they can: `grid` and `lowrank`
 /// need a kernel that is separable and candidates that are a product grid.
-std::string objection(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates);
+std::string objection(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates);
 
 /// The engine that was asked for, or the fastest that is admissible; `lowrank` is not any more when its error has been
 /// found too large, `error` > accuracy. Settings to which there is no objection. The kernel and the candidates must
 /// outlive the engine.
-EngineChoice choose_engine(const PosteriorSettings& settings, const Kernel& kernel, const Candidates& candidates,
+EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates,
                            double error = 0.0);
 
 }  // namespace palpate

@@ -100,21 +100,21 @@ const std::vector<ErrorField>& error_list() {
 std::optional<std::string> if_any(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
 
 /// The fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
-void add_process(Row& row, const std::string& name, const std::optional<ProcessState>& state) {
+void add_process(Row& row, const std::string& name, const std::optional<GpState>& state) {
   if (state) {
     for (const KernelParameter& one : state->kernel) row.add(name + ".kernel." + one.name, one.value);
   }
   const auto add = [&](const char* field, auto get) {
     row.add(name + "." + field, state ? std::optional(get(*state)) : std::nullopt);
   };
-  add("signal", [](const ProcessState& s) { return s.settings.signal; });
-  add("noise", [](const ProcessState& s) { return s.settings.noise; });
-  add("mean", [](const ProcessState& s) { return s.settings.mean; });
-  add("log_marginal_likelihood", [](const ProcessState& s) { return s.log_marginal_likelihood; });
-  add("jitter", [](const ProcessState& s) { return s.jitter; });
-  add("condition", [](const ProcessState& s) { return s.condition; });
-  add("engine", [](const ProcessState& s) { return s.engine; });
-  add("error_bound", [](const ProcessState& s) { return s.error_bound; });
+  add("signal", [](const GpState& s) { return s.settings.signal; });
+  add("noise", [](const GpState& s) { return s.settings.noise; });
+  add("mean", [](const GpState& s) { return s.settings.mean; });
+  add("log_marginal_likelihood", [](const GpState& s) { return s.log_marginal_likelihood; });
+  add("jitter", [](const GpState& s) { return s.jitter; });
+  add("condition", [](const GpState& s) { return s.condition; });
+  add("engine", [](const GpState& s) { return s.engine; });
+  add("error_bound", [](const GpState& s) { return s.error_bound; });
   if (state && state->fit) {
     row.add(name + ".fit.changed", state->fit->changed);
     row.add(name + ".fit.objective", state->fit->objective);
@@ -151,9 +151,9 @@ std::string words(const std::vector<Relabelled>& relabelled) {
 /// Where the loop lays the state of its models down, in a tap and in a result alike.
 template <class Record>
 void list_models(FieldList<Record>& list, bool reasons) {
-  const auto process = [&](const char* name, const char* meaning, std::optional<ProcessState> ModelState::*state) {
+  const auto process = [&](const char* name, const char* meaning, std::optional<GpState> ModelState::*state) {
     list.add_family(std::string(name) + ".*", meaning, [=](Row& row, const Record& record) {
-      const std::optional<ProcessState>& of = record.*state;
+      const std::optional<GpState>& of = record.*state;
       if (!of && state == &ModelState::surface_gp) return;
       add_process(row, name, of);
       if (reasons) row.add(std::string(name) + ".engine_reason", of ? std::optional(of->engine_reason) : std::nullopt);

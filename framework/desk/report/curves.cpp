@@ -38,7 +38,7 @@ std::vector<Curve> named_curves(const History& history, const RowAt& row_at) {
 
 struct NamedState {
   const char* name;
-  std::optional<ProcessState> RunResult::*state;
+  std::optional<GpState> RunResult::*state;
 };
 constexpr std::array<NamedState, 3> kStates{
     {{"height GP", &RunResult::height_gp}, {"label GP", &RunResult::label_gp}, {"surface GP", &RunResult::surface_gp}}};
@@ -51,7 +51,7 @@ Row likelihoods_of(const Moment& moment) {
   return out;
 }
 
-Row parameters_of(const std::optional<ProcessState>& state) {
+Row parameters_of(const std::optional<GpState>& state) {
   if (!state) return {};
   Row out{{{"signal", state->settings.signal}, {"noise", state->settings.noise}}};
   for (const KernelParameter& one : state->kernel) out.add(one.name, one.value);

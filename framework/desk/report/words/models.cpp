@@ -17,7 +17,7 @@ struct Subject {
   bool metric;         ///< targets are metres, not labels
   const PluginChoice& kernel;
   const PluginChoice& fitting;
-  const std::optional<ProcessState>& now;
+  const std::optional<GpState>& now;
   const Row& row;
 
   std::string amount(double value) const { return metric ? length_words(value) : plain_words(value); }

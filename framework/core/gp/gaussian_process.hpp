@@ -17,7 +17,7 @@
 namespace palpate {
 
 /// The numbers of a process that are not the kernel's; standard deviations and mean in the unit of the targets.
-struct ProcessSettings {
+struct GpSettings {
   double signal = 1.0;
   double noise = 0.0;  ///< of one tap, independent from tap to tap, also at one place
   double mean = 0.0;   ///< prior mean, constant
@@ -43,12 +43,12 @@ struct ProcessSettings {
 /// added to the whole diagonal and reported by jitter(); it is part of the model from then on. A matrix that is
 /// singular even so (a kernel that is not positive definite) is factorised with pivoting, and taps that the others
 /// already tell everything about are set aside: they stay recorded but do not enter the posterior.
-class Process {
+class GaussianProcess {
  public:
   /// `candidates` must outlive the process. All `outputs` have the same noise / signal and mean_ratio, which may differ
   /// from 0 only for a single output. Throws Error if there is an objection() to `posterior`.
-  Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
-          PosteriorSettings posterior = {});
+  GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs, const Candidates& candidates,
+                  EngineSettings posterior = {});
 
   /// Adds a tap, a value for each output.
   void add(const Target& place, const VectorView& values);
@@ -116,7 +116,7 @@ class Process {
   /// Rises with every change of the hyperparameters, and of the places of taps.
   int generation() const { return generation_; }
 
-  const ProcessSettings& settings(int output = 0) const { return outputs_[static_cast<std::size_t>(output)]; }
+  const GpSettings& settings(int output = 0) const { return outputs_[static_cast<std::size_t>(output)]; }
   const Kernel& kernel() const { return *kernel_; }
 
   /// Lets `fitting` choose the hyperparameters from the taps, and rebuilds if it changed them. Numbers that are not
@@ -153,9 +153,9 @@ class Process {
   void with_prior(const Use& use) const;
 
   std::shared_ptr<Kernel> kernel_;
-  std::vector<ProcessSettings> outputs_;
+  std::vector<GpSettings> outputs_;
   const Candidates& candidates_;
-  PosteriorSettings posterior_;
+  EngineSettings posterior_;
   EngineChoice choice_;
   int shown_ = 1;
   Eigen::VectorXd prior_;  ///< kernel variance at each candidate; one number if it is the same at all

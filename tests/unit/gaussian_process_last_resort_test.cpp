@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a process does with matrices that no Cholesky factorisation takes: it raises the jitter within its limits,
 // and at the very last sets taps aside. It never gives a number that is none.
+#include "support/gaussian_process.hpp"
 #include "support/mocks.hpp"
-#include "support/process.hpp"
 #include "support/testing.hpp"
 
 #include <functional>
@@ -24,11 +24,11 @@ double hole(double r) { return r > 0.45 && r < 0.55 ? std::nan("") : bell(r); }
 
 const Candidates kCandidates = grid_by_count({1.0, 1.0}, 5);
 
-Process process_of(double (*shape)(double), double noise = 0.0, double mean_ratio = 0.0, double signal = 1.0) {
-  return Process(shaped(shape), {signal, noise, 0.0, mean_ratio}, kCandidates);
+GaussianProcess process_of(double (*shape)(double), double noise = 0.0, double mean_ratio = 0.0, double signal = 1.0) {
+  return GaussianProcess(shaped(shape), {signal, noise, 0.0, mean_ratio}, kCandidates);
 }
 
-void expect_numbers(const Process& process, double kernel_variance = 1.0) {
+void expect_numbers(const GaussianProcess& process, double kernel_variance = 1.0) {
   const double square = process.settings().signal * process.settings().signal;
   const double prior = square * (kernel_variance + process.settings().mean_ratio * process.settings().mean_ratio);
   EXPECT_TRUE(process.mean().allFinite());
@@ -43,7 +43,7 @@ void expect_numbers(const Process& process, double kernel_variance = 1.0) {
 
 TEST(LastResort, DuplicatesWithoutNoiseNeedJitterButNoTapIsSetAside) {
   for (const double signal : {1e-12, 1.0, 1e12}) {
-    Process process = process_of(bell, 0.0, 0.0, signal);
+    GaussianProcess process = process_of(bell, 0.0, 0.0, signal);
     for (int i = 0; i < 60; ++i) {
       process.add({0.3 + 0.1 * (i % 3), 0.3}, signal * (i % 3));
       expect_numbers(process);
@@ -58,7 +58,8 @@ TEST(LastResort, DuplicatesWithoutNoiseNeedJitterButNoTapIsSetAside) {
 
 TEST(LastResort, JitterIsInProportionToTheVarianceOfTheKernel) {
   for (const double variance : {1e-6, 1e6}) {
-    Process process(shaped([variance](double r) { return variance * bell(r); }), {2.0, 0.0, 0.0, 0.0}, kCandidates);
+    GaussianProcess process(shaped([variance](double r) { return variance * bell(r); }), {2.0, 0.0, 0.0, 0.0},
+                            kCandidates);
     for (int i = 0; i < 6; ++i) {
       process.add({0.3, 0.3}, 1.0);
       expect_numbers(process, variance);
@@ -68,7 +69,7 @@ TEST(LastResort, JitterIsInProportionToTheVarianceOfTheKernel) {
 }
 
 TEST(LastResort, OneValueForAPlaceTappedOftenIsTheirAverage) {
-  Process process = process_of(bell);
+  GaussianProcess process = process_of(bell);
   for (const double value : {1.0, 2.0, 3.0, 2.0}) process.add(kCandidates.target(12), value);
   // Contradictory taps without noise: rounding, eps, against a jitter of 10 n eps leaves 1 / (10 n) of their spread.
   EXPECT_NEAR(process.mean()(12), 2.0, 2.0 / (10 * 4));
@@ -76,7 +77,7 @@ TEST(LastResort, OneValueForAPlaceTappedOftenIsTheirAverage) {
 }
 
 TEST(LastResort, AKernelThatIsNoCovarianceIsMetByPivoting) {
-  Process process = process_of(box);
+  GaussianProcess process = process_of(box);
   for (int i = 0; i < 25; ++i) {
     process.add(kCandidates.target(i), std::sin(i));
     expect_numbers(process);
@@ -88,7 +89,7 @@ TEST(LastResort, AKernelThatIsNoCovarianceIsMetByPivoting) {
 }
 
 TEST(LastResort, PivotingWorksWithAnUnknownMeanToo) {
-  Process process = process_of(box, 1e-6, 10.0);
+  GaussianProcess process = process_of(box, 1e-6, 10.0);
   for (int i = 0; i < 25; ++i) process.add(kCandidates.target(i), 3.0);
   expect_numbers(process);
   EXPECT_GT(process.redundant_taps(), 0);
@@ -97,7 +98,7 @@ TEST(LastResort, PivotingWorksWithAnUnknownMeanToo) {
 TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
   // The candidates keep clear of the hole: theirs are numbers.
   const Candidates candidates = scattered((Points(2, 2) << 0.0, 0.0, 0.1, 0.0).finished());
-  Process process(shaped(hole), {1.0, 0.1, 0.0, 0.0}, candidates);
+  GaussianProcess process(shaped(hole), {1.0, 0.1, 0.0, 0.0}, candidates);
   process.add({0.0, 0.1}, 1.0);
   const Eigen::VectorXd before = process.mean();
   process.add({0.0, 0.6}, 5.0);
@@ -112,7 +113,8 @@ TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
 
 TEST(LastResort, OfAKernelOfNothingButNoNumbersTheFirstTapIsLeft) {
   const Candidates candidates = scattered(Points::Zero(1, 2));
-  Process process(shaped([](double r) { return r == 0.0 ? 1.0 : std::nan(""); }), {1.0, 0.0, 0.0, 0.0}, candidates);
+  GaussianProcess process(shaped([](double r) { return r == 0.0 ? 1.0 : std::nan(""); }), {1.0, 0.0, 0.0, 0.0},
+                          candidates);
   process.add({0.0, 0.0}, 1.0);
   process.add({0.1, 0.0}, 1.0);
   process.add({0.2, 0.0}, 1.0);
@@ -122,7 +124,7 @@ TEST(LastResort, OfAKernelOfNothingButNoNumbersTheFirstTapIsLeft) {
 }
 
 TEST(LastResort, JitterThatOnceWasNeededGoesWithTheHyperparametersThatNeededIt) {
-  Process process = process_of(bell);
+  GaussianProcess process = process_of(bell);
   for (int i = 0; i < 8; ++i) process.add({0.5, 0.5}, 1.0);
   EXPECT_GT(process.jitter(), 0.0);
   Random random(1, "test");

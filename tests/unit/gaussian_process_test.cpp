@@ -25,19 +25,19 @@ Data drawn(int n, std::uint64_t seed) {
   return data;
 }
 
-Process processed(const Data& data, const ProcessSettings& settings, const Candidates& candidates) {
-  Process process(bowl(), settings, candidates);
+GaussianProcess processed(const Data& data, const GpSettings& settings, const Candidates& candidates) {
+  GaussianProcess process(bowl(), settings, candidates);
   for (Eigen::Index i = 0; i < data.values.size(); ++i) {
     process.add({data.places(i, 0), data.places(i, 1)}, data.values(i));
   }
   return process;
 }
 
-TEST(Process, EqualsTheTextbookFormulasWithTheWholeMatrix) {
+TEST(GaussianProcess, EqualsTheTextbookFormulasWithTheWholeMatrix) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
   const Data data = drawn(30, 1);
-  const ProcessSettings settings{2.5, 0.1, 0.7};
-  const Process process = processed(data, settings, candidates);
+  const GpSettings settings{2.5, 0.1, 0.7};
+  const GaussianProcess process = processed(data, settings, candidates);
   const auto book = by_the_book(*bowl(), data, candidates.points, settings, 0);
   Eigen::VectorXd prior(81);
   bowl()->variance(candidates.points, prior);
@@ -48,26 +48,26 @@ TEST(Process, EqualsTheTextbookFormulasWithTheWholeMatrix) {
   EXPECT_NEAR(process.log_marginal_likelihood(), book.log_marginal_likelihood(), 1e-9);
 }
 
-TEST(Process, WithoutTapsIsThePrior) {
+TEST(GaussianProcess, WithoutTapsIsThePrior) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 4);
-  const Process process(bowl(), {3.0, 0.1, -2.0}, candidates);
+  const GaussianProcess process(bowl(), {3.0, 0.1, -2.0}, candidates);
   EXPECT_TRUE((process.mean().array() == -2.0).all());
   EXPECT_TRUE((process.relative_variance().array() == 1.0).all());
   EXPECT_EQ(process.log_marginal_likelihood(), 0.0);
 }
 
-TEST(Process, AMeasuredPlaceWithoutNoiseIsKnownExactly) {
+TEST(GaussianProcess, AMeasuredPlaceWithoutNoiseIsKnownExactly) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 4);
-  Process process(bowl(), {1.0, 0.0, 0.0}, candidates);
+  GaussianProcess process(bowl(), {1.0, 0.0, 0.0}, candidates);
   process.add(candidates.target(5), 0.25);
   EXPECT_NEAR(process.mean()(5), 0.25, 1e-15);
   EXPECT_NEAR(process.relative_variance()(5), 0.0, 1e-15);
 }
 
-TEST(Process, MoreTapsNeverRaiseTheVariance) {
+TEST(GaussianProcess, MoreTapsNeverRaiseTheVariance) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
   const Data data = drawn(40, 5);
-  Process process(bowl(), {1.0, 1e-3, 0.0}, candidates);
+  GaussianProcess process(bowl(), {1.0, 1e-3, 0.0}, candidates);
   Eigen::VectorXd before = process.variance();
   for (int i = 0; i < 40; ++i) {
     process.add({data.places(i, 0), data.places(i, 1)}, data.values(i));
@@ -78,30 +78,30 @@ TEST(Process, MoreTapsNeverRaiseTheVariance) {
   }
 }
 
-TEST(Process, TheOrderOfTapsDoesNotMatterBeyondRounding) {
+TEST(GaussianProcess, TheOrderOfTapsDoesNotMatterBeyondRounding) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
   const Data data = drawn(25, 8);
   Data reversed{data.places.colwise().reverse(), data.values.colwise().reverse()};
-  const Process a = processed(data, {1.0, 0.05, 0.0}, candidates);
-  const Process b = processed(reversed, {1.0, 0.05, 0.0}, candidates);
+  const GaussianProcess a = processed(data, {1.0, 0.05, 0.0}, candidates);
+  const GaussianProcess b = processed(reversed, {1.0, 0.05, 0.0}, candidates);
   EXPECT_LT(apart(a.mean(), b.mean()), 1e-10);
   EXPECT_LT(apart(a.variance(), b.variance()), 1e-10);
 }
 
-TEST(Process, ScalingTheUnitOfTheTargetsScalesTheAnswer) {
+TEST(GaussianProcess, ScalingTheUnitOfTheTargetsScalesTheAnswer) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
   const Data metres = drawn(20, 2);
   // A power of two, so that the two computations round alike.
   const Data other{metres.places, metres.values * 1024.0};
-  const Process a = processed(metres, {1.0, 0.01, 0.5}, candidates);
-  const Process b = processed(other, {1024.0, 10.24, 512.0}, candidates);
+  const GaussianProcess a = processed(metres, {1.0, 0.01, 0.5}, candidates);
+  const GaussianProcess b = processed(other, {1024.0, 10.24, 512.0}, candidates);
   EXPECT_EQ(apart(a.mean() * 1024.0, b.mean()), 0.0);
   EXPECT_EQ(apart(a.relative_variance(), b.relative_variance()), 0.0);
 }
 
-TEST(Process, RepeatedTapsWithNoiseAreAveraged) {
+TEST(GaussianProcess, RepeatedTapsWithNoiseAreAveraged) {
   const Candidates candidates = grid_by_count({1.0, 1.0}, 1);
-  Process process(bowl(), {1.0, 0.5, 0.0}, candidates);
+  GaussianProcess process(bowl(), {1.0, 0.5, 0.0}, candidates);
   const Target centre = candidates.target(0);
   for (const double value : {1.0, 2.0, 3.0, 2.0}) process.add(centre, value);
   // n equal places: mean = average * k / (k + noise / n), variance = k noise / (n k + noise), k = 1.5^2.

@@ -3,7 +3,7 @@
 // value and never behind.
 #pragma once
 
-#include "gp/process.hpp"
+#include "gp/gaussian_process.hpp"
 
 #include <memory>
 #include <utility>
@@ -17,30 +17,32 @@ inline Candidates scattered(Points points) {
   return {count, 1, std::move(points), {}, {}};
 }
 
-class Process : public palpate::Process {
+class GaussianProcess : public palpate::GaussianProcess {
  public:
-  Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
-          PosteriorSettings posterior = {})
-      : palpate::Process(std::move(kernel), std::move(outputs), candidates, std::move(posterior)) {
+  GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs, const Candidates& candidates,
+                  EngineSettings posterior = {})
+      : palpate::GaussianProcess(std::move(kernel), std::move(outputs), candidates, std::move(posterior)) {
     update_maps();
   }
-  Process(std::shared_ptr<Kernel> kernel, const ProcessSettings& output, const Candidates& candidates,
-          PosteriorSettings posterior = {})
-      : Process(std::move(kernel), std::vector<ProcessSettings>{output}, candidates, std::move(posterior)) {}
+  GaussianProcess(std::shared_ptr<Kernel> kernel, const GpSettings& output, const Candidates& candidates,
+                  EngineSettings posterior = {})
+      : GaussianProcess(std::move(kernel), std::vector<GpSettings>{output}, candidates, std::move(posterior)) {}
 
   void add(const Target& place, const VectorView& values) {
-    palpate::Process::add(place, values);
+    palpate::GaussianProcess::add(place, values);
     update_maps();
   }
   void add(const Target& place, double value) { add(place, Eigen::Map<const Eigen::VectorXd>(&value, 1)); }
-  bool trust(const VectorView& shares) { return updated(palpate::Process::trust(shares)); }
-  bool correct(const VectorView& values) { return updated(palpate::Process::correct(values)); }
-  bool move(const PointsView& places) { return updated(palpate::Process::move(places)); }
+  bool trust(const VectorView& shares) { return updated(palpate::GaussianProcess::trust(shares)); }
+  bool correct(const VectorView& values) { return updated(palpate::GaussianProcess::correct(values)); }
+  bool move(const PointsView& places) { return updated(palpate::GaussianProcess::move(places)); }
   void show(int outputs) {
-    palpate::Process::show(outputs);
+    palpate::GaussianProcess::show(outputs);
     update_maps();
   }
-  FitSummary fit(const Fitting& fitting, Random& random) { return updated(palpate::Process::fit(fitting, random)); }
+  FitSummary fit(const Fitting& fitting, Random& random) {
+    return updated(palpate::GaussianProcess::fit(fitting, random));
+  }
 
   Eigen::VectorXd mean(int output = 0) const {
     return filled([&](Eigen::VectorXd& out) { read_mean(output, out); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gp/process.hpp"
+#include "gp/gaussian_process.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>
@@ -21,8 +21,8 @@ constexpr loops::Reading kAsItIs{-kUnbound, kUnbound, 1.0, 0.0};
 
 }  // namespace
 
-Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> outputs, const Candidates& candidates,
-                 PosteriorSettings posterior)
+GaussianProcess::GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs,
+                                 const Candidates& candidates, EngineSettings posterior)
     : kernel_(std::move(kernel)),
       outputs_(std::move(outputs)),
       candidates_(candidates),
@@ -34,14 +34,14 @@ Process::Process(std::shared_ptr<Kernel> kernel, std::vector<ProcessSettings> ou
   reserve(1);
 }
 
-void Process::take_prior() {
+void GaussianProcess::take_prior() {
   prior_.resize(candidates_.size());
   kernel_->variance(candidates_.points, prior_);
   same_prior_ = prior_.minCoeff() == prior_.maxCoeff();
   if (same_prior_) prior_.conservativeResize(1);
 }
 
-void Process::reserve(int taps) {
+void GaussianProcess::reserve(int taps) {
   if (targets_.rows() >= taps) return;
   // What is expected, within reason, so that no tap has to make room; then twice as much every time.
   constexpr int kMostExpected = 4096;
@@ -58,13 +58,13 @@ void Process::reserve(int taps) {
   choice_.engine->reserve(capacity);
 }
 
-void Process::choose(double error) {
+void GaussianProcess::choose(double error) {
   choice_ = choose_engine(posterior_, *kernel_, candidates_, error);
   taken_ = kNothing;
   choice_.engine->reserve(static_cast<int>(targets_.rows()));
 }
 
-void Process::add(const Target& place, const VectorView& values) {
+void GaussianProcess::add(const Target& place, const VectorView& values) {
   reserve(size_ + 1);
   points_(size_, 0) = place.x;
   points_(size_, 1) = place.y;
@@ -74,21 +74,21 @@ void Process::add(const Target& place, const VectorView& values) {
   if (!append(size_ - 1)) rebuild();
 }
 
-bool Process::trust(const VectorView& shares) {
+bool GaussianProcess::trust(const VectorView& shares) {
   if (shares == trust_.head(size_)) return false;
   trust_.head(size_) = shares;
   rebuild();
   return true;
 }
 
-bool Process::correct(const VectorView& values) {
+bool GaussianProcess::correct(const VectorView& values) {
   if (values == targets_.col(0).head(size_)) return false;
   targets_.col(0).head(size_) = values;
   rebuild();
   return true;
 }
 
-bool Process::move(const PointsView& places) {
+bool GaussianProcess::move(const PointsView& places) {
   if (places == points_.topRows(size_)) return false;
   points_.topRows(size_) = places;
   ++generation_;
@@ -96,7 +96,7 @@ bool Process::move(const PointsView& places) {
   return true;
 }
 
-bool Process::append(int tap) {
+bool GaussianProcess::append(int tap) {
   const int row = factor_.size();
   factored_.row(row) = points_.row(tap);
   // Not row(row): a row at compile time would be copied to the heap where a view of points is asked for.
@@ -112,14 +112,14 @@ bool Process::append(int tap) {
     reduced_(row, column) = (value - before.dot(reduced_.col(column).head(row))) / factor_.pivot(row);
   };
   for (Eigen::Index k = 0; k < targets_.cols(); ++k) {
-    const ProcessSettings& output = settings(static_cast<int>(k));
+    const GpSettings& output = settings(static_cast<int>(k));
     reduce(k, (targets_(tap, k) - output.mean) / output.signal);
   }
   if (with_constant()) reduce(targets_.cols(), 1.0);
   return true;
 }
 
-void Process::absorb(int row) {
+void GaussianProcess::absorb(int row) {
   Engine& engine = *choice_.engine;
   VectorOut inverse = scratch_.head(engine.needs_inverse() ? row + 1 : 0);
   if (engine.needs_inverse()) {
@@ -135,26 +135,26 @@ void Process::absorb(int row) {
   engine.absorb({factored_.topRows(row + 1), factor_.row(row), factor_.pivot(row), inverse, coefficients.data()});
 }
 
-void Process::show(int outputs) {
+void GaussianProcess::show(int outputs) {
   if (outputs <= shown_) return;
   shown_ = outputs;
   taken_ = kNothing;
 }
 
-void Process::update_maps() {
+void GaussianProcess::update_maps() {
   take_rows();
-  if (posterior_.engine != PosteriorSettings::Kind::automatic) return;
+  if (posterior_.engine != EngineSettings::Kind::automatic) return;
   const double error = error_bound();
   if (!(error > posterior_.accuracy)) return;
   choose(error);
   take_rows();
 }
 
-void Process::require_maps() const {
+void GaussianProcess::require_maps() const {
   if (taken_ != factor_.size()) throw std::logic_error("a map of a GP is read that is older than its taps");
 }
 
-void Process::take_rows() {
+void GaussianProcess::take_rows() {
   if (taken_ == kNothing) {
     inverse_norms_ = 0.0;
     choice_.engine->restart(shown_ + (with_constant() ? 1 : 0), prior_);
@@ -163,7 +163,7 @@ void Process::take_rows() {
   for (; taken_ < factor_.size(); ++taken_) absorb(taken_);
 }
 
-double Process::error_bound() const {
+double GaussianProcess::error_bound() const {
   require_maps();
   const VectorView errors = choice_.engine->covariance_errors();
   const int n = factor_.size();
@@ -188,13 +188,13 @@ double Process::error_bound() const {
   return std::max(mean, variance);
 }
 
-bool Process::refactor(const std::vector<int>& taps) {
+bool GaussianProcess::refactor(const std::vector<int>& taps) {
   factor_.clear();
   taken_ = kNothing;
   return std::all_of(taps.begin(), taps.end(), [this](int tap) { return append(tap); });
 }
 
-void Process::rebuild() {
+void GaussianProcess::rebuild() {
   std::vector<int> taps(static_cast<std::size_t>(size_));
   std::iota(taps.begin(), taps.end(), 0);
   const auto pivot = [&] {
@@ -210,10 +210,10 @@ void Process::rebuild() {
       report_, size_, prior_.maxCoeff(), [&] { return refactor(taps); }, pivot);
 }
 
-FitSummary Process::fit(const Fitting& fitting, Random& random) {
+FitSummary GaussianProcess::fit(const Fitting& fitting, Random& random) {
   std::vector<double> old;
   for (const KernelParameter& one : kernel_->parameters()) old.push_back(one.value);
-  std::vector<ProcessSettings> fitted = outputs_;
+  std::vector<GpSettings> fitted = outputs_;
   double ratio = noise_ratio();
   FitProblem problem{points_.topRows(size_), *kernel_, ratio, outputs_.front().mean_ratio, {}, &fit_memory_};
   for (std::size_t k = 0; k < fitted.size(); ++k) {
@@ -225,7 +225,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
 
   bool sound = std::isfinite(ratio) && ratio >= 0.0;
   for (const KernelParameter& one : kernel_->parameters()) sound &= std::isfinite(one.value) && one.value > 0.0;
-  for (const ProcessSettings& one : fitted) {
+  for (const GpSettings& one : fitted) {
     sound &= std::isfinite(one.signal) && one.signal > 0.0 && std::isfinite(one.mean);
   }
   if (!sound) {
@@ -237,7 +237,7 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
   }
   ++generation_;
   outputs_ = fitted;
-  for (ProcessSettings& one : outputs_) one.noise = ratio * one.signal;
+  for (GpSettings& one : outputs_) one.noise = ratio * one.signal;
   take_prior();
   report_.jitter = 0.0;
   choose();
@@ -245,17 +245,17 @@ FitSummary Process::fit(const Fitting& fitting, Random& random) {
   return summary;
 }
 
-double Process::constant_precision() const {
+double GaussianProcess::constant_precision() const {
   return 1.0 / prior_of_constant() + reduced_.col(targets_.cols()).head(factor_.size()).squaredNorm();
 }
 
-double Process::constant_mean() const {
+double GaussianProcess::constant_mean() const {
   const int n = factor_.size();
   return reduced_.col(targets_.cols()).head(n).dot(reduced_.col(0).head(n)) / constant_precision();
 }
 
 template <class Use>
-void Process::with_prior(const Use& use) const {
+void GaussianProcess::with_prior(const Use& use) const {
   if (same_prior_) {
     use(Eigen::ArrayXd::Constant(candidates_.size(), prior_(0) + prior_of_constant()));
   } else {
@@ -263,7 +263,7 @@ void Process::with_prior(const Use& use) const {
   }
 }
 
-void Process::read_mean(int output, Eigen::VectorXd& out) const {
+void GaussianProcess::read_mean(int output, Eigen::VectorXd& out) const {
   out.resize(candidates_.size());
   const double signal = settings(output).signal;
   const double mean = settings(output).mean;
@@ -274,7 +274,7 @@ void Process::read_mean(int output, Eigen::VectorXd& out) const {
   out.array() = signal * (out.array() + constant_mean() * (1.0 - explained.array())) + mean;
 }
 
-void Process::read_standard_variance(Eigen::VectorXd& out) const {
+void GaussianProcess::read_standard_variance(Eigen::VectorXd& out) const {
   out.resize(candidates_.size());
   maps().read_variance(kAsItIs, out);
   if (with_constant()) {
@@ -284,7 +284,7 @@ void Process::read_standard_variance(Eigen::VectorXd& out) const {
   }
 }
 
-void Process::read_bound_variance(double scale, Eigen::VectorXd& out) const {
+void GaussianProcess::read_bound_variance(double scale, Eigen::VectorXd& out) const {
   if (same_prior_ && !with_constant()) {
     out.resize(candidates_.size());
     return maps().read_variance({0.0, prior_(0), scale, 0.0}, out);
@@ -293,18 +293,18 @@ void Process::read_bound_variance(double scale, Eigen::VectorXd& out) const {
   with_prior([&](const auto& prior) { out.array() = out.array().max(0.0).min(prior) * scale; });
 }
 
-void Process::read_variance(int output, Eigen::VectorXd& out) const {
+void GaussianProcess::read_variance(int output, Eigen::VectorXd& out) const {
   read_bound_variance(settings(output).signal * settings(output).signal, out);
 }
 
-void Process::read_relative_variance(Eigen::VectorXd& out) const {
+void GaussianProcess::read_relative_variance(Eigen::VectorXd& out) const {
   read_bound_variance(1.0, out);
   with_prior([&](const auto& prior) {
     if (!same_prior_ || prior(0) != 1.0) out.array() /= prior;  // dividing takes longest, and most priors are 1
   });
 }
 
-int Process::variances_clamped() const {
+int GaussianProcess::variances_clamped() const {
   Eigen::VectorXd variance;
   read_standard_variance(variance);
   // A last digit above the prior is no news; below 0 every digit is.
@@ -315,14 +315,14 @@ int Process::variances_clamped() const {
   return static_cast<int>(clamped);
 }
 
-double Process::misfit(int output) const {
+double GaussianProcess::misfit(int output) const {
   const auto reduced = reduced_.col(output).head(factor_.size());
   if (!with_constant()) return reduced.squaredNorm();
   const double common = reduced_.col(targets_.cols()).head(factor_.size()).dot(reduced);
   return reduced.squaredNorm() - common * common / constant_precision();
 }
 
-double Process::log_marginal_likelihood(int output) const {
+double GaussianProcess::log_marginal_likelihood(int output) const {
   const int n = factor_.size();
   if (n == 0) return 0.0;
   double log_determinant = factor_.log_determinant();
