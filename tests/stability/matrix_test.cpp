@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The default over noise, length scale and taps: no run ends with what is not finite, and the model of outliers costs
 // little where there are none. tests/stability_matrix.py is the long form.
-#include "gp/doubt.hpp"
+#include "gp/robust_surface.hpp"
 
 #include "support/gaussian_process.hpp"
 #include "support/runs.hpp"
@@ -90,13 +90,13 @@ TEST_P(OutlierModel, IsFiniteAndAsGoodAsTheProcessItself) {
         GaussianProcess process(kernel, GpSettings{0.1, noise, 0.0, 1.0}, candidates);
         for (Eigen::Index i = 0; i < count; ++i)
           process.add({places(i, 0), places(i, 1)}, surface(places(i, 0), places(i, 1)));
-        DoubtedSurface judged(candidates);
-        judged.judge(process, Eigen::VectorXd::Constant(count, 0.03));
+        RobustSurface judged(candidates);
+        judged.update(process, Eigen::VectorXd::Constant(count, 0.03));
         Eigen::VectorXd mean, variance;
         judged.read_mean(process, mean);
         judged.read_variance(process, variance);
         const std::string cell = fmt::format("{} taps, noise {}, length scale {}", count, noise, length);
-        ASSERT_TRUE(mean.allFinite() && variance.allFinite() && judged.doubt().allFinite()) << cell;
+        ASSERT_TRUE(mean.allFinite() && variance.allFinite() && judged.outlier_probabilities().allFinite()) << cell;
         EXPECT_GE(variance.minCoeff(), 0.0) << cell;
         const auto rms_of = [&](const Eigen::VectorXd& map) {
           double squares = 0.0;

@@ -48,10 +48,10 @@ bool OutlierModel::update(const ContactLog& log, const GpModel& objects, const F
       prior(i) = mislabelled + (1.0 - mislabelled) * prior_;
     }
   }
-  surface_.judge(objects.process(), prior, roughness);
+  surface_.update(objects.process(), prior, roughness);
   for (Eigen::Index i = log.prior_objects(); i < objects_count; ++i) {
     const int row = log.object_rows()[static_cast<std::size_t>(i)];
-    probabilities_(row - log.prior_size()) = tempered(surface_.doubt()(i));
+    probabilities_(row - log.prior_size()) = tempered(surface_.outlier_probabilities()(i));
   }
   return true;
 }

@@ -5,7 +5,7 @@
 
 #include "experiment/contact_log.hpp"
 #include "experiment/gp_model.hpp"
-#include "gp/doubt.hpp"
+#include "gp/robust_surface.hpp"
 
 #include <palpate/footprint.hpp>
 
@@ -35,22 +35,22 @@ class OutlierModel {
   /// all labels are right.
   bool update(const ContactLog& log, const GpModel& objects, const Footprint* footprint);
   /// Forgets the surface, as labels have changed.
-  void reset() { surface_.forget(); }
+  void reset() { surface_.reset(); }
 
   /// Of each contact at the latest update(); empty before.
   const Eigen::VectorXd& probabilities() const { return probabilities_; }
   std::vector<SuspectedOutlier> suspected(const ContactLog& log) const;
 
   /// The surface without outliers. It has no map while is_surface() is false: then the surface is that of the GP.
-  DoubtedSurface& surface() { return surface_; }
-  const DoubtedSurface& surface() const { return surface_; }
+  RobustSurface& surface() { return surface_; }
+  const RobustSurface& surface() const { return surface_; }
   bool is_surface(const GpModel& objects) const {
-    return surface_.judged() && surface_.taps() == objects.process().size();
+    return surface_.excludes_outliers() && surface_.taps() == objects.process().size();
   }
 
  private:
   double prior_;
-  DoubtedSurface surface_;
+  RobustSurface surface_;
   Eigen::VectorXd probabilities_, by_label_;  ///< of each contact
 };
 

@@ -53,7 +53,7 @@ void SurfaceModel::update_maps(const ContactLog& log) {
 }
 
 Prediction SurfaceModel::predict(int candidate, const ContactLog& log) const {
-  DoubtedSurface::Height height;
+  RobustSurface::Height height;
   if (is_without_outliers()) {
     height = outliers_->surface().at(gp_.process(), candidate);
   } else {

@@ -107,30 +107,30 @@ void Systematic::judge_all() {
     excess.erase(excess.begin(), excess.end() - kMost);
   }
   const auto n = static_cast<Eigen::Index>(judged_.size());
-  Testimony testimony;
-  testimony.covariance = Eigen::MatrixXd::NullaryExpr(n, n, [this](Eigen::Index i, Eigen::Index j) {
+  OutlierProblem problem;
+  problem.covariance = Eigen::MatrixXd::NullaryExpr(n, n, [this](Eigen::Index i, Eigen::Index j) {
     return covariance(judged_[static_cast<std::size_t>(i)], judged_[static_cast<std::size_t>(j)]);
   });
-  testimony.heights = Eigen::Map<const Eigen::VectorXd>(excess.data(), n);
-  testimony.suspicion = Eigen::VectorXd::Constant(n, kOther);
-  testimony.signals = {1.0};
-  testimony.noises = {noise_};
-  testimony.lie = kOthers;
+  problem.heights = Eigen::Map<const Eigen::VectorXd>(excess.data(), n);
+  problem.prior = Eigen::VectorXd::Constant(n, kOther);
+  problem.signals = {1.0};
+  problem.noises = {noise_};
+  problem.outlier_deviation = kOthers;
   // A few tenths of a millimetre are all there is to learn: the likeliest sets say it.
-  constexpr Effort kEffort{8, 1e-3, 1e-6};
-  if (n > 0) judgement_ = judge(testimony, kEffort);
+  constexpr OutlierSearchLimits kLimits{8, 1e-3, 1e-6};
+  if (n > 0) posterior_ = infer_outliers(problem, kLimits);
 }
 
 Systematic::Estimate Systematic::at(double seconds, int motion) const {
   const When now{seconds, motion};
   Estimate out{0.0, covariance(now, now)};
   if (judged_.empty()) return out;
-  const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;  // of a judgement without its broad signal
+  const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;  // of a posterior without its broad signal
   Eigen::VectorXd z(size);
   z(0) = 1.0;
   for (Eigen::Index i = 1; i < size; ++i) z(i) = covariance(now, judged_[static_cast<std::size_t>(i - 1)]);
-  out.value = z.dot(judgement_.a.head(size));
-  out.variance += z.dot(judgement_.b.topLeftCorner(size, size) * z);
+  out.value = z.dot(posterior_.a.head(size));
+  out.variance += z.dot(posterior_.b.topLeftCorner(size, size) * z);
   return out;
 }
 

@@ -14,14 +14,14 @@
 // contact that is low all alone may be one that lies, and bounds nothing; two that agree do.
 //
 // Not every contact that is so low is one with the bare desk: the rim of a dome or a jerk of the force is as low: those
-// at a rim are left out, the others judged as the taps of a surface are (gp/lies.hpp).
+// at a rim are left out, the others judged as the taps of a surface are (gp/outlier_posterior.hpp).
 //
 // Each motion adds a little of its own to what all add: a fifth of the prior variance of the offset is each's alone.
 //
 // What an object's own softness adds beyond the desk's is not in it: nothing that is touched tells.
 #pragma once
 
-#include "gp/lies.hpp"
+#include "gp/outlier_posterior.hpp"
 
 #include <palpate/types.hpp>
 
@@ -85,7 +85,7 @@ class Systematic {
   std::vector<Touched> touched_;  ///< all contacts
   std::vector<bool> above_;       ///< of these
   std::vector<When> judged_;      ///< when those of them were made that are judged
-  Judgement judgement_;
+  OutlierPosterior posterior_;
 };
 
 }  // namespace palpate

@@ -31,33 +31,34 @@
 namespace palpate {
 
 /// What is known of n taps before their heights are compared. Heights and deviations in one unit.
-struct Testimony {
-  Eigen::MatrixXd covariance;   ///< of the taps, n x n, at a signal of 1, without noise
-  Eigen::MatrixXd broad;        ///< likewise, of the broad signal; empty where there is none
-  Eigen::VectorXd heights;      ///< y, less the prior mean
-  Eigen::VectorXd suspicion;    ///< pi, in [0, 1]
-  std::vector<double> signals;  ///< deviations that the surface may have, each as probable as the others
-  std::vector<double> noises;   ///< the same of the noise of a tap, all above 0
-  Eigen::VectorXd roughness;    ///< n: variance that a tap's noise has beside that; empty for none
-  double broad_signal = 0.0;    ///< deviation of the broad signal
-  double level = 0.0;           ///< deviation of a constant that is added to all of f; 0: there is none
-  double lie = 1.0;             ///< deviation of a lie: it is normal about the prior mean
+struct OutlierProblem {
+  Eigen::MatrixXd covariance;        ///< of the taps, n x n, at a signal of 1, without noise
+  Eigen::MatrixXd broad_covariance;  ///< likewise, of the broad signal; empty where there is none
+  Eigen::VectorXd heights;           ///< y, less the prior mean
+  Eigen::VectorXd prior;             ///< pi, in [0, 1]
+  std::vector<double> signals;       ///< deviations that the surface may have, each as probable as the others
+  std::vector<double> noises;        ///< the same of the noise of a tap, all above 0
+  Eigen::VectorXd extra_variance;    ///< n: variance that a tap's noise has beside that; empty for none
+  double broad_signal = 0.0;         ///< deviation of the broad signal
+  double mean_deviation = 0.0;       ///< deviation of a constant that is added to all of f; 0: there is none
+  double outlier_deviation = 1.0;    ///< deviation of a lie: it is normal about the prior mean
 };
 
 /// How far the sum over the sets goes.
-struct Effort {
-  int looks = 32;            ///< at most so many sets have their neighbours looked at
-  double negligible = 1e-4;  ///< a set less likely than this, beside the likeliest, is not summed
-  double hopeless = 1e-8;    ///< nor is one looked at that is less likely than this: likely ones may lie behind others
+struct OutlierSearchLimits {
+  int expansions = 32;       ///< at most so many sets have their neighbours looked at
+  double min_summed = 1e-4;  ///< a set less likely than this, beside the likeliest, is not summed
+  double min_expanded =
+      1e-8;  ///< nor is one looked at that is less likely than this: likely ones may lie behind others
 };
 
-struct Judgement {
-  Eigen::VectorXd doubt;  ///< n: the probability that a tap lies
-  Eigen::VectorXd a;      ///< 1 + 2 n: the constant, then k, then l
-  Eigen::MatrixXd b;      ///< as many square, symmetric
-  double s2 = 0.0;        ///< mean of the square of the signals, that of the broad one included
-  int sets = 0;           ///< how many were summed
-  double next = 0.0;      ///< how likely, beside the likeliest, is the first set whose neighbours were not looked at
+struct OutlierPosterior {
+  Eigen::VectorXd probability;  ///< n: the probability that a tap lies
+  Eigen::VectorXd a;            ///< 1 + 2 n: the constant, then k, then l
+  Eigen::MatrixXd b;            ///< as many square, symmetric
+  double s2 = 0.0;              ///< mean of the square of the signals, that of the broad one included
+  int summed_sets = 0;          ///< how many were summed
+  double next_weight = 0.0;  ///< how likely, beside the likeliest, is the first set whose neighbours were not looked at
   /// log p(y), natural logarithm, of the mean over signals and noises, but for a number that hangs on n alone.
   double log_evidence = 0.0;
   FactorReport report;  ///< the largest jitter, the most rows set aside and all counts of the factorisations
@@ -67,6 +68,6 @@ struct Judgement {
 /// counts as jitter. Rows that no jitter makes independent of the others are set aside, for each signal and noise by
 /// itself: there they keep their suspicion and tell nothing. All numbers are finite where heights and covariances are,
 /// and far from overflow. Never throws.
-Judgement judge(const Testimony& testimony, const Effort& effort = {});
+OutlierPosterior infer_outliers(const OutlierProblem& problem, const OutlierSearchLimits& limits = {});
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gp/doubt.hpp"
+#include "gp/robust_surface.hpp"
 
 #include <palpate/math.hpp>
 
@@ -26,51 +26,51 @@ constexpr double kStrong = 2.3;
 
 }  // namespace
 
-void DoubtedSurface::judge(const GaussianProcess& process, const VectorView& suspicion,
+void RobustSurface::update(const GaussianProcess& process, const VectorView& suspicion,
                            const Eigen::VectorXd& roughness) {
   const GpSettings& settings = process.settings();
   judged_ = process.size() > 0 && settings.noise > 0.0;
-  judgement_.doubt = suspicion;
+  posterior_.probability = suspicion;
   report_.jitter = 0.0;
   report_.redundant_taps = 0;
   if (!judged_) return;
-  Testimony testimony;
+  OutlierProblem problem;
   const auto taps = static_cast<Eigen::Index>(process.size());
-  testimony.covariance.resize(taps, taps);
-  process.kernel().covariance(process.places(), process.places(), testimony.covariance);
+  problem.covariance.resize(taps, taps);
+  process.kernel().covariance(process.places(), process.places(), problem.covariance);
   const Points closer = process.places() / kBroader;
-  testimony.broad.resize(taps, taps);
-  process.kernel().covariance(closer, closer, testimony.broad);
-  testimony.heights = process.targets().array() - settings.mean;
-  testimony.suspicion = suspicion;
-  testimony.roughness = roughness;
-  for (const double share : kSignals) testimony.signals.push_back(share * settings.signal);
-  for (const double share : kNoises) testimony.noises.push_back(share * settings.noise);
-  testimony.broad_signal = kBroadSignal * settings.signal;
-  testimony.level = settings.mean_ratio * settings.signal;
-  testimony.lie = math::hypot(settings.signal, testimony.level);
-  judgement_ = palpate::judge(testimony);
+  problem.broad_covariance.resize(taps, taps);
+  process.kernel().covariance(closer, closer, problem.broad_covariance);
+  problem.heights = process.targets().array() - settings.mean;
+  problem.prior = suspicion;
+  problem.extra_variance = roughness;
+  for (const double share : kSignals) problem.signals.push_back(share * settings.signal);
+  for (const double share : kNoises) problem.noises.push_back(share * settings.noise);
+  problem.broad_signal = kBroadSignal * settings.signal;
+  problem.mean_deviation = settings.mean_ratio * settings.signal;
+  problem.outlier_deviation = math::hypot(settings.signal, problem.mean_deviation);
+  posterior_ = infer_outliers(problem);
   if (settings.noise < kExact * settings.signal) {
-    testimony.noises.clear();
-    for (const double share : kRough) testimony.noises.push_back(share * settings.signal);
-    const Judgement rough = palpate::judge(testimony);
-    judged_ = !(rough.log_evidence > judgement_.log_evidence + kStrong);
+    problem.noises.clear();
+    for (const double share : kRough) problem.noises.push_back(share * settings.signal);
+    const OutlierPosterior rough = infer_outliers(problem);
+    judged_ = !(rough.log_evidence > posterior_.log_evidence + kStrong);
     if (!judged_) {
-      judgement_.doubt = rough.doubt;
-      judgement_.report = rough.report;
+      posterior_.probability = rough.probability;
+      posterior_.report = rough.report;
     }
   }
-  report_.add(judgement_.report);
+  report_.add(posterior_.report);
 }
 
-void DoubtedSurface::forget() {
+void RobustSurface::reset() {
   clamped_ = 0;
-  judgement_ = {};
+  posterior_ = {};
   judged_ = false;
   covered_ = 0;
 }
 
-void DoubtedSurface::cover(const GaussianProcess& process) {
+void RobustSurface::cover(const GaussianProcess& process) {
   const Eigen::Index taps = process.size();
   if (generation_ != process.generation()) covered_ = 0;
   generation_ = process.generation();
@@ -88,25 +88,25 @@ void DoubtedSurface::cover(const GaussianProcess& process) {
   }
 }
 
-void DoubtedSurface::read_mean(const GaussianProcess& process, Eigen::VectorXd& out) {
+void RobustSurface::read_mean(const GaussianProcess& process, Eigen::VectorXd& out) {
   if (!judged_) return process.read_mean(0, out);
   cover(process);
-  out = covariances_.leftCols(covered_) * judgement_.a.segment(1, covered_) +
-        broad_.leftCols(covered_) * judgement_.a.tail(covered_);
-  out.array() += judgement_.a(0) + process.settings().mean;
+  out = covariances_.leftCols(covered_) * posterior_.a.segment(1, covered_) +
+        broad_.leftCols(covered_) * posterior_.a.tail(covered_);
+  out.array() += posterior_.a(0) + process.settings().mean;
 }
 
-void DoubtedSurface::read_variance(const GaussianProcess& process, Eigen::VectorXd& out) {
+void RobustSurface::read_variance(const GaussianProcess& process, Eigen::VectorXd& out) {
   if (!judged_) return process.read_variance(0, out);
   cover(process);
   // z^T b z by half of the products, as b is symmetric, and so many candidates at a time that theirs stay in the cache.
   constexpr Eigen::Index kTogether = 128;
-  Eigen::MatrixXd half = judgement_.b.triangularView<Eigen::StrictlyUpper>();
-  half.diagonal() = 0.5 * judgement_.b.diagonal();
+  Eigen::MatrixXd half = posterior_.b.triangularView<Eigen::StrictlyUpper>();
+  half.diagonal() = 0.5 * posterior_.b.diagonal();
   Eigen::MatrixXd z = Eigen::MatrixXd::Ones(kTogether, half.rows());
   out.resize(candidates_.size());
   process.kernel().variance(candidates_.points, out);
-  out *= judgement_.s2;
+  out *= posterior_.s2;
   Eigen::MatrixXd products(kTogether, half.cols());
   for (Eigen::Index first = 0; first < out.size(); first += kTogether) {
     const Eigen::Index count = std::min(kTogether, out.size() - first);
@@ -120,7 +120,7 @@ void DoubtedSurface::read_variance(const GaussianProcess& process, Eigen::Vector
   out = out.cwiseMax(0.0);
 }
 
-DoubtedSurface::Height DoubtedSurface::at(const GaussianProcess& process, int candidate) const {
+RobustSurface::Height RobustSurface::at(const GaussianProcess& process, int candidate) const {
   const auto place = candidates_.points.middleRows(candidate, 1);
   const Points closer = place / kBroader;
   const Eigen::Index taps = this->taps();
@@ -133,8 +133,8 @@ DoubtedSurface::Height DoubtedSurface::at(const GaussianProcess& process, int ca
   z.tail(taps) = column;
   Eigen::VectorXd own(1);
   process.kernel().variance(place, own);
-  return {z.dot(judgement_.a) + process.settings().mean,
-          std::max(0.0, judgement_.s2 * own(0) + z.dot(judgement_.b * z))};
+  return {z.dot(posterior_.a) + process.settings().mean,
+          std::max(0.0, posterior_.s2 * own(0) + z.dot(posterior_.b * z))};
 }
 
 }  // namespace palpate

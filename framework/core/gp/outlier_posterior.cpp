@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gp/lies.hpp"
+#include "gp/outlier_posterior.hpp"
 
 #include <palpate/math.hpp>
 
@@ -25,15 +25,16 @@ struct Constant {
 /// All about one signal and one noise.
 class Court {
  public:
-  Court(const Testimony& testimony, double signal, double noise) : signal_(signal), level_(testimony.level) {
-    const Eigen::Index n = testimony.heights.size();
-    Eigen::MatrixXd covariance = signal * signal * testimony.covariance;
-    if (testimony.broad.size() > 0) covariance += testimony.broad_signal * testimony.broad_signal * testimony.broad;
+  Court(const OutlierProblem& problem, double signal, double noise) : signal_(signal), level_(problem.mean_deviation) {
+    const Eigen::Index n = problem.heights.size();
+    Eigen::MatrixXd covariance = signal * signal * problem.covariance;
+    if (problem.broad_covariance.size() > 0)
+      covariance += problem.broad_signal * problem.broad_signal * problem.broad_covariance;
     const double least =
         n > 0 ? kInverseNoise * static_cast<double>(n) * kEpsilon * covariance.diagonal().maxCoeff() : 0.0;
     const double square = noise * noise;
     covariance.diagonal().array() += std::max(square, least);
-    if (testimony.roughness.size() > 0) covariance.diagonal() += testimony.roughness;
+    if (problem.extra_variance.size() > 0) covariance.diagonal() += problem.extra_variance;
     RegularFactor factor;
     factor.factorise(covariance);
     report_ = factor.report();
@@ -42,12 +43,12 @@ class Court {
       ++report_.raised;
     }
     inverse_ = factor.inverse();
-    heights_ = inverse_ * testimony.heights;
+    heights_ = inverse_ * problem.heights;
     ones_ = inverse_.rowwise().sum();
-    log_evidence_ = -0.5 * testimony.heights.dot(heights_) - factor.half_log_determinant();
-    const Eigen::ArrayXd pi = testimony.suspicion.array().max(kLeastSuspicion).min(1.0 - kLeastSuspicion);
-    const Eigen::ArrayXd lie = testimony.heights.array() / testimony.lie;
-    log_odds_ = (pi / (1.0 - pi)).unaryExpr(&math::log) - 0.5 * lie.square() - math::log(testimony.lie);
+    log_evidence_ = -0.5 * problem.heights.dot(heights_) - factor.half_log_determinant();
+    const Eigen::ArrayXd pi = problem.prior.array().max(kLeastSuspicion).min(1.0 - kLeastSuspicion);
+    const Eigen::ArrayXd lie = problem.heights.array() / problem.outlier_deviation;
+    log_odds_ = (pi / (1.0 - pi)).unaryExpr(&math::log) - 0.5 * lie.square() - math::log(problem.outlier_deviation);
   }
 
   int taps() const { return static_cast<int>(heights_.size()); }
@@ -101,18 +102,18 @@ class Sets {
     double log_weight = 0.0;
   };
 
-  Sets(const Court& court, const Effort& effort)
+  Sets(const Court& court, const OutlierSearchLimits& limits)
       : court_(court),
         words_((static_cast<std::size_t>(court.taps()) + kBits - 1) / kBits),
-        rests_(court.taps(), Eigen::Index{kParts} * (effort.looks + 1)),
-        log_weights_(static_cast<std::size_t>(effort.looks) + 1),
-        spare_(effort.looks) {
-    find(effort);
+        rests_(court.taps(), Eigen::Index{kParts} * (limits.expansions + 1)),
+        log_weights_(static_cast<std::size_t>(limits.expansions) + 1),
+        spare_(limits.expansions) {
+    find(limits);
   }
 
   const std::vector<One>& all() const { return all_; }
   double most() const { return most_; }  ///< of their log weights
-  double next() const { return next_; }  ///< see Judgement
+  double next() const { return next_; }  ///< see OutlierPosterior
   int looks() const { return spare_; }
 
   /// What is left without a set: the place of its parts, until it is asked about another set that was not looked at.
@@ -200,9 +201,9 @@ class Sets {
 
   double weight_of(int set) const { return all_[static_cast<std::size_t>(set)].log_weight; }
 
-  void find(const Effort& effort) {
-    const double hopeless = math::log(effort.hopeless);
-    const double negligible = math::log(effort.negligible);
+  void find(const OutlierSearchLimits& limits) {
+    const double hopeless = math::log(limits.min_expanded);
+    const double negligible = math::log(limits.min_summed);
     std::vector<std::uint64_t> bits(words_, 0);
     most_ = court_.log_evidence() + court_.constant(court_.ones().sum(), court_.heights().sum()).log_weight;
     add({-1, -1, -1, most_}, bits.data());
@@ -210,12 +211,12 @@ class Sets {
     for (int look = 0; !waiting_.empty(); ++look) {
       const int first = waiting_.front();
       if (weight_of(first) - most_ < hopeless) return;
-      if (look == effort.looks) {
+      if (look == limits.expansions) {
         next_ = math::exp(weight_of(first) - most_);
         return;
       }
       waiting_.erase(waiting_.begin());
-      const auto to_come = static_cast<std::size_t>(effort.looks - look);
+      const auto to_come = static_cast<std::size_t>(limits.expansions - look);
       leave_out(all_[static_cast<std::size_t>(first)], look);
       all_[static_cast<std::size_t>(first)].rest = look;
       weigh_neighbours(look, weights);
@@ -276,45 +277,45 @@ class Squares {
 
 }  // namespace
 
-Judgement judge(const Testimony& testimony, const Effort& effort) {
-  Judgement out;
+OutlierPosterior infer_outliers(const OutlierProblem& problem, const OutlierSearchLimits& limits) {
+  OutlierPosterior out;
   std::vector<Court> courts;
-  courts.reserve(testimony.signals.size() * testimony.noises.size());
+  courts.reserve(problem.signals.size() * problem.noises.size());
   std::vector<Sets> sets;
   sets.reserve(courts.capacity());
   double most = -std::numeric_limits<double>::infinity();
-  for (const double signal : testimony.signals) {
-    for (const double noise : testimony.noises) {
-      sets.emplace_back(courts.emplace_back(testimony, signal, noise), effort);
+  for (const double signal : problem.signals) {
+    for (const double noise : problem.noises) {
+      sets.emplace_back(courts.emplace_back(problem, signal, noise), limits);
       most = std::max(most, sets.back().most());
       out.report.add(courts.back().report());
     }
   }
-  const Eigen::Index n = testimony.heights.size();
-  out.doubt = Eigen::VectorXd::Zero(n);
+  const Eigen::Index n = problem.heights.size();
+  out.probability = Eigen::VectorXd::Zero(n);
   out.a = Eigen::VectorXd::Zero(1 + 2 * n);
   out.b = Eigen::MatrixXd::Zero(1 + 2 * n, 1 + 2 * n);
-  const double broad = testimony.broad_signal * testimony.broad_signal;
+  const double broad = problem.broad_signal * problem.broad_signal;
   double sum = 0.0;
-  std::vector<double> with(static_cast<std::size_t>(effort.looks));
-  for (std::size_t first = 0; first < courts.size(); first += testimony.noises.size()) {
+  std::vector<double> with(static_cast<std::size_t>(limits.expansions));
+  for (std::size_t first = 0; first < courts.size(); first += problem.noises.size()) {
     // Over (1, c), c the covariances of this signal with the broad one.
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(n + 1);
     Squares squares(n + 1);
     double of_signal = 0.0;
-    for (std::size_t i = first; i < first + testimony.noises.size(); ++i) {
+    for (std::size_t i = first; i < first + problem.noises.size(); ++i) {
       const Court& court = courts[i];
       double all = 0.0;
       std::fill(with.begin(), with.end(), 0.0);  // weight of the sets that have a column
       for (const Sets::One& set : sets[i].all()) {
         const double weight = math::exp(set.log_weight - most);
-        if (weight < effort.negligible) continue;
+        if (weight < limits.min_summed) continue;
         const int rest = sets[i].rest_of(set);
         const auto ones = sets[i].ones(rest);
         const auto heights = sets[i].heights(rest);
         const Constant constant = court.constant(ones.sum(), heights.sum());
         all += weight;
-        ++out.sets;
+        ++out.summed_sets;
         auto one = squares.next();
         one << constant.mean, heights - constant.mean * ones;
         mean += weight * one;
@@ -330,11 +331,11 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
           squares.take();
         }
         for (const Sets::One* its = &set; its->of >= 0; its = &sets[i].all()[static_cast<std::size_t>(its->of)]) {
-          out.doubt(its->tap) += weight;
+          out.probability(its->tap) += weight;
           if (its->rest >= 0) with[static_cast<std::size_t>(its->rest)] += weight;
         }
       }
-      out.next = std::max(out.next, sets[i].next() * math::exp(sets[i].most() - most));
+      out.next_weight = std::max(out.next_weight, sets[i].next() * math::exp(sets[i].most() - most));
       for (int rest = 0; rest < sets[i].looks(); ++rest) {
         const double weight = with[static_cast<std::size_t>(rest)];
         if (!(weight > 0.0)) continue;
@@ -342,7 +343,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
         squares.take();
       }
       // Nothing was found about those that were set aside.
-      for (const int row : court.redundant_taps()) out.doubt(row) += all * testimony.suspicion(row);
+      for (const int row : court.redundant_taps()) out.probability(row) += all * problem.prior(row);
       of_signal += all;
       if (all > 0.0) squares.sum().bottomRightCorner(n, n).triangularView<Eigen::Lower>() -= all * court.inverse();
     }
@@ -363,7 +364,7 @@ Judgement judge(const Testimony& testimony, const Effort& effort) {
         out.b.block(at, 1 + l * n, n, n) += shares[k] * shares[l] * form.bottomRightCorner(n, n);
     }
   }
-  out.doubt /= sum;
+  out.probability /= sum;
   out.a /= sum;
   out.b /= sum;
   out.s2 /= sum;

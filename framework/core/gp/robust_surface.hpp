@@ -4,14 +4,14 @@
 
 #include "gp/candidates.hpp"
 #include "gp/gaussian_process.hpp"
-#include "gp/lies.hpp"
+#include "gp/outlier_posterior.hpp"
 
 namespace palpate {
 
-class DoubtedSurface {
+class RobustSurface {
  public:
   /// `candidates` must outlive it.
-  explicit DoubtedSurface(const Candidates& candidates) : candidates_(candidates) {}
+  explicit RobustSurface(const Candidates& candidates) : candidates_(candidates) {}
 
   /// Judges all taps of `process`, of which `suspicion` (a value each) is thought before their heights are compared,
   /// and whose noise has this variance beside the usual one (a value each, or empty). Without noise nobody is judged:
@@ -22,19 +22,19 @@ class DoubtedSurface {
   /// taken for outliers. So the evidence is compared with that of a rough arm's noise. Where the evidence is
   /// strong for that, the outliers are those that even a rough arm does not explain, and the surface is that of the
   /// process, which follows the heights as closely as its own noise says.
-  void judge(const GaussianProcess& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
+  void update(const GaussianProcess& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
 
   /// To be called before another process is judged.
-  void forget();
+  void reset();
 
   /// The probability that each tap lies; as suspected where nobody was judged.
-  const Eigen::VectorXd& doubt() const { return judgement_.doubt; }
+  const Eigen::VectorXd& outlier_probabilities() const { return posterior_.probability; }
 
   /// Those that were judged last.
-  int taps() const { return static_cast<int>(judgement_.doubt.size()); }
+  int taps() const { return static_cast<int>(posterior_.probability.size()); }
 
   /// Whether any were: else the surface is that of the process.
-  bool judged() const { return judged_; }
+  bool excludes_outliers() const { return judged_; }
 
   /// What rounding made necessary in the judgements so far, as far as they were used: the jitter of the last, in the
   /// square of the targets' unit, the factorisations of all that needed it, and how many taps are set aside now.
@@ -56,7 +56,7 @@ class DoubtedSurface {
   void cover(const GaussianProcess& process);
 
   const Candidates& candidates_;
-  Judgement judgement_;
+  OutlierPosterior posterior_;
   FactorReport report_;
   int clamped_ = 0;
   bool judged_ = false;

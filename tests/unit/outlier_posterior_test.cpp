@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which taps lie, against the sum over all sets of liars, signals and noises: every set factorised for itself with 50
 // digits, its posterior by the book.
-#include "gp/lies.hpp"
+#include "gp/outlier_posterior.hpp"
 
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -33,7 +33,7 @@ Number covariance(const Target& a, const Target& b, double length_scale) {
 /// Taps at random, of which some lie, and where the surface is asked for.
 struct Trial {
   std::vector<Target> places, probes;
-  Testimony testimony;
+  OutlierProblem problem;
 
   Trial(int taps, double level, bool broad, std::uint64_t seed, double share_of_lies = 0.25) {
     Random random(seed, "lies test");
@@ -44,22 +44,22 @@ struct Trial {
     };
     places = some(taps);
     probes = some(5);
-    testimony.level = level;
-    testimony.lie = 1.3;
-    testimony.signals = {1.0, 0.2};
-    testimony.noises = {0.05, 0.02};
-    testimony.heights.resize(taps);
-    testimony.suspicion.resize(taps);
+    problem.mean_deviation = level;
+    problem.outlier_deviation = 1.3;
+    problem.signals = {1.0, 0.2};
+    problem.noises = {0.05, 0.02};
+    problem.heights.resize(taps);
+    problem.prior.resize(taps);
     for (int i = 0; i < taps; ++i) {
       const bool lies = random.uniform() < share_of_lies;
       const double honest = 0.6 + 0.1 * std::sin(places[static_cast<std::size_t>(i)].x / 0.03);
-      testimony.heights(i) = lies ? 3.0 * random.uniform() - 1.0 : honest + 0.05 * random.uniform();
-      testimony.suspicion(i) = random.uniform() < 0.3 ? 0.3 : 0.03;
+      problem.heights(i) = lies ? 3.0 * random.uniform() - 1.0 : honest + 0.05 * random.uniform();
+      problem.prior(i) = random.uniform() < 0.3 ? 0.3 : 0.03;
     }
-    testimony.covariance = between(places, kLengthScale);
+    problem.covariance = between(places, kLengthScale);
     if (!broad) return;
-    testimony.broad = between(places, kBroader);
-    testimony.broad_signal = 0.5;
+    problem.broad_covariance = between(places, kBroader);
+    problem.broad_signal = 0.5;
   }
 
   /// Of all taps with some points.
@@ -72,23 +72,23 @@ struct Trial {
 };
 
 struct Judged {
-  Eigen::VectorXd doubt, mean, variance;
+  Eigen::VectorXd probability, mean, variance;
 };
 
-/// What a judgement says at the probes.
-Judged read(const Trial& trial, const Judgement& judgement) {
+/// What a posterior says at the probes.
+Judged read(const Trial& trial, const OutlierPosterior& posterior) {
   const auto taps = static_cast<Eigen::Index>(trial.places.size());
   const auto probes = static_cast<Eigen::Index>(trial.probes.size());
   Eigen::MatrixXd z = Eigen::MatrixXd::Ones(probes, 1 + 2 * taps);
   z.middleCols(1, taps) = trial.between(trial.probes, kLengthScale).transpose();
   z.rightCols(taps) = trial.between(trial.probes, kBroader).transpose();
-  const Eigen::VectorXd form = (z * judgement.b).cwiseProduct(z).rowwise().sum();
-  return {judgement.doubt, z * judgement.a, Eigen::VectorXd::Constant(probes, judgement.s2) + form};
+  const Eigen::VectorXd form = (z * posterior.b).cwiseProduct(z).rowwise().sum();
+  return {posterior.probability, z * posterior.a, Eigen::VectorXd::Constant(probes, posterior.s2) + form};
 }
 
 Judged sum_over_all_sets(const Trial& trial) {
   const std::size_t taps = trial.places.size();
-  const Testimony& t = trial.testimony;
+  const OutlierProblem& t = trial.problem;
   Points probes(5, 2);
   for (Eigen::Index i = 0; i < 5; ++i)
     probes.row(i) << trial.probes[static_cast<std::size_t>(i)].x, trial.probes[static_cast<std::size_t>(i)].y;
@@ -101,32 +101,32 @@ Judged sum_over_all_sets(const Trial& trial) {
             [&](const Target& a, const Target& b) {
               return Real(Real(signal) * signal * covariance<Real>(a, b, kLengthScale) +
                           Real(t.broad_signal) * t.broad_signal * covariance<Real>(a, b, kBroader) +
-                          Real(t.level) * t.level);
+                          Real(t.mean_deviation) * t.mean_deviation);
             },
             Real(noise) * noise, probes);
         double log_weight = 0.0;
         for (std::size_t i = 0; i < taps; ++i) {
           const auto row = static_cast<Eigen::Index>(i);
-          const double pi = t.suspicion(row);
+          const double pi = t.prior(row);
           if ((set >> i & 1u) == 0) {
             others.add(trial.places[i], {Real(t.heights(row))});
             log_weight += std::log(1.0 - pi);
           } else {
-            const double lie = t.heights(row) / t.lie;
-            log_weight += std::log(pi / t.lie) - 0.5 * (lie * lie + std::log(2.0 * kPi));
+            const double lie = t.heights(row) / t.outlier_deviation;
+            log_weight += std::log(pi / t.outlier_deviation) - 0.5 * (lie * lie + std::log(2.0 * kPi));
           }
         }
         const double weight = std::exp(log_weight + others.log_marginal_likelihood());
         sum += weight;
         for (std::size_t i = 0; i < taps; ++i)
-          out.doubt(static_cast<Eigen::Index>(i)) += (set >> i & 1u) != 0 ? weight : 0.0;
+          out.probability(static_cast<Eigen::Index>(i)) += (set >> i & 1u) != 0 ? weight : 0.0;
         // The level is part of the surface, and of the variance that it has before any tap.
         out.mean += weight * others.mean();
         out.variance += weight * (others.variance() + others.mean().cwiseAbs2());
       }
     }
   }
-  out.doubt /= sum;
+  out.probability /= sum;
   out.mean /= sum;
   out.variance = out.variance / sum - out.mean.cwiseAbs2();
   return out;
@@ -139,12 +139,12 @@ TEST_P(Lies, AreThoseOfTheSumOverAllSetsWhereNoneIsLeftOut) {
   for (const bool rich : {false, true}) {
     const Trial trial(taps, rich ? 1.0 : 0.0, rich, static_cast<std::uint64_t>(taps));
     const Judged expected = sum_over_all_sets(trial);
-    const Judgement judgement = judge(trial.testimony, {1 << taps, 0.0, 0.0});
-    EXPECT_EQ(judgement.sets, 4 << taps) << "two signals, two noises";
-    EXPECT_EQ(judgement.next, 0.0);
-    const Judged got = read(trial, judgement);
+    const OutlierPosterior posterior = infer_outliers(trial.problem, {1 << taps, 0.0, 0.0});
+    EXPECT_EQ(posterior.summed_sets, 4 << taps) << "two signals, two noises";
+    EXPECT_EQ(posterior.next_weight, 0.0);
+    const Judged got = read(trial, posterior);
     // The covariance has a condition of some ten thousand, which takes four or five digits off sixteen.
-    EXPECT_LT((got.doubt - expected.doubt).lpNorm<Eigen::Infinity>(), 1e-10);
+    EXPECT_LT((got.probability - expected.probability).lpNorm<Eigen::Infinity>(), 1e-10);
     EXPECT_LT((got.mean - expected.mean).lpNorm<Eigen::Infinity>(), 1e-10);
     EXPECT_LT((got.variance - expected.variance).lpNorm<Eigen::Infinity>(), 1e-10);
   }
@@ -155,22 +155,22 @@ TEST(TinyNoise, IsRaisedToWhatTheFormsTakeAndTheSumIsThatOfTheRaisedNoise) {
   for (const double noise : {0.0, 1e-12, 1e-9, 1e-7}) {
     for (const bool repeated : {false, true}) {
       Trial trial(8, 1.0, true, 21, 0.0);
-      trial.testimony.signals = {1.0};
-      trial.testimony.noises = {noise};
+      trial.problem.signals = {1.0};
+      trial.problem.noises = {noise};
       for (std::size_t i = 1; repeated && i < 8; i += 2) trial.places[i] = trial.places[i - 1];
-      trial.testimony.covariance = trial.between(trial.places, kLengthScale);
-      trial.testimony.broad = trial.between(trial.places, kBroader);
+      trial.problem.covariance = trial.between(trial.places, kLengthScale);
+      trial.problem.broad_covariance = trial.between(trial.places, kBroader);
       for (Eigen::Index i = 0; i < 8; ++i)
-        trial.testimony.heights(i) = 0.6 + 0.1 * std::sin(trial.places[static_cast<std::size_t>(i)].x / 0.03);
-      const Judgement judgement = judge(trial.testimony, {1 << 8, 0.0, 0.0});
-      ASSERT_GT(judgement.report.jitter, 0.0);
-      EXPECT_EQ(judgement.report.raised, 1);
-      EXPECT_LT(judgement.report.jitter, 1e-9) << "nobody sees that";
-      EXPECT_TRUE(std::isfinite(judgement.log_evidence));
-      trial.testimony.noises = {std::sqrt(noise * noise + judgement.report.jitter)};
+        trial.problem.heights(i) = 0.6 + 0.1 * std::sin(trial.places[static_cast<std::size_t>(i)].x / 0.03);
+      const OutlierPosterior posterior = infer_outliers(trial.problem, {1 << 8, 0.0, 0.0});
+      ASSERT_GT(posterior.report.jitter, 0.0);
+      EXPECT_EQ(posterior.report.raised, 1);
+      EXPECT_LT(posterior.report.jitter, 1e-9) << "nobody sees that";
+      EXPECT_TRUE(std::isfinite(posterior.log_evidence));
+      trial.problem.noises = {std::sqrt(noise * noise + posterior.report.jitter)};
       const Judged expected = sum_over_all_sets(trial);
-      const Judged got = read(trial, judgement);
-      EXPECT_LT((got.doubt - expected.doubt).lpNorm<Eigen::Infinity>(), 1e-3) << noise << repeated;
+      const Judged got = read(trial, posterior);
+      EXPECT_LT((got.probability - expected.probability).lpNorm<Eigen::Infinity>(), 1e-3) << noise << repeated;
       EXPECT_LT((got.mean - expected.mean).lpNorm<Eigen::Infinity>(), 1e-4) << noise << repeated;
       EXPECT_LT((got.variance - expected.variance).lpNorm<Eigen::Infinity>(), 1e-4) << noise << repeated;
     }
@@ -179,26 +179,26 @@ TEST(TinyNoise, IsRaisedToWhatTheFormsTakeAndTheSumIsThatOfTheRaisedNoise) {
 
 TEST(LikeliestLies, OfACovarianceThatIsNoneSetTapsAsideWhichKeepTheirSuspicion) {
   Trial trial(6, 1.0, true, 5);
-  trial.testimony.covariance(2, 4) = trial.testimony.covariance(4, 2) = 7.0;
-  const Judgement judgement = judge(trial.testimony);
-  EXPECT_GT(judgement.report.redundant_taps, 0);
-  EXPECT_GT(judgement.report.pivoted, 0);
-  const Judged got = read(trial, judgement);
-  EXPECT_TRUE(got.doubt.allFinite() && got.mean.allFinite() && got.variance.allFinite());
+  trial.problem.covariance(2, 4) = trial.problem.covariance(4, 2) = 7.0;
+  const OutlierPosterior posterior = infer_outliers(trial.problem);
+  EXPECT_GT(posterior.report.redundant_taps, 0);
+  EXPECT_GT(posterior.report.pivoted, 0);
+  const Judged got = read(trial, posterior);
+  EXPECT_TRUE(got.probability.allFinite() && got.mean.allFinite() && got.variance.allFinite());
 }
 
 // Which of several signals comes first means nothing: rows are set aside for each by itself.
 TEST(LikeliestLies, DoNotDependOnTheOrderOfSignalsOfWhichSomeSetTapsAside) {
   Trial trial(6, 1.0, true, 5);
-  trial.testimony.covariance(2, 4) = trial.testimony.covariance(4, 2) = 7.0;
-  trial.testimony.signals = {0.005, 1.0};
-  const Judgement one = judge(trial.testimony);
+  trial.problem.covariance(2, 4) = trial.problem.covariance(4, 2) = 7.0;
+  trial.problem.signals = {0.005, 1.0};
+  const OutlierPosterior one = infer_outliers(trial.problem);
   ASSERT_GT(one.report.redundant_taps, 0);
-  trial.testimony.signals = {0.005};
-  ASSERT_EQ(judge(trial.testimony).report.redundant_taps, 0)
+  trial.problem.signals = {0.005};
+  ASSERT_EQ(infer_outliers(trial.problem).report.redundant_taps, 0)
       << "the noise is larger than what is wrong with so small a signal";
-  trial.testimony.signals = {1.0, 0.005};
-  EXPECT_LT((judge(trial.testimony).doubt - one.doubt).lpNorm<Eigen::Infinity>(), 1e-12);
+  trial.problem.signals = {1.0, 0.005};
+  EXPECT_LT((infer_outliers(trial.problem).probability - one.probability).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfSoMany, Lies, testing::Values(1, 2, 5, 8));
@@ -207,45 +207,46 @@ INSTANTIATE_TEST_SUITE_P(OfTwelve, Lies, testing::ValuesIn(brief() ? std::vector
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Lies);
 
 TEST(LikeliestLies, AreEnoughForTheDoubtsAndTheSurface) {
-  double doubt = 0.0;
+  double probability = 0.0;
   double mean = 0.0;
   double deviation = 0.0;
   for (int i = 0; i < (brief() ? 2 : 10); ++i) {
     const Trial trial(10, 1.0, true, static_cast<std::uint64_t>(100 + i), 0.1);
-    const Judged all = read(trial, judge(trial.testimony, {1 << 10, 0.0, 0.0}));
-    const Judged some = read(trial, judge(trial.testimony));
-    doubt = std::max(doubt, (some.doubt - all.doubt).lpNorm<Eigen::Infinity>());
+    const Judged all = read(trial, infer_outliers(trial.problem, {1 << 10, 0.0, 0.0}));
+    const Judged some = read(trial, infer_outliers(trial.problem));
+    probability = std::max(probability, (some.probability - all.probability).lpNorm<Eigen::Infinity>());
     mean = std::max(mean, (some.mean - all.mean).lpNorm<Eigen::Infinity>());
     deviation = std::max(deviation, (some.variance.cwiseSqrt() - all.variance.cwiseSqrt()).lpNorm<Eigen::Infinity>());
   }
   // Sets of a ten-thousandth of the likeliest one's weight are left out, of which there may be a hundred.
-  EXPECT_LT(doubt, 0.02);
+  EXPECT_LT(probability, 0.02);
   EXPECT_LT(mean, 0.02);
   EXPECT_LT(deviation, 0.02);
 }
 
 TEST(LikeliestLies, AreNoneAmongTapsThatAgreeAndTheOneThatDoesNot) {
   Trial trial(12, 1.0, true, 7);
-  trial.testimony.heights.setConstant(0.6);
-  trial.testimony.suspicion.setConstant(0.03);
-  EXPECT_LT(judge(trial.testimony).doubt.maxCoeff(), 0.05);
+  trial.problem.heights.setConstant(0.6);
+  trial.problem.prior.setConstant(0.03);
+  EXPECT_LT(infer_outliers(trial.problem).probability.maxCoeff(), 0.05);
   // Among others within a length scale.
   Eigen::Index closest = 0;
-  trial.testimony.covariance.colwise().sum().maxCoeff(&closest);
-  trial.testimony.heights(closest) = 1.6;
-  const Eigen::VectorXd doubt = judge(trial.testimony).doubt;
-  EXPECT_GT(doubt(closest), 0.9);
-  for (Eigen::Index i = 0; i < 12; ++i) EXPECT_TRUE(i == closest || doubt(i) < 0.2) << i << ": " << doubt(i);
+  trial.problem.covariance.colwise().sum().maxCoeff(&closest);
+  trial.problem.heights(closest) = 1.6;
+  const Eigen::VectorXd probability = infer_outliers(trial.problem).probability;
+  EXPECT_GT(probability(closest), 0.9);
+  for (Eigen::Index i = 0; i < 12; ++i)
+    EXPECT_TRUE(i == closest || probability(i) < 0.2) << i << ": " << probability(i);
 }
 
 TEST(LikeliestLies, AreSuspectedBeforeWhereNothingElseIsKnown) {
   // A tap alone: as a lie its height is as probable as in truth, so that only the suspicion counts.
   Trial trial(1, 1.0, false, 3);
-  trial.testimony.signals = {1.0};
-  trial.testimony.noises = {1e-6};
-  trial.testimony.lie = std::sqrt(2.0);
-  trial.testimony.suspicion.setConstant(0.2);
-  EXPECT_NEAR(judge(trial.testimony).doubt(0), 0.2, 1e-9);
+  trial.problem.signals = {1.0};
+  trial.problem.noises = {1e-6};
+  trial.problem.outlier_deviation = std::sqrt(2.0);
+  trial.problem.prior.setConstant(0.2);
+  EXPECT_NEAR(infer_outliers(trial.problem).probability(0), 0.2, 1e-9);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The surface of taps some of which may lie: its maps, made of many candidates at once, against each place by itself.
-#include "gp/doubt.hpp"
+#include "gp/robust_surface.hpp"
 
 #include "support/gaussian_process.hpp"
 #include "support/plugins.hpp"
@@ -26,16 +26,16 @@ TEST_P(Doubted, MapsAreAtEachPlaceWhatItsOwnTestimonySays) {
     const Target place{0.01 + 0.0137 * (i % 13), 0.012 + 0.011 * (i % 11)};
     process.add(place, i % 5 == 3 ? 0.3 : 0.05 + 0.02 * std::sin(40.0 * place.x));
   }
-  DoubtedSurface surface(candidates);
-  surface.judge(process, Eigen::VectorXd::Constant(taps, 0.03));
-  ASSERT_TRUE(surface.judged());
+  RobustSurface surface(candidates);
+  surface.update(process, Eigen::VectorXd::Constant(taps, 0.03));
+  ASSERT_TRUE(surface.excludes_outliers());
   Eigen::VectorXd mean;
   Eigen::VectorXd variance;
   surface.read_mean(process, mean);
   surface.read_variance(process, variance);
   ASSERT_EQ(variance.size(), candidates.size());
   for (int i = 0; i < candidates.size(); ++i) {
-    const DoubtedSurface::Height here = surface.at(process, i);
+    const RobustSurface::Height here = surface.at(process, i);
     EXPECT_NEAR(mean(i), here.mean, 1e-12) << i;
     EXPECT_NEAR(variance(i), here.variance, 1e-12) << i;
   }
@@ -59,22 +59,22 @@ TEST(DoubtReport, IsOfTheJudgementThatIsUsedAndEndsWithIt) {
   const Eigen::VectorXd suspicion = Eigen::VectorXd::Constant(24, 0.03);
   const ExactTaps flat("{length_scale: 3 cm}", 0.0), rough("{length_scale: 50 cm}", 0.01),
       without("{length_scale: 3 cm}", 0.0, 0.0);
-  DoubtedSurface surface(flat.candidates);
-  surface.judge(flat.process, suspicion);
-  ASSERT_TRUE(surface.judged());
+  RobustSurface surface(flat.candidates);
+  surface.update(flat.process, suspicion);
+  ASSERT_TRUE(surface.excludes_outliers());
   EXPECT_GT(surface.report().jitter, 0.0);
   const int raised = surface.report().raised;
   EXPECT_GT(raised, 0);
-  surface.judge(flat.process, suspicion);
+  surface.update(flat.process, suspicion);
   EXPECT_EQ(surface.report().raised, 2 * raised) << "every factorisation counts";
-  surface.judge(without.process, suspicion);
-  EXPECT_FALSE(surface.judged());
+  surface.update(without.process, suspicion);
+  EXPECT_FALSE(surface.excludes_outliers());
   EXPECT_EQ(surface.report().jitter, 0.0) << "nothing was factorised";
 
-  DoubtedSurface other(rough.candidates);
-  other.judge(rough.process, suspicion);
-  ASSERT_FALSE(other.judged()) << "a rough arm explains the heights";
-  EXPECT_EQ(other.report().raised, 0) << "the judgement of the tiny noise is not used";
+  RobustSurface other(rough.candidates);
+  other.update(rough.process, suspicion);
+  ASSERT_FALSE(other.excludes_outliers()) << "a rough arm explains the heights";
+  EXPECT_EQ(other.report().raised, 0) << "the posterior of the tiny noise is not used";
   EXPECT_EQ(other.report().jitter, 0.0);
 }
 
