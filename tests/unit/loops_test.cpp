@@ -119,18 +119,18 @@ TEST_P(Loops, UpdateTheMapsByEveryCellOfAProduct) {
 
 TEST_P(Loops, UpdateADensePieceByAllItsRows) {
   for (const int depth : {0, 1, 7, 8, 9, 30}) {
-    Lines rows = drawn((static_cast<std::size_t>(depth) + 1) * kPiece);
+    Lines rows = drawn((static_cast<std::size_t>(depth) + 1) * kBlock);
     const Lines factor = drawn(static_cast<std::size_t>(depth) + 1);
-    const Lines covariance = drawn(kPiece);
-    const Eigen::Map<const Eigen::VectorXd> k(covariance.data(), kPiece);
-    using Rows = Eigen::Matrix<double, kPiece, Eigen::Dynamic>;
-    const Rows all = Eigen::Map<const Rows>(rows.data(), kPiece, depth + 1);
+    const Lines covariance = drawn(kBlock);
+    const Eigen::Map<const Eigen::VectorXd> k(covariance.data(), kBlock);
+    using Rows = Eigen::Matrix<double, kBlock, Eigen::Dynamic>;
+    const Rows all = Eigen::Map<const Rows>(rows.data(), kBlock, depth + 1);
     const Eigen::Map<const Eigen::VectorXd> l(factor.data(), depth);
     const Eigen::VectorXd v = (k - all.leftCols(depth) * l) / 1.75;
-    Lines mean = drawn(kPiece);
-    Lines variance = drawn(kPiece);
-    const Eigen::VectorXd mean_before = Eigen::Map<Eigen::VectorXd>(mean.data(), kPiece);
-    const Eigen::VectorXd variance_before = Eigen::Map<Eigen::VectorXd>(variance.data(), kPiece);
+    Lines mean = drawn(kBlock);
+    Lines variance = drawn(kBlock);
+    const Eigen::VectorXd mean_before = Eigen::Map<Eigen::VectorXd>(mean.data(), kBlock);
+    const Eigen::VectorXd variance_before = Eigen::Map<Eigen::VectorXd>(variance.data(), kBlock);
     Update update{};
     update.means = 1;
     update.coefficient[0] = 0.5;
@@ -138,9 +138,9 @@ TEST_P(Loops, UpdateADensePieceByAllItsRows) {
     update.variance = variance.data();
     absorb_dense({rows.data(), covariance.data(), factor.data(), depth, 1.75}, update);
     const auto near = [&](const double* values, const Eigen::VectorXd& expected) {
-      return (Eigen::Map<const Eigen::VectorXd>(values, kPiece) - expected).cwiseAbs().maxCoeff() < 1e-14;
+      return (Eigen::Map<const Eigen::VectorXd>(values, kBlock) - expected).cwiseAbs().maxCoeff() < 1e-14;
     };
-    EXPECT_TRUE(near(rows.data() + static_cast<std::ptrdiff_t>(depth) * kPiece, v))
+    EXPECT_TRUE(near(rows.data() + static_cast<std::ptrdiff_t>(depth) * kBlock, v))
         << "the new row stays, for those to come";
     EXPECT_TRUE(near(mean.data(), mean_before + 0.5 * v));
     EXPECT_TRUE(near(variance.data(), variance_before - v.cwiseAbs2()));
@@ -228,15 +228,15 @@ std::uint64_t hash_on(Instructions instructions) {
     return out;
   };
   constexpr int kDepth = 29;
-  Lines rows = drawn((kDepth + 1) * std::size_t{kPiece});
-  Lines maps = drawn(2 * std::size_t{kPiece});
+  Lines rows = drawn((kDepth + 1) * std::size_t{kBlock});
+  Lines maps = drawn(2 * std::size_t{kBlock});
   const Lines factor = drawn(kDepth);
-  const Lines covariance = drawn(kPiece);
+  const Lines covariance = drawn(kBlock);
   Update update{};
   update.means = 1;
   update.coefficient[0] = 0.3;
   update.mean[0] = maps.data();
-  update.variance = maps.data() + kPiece;
+  update.variance = maps.data() + kBlock;
   absorb_dense({rows.data(), covariance.data(), factor.data(), kDepth, 1.75}, update);
   Lines lower = drawn(packed_row(64));
   for (int i = 0; i < 61; ++i) lower.data()[packed_row(i) + static_cast<std::size_t>(i)] = 2.5;

@@ -9,13 +9,13 @@ constexpr double kMostReserved = 1.0 * (1 << 27);
 
 /// Pieces for which the kernel is asked at once: a call costs what ten candidates do.
 constexpr int kTogether = 4;
-constexpr Eigen::Index kCandidates = Eigen::Index{kTogether} * loops::kPiece;
+constexpr Eigen::Index kCandidates = Eigen::Index{kTogether} * loops::kBlock;
 
 class Dense final : public Engine {
  public:
   Dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates)
-      : Engine("dense", workers, kernel, candidates, Tiling::pieces(candidates.size())),
-        rows_(maps_.tiling().strips() * loops::kPiece, loops::kPiece, loops::kPiece) {
+      : Engine("dense", workers, kernel, candidates, Tiling::blocks(candidates.size())),
+        rows_(maps_.tiling().strips() * loops::kBlock, loops::kBlock, loops::kBlock) {
     for (int i = 0; i < workers->threads(); ++i) covariances_.emplace_back(kCandidates);
   }
 
@@ -35,9 +35,9 @@ class Dense final : public Engine {
       const Eigen::Index count = std::min<Eigen::Index>(kCandidates, candidates_.size() - first);
       kernel_.covariance(candidates_.points.middleRows(first, count), row.places.bottomRows(1),
                          Eigen::Map<Eigen::VectorXd>(covariance, count));
-      const Eigen::Index padded = (count + loops::kPiece - 1) / loops::kPiece * loops::kPiece;
+      const Eigen::Index padded = (count + loops::kBlock - 1) / loops::kBlock * loops::kBlock;
       std::fill(covariance + count, covariance + padded, 0.0);
-      for (int i = 0; i < padded / loops::kPiece; ++i, covariance += loops::kPiece) {
+      for (int i = 0; i < padded / loops::kBlock; ++i, covariance += loops::kBlock) {
         loops::absorb_dense({rows_.panel(piece + i), covariance, row.factor.data(), depth, row.pivot},
                             maps_.update(piece + i, row.coefficients));
       }

@@ -181,15 +181,15 @@ void absorb_mirrored(const MirroredProduct& product, const Update& update) {
 
 void absorb_dense(const DenseRow& row, const Update& update) {
   constexpr int kTogether = kTileRows * kTileVectors;
-  double* const v = row.rows + static_cast<std::ptrdiff_t>(row.depth) * kPiece;
+  double* const v = row.rows + static_cast<std::ptrdiff_t>(row.depth) * kBlock;
   const Absorb sink{update};
   const Vector share = all(1.0 / row.pivot);
-  for (int cell = 0; cell < kPiece; cell += kTogether * kLanes) {
+  for (int cell = 0; cell < kBlock; cell += kTogether * kLanes) {
     Vector left[1][kTogether];
 #pragma GCC unroll 24
     for (int j = 0; j < kTogether; ++j) left[0][j] = at(row.covariance + cell + j * kLanes);
     const double* earlier = row.rows + cell;
-    for (int k = 0; k < row.depth; ++k, earlier += kPiece) {
+    for (int k = 0; k < row.depth; ++k, earlier += kBlock) {
       const Vector factor = all(row.factor[k]);
 #pragma GCC unroll 24
       for (int j = 0; j < kTogether; ++j) left[0][j] = hn::NegMulAdd(factor, at(earlier + j * kLanes), left[0][j]);
@@ -245,14 +245,14 @@ void read(const Cells& cells, const Reading& reading) {
 
 // A triangle by blocks of one line of rows, all of the same padded length: where a block begins its rows have `before`
 // numbers of earlier blocks, and then the triangle of its own.
-constexpr int kBlock = kLine;
+constexpr int kTriangleBlock = kLine;
 
 void solve_lower(const double* lower, int n, double* x) {
   constexpr int kRows = 2;  // at once
-  for (int before = 0; before < n; before += kBlock) {
-    const int rows = std::min(n - before, kBlock);
-    const int length = before + kBlock;
-    double known[kBlock] = {};  // what earlier blocks have of each row
+  for (int before = 0; before < n; before += kTriangleBlock) {
+    const int rows = std::min(n - before, kTriangleBlock);
+    const int length = before + kTriangleBlock;
+    double known[kTriangleBlock] = {};  // what earlier blocks have of each row
     for (int first = 0; first < rows; first += kRows) {
       Vector sum[kRows][kLineVectors];
       for (auto& of_row : sum) std::fill_n(of_row, kLineVectors, hn::Zero(kReals));
@@ -278,18 +278,18 @@ void solve_lower(const double* lower, int n, double* x) {
       for (int k = 0; k < r; ++k) value -= own[k] * x[before + k];
       x[before + r] = value / own[r];
     }
-    lower += static_cast<std::ptrdiff_t>(kBlock) * length;
+    lower += static_cast<std::ptrdiff_t>(kTriangleBlock) * length;
   }
 }
 
 void solve_lower_transposed(const double* lower, int n, double* x) {
-  const int blocks = (n + kBlock - 1) / kBlock;
-  lower += static_cast<std::ptrdiff_t>(kBlock) * kBlock * blocks * (blocks + 1) / 2;
-  for (int before = (blocks - 1) * kBlock; before >= 0; before -= kBlock) {
-    const int rows = std::min(n - before, kBlock);
-    const int length = before + kBlock;
-    lower -= static_cast<std::ptrdiff_t>(kBlock) * length;
-    double own[kBlock] = {};
+  const int blocks = (n + kTriangleBlock - 1) / kTriangleBlock;
+  lower += static_cast<std::ptrdiff_t>(kTriangleBlock) * kTriangleBlock * blocks * (blocks + 1) / 2;
+  for (int before = (blocks - 1) * kTriangleBlock; before >= 0; before -= kTriangleBlock) {
+    const int rows = std::min(n - before, kTriangleBlock);
+    const int length = before + kTriangleBlock;
+    lower -= static_cast<std::ptrdiff_t>(kTriangleBlock) * length;
+    double own[kTriangleBlock] = {};
     for (int r = rows - 1; r >= 0; --r) {
       const double* const diagonal = lower + r * length + before;
       own[r] = x[before + r] / diagonal[r];
@@ -299,7 +299,7 @@ void solve_lower_transposed(const double* lower, int n, double* x) {
     for (int k = 0; k < before; k += kLanes) {
       Vector value = at(x + k);
 #pragma GCC unroll 8
-      for (int r = 0; r < kBlock; ++r) {
+      for (int r = 0; r < kTriangleBlock; ++r) {
         if (r < rows) value = hn::NegMulAdd(all(own[r]), at(lower + r * length + k), value);
       }
       put(value, x + k);

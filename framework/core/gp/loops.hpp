@@ -15,7 +15,7 @@ constexpr int kLineBytes = 64;
 constexpr int kLine = kLineBytes / static_cast<int>(sizeof(double));  ///< numbers in a line
 constexpr int kPanelLines = 3;                                        ///< width of a panel of a matrix, in lines
 constexpr int kStripRows = 8;                                         ///< rows of a grid that are updated together
-constexpr int kPiece = kStripRows * kPanelLines * kLine;              ///< cells of a dense map updated together
+constexpr int kBlock = kStripRows * kPanelLines * kLine;              ///< cells of a dense map updated together
 
 constexpr int kScores = 64;  ///< numbers of which the highest is found
 
@@ -53,7 +53,7 @@ struct MirroredProduct {
 };
 
 /// v = (covariance - sum over i of row_i factor_i) / pivot for one piece of a dense map, taken into its maps. The rows
-/// of the piece follow each other: row_i at rows + i kPiece, and v is the row after the last.
+/// of the piece follow each other: row_i at rows + i kBlock, and v is the row after the last.
 struct DenseRow {
   double* rows;
   const double* covariance;  ///< may lie in v's own place

@@ -3,12 +3,12 @@
 
 namespace palpate {
 
-Tiling Tiling::pieces(int candidates) {
+Tiling Tiling::blocks(int candidates) {
   Tiling out;
   out.candidates_ = candidates;
-  out.columns_ = out.tiled_columns_ = out.padded_ = out.width_ = loops::kPiece;
-  out.rows_ = out.strips_ = (candidates + loops::kPiece - 1) / loops::kPiece;
-  out.strip_size_ = loops::kPiece;
+  out.columns_ = out.tiled_columns_ = out.padded_ = out.width_ = loops::kBlock;
+  out.rows_ = out.strips_ = (candidates + loops::kBlock - 1) / loops::kBlock;
+  out.strip_size_ = loops::kBlock;
   return out;
 }
 

@@ -20,8 +20,8 @@ namespace palpate {
 /// a sequence of tiles, one a panel of the columns.
 class Tiling {
  public:
-  /// Any places: strips of one tile of loops::kPiece candidates one after the other.
-  static Tiling pieces(int candidates);
+  /// Any places: strips of one tile of loops::kBlock candidates one after the other.
+  static Tiling blocks(int candidates);
   /// A product grid: strips of loops::kStripRows rows, cut into tiles as loops::Product has them.
   static Tiling grid(const Candidates& candidates);
   /// The same as loops::MirroredProduct has them: a tile holds some columns of the left half of the grid and their

@@ -382,15 +382,15 @@ void Skin::fit(const Composition& solids, const std::vector<SurfaceTouch>& touch
 template <class Use>
 void Skin::for_pieces(const Places& places, const Use& use) const {
   const Eigen::Index n = known_.table.at.rows();
-  loops::Lines numbers(static_cast<std::size_t>(n * loops::kPiece));
-  const Eigen::Map<MatrixXd> rows(numbers.data(), loops::kPiece, n);
-  Points apart = Points::Zero(n * loops::kPiece, 2);
-  for (std::size_t first = 0; first < places.size(); first += loops::kPiece) {
+  loops::Lines numbers(static_cast<std::size_t>(n * loops::kBlock));
+  const Eigen::Map<MatrixXd> rows(numbers.data(), loops::kBlock, n);
+  Points apart = Points::Zero(n * loops::kBlock, 2);
+  for (std::size_t first = 0; first < places.size(); first += loops::kBlock) {
     std::vector<Row> some;
-    for (std::size_t i = first; i < first + loops::kPiece; ++i)  // the last ones again, where there are no more
+    for (std::size_t i = first; i < first + loops::kBlock; ++i)  // the last ones again, where there are no more
       some.push_back({places[std::min(i, places.size() - 1)], Vector3d::Zero(), 0.0, 0.0, false});
     covariances(table_of(some), known_.table, apart, rows);
-    const std::size_t count = std::min<std::size_t>(loops::kPiece, places.size() - first);
+    const std::size_t count = std::min<std::size_t>(loops::kBlock, places.size() - first);
     use(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count), rows);
   }
 }
@@ -406,10 +406,10 @@ VectorXd Skin::means(const Places& places) const {
 Skin::Posterior Skin::posterior(const Places& places) const {
   const auto all = static_cast<Eigen::Index>(places.size());
   Posterior out{VectorXd(all), VectorXd(all)};
-  loops::Lines left(loops::kPiece);
+  loops::Lines left(loops::kBlock);
   for_pieces(places, [&](Eigen::Index first, Eigen::Index count, Eigen::Map<MatrixXd> k) {
     out.mean.segment(first, count).noalias() = k.topRows(count) * known_.weights;
-    std::fill_n(left.data(), loops::kPiece, deviation() * deviation());
+    std::fill_n(left.data(), loops::kBlock, deviation() * deviation());
     loops::Update variance{};
     variance.variance = left.data();
     for (Eigen::Index i = 0; i < known_.lower.rows(); ++i)
