@@ -141,9 +141,10 @@ TEST(View, TellsHeightsAndLabelsSquareBySquareAndTakesItsOffsetFromTheDesk) {
   const auto scene = object_i();
   PriorOptions options;
   options.bias = 0.01;
-  const std::vector<Sight> sights = sights_of(seen(*scene, options.noise, 0.008, everywhere), options, *scene);
+  const std::vector<ViewedSquare> squares =
+      viewed_squares(seen(*scene, options.noise, 0.008, everywhere), options, *scene);
   int on = 0;
-  for (const Sight& one : sights) {
+  for (const ViewedSquare& one : squares) {
     const Target& place = one.touch.place;
     const double truth = scene->height(place.x, place.y);
     on += one.touch.on ? 1 : 0;
@@ -151,17 +152,17 @@ TEST(View, TellsHeightsAndLabelsSquareBySquareAndTakesItsOffsetFromTheDesk) {
     EXPECT_NEAR(one.touch.height, truth - scene->desk(), 3.0 * one.deviation) << place.x << ", " << place.y;
   }
   EXPECT_GE(on, 10);
-  EXPECT_GE(sights.size(), 140U) << "of 196 squares: edges are left out";
+  EXPECT_GE(squares.size(), 140U) << "of 196 squares: edges are left out";
 }
 
 TEST(View, LeavesOutSquaresThatShowNeitherDeskNorObjectClearly) {
   const auto scene = object_i();
   const PriorOptions options;
-  const auto all = sights_of(seen(*scene, options.noise, 0.0, everywhere), options, *scene);
+  const auto all = viewed_squares(seen(*scene, options.noise, 0.0, everywhere), options, *scene);
   EXPECT_LT(all.size(), static_cast<std::size_t>(kSquaresAcross * kSquaresAcross)) << "an outline passes through some";
-  const auto half = sights_of(seen(*scene, options.noise, 0.0, near_half), options, *scene);
+  const auto half = viewed_squares(seen(*scene, options.noise, 0.0, near_half), options, *scene);
   EXPECT_GE(half.size(), 60U);
-  for (const Sight& one : half) EXPECT_LT(one.touch.place.y, 0.115);
+  for (const ViewedSquare& one : half) EXPECT_LT(one.touch.place.y, 0.115);
 }
 
 TEST(View, IsTurnedAndMovedIntoTheFrameOfTheArea) {
@@ -180,13 +181,13 @@ TEST(View, IsTurnedAndMovedIntoTheFrameOfTheArea) {
                                  Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()) *
                                  Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX());
   const PointCloud of_camera = 1000.0 * (camera.inverse() * points);
-  EXPECT_TRUE(placed(of_camera, options).isApprox(points, 1e-12));
+  EXPECT_TRUE(in_area_frame(of_camera, options).isApprox(points, 1e-12));
 }
 
 TEST(View, OfAnotherPlaceIsRefused) {
   const auto scene = object_i();
   const PointCloud far = PointCloud::Constant(3, 5, 9.0);
-  EXPECT_THAT(error_of([&] { sights_of(far, {}, *scene); }),
+  EXPECT_THAT(error_of([&] { viewed_squares(far, {}, *scene); }),
               HasSubstr("prior.depth: none of its 5 points is in the area, check unit and pose"));
 }
 

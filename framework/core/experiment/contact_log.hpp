@@ -68,7 +68,7 @@ class ContactLog {
   // The data.
   int size() const { return prior_size() + static_cast<int>(contacts_.size()); }
   int prior_size() const { return static_cast<int>(prior_.size()); }
-  const std::vector<Sight>& prior() const { return prior_; }
+  const std::vector<ViewedSquare>& prior() const { return prior_; }
   const Touch& datum(int row) const;
   /// Rows of the data on an object, ascending, and the number of those in the prior view.
   const std::vector<int>& object_rows() const { return object_rows_; }
@@ -89,7 +89,7 @@ class ContactLog {
   int initial_taps_ = 0;
   double seconds_ = 0.0;  ///< robot time of all taps
   std::optional<Systematic> offset_;
-  std::vector<Sight> prior_;
+  std::vector<ViewedSquare> prior_;
   int prior_objects_ = 0;
   std::vector<Touch> contacts_, object_contacts_;
   std::vector<int> object_rows_;

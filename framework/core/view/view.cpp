@@ -110,7 +110,7 @@ void PriorOptions::list(Fields& fields) {
   fields.require(!trouble || !checksum.empty(), "depth", trouble ? trouble->what() : "");
 }
 
-PointCloud placed(const PointCloud& points, const PriorOptions& options) {
+PointCloud in_area_frame(const PointCloud& points, const PriorOptions& options) {
   PointCloud out = options.unit * points;
   if (!options.pose) return out;
   const ViewPose& pose = *options.pose;
@@ -120,7 +120,7 @@ PointCloud placed(const PointCloud& points, const PriorOptions& options) {
   return (turn * out).colwise() + Eigen::Vector3d(pose.x, pose.y, pose.z);
 }
 
-std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& options, const Scene& scene) {
+std::vector<ViewedSquare> viewed_squares(const PointCloud& points, const PriorOptions& options, const Scene& scene) {
   const Area area = scene.area();
   const double side = std::max(area.width, area.depth) / kSquaresAcross;
   const auto columns = static_cast<std::size_t>(std::ceil(area.width / side - 1e-9));
@@ -145,7 +145,7 @@ std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& optio
     if (std::abs(one.mean().z()) <= reach && one.variance() <= 4.0 * noise * noise) of_desk.push_back(one.mean().z());
   }
   const Offset offset = offset_of(of_desk, noise, options.bias);
-  std::vector<Sight> out;
+  std::vector<ViewedSquare> out;
   for (const Square& one : squares) {
     const Eigen::Vector3d mean = one.mean();
     const double unevenness = std::max(0.0, one.variance() - noise * noise);
@@ -158,14 +158,14 @@ std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& optio
   return out;
 }
 
-std::vector<Sight> sights_of(const std::optional<PriorOptions>& options, const Scene& scene) {
+std::vector<ViewedSquare> viewed_squares(const std::optional<PriorOptions>& options, const Scene& scene) {
   if (!options) return {};
   std::string bytes;
   if (const auto trouble = trouble_in([&] { bytes = bytes_of(options->depth); }))
     throw Error("prior.depth", trouble->what(), {}, trouble->kind());
   if (const std::string found = hash_of(bytes); !options->checksum.empty() && found != options->checksum)
     throw Error("prior.checksum", "does not match " + options->depth + ", whose checksum is " + found);
-  return sights_of(placed(read_points(bytes, options->depth), *options), *options, scene);
+  return viewed_squares(in_area_frame(read_points(bytes, options->depth), *options), *options, scene);
 }
 
 }  // namespace palpate

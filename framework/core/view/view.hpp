@@ -38,7 +38,7 @@ struct PriorOptions : Options {
 };
 
 /// A square of the desk that was seen, as clearly as a touch would tell it.
-struct Sight {
+struct ViewedSquare {
   Touch touch;             ///< at the mean place of its points
   double deviation = 0.0;  ///< of the height, metres: noise, unevenness, and what is left of the bias
 };
@@ -48,17 +48,17 @@ struct Sight {
 inline constexpr int kSquaresAcross = 14;
 
 /// Points as they lie in the frame of the area, metres.
-PointCloud placed(const PointCloud& points, const PriorOptions& options);
+PointCloud in_area_frame(const PointCloud& points, const PriorOptions& options);
 
 /// What these points say, square by square. All heights may be wrong by one offset, of which `bias` is the standard
 /// deviation; the desk, whose height is known, tells most of it where it is seen. A square counts as an object's where
 /// it is clearly above the desk and `scene.on_object()`, as the desk's where it is not above it; one that shows
 /// neither, as at an edge, is left out, and so are points outside the area. Sorted by rows from below. Throws Error
 /// where no point lies in the area.
-std::vector<Sight> sights_of(const PointCloud& points, const PriorOptions& options, const Scene& scene);
+std::vector<ViewedSquare> viewed_squares(const PointCloud& points, const PriorOptions& options, const Scene& scene);
 
 /// Those of the file of `options`, or none without. Throws Error, its `where` "prior.depth" or "prior.checksum", for a
 /// file that cannot be read, or is another than the checksum says.
-std::vector<Sight> sights_of(const std::optional<PriorOptions>& options, const Scene& scene);
+std::vector<ViewedSquare> viewed_squares(const std::optional<PriorOptions>& options, const Scene& scene);
 
 }  // namespace palpate
