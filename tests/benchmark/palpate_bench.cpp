@@ -79,10 +79,10 @@ void run(const Arguments& arguments) {
     const double apart = std::hypot(chosen.x - taps.places(next, 0), chosen.y - taps.places(next, 1));
     agree += apart < 1e-9 ? 1 : 0;
   }
-  fmt::print("{{\n  \"engine\": \"{}\",\n  \"reason\": \"{}\",\n  \"instruction_path\": \"{}\",\n", process->engine(),
-             process->engine_reason(), math::name_of(instructions_in_use()));
+  fmt::print("{{\n  \"engine\": \"{}\",\n  \"reason\": \"{}\",\n  \"instruction_path\": \"{}\",\n",
+             process->engine().name, process->engine().reason, math::name_of(instructions_in_use()));
   fmt::print("  \"candidates\": {},\n  \"taps\": {},\n  \"error_bound\": {:.3g},\n", candidates.size(), process->size(),
-             process->error_bound());
+             process->engine().error_bound);
   fmt::print("  \"total_seconds\": {{\"least\": {:.6g}, \"median\": {:.6g}}},\n  \"peak_rss_bytes\": {},\n",
              totals.front(), totals[totals.size() / 2], memory);
   fmt::print("  \"choices_as_in_file\": \"{} of {}\",\n", agree, best.choices.size() - 1);

@@ -35,7 +35,8 @@ GaussianProcess processed(const Problem& problem, const Candidates& candidates, 
   GaussianProcess process(kernel, {signal, noise, one.mean, one.mean_ratio}, candidates, posterior);
   for (Eigen::Index i = 0; i < problem.values.size(); ++i) {
     process.add({problem.places(i, 0), problem.places(i, 1)}, problem.values(i));
-    sound &= process.mean().allFinite() && process.variance().allFinite() && std::isfinite(process.error_bound());
+    sound &=
+        process.mean().allFinite() && process.variance().allFinite() && std::isfinite(process.engine().error_bound);
   }
   const test::ChangingFit bringing([&one](FitProblem& fit) {
     const double length = one.length_scale();
@@ -59,10 +60,12 @@ struct Answer {
 
 std::string trouble_of(const GaussianProcess& process, const Answer& answer, const Case& one, bool sound) {
   const bool finite = sound && answer.mean.allFinite() && answer.variance.allFinite() && answer.tap_mean.allFinite() &&
-                      std::isfinite(process.log_marginal_likelihood()) && std::isfinite(process.condition());
+                      std::isfinite(process.diagnostics().log_marginal_likelihood) &&
+                      std::isfinite(process.diagnostics().condition);
   if (!finite) return "not a number";
   if (!(answer.jitter <= kJitterLimit * one.points * kEps)) return "jitter";
-  if (process.pivoted() > 0 || process.redundant_taps() > 0) return "a tap was set aside";
+  if (process.diagnostics().factors.pivoted > 0 || process.diagnostics().factors.redundant_taps > 0)
+    return "a tap was set aside";
   const bool within = answer.variance.minCoeff() >= 0.0L && answer.variance.maxCoeff() <= one.prior() * (1 + 4 * kEps);
   return within ? "" : "variance outside of [0; prior]";
 }
@@ -110,7 +113,7 @@ Answer answered(const Problem& problem, const Engine& engine) {
   Answer out{mean.head(probes),
              variance.head(probes),
              mean.tail(places.rows() - probes),
-             process.jitter() / one.signal / one.signal,
+             process.diagnostics().factors.jitter / one.signal / one.signal,
              {}};
   out.trouble = trouble_of(process, out, one, sound);
   return out;

@@ -56,7 +56,7 @@ TEST(UnknownMean, MeanVarianceAndLikelihoodAgreeWithTheOracle) {
                       bound * one.prior());
         }
         const auto likelihood = static_cast<double>(oracle.log_marginal_likelihood());
-        EXPECT_NEAR(process.log_marginal_likelihood(), likelihood, bound * (1.0 + std::abs(likelihood)))
+        EXPECT_NEAR(process.diagnostics().log_marginal_likelihood, likelihood, bound * (1.0 + std::abs(likelihood)))
             << ratio << ' ' << points << ' ' << signal;
       }
     }

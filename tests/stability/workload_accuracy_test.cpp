@@ -62,15 +62,15 @@ TEST_P(WorkloadAccuracy, IsThatPromisedForEveryEngine) {
       const double mean_error =
           std::max(apart(truth.mean(0), process->mean(0)(chosen)), apart(truth.mean(1), process->mean(1)(chosen)));
       const double variance_error = apart(truth.variance(), process->variance()(chosen));
-      const std::string name = fmt::format("{} {}", process->engine(), math::name_of(set));
+      const std::string name = fmt::format("{} {}", process->engine().name, math::name_of(set));
       EXPECT_LE(mean_error, limit.mean) << name;
       EXPECT_LE(variance_error, limit.variance) << name;
       EXPECT_GT(mean_error, 0.0);
       if (limit.engine == Kind::lowrank) {
-        EXPECT_LE(std::max(mean_error, variance_error), process->error_bound() + 1e-10) << "its own bound holds";
+        EXPECT_LE(std::max(mean_error, variance_error), process->engine().error_bound + 1e-10) << "its own bound holds";
       }
       RecordProperty(name, fmt::format("mean {:.2g} variance {:.2g} bound {:.2g}", mean_error, variance_error,
-                                       process->error_bound()));
+                                       process->engine().error_bound));
     }
   }
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A process as tests make and read it: of a single output unless they say otherwise, over any places, its maps by
-// value and never behind.
+// A GP for tests, at any positions, by default with one output. Its maps are returned by value and always up to date.
 #pragma once
 
 #include "gp/gaussian_process.hpp"
@@ -11,7 +10,7 @@
 
 namespace palpate::test {
 
-/// Candidates at any places, one row.
+/// Returns candidates at any positions, in one row.
 inline Candidates scattered(Points points) {
   const auto count = static_cast<int>(points.rows());
   return {count, 1, std::move(points), {}, {}};
@@ -33,9 +32,11 @@ class GaussianProcess : public palpate::GaussianProcess {
     update_maps();
   }
   void add(const Target& place, double value) { add(place, Eigen::Map<const Eigen::VectorXd>(&value, 1)); }
-  bool trust(const VectorView& shares) { return updated(palpate::GaussianProcess::trust(shares)); }
-  bool correct(const VectorView& values) { return updated(palpate::GaussianProcess::correct(values)); }
-  bool move(const PointsView& places) { return updated(palpate::GaussianProcess::move(places)); }
+  bool set_trust(const VectorView& trust) { return updated(palpate::GaussianProcess::set_trust(trust)); }
+  bool set_targets(const VectorView& values) { return updated(palpate::GaussianProcess::set_targets(values)); }
+  bool set_positions(const PointsView& positions) {
+    return updated(palpate::GaussianProcess::set_positions(positions));
+  }
   void show(int outputs) {
     palpate::GaussianProcess::show(outputs);
     update_maps();

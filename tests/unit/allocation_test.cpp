@@ -68,7 +68,7 @@ TEST(Allocation, NoTapOfAnyEngineAllocatesInTheSteadyState) {
       process.read_mean(0, map);
       process.read_relative_variance(map);
     }
-    EXPECT_EQ(allocations - before, 0) << process.engine();
+    EXPECT_EQ(allocations - before, 0) << process.engine().name;
   }
 }
 

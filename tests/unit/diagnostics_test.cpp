@@ -27,8 +27,8 @@ TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
   const GaussianProcess* const process = run.experiment.belief().height_gp().process;
   ASSERT_NE(process, nullptr);
   ASSERT_EQ(run.experiment.belief().label_gp().process, process);
-  ASSERT_GT(process->jitter_raised(), 0);
-  EXPECT_EQ(result.diagnostics.at("jitter"), process->jitter_raised());
+  ASSERT_GT(process->diagnostics().factors.raised, 0);
+  EXPECT_EQ(result.diagnostics.at("jitter"), process->diagnostics().factors.raised);
 }
 
 /// A footprint that factorises something.

@@ -19,10 +19,10 @@ TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
     const double error =
         std::max({apart(process.mean(0), exact.mean(0)) / 2.0, apart(process.mean(1), exact.mean(1)) / 0.5,
                   apart(process.relative_variance(), exact.relative_variance())});
-    EXPECT_LE(error, process.error_bound() + rounding) << tolerance;
-    EXPECT_GT(process.error_bound(), 0.0);
+    EXPECT_LE(error, process.engine().error_bound + rounding) << tolerance;
+    EXPECT_GT(process.engine().error_bound, 0.0);
     if (tolerance > 1e-8) {
-      EXPECT_GT(error, 1e-3 * process.error_bound()) << "a bound that tells something";
+      EXPECT_GT(error, 1e-3 * process.engine().error_bound) << "a bound that tells something";
     }
   }
 }
@@ -45,9 +45,9 @@ TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
         one->add({data.places(i, 0), data.places(i, 1)}, deviation * data.values(i, 0));
       }
     }
-    EXPECT_LE(apart(process.mean(), exact.mean()) / deviation, process.error_bound()) << factor;
-    EXPECT_LE(apart(process.variance(), exact.variance()) / factor, process.error_bound()) << factor;
-    bounds.push_back(process.error_bound());
+    EXPECT_LE(apart(process.mean(), exact.mean()) / deviation, process.engine().error_bound) << factor;
+    EXPECT_LE(apart(process.variance(), exact.variance()) / factor, process.engine().error_bound) << factor;
+    bounds.push_back(process.engine().error_bound);
   }
   EXPECT_NEAR(bounds[0], bounds[1], 1e-3 * bounds[1]);
   EXPECT_NEAR(bounds[2], bounds[1], 1e-3 * bounds[1]);
@@ -66,7 +66,7 @@ TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
   const GaussianProcess process = processed(data, candidates, settings_of(Kind::lowrank));
   EXPECT_LT(apart(process.relative_variance(), exact.relative_variance()), 1e-12);
   EXPECT_LT(apart(process.mean(0), exact.mean(0)), 1e-10);
-  EXPECT_LT(process.error_bound(), 1e-9);
+  EXPECT_LT(process.engine().error_bound, 1e-9);
 }
 
 TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
@@ -79,7 +79,7 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
     settings.taps = taps;
     settings.accuracy = accuracy;
     const GaussianProcess process(kernel, kOutputs, candidates, settings);
-    return std::string(process.engine()) + ": " + process.engine_reason();
+    return std::string(process.engine().name) + ": " + process.engine().reason;
   };
   EXPECT_EQ(engine(matern, square, 300, 1e-9), "dense: the kernel is not separable");
   EXPECT_EQ(engine(rbf(), any, 300, 1e-9), "dense: the candidates are not a product grid");
@@ -100,10 +100,10 @@ TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
   settings.accuracy = 1e-13;  // some taps keep to it
   GaussianProcess process(rbf(), kOutputs, candidates, settings);
   process.show(2);
-  ASSERT_STREQ(process.engine(), "lowrank");
-  add_all(process, data, [&] { EXPECT_LE(process.error_bound(), settings.accuracy); });
-  EXPECT_STREQ(process.engine(), "grid");
-  EXPECT_THAT(process.engine_reason(),
+  ASSERT_STREQ(process.engine().name, "lowrank");
+  add_all(process, data, [&] { EXPECT_LE(process.engine().error_bound, settings.accuracy); });
+  EXPECT_STREQ(process.engine().name, "grid");
+  EXPECT_THAT(process.engine().reason,
               testing::MatchesRegex("the error bound of lowrank .* is above the accuracy 1.0e-13"));
   expect_same_maps(process, processed(data, candidates, settings_of(Kind::grid)));
 }

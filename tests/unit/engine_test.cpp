@@ -36,7 +36,7 @@ TEST_P(EveryEngine, EqualsTheTextbookFormulasOnGridsOfAnyShape) {
       const auto book = by_the_book(*kernel, data, candidates.points, settings, output);
       // The taps lie between the places of the grid, where `lowrank` knows less, and says so.
       const double signal = settings.signal;
-      const double more = process.error_bound();
+      const double more = process.engine().error_bound;
       const Eigen::VectorXd mean = book.mean().array() + settings.mean;
       EXPECT_LT(apart(process.mean(output), mean), 2e-11 + signal * more) << columns;
       EXPECT_LT(apart(process.variance(output), book.variance()), 2e-12 + signal * signal * more) << columns;
@@ -81,19 +81,19 @@ TEST_P(EveryEngine, HasTheSameBytesWhetherMapsFollowEveryChangeOrAllAtOnce) {
       process->add({data.places(i, 0), data.places(i, 1)}, data.values.row(i).transpose());
       follow();
     }
-    EXPECT_TRUE(process->trust(shares));
+    EXPECT_TRUE(process->set_trust(shares));
     follow();
-    EXPECT_TRUE(process->correct(heights));
+    EXPECT_TRUE(process->set_targets(heights));
     follow();
-    EXPECT_TRUE(process->move(places));
+    EXPECT_TRUE(process->set_positions(places));
     follow();
     process->add({0.1, 0.1}, Eigen::Vector2d(0.2, 1.0));
   }
   Eigen::VectorXd map;
   EXPECT_THROW(behind.read_mean(0, map), std::logic_error);
   EXPECT_THROW(behind.read_variance(0, map), std::logic_error);
-  EXPECT_THROW(behind.error_bound(), std::logic_error);
-  EXPECT_EQ(behind.log_marginal_likelihood(), followed.log_marginal_likelihood());
+  EXPECT_THROW(behind.engine().error_bound, std::logic_error);
+  EXPECT_EQ(behind.diagnostics().log_marginal_likelihood, followed.diagnostics().log_marginal_likelihood);
   followed.update_maps();
   behind.update_maps();
   for (const int output : {0, 1}) {
@@ -102,7 +102,7 @@ TEST_P(EveryEngine, HasTheSameBytesWhetherMapsFollowEveryChangeOrAllAtOnce) {
   }
   behind.read_variance(0, map);
   EXPECT_TRUE(same_bytes(map, followed.variance()));
-  EXPECT_EQ(behind.error_bound(), followed.error_bound());
+  EXPECT_EQ(behind.engine().error_bound, followed.engine().error_bound);
 }
 
 TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {
@@ -153,7 +153,7 @@ TEST_P(EveryEngine, IsAfterAFitWhatItWouldBeIfItHadBegunSo) {
       processed(data, candidates, settings_of(GetParam()), rbf("{length_scale: 4 cm, length_scale_y: 2 cm}"),
                 {{4.0, 0.2, 0.25, 0.0}, {1.0, 0.05, 0.5, 0.0}});
   expect_same_maps(fitted, fresh);
-  EXPECT_EQ(fitted.log_marginal_likelihood(), fresh.log_marginal_likelihood());
+  EXPECT_EQ(fitted.diagnostics().log_marginal_likelihood, fresh.diagnostics().log_marginal_likelihood);
 }
 
 std::string name_of(const testing::TestParamInfo<Kind>& one) {

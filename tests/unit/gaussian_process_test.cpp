@@ -45,7 +45,7 @@ TEST(GaussianProcess, EqualsTheTextbookFormulasWithTheWholeMatrix) {
   EXPECT_LT(apart(process.mean(), mean), 1e-9);
   EXPECT_LT(apart(process.variance(), book.variance()), 1e-9);
   EXPECT_LT(apart(process.relative_variance(), book.variance().cwiseQuotient(6.25 * prior)), 1e-9);
-  EXPECT_NEAR(process.log_marginal_likelihood(), book.log_marginal_likelihood(), 1e-9);
+  EXPECT_NEAR(process.diagnostics().log_marginal_likelihood, book.log_marginal_likelihood(), 1e-9);
 }
 
 TEST(GaussianProcess, WithoutTapsIsThePrior) {
@@ -53,7 +53,7 @@ TEST(GaussianProcess, WithoutTapsIsThePrior) {
   const GaussianProcess process(bowl(), {3.0, 0.1, -2.0}, candidates);
   EXPECT_TRUE((process.mean().array() == -2.0).all());
   EXPECT_TRUE((process.relative_variance().array() == 1.0).all());
-  EXPECT_EQ(process.log_marginal_likelihood(), 0.0);
+  EXPECT_EQ(process.diagnostics().log_marginal_likelihood, 0.0);
 }
 
 TEST(GaussianProcess, AMeasuredPlaceWithoutNoiseIsKnownExactly) {
@@ -107,7 +107,7 @@ TEST(GaussianProcess, RepeatedTapsWithNoiseAreAveraged) {
   // n equal places: mean = average * k / (k + noise / n), variance = k noise / (n k + noise), k = 1.5^2.
   EXPECT_NEAR(process.mean()(0), 2.0 * 2.25 / (2.25 + 0.25 / 4), 1e-12);
   EXPECT_NEAR(process.variance()(0), 2.25 * 0.25 / (4 * 2.25 + 0.25), 1e-12);
-  EXPECT_EQ(process.jitter(), 0.0);
+  EXPECT_EQ(process.diagnostics().factors.jitter, 0.0);
 }
 
 }  // namespace

@@ -82,21 +82,21 @@ void GpModel::set_heights(const ContactLog& log) {
   if (!process_) return;
   Eigen::VectorXd values(size(log));
   for (int i = 0; i < size(log); ++i) values(i) = log.datum(row(log, i)).height;
-  if (process_->correct(values)) stale_ = true;
+  if (process_->set_targets(values)) stale_ = true;
 }
 
 void GpModel::set_positions(const ContactLog& log, const Points& positions) {
   if (!process_) return;
   Points own(size(log), 2);
   for (int i = 0; i < size(log); ++i) own.row(i) = positions.row(row(log, i));
-  if (process_->move(own)) stale_ = true;
+  if (process_->set_positions(own)) stale_ = true;
 }
 
 void GpModel::set_trust(const ContactLog& log, const Eigen::VectorXd& trust) {
   if (!process_) return;
   Eigen::VectorXd own(size(log));
   for (int i = 0; i < size(log); ++i) own(i) = trust(row(log, i));
-  if (process_->trust(own)) stale_ = true;
+  if (process_->set_trust(own)) stale_ = true;
 }
 
 void GpModel::reset() {

@@ -35,9 +35,9 @@ struct GpState {
   double log_marginal_likelihood = 0.0;
   double jitter = 0.0;
   double condition = 1.0;
-  std::string engine;         ///< that keeps the maps
-  std::string engine_reason;  ///< why that one, one line
-  double error_bound = 0.0;   ///< of what the engine adds to the rounding of dense: see GaussianProcess::error_bound()
+  std::string engine;             ///< that keeps the maps
+  std::string engine_reason;      ///< why that one, one line
+  double error_bound = 0.0;       ///< of what the engine adds to the rounding of dense: see EngineState::error_bound
   std::optional<FitSummary> fit;  ///< the fit after the latest of its taps; absent if none was due then
 };
 

@@ -17,12 +17,14 @@ GpState state_of(const TapBelief::Output& one) {
   GpState out;
   out.kernel = process.kernel().parameters();
   out.settings = process.settings(output);
-  out.log_marginal_likelihood = process.log_marginal_likelihood(output);
-  out.jitter = process.jitter(output);
-  out.condition = process.condition();
-  out.engine = process.engine();
-  out.engine_reason = process.engine_reason();
-  out.error_bound = process.error_bound();
+  const GpDiagnostics diagnostics = process.diagnostics(output);
+  out.log_marginal_likelihood = diagnostics.log_marginal_likelihood;
+  out.jitter = diagnostics.factors.jitter;
+  out.condition = diagnostics.condition;
+  const EngineState engine = process.engine();
+  out.engine = engine.name;
+  out.engine_reason = engine.reason;
+  out.error_bound = engine.error_bound;
   if (one.last_fit != nullptr) out.fit = *one.last_fit;
   return out;
 }
@@ -174,7 +176,7 @@ RunResult Watch::result(TapBelief& belief) {
     if (!one) return;
     const GaussianProcess& process = *one.process;
     state = state_of(one);
-    FactorReport factors{state->jitter, process.jitter_raised(), process.pivoted(), process.redundant_taps()};
+    FactorReport factors = process.diagnostics(one.output).factors;
     if (std::find(counted.begin(), counted.end(), &process) != counted.end()) {
       factors.raised = factors.pivoted = 0;
     } else {

@@ -37,8 +37,8 @@ void RobustSurface::update(const GaussianProcess& process, const VectorView& sus
   OutlierProblem problem;
   const auto taps = static_cast<Eigen::Index>(process.size());
   problem.covariance.resize(taps, taps);
-  process.kernel().covariance(process.places(), process.places(), problem.covariance);
-  const Points closer = process.places() / kBroader;
+  process.kernel().covariance(process.positions(), process.places(), problem.covariance);
+  const Points closer = process.positions() / kBroader;
   problem.broad_covariance.resize(taps, taps);
   process.kernel().covariance(closer, closer, problem.broad_covariance);
   problem.heights = process.targets().array() - settings.mean;
@@ -79,7 +79,7 @@ void RobustSurface::cover(const GaussianProcess& process) {
     covariances_.conservativeResize(candidates_.size(), room);
     broad_.conservativeResize(candidates_.size(), room);
   }
-  const PointsView places = process.places();
+  const PointsView places = process.positions();
   const Points closer = candidates_.points / kBroader;
   for (; covered_ < taps; ++covered_) {
     const auto place = places.middleRows(covered_, 1);
@@ -127,9 +127,9 @@ RobustSurface::Height RobustSurface::at(const GaussianProcess& process, int cand
   Eigen::VectorXd z(1 + 2 * taps);
   z(0) = 1.0;
   Eigen::MatrixXd column(taps, 1);
-  process.kernel().covariance(process.places().topRows(taps), place, column);
+  process.kernel().covariance(process.positions().topRows(taps), place, column);
   z.segment(1, taps) = column;
-  process.kernel().covariance(Points(process.places().topRows(taps) / kBroader), closer, column);
+  process.kernel().covariance(Points(process.positions().topRows(taps) / kBroader), closer, column);
   z.tail(taps) = column;
   Eigen::VectorXd own(1);
   process.kernel().variance(place, own);
