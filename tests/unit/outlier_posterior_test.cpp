@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which taps lie, against the sum over all sets of liars, signals and noises: every set factorised for itself with 50
-// digits, its posterior by the book.
+// The posterior of the outliers against a sum over all sets, signals and noises, where every set is factorised by
+// itself with 50 digits.
 #include "gp/outlier_posterior.hpp"
 
 #include "support/sanitizers.hpp"
@@ -20,7 +20,7 @@ using Real =
 
 constexpr double kLengthScale = 0.03;
 constexpr double kBroader = 0.075;
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kTwoPi = 6.28318530717958647693;
 
 template <class Number>
 Number covariance(const Target& a, const Target& b, double length_scale) {
@@ -30,12 +30,12 @@ Number covariance(const Target& a, const Target& b, double length_scale) {
   return exp(-(dx * dx + dy * dy) / 2);
 }
 
-/// Taps at random, of which some lie, and where the surface is asked for.
+/// Random taps with some outliers, and positions at which the surface is compared.
 struct Trial {
   std::vector<Target> places, probes;
   OutlierProblem problem;
 
-  Trial(int taps, double level, bool broad, std::uint64_t seed, double share_of_lies = 0.25) {
+  Trial(int taps, double level, bool broad, std::uint64_t seed, double share_of_outliers = 0.25) {
     Random random(seed, "lies test");
     const auto some = [&](int count) {
       std::vector<Target> out;
@@ -51,9 +51,9 @@ struct Trial {
     problem.heights.resize(taps);
     problem.prior.resize(taps);
     for (int i = 0; i < taps; ++i) {
-      const bool lies = random.uniform() < share_of_lies;
-      const double honest = 0.6 + 0.1 * std::sin(places[static_cast<std::size_t>(i)].x / 0.03);
-      problem.heights(i) = lies ? 3.0 * random.uniform() - 1.0 : honest + 0.05 * random.uniform();
+      const bool is_outlier = random.uniform() < share_of_outliers;
+      const double inlier = 0.6 + 0.1 * std::sin(places[static_cast<std::size_t>(i)].x / 0.03);
+      problem.heights(i) = is_outlier ? 3.0 * random.uniform() - 1.0 : inlier + 0.05 * random.uniform();
       problem.prior(i) = random.uniform() < 0.3 ? 0.3 : 0.03;
     }
     problem.covariance = between(places, kLengthScale);
@@ -62,7 +62,7 @@ struct Trial {
     problem.broad_signal = 0.5;
   }
 
-  /// Of all taps with some points.
+  /// Returns the covariances of all taps with some points.
   Eigen::MatrixXd between(const std::vector<Target>& points, double length_scale) const {
     const auto at = [](const std::vector<Target>& all, Eigen::Index i) { return all[static_cast<std::size_t>(i)]; };
     return Eigen::MatrixXd::NullaryExpr(
@@ -71,12 +71,12 @@ struct Trial {
   }
 };
 
-struct Judged {
+struct Inferred {
   Eigen::VectorXd probability, mean, variance;
 };
 
-/// What a posterior says at the probes.
-Judged read(const Trial& trial, const OutlierPosterior& posterior) {
+/// Returns the posterior at the probes.
+Inferred read(const Trial& trial, const OutlierPosterior& posterior) {
   const auto taps = static_cast<Eigen::Index>(trial.places.size());
   const auto probes = static_cast<Eigen::Index>(trial.probes.size());
   Eigen::MatrixXd z = Eigen::MatrixXd::Ones(probes, 1 + 2 * taps);
@@ -86,13 +86,13 @@ Judged read(const Trial& trial, const OutlierPosterior& posterior) {
   return {posterior.probability, z * posterior.a, Eigen::VectorXd::Constant(probes, posterior.s2) + form};
 }
 
-Judged sum_over_all_sets(const Trial& trial) {
+Inferred sum_over_all_sets(const Trial& trial) {
   const std::size_t taps = trial.places.size();
   const OutlierProblem& t = trial.problem;
   Points probes(5, 2);
   for (Eigen::Index i = 0; i < 5; ++i)
     probes.row(i) << trial.probes[static_cast<std::size_t>(i)].x, trial.probes[static_cast<std::size_t>(i)].y;
-  Judged out{Eigen::VectorXd::Zero(t.heights.size()), Eigen::VectorXd::Zero(5), Eigen::VectorXd::Zero(5)};
+  Inferred out{Eigen::VectorXd::Zero(t.heights.size()), Eigen::VectorXd::Zero(5), Eigen::VectorXd::Zero(5)};
   double sum = 0.0;
   for (const double signal : t.signals) {
     for (const double noise : t.noises) {
@@ -112,8 +112,8 @@ Judged sum_over_all_sets(const Trial& trial) {
             others.add(trial.places[i], {Real(t.heights(row))});
             log_weight += std::log(1.0 - pi);
           } else {
-            const double lie = t.heights(row) / t.outlier_deviation;
-            log_weight += std::log(pi / t.outlier_deviation) - 0.5 * (lie * lie + std::log(2.0 * kPi));
+            const double outlier = t.heights(row) / t.outlier_deviation;
+            log_weight += std::log(pi / t.outlier_deviation) - 0.5 * (outlier * outlier + std::log(kTwoPi));
           }
         }
         const double weight = std::exp(log_weight + others.log_marginal_likelihood());
@@ -132,17 +132,17 @@ Judged sum_over_all_sets(const Trial& trial) {
   return out;
 }
 
-class Lies : public testing::TestWithParam<int> {};
+class Outliers : public testing::TestWithParam<int> {};
 
-TEST_P(Lies, AreThoseOfTheSumOverAllSetsWhereNoneIsLeftOut) {
+TEST_P(Outliers, EqualTheSumOverAllSetsIfNoneIsLeftOut) {
   const int taps = GetParam();
   for (const bool rich : {false, true}) {
     const Trial trial(taps, rich ? 1.0 : 0.0, rich, static_cast<std::uint64_t>(taps));
-    const Judged expected = sum_over_all_sets(trial);
+    const Inferred expected = sum_over_all_sets(trial);
     const OutlierPosterior posterior = infer_outliers(trial.problem, {1 << taps, 0.0, 0.0});
     EXPECT_EQ(posterior.summed_sets, 4 << taps) << "two signals, two noises";
     EXPECT_EQ(posterior.next_weight, 0.0);
-    const Judged got = read(trial, posterior);
+    const Inferred got = read(trial, posterior);
     // The covariance has a condition of some ten thousand, which takes four or five digits off sixteen.
     EXPECT_LT((got.probability - expected.probability).lpNorm<Eigen::Infinity>(), 1e-10);
     EXPECT_LT((got.mean - expected.mean).lpNorm<Eigen::Infinity>(), 1e-10);
@@ -151,7 +151,7 @@ TEST_P(Lies, AreThoseOfTheSumOverAllSetsWhereNoneIsLeftOut) {
 }
 
 // Before, the covariance was factorised unchecked, and its inverse had no correct digit.
-TEST(TinyNoise, IsRaisedToWhatTheFormsTakeAndTheSumIsThatOfTheRaisedNoise) {
+TEST(TinyNoise, IsRaisedAndTheSumIsThatOfTheRaisedNoise) {
   for (const double noise : {0.0, 1e-12, 1e-9, 1e-7}) {
     for (const bool repeated : {false, true}) {
       Trial trial(8, 1.0, true, 21, 0.0);
@@ -165,11 +165,11 @@ TEST(TinyNoise, IsRaisedToWhatTheFormsTakeAndTheSumIsThatOfTheRaisedNoise) {
       const OutlierPosterior posterior = infer_outliers(trial.problem, {1 << 8, 0.0, 0.0});
       ASSERT_GT(posterior.report.jitter, 0.0);
       EXPECT_EQ(posterior.report.raised, 1);
-      EXPECT_LT(posterior.report.jitter, 1e-9) << "nobody sees that";
+      EXPECT_LT(posterior.report.jitter, 1e-9) << "it is negligible";
       EXPECT_TRUE(std::isfinite(posterior.log_evidence));
       trial.problem.noises = {std::sqrt(noise * noise + posterior.report.jitter)};
-      const Judged expected = sum_over_all_sets(trial);
-      const Judged got = read(trial, posterior);
+      const Inferred expected = sum_over_all_sets(trial);
+      const Inferred got = read(trial, posterior);
       EXPECT_LT((got.probability - expected.probability).lpNorm<Eigen::Infinity>(), 1e-3) << noise << repeated;
       EXPECT_LT((got.mean - expected.mean).lpNorm<Eigen::Infinity>(), 1e-4) << noise << repeated;
       EXPECT_LT((got.variance - expected.variance).lpNorm<Eigen::Infinity>(), 1e-4) << noise << repeated;
@@ -177,18 +177,18 @@ TEST(TinyNoise, IsRaisedToWhatTheFormsTakeAndTheSumIsThatOfTheRaisedNoise) {
   }
 }
 
-TEST(LikeliestLies, OfACovarianceThatIsNoneSetTapsAsideWhichKeepTheirSuspicion) {
+TEST(OutlierSearch, LeavesOutTapsOfAnInvalidCovarianceWhichKeepTheirPrior) {
   Trial trial(6, 1.0, true, 5);
   trial.problem.covariance(2, 4) = trial.problem.covariance(4, 2) = 7.0;
   const OutlierPosterior posterior = infer_outliers(trial.problem);
   EXPECT_GT(posterior.report.redundant_taps, 0);
   EXPECT_GT(posterior.report.pivoted, 0);
-  const Judged got = read(trial, posterior);
+  const Inferred got = read(trial, posterior);
   EXPECT_TRUE(got.probability.allFinite() && got.mean.allFinite() && got.variance.allFinite());
 }
 
-// Which of several signals comes first means nothing: rows are set aside for each by itself.
-TEST(LikeliestLies, DoNotDependOnTheOrderOfSignalsOfWhichSomeSetTapsAside) {
+// Rows are left out for each signal by itself.
+TEST(OutlierSearch, DoesNotDependOnTheOrderOfSignalsThatLeaveOutTaps) {
   Trial trial(6, 1.0, true, 5);
   trial.problem.covariance(2, 4) = trial.problem.covariance(4, 2) = 7.0;
   trial.problem.signals = {0.005, 1.0};
@@ -201,19 +201,19 @@ TEST(LikeliestLies, DoNotDependOnTheOrderOfSignalsOfWhichSomeSetTapsAside) {
   EXPECT_LT((infer_outliers(trial.problem).probability - one.probability).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfSoMany, Lies, testing::Values(1, 2, 5, 8));
-/// 4096 sets, four times over.
-INSTANTIATE_TEST_SUITE_P(OfTwelve, Lies, testing::ValuesIn(brief() ? std::vector<int>() : std::vector<int>{12}));
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Lies);
+INSTANTIATE_TEST_SUITE_P(OfSoMany, Outliers, testing::Values(1, 2, 5, 8));
+/// 4096 sets for each of four combinations of signal and noise.
+INSTANTIATE_TEST_SUITE_P(OfTwelve, Outliers, testing::ValuesIn(brief() ? std::vector<int>() : std::vector<int>{12}));
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Outliers);
 
-TEST(LikeliestLies, AreEnoughForTheDoubtsAndTheSurface) {
+TEST(OutlierSearch, FindsEnoughSetsForProbabilitiesAndSurface) {
   double probability = 0.0;
   double mean = 0.0;
   double deviation = 0.0;
   for (int i = 0; i < (brief() ? 2 : 10); ++i) {
     const Trial trial(10, 1.0, true, static_cast<std::uint64_t>(100 + i), 0.1);
-    const Judged all = read(trial, infer_outliers(trial.problem, {1 << 10, 0.0, 0.0}));
-    const Judged some = read(trial, infer_outliers(trial.problem));
+    const Inferred all = read(trial, infer_outliers(trial.problem, {1 << 10, 0.0, 0.0}));
+    const Inferred some = read(trial, infer_outliers(trial.problem));
     probability = std::max(probability, (some.probability - all.probability).lpNorm<Eigen::Infinity>());
     mean = std::max(mean, (some.mean - all.mean).lpNorm<Eigen::Infinity>());
     deviation = std::max(deviation, (some.variance.cwiseSqrt() - all.variance.cwiseSqrt()).lpNorm<Eigen::Infinity>());
@@ -224,12 +224,12 @@ TEST(LikeliestLies, AreEnoughForTheDoubtsAndTheSurface) {
   EXPECT_LT(deviation, 0.02);
 }
 
-TEST(LikeliestLies, AreNoneAmongTapsThatAgreeAndTheOneThatDoesNot) {
+TEST(OutlierSearch, FindsTheOnlyTapThatDisagreesWithTheOthers) {
   Trial trial(12, 1.0, true, 7);
   trial.problem.heights.setConstant(0.6);
   trial.problem.prior.setConstant(0.03);
   EXPECT_LT(infer_outliers(trial.problem).probability.maxCoeff(), 0.05);
-  // Among others within a length scale.
+  // A tap with others within a length scale.
   Eigen::Index closest = 0;
   trial.problem.covariance.colwise().sum().maxCoeff(&closest);
   trial.problem.heights(closest) = 1.6;
@@ -239,8 +239,8 @@ TEST(LikeliestLies, AreNoneAmongTapsThatAgreeAndTheOneThatDoesNot) {
     EXPECT_TRUE(i == closest || probability(i) < 0.2) << i << ": " << probability(i);
 }
 
-TEST(LikeliestLies, AreSuspectedBeforeWhereNothingElseIsKnown) {
-  // A tap alone: as a lie its height is as probable as in truth, so that only the suspicion counts.
+TEST(OutlierSearch, KeepsThePriorOfASingleTap) {
+  // The height of a single tap is as probable for an outlier as for an inlier, so only the prior counts.
   Trial trial(1, 1.0, false, 3);
   trial.problem.signals = {1.0};
   trial.problem.noises = {1e-6};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surface of taps some of which may lie: its maps, made of many candidates at once, against each place by itself.
+// The maps of a surface without outliers against the surface at each candidate by itself.
 #include "gp/robust_surface.hpp"
 
 #include "support/gaussian_process.hpp"
@@ -15,11 +15,11 @@ Candidates lattice_of(int columns, int rows) {
   return product_grid(Eigen::VectorXd::LinSpaced(columns, 0.0, 0.2), Eigen::VectorXd::LinSpaced(rows, 0.0, 0.15));
 }
 
-class Doubted : public testing::TestWithParam<int> {};
+class RobustMaps : public testing::TestWithParam<int> {};
 
-TEST_P(Doubted, MapsAreAtEachPlaceWhatItsOwnTestimonySays) {
+TEST_P(RobustMaps, EqualTheSurfaceAtEachCandidate) {
   const int taps = GetParam();
-  const Candidates candidates = lattice_of(19, 17);  // no whole number of what is computed together
+  const Candidates candidates = lattice_of(19, 17);  // not a multiple of the batch
   const std::shared_ptr<Kernel> kernel = test::make<Kernel>(test::shared_host(), "rbf", "{length_scale: 3 cm}");
   test::GaussianProcess process(kernel, GpSettings{0.1, 0.006, 0.02, 1.0}, candidates);
   for (int i = 0; i < taps; ++i) {
@@ -39,10 +39,10 @@ TEST_P(Doubted, MapsAreAtEachPlaceWhatItsOwnTestimonySays) {
     EXPECT_NEAR(mean(i), here.mean, 1e-12) << i;
     EXPECT_NEAR(variance(i), here.variance, 1e-12) << i;
   }
-  EXPECT_GT(variance.maxCoeff(), 2.0 * variance.minCoeff()) << "it is better known where taps are";
+  EXPECT_GT(variance.maxCoeff(), 2.0 * variance.minCoeff()) << "the variance is small near taps";
 }
 
-/// Taps of a process with so little noise that the forms need jitter.
+/// Taps of a GP with so little noise that the forms need jitter.
 struct ExactTaps {
   Candidates candidates = lattice_of(5, 5);
   std::shared_ptr<Kernel> kernel;
@@ -55,30 +55,30 @@ struct ExactTaps {
   }
 };
 
-TEST(DoubtReport, IsOfTheJudgementThatIsUsedAndEndsWithIt) {
-  const Eigen::VectorXd suspicion = Eigen::VectorXd::Constant(24, 0.03);
+TEST(RobustReport, IsThatOfTheUsedPosterior) {
+  const Eigen::VectorXd prior = Eigen::VectorXd::Constant(24, 0.03);
   const ExactTaps flat("{length_scale: 3 cm}", 0.0), rough("{length_scale: 50 cm}", 0.01),
       without("{length_scale: 3 cm}", 0.0, 0.0);
   RobustSurface surface(flat.candidates);
-  surface.update(flat.process, suspicion);
+  surface.update(flat.process, prior);
   ASSERT_TRUE(surface.excludes_outliers());
   EXPECT_GT(surface.report().jitter, 0.0);
   const int raised = surface.report().raised;
   EXPECT_GT(raised, 0);
-  surface.update(flat.process, suspicion);
+  surface.update(flat.process, prior);
   EXPECT_EQ(surface.report().raised, 2 * raised) << "every factorisation counts";
-  surface.update(without.process, suspicion);
+  surface.update(without.process, prior);
   EXPECT_FALSE(surface.excludes_outliers());
-  EXPECT_EQ(surface.report().jitter, 0.0) << "nothing was factorised";
+  EXPECT_EQ(surface.report().jitter, 0.0) << "no matrix was factorised";
 
   RobustSurface other(rough.candidates);
-  other.update(rough.process, suspicion);
+  other.update(rough.process, prior);
   ASSERT_FALSE(other.excludes_outliers()) << "a rough arm explains the heights";
-  EXPECT_EQ(other.report().raised, 0) << "the posterior of the tiny noise is not used";
+  EXPECT_EQ(other.report().raised, 0) << "the posterior with the tiny noise is not used";
   EXPECT_EQ(other.report().jitter, 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(After, Doubted, testing::Values(1, 2, 7, 24), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(After, RobustMaps, testing::Values(1, 2, 7, 24), testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace palpate

@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Which taps lie, and what is believed of a surface if some do.
+// Inference of the taps that are outliers, and of the surface without them.
 //
-// A tap tells the surface, y_i = f(x_i) + noise, or it lies: then y_i is anything that a height may be before any tap.
-// With pi_i the probability that tap i lies before any heights are compared, and b_i the density of a lie, the sets S
-// of taps that do have
+// The height of an inlier is y_i = f(x_i) + noise. The height of an outlier has the prior of any height, with density
+// b_i. With the prior probability pi_i of an outlier, a set S of outliers has
 //     p(S | y) ~ prod_{i in S} pi_i b_i  prod_{i not in S} (1 - pi_i)  p(y without S).
-// With A = K^-1, K the covariance of all taps with their noise, a set that is left out needs no factor of its own:
+// Let A = K^-1, with K the covariance of all taps with their noise. The taps outside of S need no factorisation:
 //     A' = A - A_:S (A_SS)^-1 A_S:,   log det K' = log det K + log det A_SS,
-// |S|^3 + n |S|^2 a set, and O(n) for all sets that have one tap more. There are 2^n; the likeliest are found by
-// looking at the neighbours of the likeliest whose neighbours are not known yet, and it is told how likely the first is
-// of which they were not looked at.
+// at |S|^3 + n |S|^2 for the set, and O(n) for all sets that have one more tap. A search (OutlierSearch) finds the most
+// probable of the 2^n sets.
 //
-// Whether a height is odd depends on how far the surface goes up and down and on how exact a tap is, which a config
-// does not know: the same sum is made for several signals and noises, and each counts by its evidence. What is flat by
-// itself need not be as high as another thing beside it: with each signal goes a broad one, the same for all.
+// Whether a height is unusual depends on the variation of the surface and on the noise of a tap. A config gives only
+// rough values, so the sum is over several signals and noises, weighted by their evidence. Each signal is combined with
+// a broad signal of longer range, because neighbouring flat surfaces may have different heights.
 //
-// The posterior of the surface is the mixture of those of all sets, signals and noises. With z(x) = (1, k(x), l(x)), k
-// and l the unit covariances of x with the taps, l the broad ones, its mean and variance are a linear and a quadratic
-// form whose coefficients are means over them,
-//     m(x) = z^T a,   v(x) = s2 k(x, x) + z^T B z:
-// the maps cost what a single set would.
+// The posterior of the surface is the mixture over all sets, signals and noises. With z(x) = (1, k(x), l(x)), where k
+// and l are the covariances of x with the taps at unit signal and l belongs to the broad signal, mean and variance are
+//     m(x) = z^T a,   v(x) = s2 k(x, x) + z^T B z,
+// whose coefficients are averages over the mixture. So the maps cost as much as those of a single set.
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -30,44 +27,43 @@
 
 namespace palpate {
 
-/// What is known of n taps before their heights are compared. Heights and deviations in one unit.
+/// Prior and heights of n taps. Heights and standard deviations have one unit.
 struct OutlierProblem {
   Eigen::MatrixXd covariance;        ///< of the taps, n x n, at a signal of 1, without noise
-  Eigen::MatrixXd broad_covariance;  ///< likewise, of the broad signal; empty where there is none
-  Eigen::VectorXd heights;           ///< y, less the prior mean
+  Eigen::MatrixXd broad_covariance;  ///< the same of the broad signal; empty for none
+  Eigen::VectorXd heights;           ///< y, minus the prior mean
   Eigen::VectorXd prior;             ///< pi, in [0, 1]
-  std::vector<double> signals;       ///< deviations that the surface may have, each as probable as the others
-  std::vector<double> noises;        ///< the same of the noise of a tap, all above 0
-  Eigen::VectorXd extra_variance;    ///< n: variance that a tap's noise has beside that; empty for none
-  double broad_signal = 0.0;         ///< deviation of the broad signal
-  double mean_deviation = 0.0;       ///< deviation of a constant that is added to all of f; 0: there is none
-  double outlier_deviation = 1.0;    ///< deviation of a lie: it is normal about the prior mean
+  std::vector<double> signals;       ///< standard deviations of the surface, equally probable
+  std::vector<double> noises;        ///< standard deviations of a tap's noise, equally probable, above 0
+  Eigen::VectorXd extra_variance;    ///< n: variance of each tap beside the noise; empty for none
+  double broad_signal = 0.0;         ///< standard deviation of the broad signal
+  double mean_deviation = 0.0;       ///< standard deviation of a constant that is added to f; 0 for none
+  double outlier_deviation = 1.0;    ///< standard deviation of an outlier, which is normal about the prior mean
 };
 
-/// How far the sum over the sets goes.
+/// Limits of the search, for each signal and noise.
 struct OutlierSearchLimits {
-  int expansions = 32;       ///< at most so many sets have their neighbours looked at
-  double min_summed = 1e-4;  ///< a set less likely than this, beside the likeliest, is not summed
-  double min_expanded =
-      1e-8;  ///< nor is one looked at that is less likely than this: likely ones may lie behind others
+  int expansions = 32;         ///< largest number of sets that are extended by one more tap
+  double min_summed = 1e-4;    ///< smallest weight, relative to the largest, of a set that is summed
+  double min_expanded = 1e-8;  ///< the same of a set that is extended; an improbable set may lead to a probable one
 };
 
 struct OutlierPosterior {
-  Eigen::VectorXd probability;  ///< n: the probability that a tap lies
+  Eigen::VectorXd probability;  ///< n: of an outlier
   Eigen::VectorXd a;            ///< 1 + 2 n: the constant, then k, then l
-  Eigen::MatrixXd b;            ///< as many square, symmetric
-  double s2 = 0.0;              ///< mean of the square of the signals, that of the broad one included
-  int summed_sets = 0;          ///< how many were summed
-  double next_weight = 0.0;  ///< how likely, beside the likeliest, is the first set whose neighbours were not looked at
-  /// log p(y), natural logarithm, of the mean over signals and noises, but for a number that hangs on n alone.
+  Eigen::MatrixXd b;            ///< (1 + 2 n) x (1 + 2 n), symmetric
+  double s2 = 0.0;              ///< mean of the squared signals, the broad signal included
+  int summed_sets = 0;
+  double next_weight = 0.0;  ///< weight, relative to the largest, of the first set that was not extended
+  /// log p(y), natural logarithm, averaged over signals and noises, up to a number that depends on n alone.
   double log_evidence = 0.0;
-  FactorReport report;  ///< the largest jitter, the most rows set aside and all counts of the factorisations
+  FactorReport report;  ///< largest jitter, most redundant rows, and all counts of the factorisations
 };
 
-/// Sums over the sets. A noise that is below what the forms take (kInverseNoise) is raised to that, which the report
-/// counts as jitter. Rows that no jitter makes independent of the others are set aside, for each signal and noise by
-/// itself: there they keep their suspicion and tell nothing. All numbers are finite where heights and covariances are,
-/// and far from overflow. Never throws.
+/// Computes the posterior by a sum over sets. A noise below kInverseNoise is raised to it, which the report counts as
+/// jitter. Rows that no jitter makes independent are left out per signal and noise; there they keep their prior and do
+/// not inform the surface. All numbers are finite if heights and covariances are finite and far from overflow. Never
+/// throws.
 OutlierPosterior infer_outliers(const OutlierProblem& problem, const OutlierSearchLimits& limits = {});
 
 }  // namespace palpate

@@ -9,53 +9,58 @@
 namespace palpate {
 namespace {
 
-/// Of the signal of the config: a surface may go up and down as far as that, or be nearly flat.
+/// Signals of the surface, as shares of the configured signal: a surface may vary that much, or be nearly flat.
 constexpr double kSignals[] = {1.0, 0.3, 0.1};
-/// Of the noise of the config, which is that of a rough arm: a perfect one is more exact.
+/// Noises of a tap, as shares of the configured noise, which is that of an inexact arm.
 constexpr double kNoises[] = {1.0, 1.0 / 6.0};
-/// Of the signal, and how many times as far as the kernel's its covariance reaches.
+/// The broad signal, as a share of the configured signal, and the ratio of its length scale to that of the kernel.
 constexpr double kBroadSignal = 0.5;
-constexpr double kBroader = 2.5;
-/// Of the signal. Below the first a process claims to be exact, which few surfaces keep to: see judge(). The others are
-/// the noises by which it is contradicted, from those of a good arm to what a kernel that is much too smooth leaves
-/// over.
-constexpr double kExact = 0.03;
-constexpr double kRough[] = {0.3, 0.06, 0.01};
-/// Strong evidence, a ratio of ten (Jeffreys 1961), as a natural logarithm.
-constexpr double kStrong = 2.3;
+constexpr double kBroadScale = 2.5;
+/// Noise, as a share of the signal, below which true heights may contradict a GP; see update().
+constexpr double kExactNoise = 0.03;
+/// Larger noises for that comparison, as shares of the signal. The largest is about the misfit of a kernel that is much
+/// too smooth, the smallest is the noise of an exact arm.
+constexpr double kRoughNoises[] = {0.3, 0.06, 0.01};
+/// Log of a ratio of ten, which is strong evidence (Jeffreys 1961).
+constexpr double kStrongEvidence = 2.3;
+
+OutlierProblem problem_of(const GaussianProcess& gp, const VectorView& prior, const Eigen::VectorXd& extra_variance) {
+  const GpSettings& settings = gp.settings();
+  OutlierProblem out;
+  const auto taps = static_cast<Eigen::Index>(gp.size());
+  out.covariance.resize(taps, taps);
+  gp.kernel().covariance(gp.positions(), gp.positions(), out.covariance);
+  const Points closer = gp.positions() / kBroadScale;
+  out.broad_covariance.resize(taps, taps);
+  gp.kernel().covariance(closer, closer, out.broad_covariance);
+  out.heights = gp.targets().array() - settings.mean;
+  out.prior = prior;
+  out.extra_variance = extra_variance;
+  for (const double share : kSignals) out.signals.push_back(share * settings.signal);
+  for (const double share : kNoises) out.noises.push_back(share * settings.noise);
+  out.broad_signal = kBroadSignal * settings.signal;
+  out.mean_deviation = settings.mean_ratio * settings.signal;
+  out.outlier_deviation = math::hypot(settings.signal, out.mean_deviation);
+  return out;
+}
 
 }  // namespace
 
-void RobustSurface::update(const GaussianProcess& process, const VectorView& suspicion,
-                           const Eigen::VectorXd& roughness) {
-  const GpSettings& settings = process.settings();
-  judged_ = process.size() > 0 && settings.noise > 0.0;
-  posterior_.probability = suspicion;
+void RobustSurface::update(const GaussianProcess& gp, const VectorView& prior, const Eigen::VectorXd& extra_variance) {
+  const GpSettings& settings = gp.settings();
+  excludes_outliers_ = gp.size() > 0 && settings.noise > 0.0;
+  posterior_.probability = prior;
   report_.jitter = 0.0;
   report_.redundant_taps = 0;
-  if (!judged_) return;
-  OutlierProblem problem;
-  const auto taps = static_cast<Eigen::Index>(process.size());
-  problem.covariance.resize(taps, taps);
-  process.kernel().covariance(process.positions(), process.places(), problem.covariance);
-  const Points closer = process.positions() / kBroader;
-  problem.broad_covariance.resize(taps, taps);
-  process.kernel().covariance(closer, closer, problem.broad_covariance);
-  problem.heights = process.targets().array() - settings.mean;
-  problem.prior = suspicion;
-  problem.extra_variance = roughness;
-  for (const double share : kSignals) problem.signals.push_back(share * settings.signal);
-  for (const double share : kNoises) problem.noises.push_back(share * settings.noise);
-  problem.broad_signal = kBroadSignal * settings.signal;
-  problem.mean_deviation = settings.mean_ratio * settings.signal;
-  problem.outlier_deviation = math::hypot(settings.signal, problem.mean_deviation);
+  if (!excludes_outliers_) return;
+  OutlierProblem problem = problem_of(gp, prior, extra_variance);
   posterior_ = infer_outliers(problem);
-  if (settings.noise < kExact * settings.signal) {
+  if (settings.noise < kExactNoise * settings.signal) {
     problem.noises.clear();
-    for (const double share : kRough) problem.noises.push_back(share * settings.signal);
+    for (const double share : kRoughNoises) problem.noises.push_back(share * settings.signal);
     const OutlierPosterior rough = infer_outliers(problem);
-    judged_ = !(rough.log_evidence > posterior_.log_evidence + kStrong);
-    if (!judged_) {
+    excludes_outliers_ = !(rough.log_evidence > posterior_.log_evidence + kStrongEvidence);
+    if (!excludes_outliers_) {
       posterior_.probability = rough.probability;
       posterior_.report = rough.report;
     }
@@ -66,75 +71,75 @@ void RobustSurface::update(const GaussianProcess& process, const VectorView& sus
 void RobustSurface::reset() {
   clamped_ = 0;
   posterior_ = {};
-  judged_ = false;
+  excludes_outliers_ = false;
   covered_ = 0;
 }
 
-void RobustSurface::cover(const GaussianProcess& process) {
-  const Eigen::Index taps = process.size();
-  if (generation_ != process.generation()) covered_ = 0;
-  generation_ = process.generation();
+void RobustSurface::update_covariances(const GaussianProcess& gp) {
+  const Eigen::Index taps = gp.size();
+  if (generation_ != gp.generation()) covered_ = 0;
+  generation_ = gp.generation();
   if (covariances_.cols() < taps) {
     const Eigen::Index room = std::max(2 * covariances_.cols(), taps);
     covariances_.conservativeResize(candidates_.size(), room);
     broad_.conservativeResize(candidates_.size(), room);
   }
-  const PointsView places = process.positions();
-  const Points closer = candidates_.points / kBroader;
+  const PointsView places = gp.positions();
+  const Points closer = candidates_.points / kBroadScale;
   for (; covered_ < taps; ++covered_) {
     const auto place = places.middleRows(covered_, 1);
-    process.kernel().covariance(candidates_.points, place, covariances_.middleCols(covered_, 1));
-    process.kernel().covariance(closer, Points(place / kBroader), broad_.middleCols(covered_, 1));
+    gp.kernel().covariance(candidates_.points, place, covariances_.middleCols(covered_, 1));
+    gp.kernel().covariance(closer, Points(place / kBroadScale), broad_.middleCols(covered_, 1));
   }
 }
 
-void RobustSurface::read_mean(const GaussianProcess& process, Eigen::VectorXd& out) {
-  if (!judged_) return process.read_mean(0, out);
-  cover(process);
+void RobustSurface::read_mean(const GaussianProcess& gp, Eigen::VectorXd& out) {
+  if (!excludes_outliers_) return gp.read_mean(0, out);
+  update_covariances(gp);
   out = covariances_.leftCols(covered_) * posterior_.a.segment(1, covered_) +
         broad_.leftCols(covered_) * posterior_.a.tail(covered_);
-  out.array() += posterior_.a(0) + process.settings().mean;
+  out.array() += posterior_.a(0) + gp.settings().mean;
 }
 
-void RobustSurface::read_variance(const GaussianProcess& process, Eigen::VectorXd& out) {
-  if (!judged_) return process.read_variance(0, out);
-  cover(process);
-  // z^T b z by half of the products, as b is symmetric, and so many candidates at a time that theirs stay in the cache.
-  constexpr Eigen::Index kTogether = 128;
+void RobustSurface::read_variance(const GaussianProcess& gp, Eigen::VectorXd& out) {
+  if (!excludes_outliers_) return gp.read_variance(0, out);
+  update_covariances(gp);
+  // Half of the products give z^T b z, because b is symmetric. The products of one batch of candidates fit into the
+  // cache.
+  constexpr Eigen::Index kBatch = 128;
   Eigen::MatrixXd half = posterior_.b.triangularView<Eigen::StrictlyUpper>();
   half.diagonal() = 0.5 * posterior_.b.diagonal();
-  Eigen::MatrixXd z = Eigen::MatrixXd::Ones(kTogether, half.rows());
+  Eigen::MatrixXd z = Eigen::MatrixXd::Ones(kBatch, half.rows());
   out.resize(candidates_.size());
-  process.kernel().variance(candidates_.points, out);
+  gp.kernel().variance(candidates_.points, out);
   out *= posterior_.s2;
-  Eigen::MatrixXd products(kTogether, half.cols());
-  for (Eigen::Index first = 0; first < out.size(); first += kTogether) {
-    const Eigen::Index count = std::min(kTogether, out.size() - first);
+  Eigen::MatrixXd products(kBatch, half.cols());
+  for (Eigen::Index first = 0; first < out.size(); first += kBatch) {
+    const Eigen::Index count = std::min(kBatch, out.size() - first);
     z.block(0, 1, count, covered_) = covariances_.block(first, 0, count, covered_);
     z.block(0, 1 + covered_, count, covered_) = broad_.block(first, 0, count, covered_);
     products.noalias() = z * half.triangularView<Eigen::Upper>();
     out.segment(first, count) += 2.0 * products.cwiseProduct(z).rowwise().sum().head(count);
   }
-  // Rounding may leave less than nothing where taps are close.
+  // Rounding may leave a variance below 0 where taps are close.
   clamped_ = static_cast<int>((out.array() < 0.0).count());
   out = out.cwiseMax(0.0);
 }
 
-RobustSurface::Height RobustSurface::at(const GaussianProcess& process, int candidate) const {
+RobustSurface::Height RobustSurface::at(const GaussianProcess& gp, int candidate) const {
   const auto place = candidates_.points.middleRows(candidate, 1);
-  const Points closer = place / kBroader;
+  const Points closer = place / kBroadScale;
   const Eigen::Index taps = this->taps();
   Eigen::VectorXd z(1 + 2 * taps);
   z(0) = 1.0;
   Eigen::MatrixXd column(taps, 1);
-  process.kernel().covariance(process.positions().topRows(taps), place, column);
+  gp.kernel().covariance(gp.positions().topRows(taps), place, column);
   z.segment(1, taps) = column;
-  process.kernel().covariance(Points(process.positions().topRows(taps) / kBroader), closer, column);
+  gp.kernel().covariance(Points(gp.positions().topRows(taps) / kBroadScale), closer, column);
   z.tail(taps) = column;
   Eigen::VectorXd own(1);
-  process.kernel().variance(place, own);
-  return {z.dot(posterior_.a) + process.settings().mean,
-          std::max(0.0, posterior_.s2 * own(0) + z.dot(posterior_.b * z))};
+  gp.kernel().variance(place, own);
+  return {z.dot(posterior_.a) + gp.settings().mean, std::max(0.0, posterior_.s2 * own(0) + z.dot(posterior_.b * z))};
 }
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A surface some of whose taps may lie: lies.hpp over the taps of a process, and its maps over the candidates.
+// The surface of a GP without outliers, and its maps over the candidates.
 #pragma once
 
 #include "gp/candidates.hpp"
@@ -10,59 +10,56 @@ namespace palpate {
 
 class RobustSurface {
  public:
-  /// `candidates` must outlive it.
+  /// `candidates` must outlive the surface.
   explicit RobustSurface(const Candidates& candidates) : candidates_(candidates) {}
 
-  /// Judges all taps of `process`, of which `suspicion` (a value each) is thought before their heights are compared,
-  /// and whose noise has this variance beside the usual one (a value each, or empty). Without noise nobody is judged:
-  /// the surface is that of the process.
+  /// Computes the outlier probabilities of all taps of `gp`. `prior`: probability of an outlier per tap, before the
+  /// heights are compared. `extra_variance`: variance per tap beside the noise; empty for none. Without noise no tap
+  /// can be an outlier, and the surface is that of the GP.
   ///
-  /// A process whose noise is below 3 % of its signal may be contradicted by true heights: its kernel is too
-  /// smooth for the object. What deviates by much more than such a noise then looks like an outlier, and most taps are
-  /// taken for outliers. So the evidence is compared with that of a rough arm's noise. Where the evidence is
-  /// strong for that, the outliers are those that even a rough arm does not explain, and the surface is that of the
-  /// process, which follows the heights as closely as its own noise says.
-  void update(const GaussianProcess& process, const VectorView& suspicion, const Eigen::VectorXd& roughness = {});
+  /// Heights of inliers may contradict a GP whose noise is below 3 % of its signal, because its kernel is too smooth
+  /// for the object. Most taps would then seem to be outliers. So the evidence is compared with that of larger noises.
+  /// If the evidence for a larger noise is strong, outliers are the taps that even this noise does not explain. The
+  /// surface is then that of the GP, which follows the heights as closely as its own noise allows.
+  void update(const GaussianProcess& gp, const VectorView& prior, const Eigen::VectorXd& extra_variance = {});
 
-  /// To be called before another process is judged.
+  /// Forgets the taps. Call it before update() with another GP.
   void reset();
 
-  /// The probability that each tap lies; as suspected where nobody was judged.
+  /// Posterior probability of an outlier per tap; the prior if no outlier was possible.
   const Eigen::VectorXd& outlier_probabilities() const { return posterior_.probability; }
-
-  /// Those that were judged last.
+  /// Number of taps at the latest update().
   int taps() const { return static_cast<int>(posterior_.probability.size()); }
+  /// Returns whether the surface excludes outliers; else it is the surface of the GP.
+  bool excludes_outliers() const { return excludes_outliers_; }
 
-  /// Whether any were: else the surface is that of the process.
-  bool excludes_outliers() const { return judged_; }
-
-  /// What rounding made necessary in the judgements so far, as far as they were used: the jitter of the last, in the
-  /// square of the targets' unit, the factorisations of all that needed it, and how many taps are set aside now.
+  /// Report of the factorisations that were used: the latest jitter, in the square of the targets' unit, all counts so
+  /// far, and the rows that are redundant now.
   const FactorReport& report() const { return report_; }
-  /// How many variances of the last map rounding has taken below 0; they read as 0.
+  /// Number of variances of the latest map that rounding has moved below 0; they read as 0.
   int variances_clamped() const { return clamped_; }
 
-  // Of the process that was judged, in the unit of the targets and its square; noise excluded.
-  /// Over the candidates; these size `out`.
-  void read_mean(const GaussianProcess& process, Eigen::VectorXd& out);
-  void read_variance(const GaussianProcess& process, Eigen::VectorXd& out);
-  /// At one of them, without any map.
+  // `gp` is that of the latest update(). Results have the unit of its targets and its square, without noise.
+  /// Maps over the candidates. Both resize `out`.
+  void read_mean(const GaussianProcess& gp, Eigen::VectorXd& out);
+  void read_variance(const GaussianProcess& gp, Eigen::VectorXd& out);
   struct Height {
     double mean, variance;
   };
-  Height at(const GaussianProcess& process, int candidate) const;
+  /// Computes the surface at one candidate, without a map.
+  Height at(const GaussianProcess& gp, int candidate) const;
 
  private:
-  void cover(const GaussianProcess& process);
+  void update_covariances(const GaussianProcess& gp);
 
   const Candidates& candidates_;
   OutlierPosterior posterior_;
   FactorReport report_;
   int clamped_ = 0;
-  bool judged_ = false;
-  Eigen::MatrixXd covariances_, broad_;  ///< candidates x taps: k and l of lies.hpp
-  Eigen::Index covered_ = 0;             ///< taps
-  int generation_ = -1;                  ///< of the hyperparameters that these were made with
+  bool excludes_outliers_ = false;
+  Eigen::MatrixXd covariances_, broad_;  ///< candidates x taps: k and l of outlier_posterior.hpp
+  Eigen::Index covered_ = 0;             ///< taps whose columns are computed
+  int generation_ = -1;                  ///< generation() of the GP for these columns
 };
 
 }  // namespace palpate

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// Search for the most probable sets of outliers, for one signal and one noise (see outlier_posterior.hpp).
+#pragma once
+
+#include "gp/outlier_posterior.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace palpate {
+
+/// GP of all taps with one signal and one noise, where no tap is an outlier.
+struct InlierGp {
+  InlierGp(const OutlierProblem& problem, double surface_signal, double tap_noise);
+
+  int taps() const { return static_cast<int>(solved_heights.size()); }
+  /// Posterior of the constant in the mean, and its term in the log weight of a set. All 0 without a constant.
+  struct Constant {
+    double precision = 0.0;
+    double mean = 0.0;
+    double log_weight = 0.0;
+  };
+  /// `ones` and `heights` are 1^T A' 1 and 1^T A' y of a set.
+  Constant constant(double ones, double heights) const;
+
+  double signal;
+  double mean_deviation;           ///< of the constant; 0 for none
+  Eigen::MatrixXd inverse;         ///< A = K^-1; rows that no jitter makes independent are 0
+  Eigen::VectorXd solved_heights;  ///< A y
+  Eigen::VectorXd solved_ones;     ///< A 1
+  double log_evidence;      ///< of all heights without the constant, up to a number common to all signals and noises
+  Eigen::ArrayXd log_odds;  ///< of an outlier against an inlier, without the evidence of the other taps
+  FactorReport report;
+};
+
+/// A set of outliers: that of its parent and one more tap.
+struct OutlierSet {
+  int parent = -1;  ///< index of the parent; -1 for the empty set
+  int tap = -1;
+  int remainder = -1;  ///< index of the GP without the set; -1 if the set was not expanded
+  double log_weight = 0.0;
+};
+
+/// Finds the most probable sets by expanding the most probable set first. To expand a set means to weigh all sets with
+/// one more tap.
+///
+/// With A' and p = A'_ii of the parent, the A' of a set is A' - u u^T, u = A'_:i / sqrt(p). So it is A minus one column
+/// u u^T per tap of the set, which the set shares with its ancestors.
+class OutlierSearch {
+ public:
+  OutlierSearch(const InlierGp& gp, const OutlierSearchLimits& limits);
+
+  const std::vector<OutlierSet>& sets() const { return sets_; }
+  double largest_log_weight() const { return largest_; }
+  double next_weight() const { return next_weight_; }  ///< see OutlierPosterior
+  int expansions() const { return scratch_; }          ///< remainders of expanded sets have indices below
+
+  /// Returns the index of the GP without a set. For a set that was not expanded, it is valid until the next call.
+  int remainder_of(const OutlierSet& set);
+  auto column(int remainder) const { return part(remainder, 0); }          ///< u of the set's own tap
+  auto solved_heights(int remainder) const { return part(remainder, 1); }  ///< A' y
+  auto solved_ones(int remainder) const { return part(remainder, 2); }     ///< A' 1
+
+ private:
+  static constexpr int kParts = 4;
+
+  Eigen::MatrixXd::ColXpr part(int remainder, int which) {
+    return remainders_.col(Eigen::Index{kParts} * remainder + which);
+  }
+  Eigen::MatrixXd::ConstColXpr part(int remainder, int which) const {
+    return remainders_.col(Eigen::Index{kParts} * remainder + which);
+  }
+  auto diagonal(int remainder) const { return part(remainder, 3); }  ///< of A'
+
+  const OutlierSet& set_at(int index) const { return sets_[static_cast<std::size_t>(index)]; }
+  void compute_remainder(const OutlierSet& set, int to);
+  void weigh_extensions(int remainder, Eigen::ArrayXd& out) const;
+  void search(const OutlierSearchLimits& limits);
+  void extend(int parent, const Eigen::ArrayXd& log_weights, std::size_t expansions_left);
+  void add(const OutlierSet& set, const std::uint64_t* bits);
+  bool contains(const std::uint64_t* bits) const;
+
+  const InlierGp& gp_;
+  std::size_t words_;  ///< of the bits of a set, one bit per tap
+  double log_min_summed_, log_min_expanded_;
+  std::vector<OutlierSet> sets_;
+  std::vector<std::uint64_t> bits_;
+  std::vector<int> waiting_;         ///< sets to expand, the most probable first
+  Eigen::MatrixXd remainders_;       ///< kParts columns per remainder
+  std::vector<double> log_weights_;  ///< per remainder, without the term of the constant
+  int scratch_;                      ///< index of the remainder of sets that were not expanded
+  double largest_ = 0.0;
+  double next_weight_ = 0.0;
+};
+
+}  // namespace palpate
