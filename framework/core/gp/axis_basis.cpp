@@ -12,132 +12,133 @@
 namespace palpate {
 namespace {
 
-/// Covariances along one axis between some places.
-class AxisPlaces {
+/// Covariances between the positions along one axis.
+class AxisCovariances {
  public:
-  AxisPlaces(const Kernel& kernel, int axis, const Eigen::VectorXd& places)
-      : kernel_(kernel), axis_(axis), places_(places) {}
+  AxisCovariances(const Kernel& kernel, int axis, const Eigen::VectorXd& positions)
+      : kernel_(kernel), axis_(axis), positions_(positions) {}
 
-  Eigen::Index size() const { return places_.size(); }
-  Eigen::VectorXd column(Eigen::Index place) const {
+  Eigen::Index size() const { return positions_.size(); }
+  Eigen::VectorXd column(Eigen::Index i) const {
     Eigen::VectorXd out(size());
-    kernel_.axis_covariance(axis_, places_, places_.segment(place, 1), out);
+    kernel_.axis_covariance(axis_, positions_, positions_.segment(i, 1), out);
     return out;
   }
   double at(Eigen::Index i, Eigen::Index j) const {
     Eigen::Matrix<double, 1, 1> out;
-    kernel_.axis_covariance(axis_, places_.segment(i, 1), places_.segment(j, 1), out);
+    kernel_.axis_covariance(axis_, positions_.segment(i, 1), positions_.segment(j, 1), out);
     return out(0);
   }
-  Eigen::Index image(Eigen::Index place) const { return size() - 1 - place; }
+  Eigen::Index mirror_image(Eigen::Index i) const { return size() - 1 - i; }
 
-  /// Whether the kernel does not tell the places from their mirror image, but for the rounding of the places.
+  /// Returns whether positions and kernel are symmetric, up to rounding of the positions. Compares three columns.
   bool is_mirrored() const {
     if (size() < 2) return false;
-    for (const Eigen::Index place : {Eigen::Index{0}, size() / 3, size() / 2}) {
-      const Eigen::VectorXd there = column(image(place)).reverse();
-      const Eigen::VectorXd here = column(place);
+    for (const Eigen::Index i : {Eigen::Index{0}, size() / 3, size() / 2}) {
+      const Eigen::VectorXd there = column(mirror_image(i)).reverse();
+      const Eigen::VectorXd here = column(i);
       if ((here - there).cwiseAbs().maxCoeff() > 64.0 * kEpsilon * here.cwiseAbs().maxCoeff()) return false;
     }
-    // The columns between those: their places are mirrored too.
-    const Eigen::VectorXd middle = places_ + places_.reverse();
-    return (middle.array() - middle(0)).abs().maxCoeff() <= 16.0 * kEpsilon * places_.cwiseAbs().maxCoeff();
+    // All positions have to be symmetric, also those between the compared columns.
+    const Eigen::VectorXd middle = positions_ + positions_.reverse();
+    return (middle.array() - middle(0)).abs().maxCoeff() <= 16.0 * kEpsilon * positions_.cwiseAbs().maxCoeff();
   }
 
  private:
   const Kernel& kernel_;
   int axis_;
-  const Eigen::VectorXd& places_;
+  const Eigen::VectorXd& positions_;
 };
 
-/// A part of the covariances K of a line: k(h, h') + sign k(h, image of h'), h and h' the first `places`. Of sign 1 it
-/// is the even part and of sign -1 the odd one; of sign 0, with all places, K itself.
+/// Part of the covariances K along an axis: k(h, h') + sign k(h, mirror image of h') over the first `count` positions.
+/// Sign 1 is the even part, sign -1 the odd part; sign 0 with all positions is K.
 struct Part {
-  const AxisPlaces& line;
-  Eigen::Index places;
+  const AxisCovariances& covariances;
+  Eigen::Index count;
   double sign;
 
-  /// The last place is its own image.
-  bool own_image() const { return sign != 0.0 && line.image(places - 1) == places - 1; }
+  /// Whether the last position is its own mirror image.
+  bool has_middle() const { return sign != 0.0 && covariances.mirror_image(count - 1) == count - 1; }
 
-  /// Columns of a Cholesky factor with diagonal pivoting, until no more than `enough` is left of the variance at any
-  /// place, or there are `most` columns.
+  /// Computes columns of the Cholesky factor with diagonal pivoting, until the residual variance at each position is at
+  /// most `enough`, or until there are `most` columns.
   Eigen::MatrixXd pivoted(double enough, Eigen::Index most) const {
-    Eigen::VectorXd left(places);
-    for (Eigen::Index i = 0; i < places; ++i) {
-      left(i) = line.at(i, i) + (sign == 0.0 ? 0.0 : sign * line.at(i, line.image(i)));
+    Eigen::VectorXd residual(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      residual(i) = covariances.at(i, i) + (sign == 0.0 ? 0.0 : sign * covariances.at(i, covariances.mirror_image(i)));
     }
-    most = std::min(most, places);
-    Eigen::MatrixXd columns(places, std::min<Eigen::Index>(most, 32));
+    most = std::min(most, count);
+    Eigen::MatrixXd columns(count, std::min<Eigen::Index>(most, 32));
     Eigen::Index rank = 0;
     while (rank < most) {
       Eigen::Index pivot = 0;
-      if (!(left.maxCoeff(&pivot) > enough)) break;
+      if (!(residual.maxCoeff(&pivot) > enough)) break;
       if (rank == columns.cols()) columns.conservativeResize(Eigen::NoChange, std::min(most, 2 * rank));
       auto column = columns.col(rank);
-      column = line.column(pivot).head(places);
-      if (sign != 0.0) column += sign * line.column(line.image(pivot)).head(places);
-      // An odd function is 0 in the middle: rounding there would count as much as the least directions.
-      if (sign < 0.0 && own_image()) column(places - 1) = 0.0;
+      column = covariances.column(pivot).head(count);
+      if (sign != 0.0) column += sign * covariances.column(covariances.mirror_image(pivot)).head(count);
+      // An odd function is 0 in the middle. Rounding errors there would be as large as the smallest directions.
+      if (sign < 0.0 && has_middle()) column(count - 1) = 0.0;
       column.noalias() -= columns.leftCols(rank) * columns.row(pivot).head(rank).transpose();
-      column /= std::sqrt(left(pivot));
-      left -= column.cwiseAbs2();
-      left(pivot) = 0.0;
+      column /= std::sqrt(residual(pivot));
+      residual -= column.cwiseAbs2();
+      residual(pivot) = 0.0;
       ++rank;
     }
     return columns.leftCols(rank);
   }
 
-  /// An orthonormal basis of the span of `columns`, continued to all places by the mirror.
+  /// Computes an orthonormal basis of the span of `columns`, extended to all positions by symmetry.
   Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) const {
-    // A place that is not its own image stands for two. Orthonormal by these weights, the halves are so as a whole.
-    Eigen::VectorXd weights = Eigen::VectorXd::Constant(places, sign == 0.0 ? 1.0 : std::sqrt(2.0));
-    if (own_image()) weights(places - 1) = 1.0;
+    // Each position counts for itself and its mirror image. Halves that are orthonormal with these weights give
+    // orthonormal whole directions.
+    Eigen::VectorXd weights = Eigen::VectorXd::Constant(count, sign == 0.0 ? 1.0 : std::sqrt(2.0));
+    if (has_middle()) weights(count - 1) = 1.0;
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(weights.asDiagonal() * columns);
     const Eigen::MatrixXd half =
-        weights.cwiseInverse().asDiagonal() * (qr.householderQ() * Eigen::MatrixXd::Identity(places, columns.cols()));
-    Eigen::MatrixXd whole(line.size(), columns.cols());
-    whole.bottomRows(places) = sign * half.colwise().reverse();
-    whole.topRows(places) = half;
+        weights.cwiseInverse().asDiagonal() * (qr.householderQ() * Eigen::MatrixXd::Identity(count, columns.cols()));
+    Eigen::MatrixXd whole(covariances.size(), columns.cols());
+    whole.bottomRows(count) = sign * half.colwise().reverse();
+    whole.topRows(count) = half;
     return whole;
   }
 };
 
-/// Even and odd part where there is a mirror, else the whole.
-std::vector<Part> parts_of(const AxisPlaces& line) {
-  if (!line.is_mirrored()) return {{line, line.size(), 0.0}};
-  const Eigen::Index half = (line.size() + 1) / 2;
-  return {{line, half, 1.0}, {line, half, -1.0}};
+/// Returns even and odd part under symmetry, else the whole.
+std::vector<Part> parts_of(const AxisCovariances& covariances) {
+  if (!covariances.is_mirrored()) return {{covariances, covariances.size(), 0.0}};
+  const Eigen::Index half = (covariances.size() + 1) / 2;
+  return {{covariances, half, 1.0}, {covariances, half, -1.0}};
 }
 
-double largest_variance(const AxisPlaces& line) {
+double largest_variance(const AxisCovariances& covariances) {
   double out = 0.0;
-  for (Eigen::Index i = 0; i < line.size(); ++i) out = std::max(out, line.at(i, i));
+  for (Eigen::Index i = 0; i < covariances.size(); ++i) out = std::max(out, covariances.at(i, i));
   return out;
 }
 
 }  // namespace
 
-AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance) {
-  const AxisPlaces line(kernel, axis, places);
-  const double enough = tolerance * largest_variance(line);
-  const std::vector<Part> parts = parts_of(line);
+AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance) {
+  const AxisCovariances covariances(kernel, axis, positions);
+  const double enough = tolerance * largest_variance(covariances);
+  const std::vector<Part> parts = parts_of(covariances);
   AxisBasis out;
   out.mirrored = parts.size() > 1;
   for (const Part& part : parts) {
-    const Eigen::MatrixXd own = part.orthonormal(part.pivoted(enough, part.places));
-    out.directions.conservativeResize(line.size(), out.directions.cols() + own.cols());
+    const Eigen::MatrixXd own = part.orthonormal(part.pivoted(enough, part.count));
+    out.directions.conservativeResize(covariances.size(), out.directions.cols() + own.cols());
     out.directions.rightCols(own.cols()) = own;
     if (part.sign >= 0.0) out.even = out.rank();
   }
   return out;
 }
 
-int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance, int most) {
-  const AxisPlaces line(kernel, axis, places);
-  const double enough = tolerance * largest_variance(line);
+int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance, int most) {
+  const AxisCovariances covariances(kernel, axis, positions);
+  const double enough = tolerance * largest_variance(covariances);
   int rank = 0;
-  for (const Part& part : parts_of(line)) rank += static_cast<int>(part.pivoted(enough, most - rank).cols());
+  for (const Part& part : parts_of(covariances)) rank += static_cast<int>(part.pivoted(enough, most - rank).cols());
   return rank;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The few directions in which the covariances of any place with a line of places lie.
+// Low-rank basis of the covariances of a kernel along one axis of the candidates.
 #pragma once
 
 #include <palpate/kernel.hpp>
@@ -8,23 +8,23 @@
 
 namespace palpate {
 
-/// An orthonormal basis of the covariances of a kernel along one axis between some places.
+/// Orthonormal basis of the covariances of a kernel between the positions along one axis.
 struct AxisBasis {
-  Eigen::MatrixXd directions;  ///< places x r
-  /// The places, and the kernel on them, are their own mirror image: then the first `even` directions are even, the
-  /// others odd functions of the place. Without that symmetry all count as even.
+  Eigen::MatrixXd directions;  ///< positions x r
+  /// Whether positions and kernel are symmetric about the middle. Then the first `even` directions are even functions
+  /// of the position, the others odd. Without symmetry, all directions count as even.
   bool mirrored = false;
   int even = 0;
 
   int rank() const { return static_cast<int>(directions.cols()); }
 };
 
-/// The basis holds all but what is below `tolerance` times the largest variance: by Cholesky with diagonal pivoting,
-/// which stops when the variance that is left at every place is as small (Harbrecht, Peters and Schneider 2012), and a
-/// QR factorisation; where there is a mirror, of the even and the odd part each. O(G r^2).
-AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance);
+/// Computes a basis whose residual variance is at most `tolerance` times the largest variance, at each of the G
+/// positions. Cholesky factorisation with diagonal pivoting finds the span (Harbrecht, Peters and Schneider 2012), QR
+/// factorisation the basis. Under symmetry, even and odd part are factorised separately. O(G r^2).
+AxisBasis axis_basis(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance);
 
-/// The rank of that basis, or `most` if it is not less.
-int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& places, double tolerance, int most);
+/// Returns the rank of this basis, but at most `most`.
+int axis_rank(const Kernel& kernel, int axis, const Eigen::VectorXd& positions, double tolerance, int most);
 
 }  // namespace palpate

@@ -18,8 +18,8 @@ Candidates grid(const Area& area, int columns, int rows) {
   return product_grid(centres(area.width, columns), centres(area.depth, rows));
 }
 
-int cell(double place, double side, int count) {
-  return static_cast<int>(std::clamp(std::floor(place / side * count), 0.0, count - 1.0));
+int cell(double position, double side, int count) {
+  return static_cast<int>(std::clamp(std::floor(position / side * count), 0.0, count - 1.0));
 }
 
 }  // namespace

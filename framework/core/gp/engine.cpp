@@ -12,13 +12,13 @@ namespace {
 
 using Kind = EngineSettings::Kind;
 
-/// An engine by its kind, and why that one.
-struct Choice {
+struct KindChoice {
   Kind engine;
   std::string reason;
 };
 
-Choice choose_kind(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates, double error) {
+KindChoice choose_kind(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates,
+                       double error) {
   if (settings.engine != Kind::automatic) return {settings.engine, "chosen by engine.type"};
   if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
   if (!candidates.is_grid()) return {Kind::dense, "the candidates are not a product grid"};
@@ -27,14 +27,15 @@ Choice choose_kind(const EngineSettings& settings, const Kernel& kernel, const C
     return {Kind::grid,
             fmt::format("the error bound of lowrank {:.1e} is above the accuracy {:.1e}", error, settings.accuracy)};
   }
-  // Multiplications a candidate and tap: those of `grid` grow with the taps; `lowrank` has half its rank, as grids are
-  // their own mirror image, and what it does in its own coordinates once a tap. A short run earns back no basis.
+  // Average multiplications per candidate and tap. `grid` needs one per earlier tap. `lowrank` needs half the rank, by
+  // symmetry of the grid, and the products in its own coordinates once per tap. In a short run the basis costs more.
   const double of_grid = 0.5 * settings.taps;
-  constexpr double kShort = 12;
-  if (of_grid < kShort) return {Kind::grid, fmt::format("separable kernel on a grid and {} taps", settings.taps)};
+  constexpr double kFewestForLowrank = 12;
+  if (of_grid < kFewestForLowrank)
+    return {Kind::grid, fmt::format("separable kernel on a grid and {} taps", settings.taps)};
   const int x = axis_rank(kernel, 0, candidates.xs, settings.tolerance, settings.taps);
   const int y = axis_rank(kernel, 1, candidates.ys, settings.tolerance, settings.taps);
-  // Each tap would bring a direction of its own, and the basis alone could cost more than all of them.
+  // With a rank above the number of taps, `lowrank` saves nothing.
   if (std::max(x, y) >= settings.taps)
     return {Kind::grid, fmt::format("separable kernel of a rank that {} taps do not reach", settings.taps)};
   const double of_lowrank = 0.5 * x + static_cast<double>(x) * y * (of_grid + candidates.rows) / candidates.size();
@@ -53,7 +54,7 @@ std::string objection(const EngineSettings& settings, const Kernel& kernel, cons
 
 EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates,
                            double error) {
-  Choice choice = choose_kind(settings, kernel, candidates, error);
+  KindChoice choice = choose_kind(settings, kernel, candidates, error);
   const std::shared_ptr<Workers>& workers = settings.workers;
   return {choice.engine == Kind::dense  ? make_dense(workers, kernel, candidates)
           : choice.engine == Kind::grid ? make_grid(workers, kernel, candidates)

@@ -4,19 +4,19 @@
 namespace palpate {
 namespace {
 
-/// Rows are reserved up to so many numbers (1 GiB), of which only those that are used are paid for.
+/// Largest number of reserved values, 1 GiB. Reserved memory costs nothing until it is used.
 constexpr double kMostReserved = 1.0 * (1 << 27);
 
-/// Pieces for which the kernel is asked at once: a call costs what ten candidates do.
-constexpr int kTogether = 4;
-constexpr Eigen::Index kCandidates = Eigen::Index{kTogether} * loops::kBlock;
+/// Blocks per call of the kernel, because the overhead of a call is that of ten candidates.
+constexpr int kBlocksPerCall = 4;
+constexpr Eigen::Index kCandidatesPerCall = Eigen::Index{kBlocksPerCall} * loops::kBlock;
 
 class Dense final : public Engine {
  public:
   Dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates)
       : Engine("dense", workers, kernel, candidates, Tiling::blocks(candidates.size())),
         rows_(maps_.tiling().strips() * loops::kBlock, loops::kBlock, loops::kBlock) {
-    for (int i = 0; i < workers->threads(); ++i) covariances_.emplace_back(kCandidates);
+    for (int i = 0; i < workers->threads(); ++i) covariances_.emplace_back(kCandidatesPerCall);
   }
 
   void reserve(int rows) override {
@@ -27,19 +27,19 @@ class Dense final : public Engine {
   void absorb(const FactorRow& row) override {
     const int depth = rows_.rows();
     rows_.extend();
-    const int pieces = maps_.tiling().strips();
-    workers_->for_each((pieces + kTogether - 1) / kTogether, [&](int group, int worker) {
+    const int blocks = maps_.tiling().strips();
+    workers_->for_each((blocks + kBlocksPerCall - 1) / kBlocksPerCall, [&](int group, int worker) {
       double* covariance = covariances_[static_cast<std::size_t>(worker)].data();
-      const int piece = group * kTogether;
-      const Eigen::Index first = group * kCandidates;
-      const Eigen::Index count = std::min<Eigen::Index>(kCandidates, candidates_.size() - first);
-      kernel_.covariance(candidates_.points.middleRows(first, count), row.places.bottomRows(1),
+      const int block = group * kBlocksPerCall;
+      const Eigen::Index first = group * kCandidatesPerCall;
+      const Eigen::Index count = std::min<Eigen::Index>(kCandidatesPerCall, candidates_.size() - first);
+      kernel_.covariance(candidates_.points.middleRows(first, count), row.positions.bottomRows(1),
                          Eigen::Map<Eigen::VectorXd>(covariance, count));
       const Eigen::Index padded = (count + loops::kBlock - 1) / loops::kBlock * loops::kBlock;
       std::fill(covariance + count, covariance + padded, 0.0);
       for (int i = 0; i < padded / loops::kBlock; ++i, covariance += loops::kBlock) {
-        loops::absorb_dense({rows_.panel(piece + i), covariance, row.factor.data(), depth, row.pivot},
-                            maps_.update(piece + i, row.coefficients));
+        loops::absorb_dense({rows_.panel(block + i), covariance, row.factor.data(), depth, row.pivot},
+                            maps_.update(block + i, row.coefficients));
       }
     });
   }
@@ -47,8 +47,8 @@ class Dense final : public Engine {
  private:
   void clear() override { rows_.clear(); }
 
-  loops::Panels rows_;                     ///< V, a piece of the candidates a panel
-  std::vector<loops::Lines> covariances_;  ///< of a group of pieces with the last tap, one a worker
+  loops::Panels rows_;                     ///< V, one panel per block of candidates
+  std::vector<loops::Lines> covariances_;  ///< scratch per worker: of a group of blocks with the last tap
 };
 
 }  // namespace

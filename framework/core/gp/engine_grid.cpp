@@ -6,7 +6,8 @@ namespace {
 
 using loops::kLine;
 
-/// Strips that share what they read of the columns' covariances, and the work of one piece for the workers.
+/// Number of strips that share the covariances of the columns while these are in the cache. A group is one part for the
+/// workers.
 constexpr int kGroup = 4;
 
 class Grid final : public Engine {
@@ -55,23 +56,23 @@ class Grid final : public Engine {
 
   static std::size_t scaled_size(int rows) { return static_cast<std::size_t>(rows) * loops::kStripRows * kGroup; }
 
-  void append(int axis, const Eigen::VectorXd& places, const FactorRow& row, loops::Panels& to) {
-    auto column = column_.head(places.size());
-    kernel_.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), column);
+  void append(int axis, const Eigen::VectorXd& positions, const FactorRow& row, loops::Panels& to) {
+    auto column = column_.head(positions.size());
+    kernel_.axis_covariance(axis, positions, row.positions.bottomRows(1).col(axis), column);
     to.append(column.data());
   }
 
-  /// diag(c) times the covariances of a strip's rows.
+  /// Computes diag(c) times the covariances of a strip's rows.
   static void scale(const double* rows, const VectorView& by, double* out) {
     using Rows = Eigen::Array<double, loops::kStripRows, Eigen::Dynamic>;
     const Eigen::Map<const Rows> from(rows, loops::kStripRows, by.size());
     Eigen::Map<Rows>(out, loops::kStripRows, by.size()) = from.rowwise() * by.transpose().array();
   }
 
-  loops::Panels along_x_;  ///< f_x(x_i, X), a tap a row
-  loops::Panels along_y_;  ///< f_y(y_i, Y), a strip a panel
+  loops::Panels along_x_;  ///< f_x(x_i, X), one row per tap
+  loops::Panels along_y_;  ///< f_y(y_i, Y), one row per tap and one panel per strip
   Eigen::VectorXd column_;
-  std::vector<loops::Lines> scaled_;  ///< one a worker
+  std::vector<loops::Lines> scaled_;  ///< scratch per worker
 };
 
 }  // namespace

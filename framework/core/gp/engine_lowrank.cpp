@@ -10,33 +10,33 @@ namespace {
 
 using loops::kLine;
 constexpr int kRows = loops::kStripRows;
-constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * loops::kPanelLines * kLine;  ///< numbers in a whole tile
+constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * loops::kPanelLines * kLine;  ///< numbers in a full tile
 
-/// One axis of the grid: the basis of its covariances, and the taps in it.
+/// One axis of the grid: the basis of its covariances, and the newest tap in this basis.
 struct Axis {
-  const Eigen::VectorXd& places;
+  const Eigen::VectorXd& positions;
   AxisBasis basis;
-  Eigen::VectorXd covariance;   ///< of the new tap with the places
-  Eigen::VectorXd coordinates;  ///< of that in the basis
-  double largest = 0.0;         ///< of those
-  double left = 0.0;            ///< of what of them is outside of the basis
+  Eigen::VectorXd covariance;   ///< of the newest tap with the positions; after take() its residual
+  Eigen::VectorXd coordinates;  ///< of the covariance in the basis
+  double largest = 0.0;         ///< largest covariance
+  double residual = 0.0;        ///< largest covariance outside the span of the basis
 
   Axis(const Kernel& kernel, int axis, const Eigen::VectorXd& along, double tolerance)
-      : places(along),
+      : positions(along),
         basis(axis_basis(kernel, axis, along, tolerance)),
         covariance(along.size()),
         coordinates(basis.rank()) {}
 
   void take(const Kernel& kernel, int axis, const FactorRow& row) {
-    kernel.axis_covariance(axis, places, row.places.bottomRows(1).col(axis), covariance);
+    kernel.axis_covariance(axis, positions, row.positions.bottomRows(1).col(axis), covariance);
     largest = covariance.cwiseAbs().maxCoeff();
     coordinates.noalias() = basis.directions.transpose() * covariance;
     covariance.noalias() -= basis.directions * coordinates;
-    left = covariance.cwiseAbs().maxCoeff();
+    residual = covariance.cwiseAbs().maxCoeff();
   }
 };
 
-/// v = U_y S U_x^T with S = P_y^T diag(c) P_x. The product with U_x^T is most of the work.
+/// v = U_y S U_x^T with S = P_y^T diag(c) P_x. The product with U_x^T takes most of the time.
 class Lowrank final : public Engine {
  public:
   Lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates, Axis x, Axis y)
@@ -46,7 +46,7 @@ class Lowrank final : public Engine {
         y_(std::move(y)),
         in_x_(x_.basis.rank(), loops::kPanelLines * kLine, kLine),
         in_y_(y_.basis.rank(), kRows, kRows),
-        // Of a mirrored basis, the left half.
+        // The left half of the grid if the basis is symmetric.
         basis_x_(x_.basis.mirrored ? (candidates.columns + 1) / 2 : candidates.columns, loops::kPanelLines * kLine,
                  kLine),
         basis_y_(candidates.rows, loops::kPanelLines * kLine, kLine),
@@ -75,7 +75,7 @@ class Lowrank final : public Engine {
     y_.take(kernel_, 1, row);
     in_x_.append(x_.coordinates.data());
     in_y_.append(y_.coordinates.data());
-    note_error();
+    store_error();
     form_shares(row.inverse);
     form_rows();
     const int lines = basis_x_.padded() / kLine;
@@ -101,17 +101,17 @@ class Lowrank final : public Engine {
     in_y_.clear();
   }
 
-  /// Of the newest tap.
-  void note_error() {
-    // A kernel may be off by 8 ulp itself (kernel.hpp), for every engine.
-    constexpr double kOfKernel = 8.0 * std::numeric_limits<double>::epsilon();
-    const double left = x_.left * y_.largest + x_.largest * y_.left + x_.left * y_.left;
-    const double error = std::max(0.0, left - kOfKernel * x_.largest * y_.largest);
+  /// Stores the covariance error of the newest tap.
+  void store_error() {
+    // A kernel may have an error of 8 ulp with any engine (kernel.hpp).
+    constexpr double kKernelError = 8.0 * std::numeric_limits<double>::epsilon();
+    const double residual = x_.residual * y_.largest + x_.largest * y_.residual + x_.residual * y_.residual;
+    const double error = std::max(0.0, residual - kKernelError * x_.largest * y_.largest);
     if (errors_.size() < in_x_.rows()) errors_.conservativeResize(Eigen::Index{2} * in_x_.rows());
     errors_(in_x_.rows() - 1) = error;
   }
 
-  /// S^T in strips of r_x, from S = P_y^T diag(c) P_x in strips of r_y.
+  /// Computes S^T in strips of r_x, from S = P_y^T diag(c) P_x in strips of r_y.
   void form_shares(const VectorView& inverse) {
     const int depth = in_x_.rows();
     const auto needed = static_cast<std::size_t>(depth) * kRows;
@@ -126,7 +126,7 @@ class Lowrank final : public Engine {
         for (std::ptrdiff_t m = 0; m < kRows; ++m) scaled[i * kRows + m] = from[i * kRows + m] * inverse(i);
       }
       loops::multiply({scaled_.data(), 0, 1, in_x_.panel(0), in_x_.stride(), depth, lines}, c);
-      // Turn the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
+      // Transposes the tiles, 8 rows of S times their columns each, into columns of S^T by eights.
       for (int line = 0; line < lines; ++line) {
         const int panel = line / loops::kPanelLines;
         const std::ptrdiff_t width = in_x_.width(panel);
@@ -138,14 +138,14 @@ class Lowrank final : public Engine {
     }
   }
 
-  /// S^T U_y^T: what every row of the grid has of every direction along x.
+  /// Computes S^T U_y^T: for each row of the grid, its share of each direction along x.
   void form_rows() {
     loops::multiply({shares_by_x_.data(), static_cast<std::size_t>(in_y_.padded()) * kRows, in_x_.padded() / kRows,
                      basis_y_.panel(0), basis_y_.stride(), basis_y_.rows(), basis_y_.padded() / kLine},
                     rows_.data());
   }
 
-  /// The shares of a strip's rows, direction by direction.
+  /// Copies the shares of a strip's rows, direction by direction.
   void gather(int strip, double* out) const {
     const int row = strip * kRows;
     const int panel = row / (loops::kPanelLines * kLine);
@@ -161,9 +161,9 @@ class Lowrank final : public Engine {
 
   Axis x_;
   Axis y_;
-  Eigen::VectorXd errors_;  ///< of covariances, a tap a number; with room for more
+  Eigen::VectorXd errors_;  ///< of covariances, one per tap, with reserved memory
   int reserved_ = 0;
-  loops::Panels in_x_;           ///< P_x, a tap a row
+  loops::Panels in_x_;           ///< P_x, one row per tap
   loops::Panels in_y_;           ///< P_y
   loops::Panels basis_x_;        ///< U_x^T
   loops::Panels basis_y_;        ///< U_y^T
@@ -171,7 +171,7 @@ class Lowrank final : public Engine {
   loops::Lines shares_;          ///< S
   loops::Lines shares_by_x_;     ///< S^T
   loops::Lines rows_;            ///< S^T U_y^T
-  std::vector<loops::Lines> a_;  ///< scratch of a worker
+  std::vector<loops::Lines> a_;  ///< scratch per worker
 };
 
 }  // namespace

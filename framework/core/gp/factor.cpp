@@ -36,13 +36,13 @@ bool Factor::append(const VectorView& covariance, double diagonal) {
   row[n] = std::sqrt(square);
   log_determinant_ += math::log(square);
   ++size_;
-  follow(largest_, true);
-  follow(smallest_, false);
+  update(largest_, true);
+  update(smallest_, false);
   return true;
 }
 
 void Factor::inverse_row(int i, VectorOut out) {
-  // c^T L = e_i^T, thus L^T c = e_i: the leading block of L^T, and the row's own entry 1 / L_ii.
+  // c^T L = e_i^T, so L^T c = e_i: a solution with the leading block of L^T, and the last entry 1 / L_ii.
   const double last = 1.0 / pivot(i);
   double* const c = scratch_.data();
   Eigen::Map<Eigen::VectorXd>(c, i) = -last * row(i);
@@ -52,7 +52,7 @@ void Factor::inverse_row(int i, VectorOut out) {
   out(i) = last;
 }
 
-void Factor::follow(Extreme& extreme, bool largest) const {
+void Factor::update(Extreme& extreme, bool largest) const {
   const int n = size_ - 1;
   const double pivot = this->pivot(n);
   if (n == 0) {
@@ -60,8 +60,8 @@ void Factor::follow(Extreme& extreme, bool largest) const {
     extreme.value = pivot * pivot;
     return;
   }
-  // Among the vectors (s x, c), s^2 + c^2 = 1, |L (s x, c)|^2 is the form [s c] [[v + a^2, a d], [a d, d^2]] [s c]^T
-  // with a = l.x, d the pivot and v the value so far.
+  // For vectors (s x, c) with s^2 + c^2 = 1, |L (s x, c)|^2 = [s c] [[v + a^2, a d], [a d, d^2]] [s c]^T, where a =
+  // l.x, d is the pivot and v the present value.
   const double a = row(n).dot(extreme.vector.head(n));
   const double angle = 0.5 * math::atan2(2.0 * a * pivot, extreme.value + a * a - pivot * pivot);
   double s = math::cos(angle);
@@ -71,7 +71,7 @@ void Factor::follow(Extreme& extreme, bool largest) const {
   if (largest) {
     extreme.value = largest_value;
   } else {
-    // The product of both eigenvalues is the determinant v d^2: no difference of near equals.
+    // The product of both eigenvalues is the determinant v d^2, which avoids a difference of nearly equal numbers.
     extreme.value = extreme.value * pivot * pivot / largest_value;
     std::swap(s, c);
     s = -s;

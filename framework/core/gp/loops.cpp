@@ -14,7 +14,7 @@ namespace {
 using namespace math::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace)
 constexpr int kLineVectors = kLine / kLanes;
 
-// A tile of registers: its sums, a row of B and a number of A fill the register file of 16, or of 32.
+// A tile of registers. Its sums, a row of B and a number of A fill the 16 or 32 registers.
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON
 constexpr int kTileRows = 8;
 constexpr int kTileVectors = 3;
@@ -26,7 +26,7 @@ constexpr int kTileRows = 4;
 constexpr int kTileVectors = 2;
 #endif
 
-/// kRows x kVectors registers of a product, summed over the depth. Rows of B are b_stride apart.
+/// Computes kRows x kVectors registers of a product, summed over the depth. Rows of B are b_stride apart.
 template <int kRows, int kVectors>
 HWY_INLINE void accumulate(const double* a, const double* b, int b_stride, int depth, Vector (&sum)[kRows][kVectors]) {
   for (int i = 0; i < kRows; ++i) {
@@ -45,7 +45,7 @@ HWY_INLINE void accumulate(const double* a, const double* b, int b_stride, int d
   }
 }
 
-/// What becomes of a tile of registers, the corner of which is `cell` and whose rows are `width` apart: it is stored.
+/// Sink that stores a tile of registers. `cell` is its first cell, and its rows are `width` apart.
 struct Store {
   double* c;
   template <int kRows, int kVectors>
@@ -58,9 +58,9 @@ struct Store {
   }
 };
 
-/// Or it is v, and taken into the maps.
+/// Sink that updates the maps by a tile of v.
 struct Absorb {
-  const Update update;  ///< a copy, which no store into a map can change
+  const Update update;  ///< a copy, so that the compiler need not load it again after a store
 
   template <int kRows, int kVectors>
   HWY_INLINE void take(const Vector (&v)[kRows][kVectors], std::ptrdiff_t cell, int width) const {
@@ -86,10 +86,10 @@ struct Absorb {
   }
 };
 
-/// The most registers in a row of a tile of registers that divide `all`.
+/// Returns the width of a tile of registers, in vectors: the largest possible divisor of `all`.
 constexpr int vectors_of(int all) { return all % kTileVectors == 0 ? kTileVectors : (all % 2 == 0 ? 2 : 1); }
 
-/// The tiles of a product, each in as many tiles of registers as it takes.
+/// Tiles of a product, each computed as several tiles of registers.
 struct Plain {
   const Product& product;
   std::ptrdiff_t strip_size() const { return static_cast<std::ptrdiff_t>(product.lines) * kLine * kStripRows; }
@@ -108,7 +108,7 @@ struct Plain {
   }
 };
 
-/// The same with mirror images: half of the rows at a time, as there are two sums.
+/// Tiles with mirror images. A tile of registers has half of the rows, because there are two sums.
 struct Mirrored {
   const MirroredProduct& whole;
   const Product& product = whole.half;
@@ -144,7 +144,7 @@ struct Mirrored {
   }
 };
 
-/// Panel by panel, as what a strip has of A is less than what all panels have of B.
+/// Computes all tiles, panel by panel, because A of a strip is smaller than B of all panels.
 template <class Tiles, class Sink>
 HWY_INLINE void strips(const Tiles& tiles, const Sink& sink) {
   const Product& product = tiles.product;
@@ -203,8 +203,8 @@ void absorb_dense(const DenseRow& row, const Update& update) {
   }
 }
 
-/// Cells are padded to lines, places are not. What does not fill a vector at the end of a row is read with the cells
-/// before it once more.
+/// Copies rows of cells. Rows of cells are padded to lines, rows of the result are not. The last vector of a row
+/// overlaps the vector before it.
 template <bool kMirrored>
 HWY_INLINE void read_rows(const Cells& cells, const Reading& reading) {
   const Vector least = all(reading.least);
@@ -227,15 +227,15 @@ HWY_INLINE void read_rows(const Cells& cells, const Reading& reading) {
       for (int i = 0; i < count; ++i) to[kMirrored ? -i : i] = few[i];
       continue;
     }
-    const auto move = [&](int i) {
+    const auto copy = [&](int i) {
       if (kMirrored) {
         hn::StoreU(hn::Reverse(kReals, read_at(from + i)), kReals, to - i - (kLanes - 1));
       } else {
         hn::StoreU(read_at(from + i), kReals, to + i);
       }
     };
-    for (int i = 0; i < count - kLanes; i += kLanes) move(i);
-    move(count - kLanes);
+    for (int i = 0; i < count - kLanes; i += kLanes) copy(i);
+    copy(count - kLanes);
   }
 }
 
@@ -243,16 +243,16 @@ void read(const Cells& cells, const Reading& reading) {
   cells.mirrored ? read_rows<true>(cells, reading) : read_rows<false>(cells, reading);
 }
 
-// A triangle by blocks of one line of rows, all of the same padded length: where a block begins its rows have `before`
-// numbers of earlier blocks, and then the triangle of its own.
+// Number of rows in a block of a packed triangle. The rows of a block have equal padded length: `before` numbers of
+// earlier columns, then the block's own triangle.
 constexpr int kTriangleBlock = kLine;
 
 void solve_lower(const double* lower, int n, double* x) {
-  constexpr int kRows = 2;  // at once
+  constexpr int kRows = 2;  // rows that are summed together
   for (int before = 0; before < n; before += kTriangleBlock) {
     const int rows = std::min(n - before, kTriangleBlock);
     const int length = before + kTriangleBlock;
-    double known[kTriangleBlock] = {};  // what earlier blocks have of each row
+    double known[kTriangleBlock] = {};  // sum over the earlier columns of each row
     for (int first = 0; first < rows; first += kRows) {
       Vector sum[kRows][kLineVectors];
       for (auto& of_row : sum) std::fill_n(of_row, kLineVectors, hn::Zero(kReals));
@@ -308,7 +308,7 @@ void solve_lower_transposed(const double* lower, int n, double* x) {
 }
 
 void highest(const double* from, int count, double* out) {
-  constexpr int kTogether = std::min(kScores / kLanes, 8);  // each comparison waits for the one before
+  constexpr int kTogether = std::min(kScores / kLanes, 8);  // independent maxima, because each waits for the one before
   for (int i = 0; i < count; ++i, from += kScores) {
     Vector most[kTogether];
 #pragma GCC unroll 8
@@ -354,7 +354,7 @@ std::size_t packed_row(int i) {
   const auto line = static_cast<std::size_t>(kLine);
   const std::size_t block = static_cast<std::size_t>(i) / line;
   const std::size_t row = static_cast<std::size_t>(i) % line;
-  // The blocks before have 1, 2, ... lines a row.
+  // The earlier blocks have 1, 2, ... lines per row.
   return line * (line * block * (block + 1) / 2 + row * (block + 1));
 }
 

@@ -50,7 +50,7 @@ void Maps::restart(int means, const VectorView& prior) {
   }
   std::fill_n(variance_.data(), variance_.size(), 0.0);
   for (int strip = 0; strip < tiling_.strips(); ++strip) {
-    tiling_.for_blocks(strip, [&](const Tiling::Block& block) {
+    tiling_.for_blocks(strip, [&](const MapBlock& block) {
       for (int row = 0; row < block.rows; ++row) {
         double* const to = variance_.data() + block.cell + static_cast<std::ptrdiff_t>(row) * block.width;
         if (prior.size() == 1) {
@@ -78,7 +78,7 @@ loops::Update Maps::update(int strip, const double* coefficients) {
 
 void Maps::read(const loops::Lines& map, const loops::Reading& reading, double* out) const {
   workers_->for_each(tiling_.strips(), [&](int strip, int) {
-    tiling_.for_blocks(strip, [&](const Tiling::Block& block) {
+    tiling_.for_blocks(strip, [&](const MapBlock& block) {
       loops::read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows, block.count,
                    block.mirrored},
                   reading);
@@ -86,7 +86,8 @@ void Maps::read(const loops::Lines& map, const loops::Reading& reading, double* 
   });
 }
 
-// A view goes by value although it is written through. NOLINTNEXTLINE(performance-unnecessary-value-param)
+// A view is passed by value, although the function writes to its data.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Maps::read_mean(int k, const loops::Reading& reading, VectorOut out) const {
   read(mean_[static_cast<std::size_t>(k)], reading, out.data());
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The maps of a posterior over the candidates, laid out for the loops that update them, and read in the order of the
-// candidates.
+// Memory of the maps over the candidates, in the layout of the loops (loops.hpp), and its order against the candidates.
 #pragma once
 
 #include "gp/candidates.hpp"
@@ -16,39 +15,40 @@
 
 namespace palpate {
 
-/// Where the candidates lie in a map. A map is a sequence of strips, which are what one call updates; a strip is
-/// a sequence of tiles, one a panel of the columns.
+/// Part of a tile: `rows` rows of `count` cells from `cell` on, `width` apart. A row has the candidates `candidate`,
+/// `candidate` + 1, ..., in a mirror image `candidate`, `candidate` - 1, .... From row to row, `candidate` increases by
+/// `columns`.
+struct MapBlock {
+  int candidate;
+  int columns;
+  bool mirrored;
+  std::size_t cell;
+  int width;
+  int rows;
+  int count;
+};
+
+/// Positions of the candidates in a map. A map is a sequence of strips, and one call of a loop updates a strip. A strip
+/// is a sequence of tiles, one tile per panel of the columns.
 class Tiling {
  public:
-  /// Any places: strips of one tile of loops::kBlock candidates one after the other.
+  /// Candidates at any positions: strips of one tile with kBlock consecutive candidates.
   static Tiling blocks(int candidates);
-  /// A product grid: strips of loops::kStripRows rows, cut into tiles as loops::Product has them.
+  /// A product grid: strips of loops::kStripRows rows, with the tiles of loops::Product.
   static Tiling grid(const Candidates& candidates);
-  /// The same as loops::MirroredProduct has them: a tile holds some columns of the left half of the grid and their
-  /// mirror images in the right half.
+  /// A product grid with the tiles of loops::MirroredProduct: columns of the left half of the grid, and their mirror
+  /// images in the right half.
   static Tiling mirrored_grid(const Candidates& candidates);
 
   int strips() const { return strips_; }
-  /// Cells in a strip and in all, padding included.
+  /// Number of cells in a strip and in a map, padding included.
   std::size_t strip_size() const { return strip_size_; }
   std::size_t size() const { return strip_size_ * static_cast<std::size_t>(strips_); }
 
-  /// From the cells of a tile to those of its mirror image; 0 if there is none.
+  /// Distance from the cells of a tile to those of its mirror image; 0 without mirror images.
   std::ptrdiff_t mirror() const { return mirror_; }
 
-  /// Part of a tile: rows of `count` cells, `width` apart from `cell` on, in which the candidates candidate,
-  /// candidate + 1, ... lie, of mirror images candidate, candidate - 1, ...; each row begins `columns` candidates after
-  /// the one before.
-  struct Block {
-    int candidate;
-    int columns;
-    bool mirrored;
-    std::size_t cell;
-    int width;
-    int rows;
-    int count;
-  };
-  /// Calls visit(block) for the blocks of a strip.
+  /// Calls visit(MapBlock) for the blocks of a strip.
   template <class Visit>
   void for_blocks(int strip, const Visit& visit) const {
     const int row = strip * rows_per_strip_;
@@ -59,43 +59,43 @@ class Tiling {
       const std::size_t cell =
           static_cast<std::size_t>(strip) * strip_size_ + static_cast<std::size_t>(first * rows_per_strip_);
       const int candidate = row * columns_ + first;
-      visit(Block{candidate, columns_, false, cell, width, rows, std::min(columns, candidates_ - candidate)});
+      visit(MapBlock{candidate, columns_, false, cell, width, rows, std::min(columns, candidates_ - candidate)});
       if (mirror_ == 0) continue;
-      // A column in the middle is its own image and was visited.
+      // A column in the middle is its own mirror image, which the block above contains.
       const int images = std::min(columns, columns_ - tiled_columns_ - first);
-      visit(Block{(row + 1) * columns_ - 1 - first, columns_, true, cell + static_cast<std::size_t>(mirror_), width,
-                  rows, images});
+      visit(MapBlock{(row + 1) * columns_ - 1 - first, columns_, true, cell + static_cast<std::size_t>(mirror_), width,
+                     rows, images});
     }
   }
 
  private:
-  /// Cuts that many columns into tiles.
+  /// Divides this many columns into tiles.
   void tile(int columns);
 
   int candidates_ = 0;
-  int columns_ = 0;        ///< of the grid; of any places, those of a piece
-  int tiled_columns_ = 0;  ///< those that are no mirror images
+  int columns_ = 0;        ///< of the grid; kBlock without a grid
+  int tiled_columns_ = 0;  ///< columns that are not mirror images
   int rows_ = 0;
   int padded_ = 0;  ///< tiled columns with padding
-  int width_ = 0;   ///< of a tile, in columns
+  int width_ = 0;   ///< columns of a tile
   int rows_per_strip_ = 1;
   int strips_ = 0;
   std::size_t strip_size_ = 0;
   std::ptrdiff_t mirror_ = 0;
 };
 
-/// Maps of means and of the variance as they stand, all in units of the prior.
+/// Maps of means and of the variance, standardised.
 class Maps {
  public:
   Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers);
 
-  /// Back to the prior: `means` maps of 0, and the variance, one number if it is the same at all candidates.
+  /// Sets `means` maps of means to 0 and the variance to the prior, one value if it is the same at all candidates.
   void restart(int means, const VectorView& prior);
 
-  /// What the loops need to take a row with such coefficients into the cells of a strip.
+  /// Returns the arguments of a loop that updates a strip by a row with these coefficients, one per mean.
   loops::Update update(int strip, const double* coefficients);
 
-  /// The mean number k, and the variance, at all candidates, each number as `reading` has it.
+  /// Reads mean k, or the variance, at all candidates, transformed by `reading`.
   void read_mean(int k, const loops::Reading& reading, VectorOut out) const;
   void read_variance(const loops::Reading& reading, VectorOut out) const;
 

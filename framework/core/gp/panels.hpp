@@ -1,40 +1,41 @@
 // SPDX-License-Identifier: MIT
-// Memory for the loops of loops.hpp: numbers aligned to cache lines, and matrices in panels that grow by rows.
+// Memory for the loops of loops.hpp: arrays aligned to cache lines, and matrices that grow by rows.
 #pragma once
 
 #include "gp/loops.hpp"
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
+#include <new>
 
 namespace palpate::loops {
 
 constexpr int round_up(int value, int unit) { return (value + unit - 1) / unit * unit; }
 
-/// Numbers from a cache line on, not initialised: memory that is never touched costs nothing.
+/// Array of numbers, aligned to a cache line and not initialised, so that unused memory costs nothing.
 class Lines {
  public:
   Lines() = default;
   /// Throws std::bad_alloc.
-  explicit Lines(std::size_t size) : numbers_(allocate(size)), size_(size) {}
+  explicit Lines(std::size_t size)
+      : numbers_(static_cast<double*>(::operator new(size * sizeof(double), kAlignment))), size_(size) {}
 
   std::size_t size() const { return size_; }
   double* data() { return numbers_.get(); }
   const double* data() const { return numbers_.get(); }
 
  private:
-  static double* allocate(std::size_t size);
+  static constexpr std::align_val_t kAlignment{kLineBytes};
   struct Release {
-    void operator()(double* numbers) const { std::free(numbers); }
+    void operator()(double* numbers) const { ::operator delete(numbers, kAlignment); }
   };
   std::unique_ptr<double, Release> numbers_;
   std::size_t size_ = 0;
 };
 
-/// A matrix that grows by rows, cut into panels of `width` columns; the rows of a panel follow each other in memory.
-/// The last panel is as wide as its columns need, rounded up to `unit`; what lies beyond the columns is 0.
+/// Matrix that grows by rows, divided into panels of `width` columns. The rows of a panel are contiguous. The last
+/// panel has the remaining columns, rounded up to `unit` and padded with 0.
 class Panels {
  public:
   Panels() = default;
@@ -43,10 +44,10 @@ class Panels {
 
   int panels() const { return panels_; }
   int rows() const { return rows_; }
-  /// Columns with their padding.
+  /// Number of columns with padding.
   int padded() const { return padded_; }
   int width(int panel) const { return std::min(width_, padded_ - panel * width_); }
-  /// Numbers from one panel to the next.
+  /// Distance between panels, in numbers.
   std::size_t stride() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(capacity_); }
   const double* panel(int panel) const { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }
   double* panel(int panel) { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }
@@ -54,7 +55,7 @@ class Panels {
 
   void clear() { rows_ = 0; }
 
-  /// Room for so many rows; what is there is kept.
+  /// Reserves memory for this many rows. Keeps the rows.
   void reserve(int rows) {
     if (rows <= capacity_) return;
     const Lines old = std::move(numbers_);
@@ -67,13 +68,13 @@ class Panels {
     }
   }
 
-  /// One more row, not initialised.
+  /// Adds a row without values.
   void extend() {
     if (rows_ == capacity_) reserve(std::max(16, 2 * capacity_));
     ++rows_;
   }
 
-  /// One more row, from numbers at `values`.
+  /// Adds a row with these values, one per column.
   void append(const double* values) {
     extend();
     for (int p = 0; p < panels_; ++p) {

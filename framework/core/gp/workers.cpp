@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-/// Looks at the next job before a helper goes to sleep: some 50 microseconds.
-constexpr int kPatience = 2000;
+/// Number of polls for the next job before a helper sleeps, about 50 microseconds.
+constexpr int kPollsBeforeSleep = 2000;
 
 }  // namespace
 
@@ -35,21 +35,20 @@ void Workers::run(int count, Call call, const void* job) {
   open_ = true;
   ++jobs_;
   if (asleep_ > 0) {
-    // The lock makes sure that who has just seen no job is really waiting, and hears this.
+    // With the lock, a helper that has just seen no job is already waiting, and receives the notification.
     { const std::lock_guard<std::mutex> lock(mutex_); }
     wake_.notify_all();
   }
-  take_pieces(0);
-  // A helper announces itself in inside_ before it looks at open_: who is not counted here finds the job closed, and
-  // who is counted is waited for.
+  take_parts(0);
+  // A helper increments inside_ before it reads open_. So a helper that is not counted below finds the job closed.
   open_ = false;
   while (inside_ > 0) std::this_thread::yield();
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
-void Workers::take_pieces(int worker) {
+void Workers::take_parts(int worker) {
   try {
-    for (int piece = next_++; piece < count_; piece = next_++) call_(job_, piece, worker);
+    for (int part = next_++; part < count_; part = next_++) call_(job_, part, worker);
   } catch (...) {
     next_ = count_;
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -60,7 +59,7 @@ void Workers::take_pieces(int worker) {
 void Workers::help(int worker) {
   unsigned seen = 0;
   for (;;) {
-    for (int look = 0; look < kPatience && jobs_ == seen; ++look) hwy::Pause();
+    for (int poll = 0; poll < kPollsBeforeSleep && jobs_ == seen; ++poll) hwy::Pause();
     if (jobs_ == seen) {
       std::unique_lock<std::mutex> lock(mutex_);
       ++asleep_;
@@ -70,7 +69,7 @@ void Workers::help(int worker) {
     seen = jobs_;
     if (stop_) return;
     ++inside_;
-    if (open_) take_pieces(worker);
+    if (open_) take_parts(worker);
     --inside_;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A few threads that share the pieces of one short job after the other.
+// Threads that share the parts of short jobs.
 #pragma once
 
 #include <atomic>
@@ -11,9 +11,9 @@
 
 namespace palpate {
 
-/// The caller and `threads` - 1 helpers. Pieces are taken by whoever is free, so a job whose pieces do not depend on
-/// each other has the same result on any number of threads. A helper waits awake for a moment after a job, as the next
-/// one mostly follows at once, and then sleeps; the caller never waits for a helper that has not begun.
+/// The calling thread and `threads` - 1 helpers. Each free thread takes the next part. So a job with independent parts
+/// has the same result on any number of threads. After a job, a helper polls for the next job for some time, because
+/// jobs often follow at once, and then sleeps. The caller never waits for a helper that has not started.
 class Workers {
  public:
   explicit Workers(int threads);
@@ -23,35 +23,35 @@ class Workers {
 
   int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
-  /// Calls job(piece, worker) for all pieces 0 .. count - 1 and returns when all are done; `worker` is below
-  /// threads(), and each worker has one piece at a time. What a job throws first, in any thread, is thrown here once
-  /// all workers have stopped; pieces that nobody had begun are then left out.
+  /// Calls job(part, worker) for the parts 0 to `count` - 1 and returns when all are done. `worker` is below threads(),
+  /// and a worker has one part at a time. After an exception in any thread, no further part starts, and the first
+  /// exception is thrown here once all workers have stopped.
   template <class Job>
   void for_each(int count, const Job& job) {
     if (helpers_.empty() || count < 2) {
-      for (int piece = 0; piece < count; ++piece) job(piece, 0);
+      for (int part = 0; part < count; ++part) job(part, 0);
       return;
     }
     run(
-        count, [](const void* work, int piece, int worker) { (*static_cast<const Job*>(work))(piece, worker); }, &job);
+        count, [](const void* work, int part, int worker) { (*static_cast<const Job*>(work))(part, worker); }, &job);
   }
 
  private:
   using Call = void (*)(const void*, int, int);
   void run(int count, Call call, const void* job);
   void help(int worker);
-  void take_pieces(int worker);
+  void take_parts(int worker);
 
   Call call_ = nullptr;
   const void* job_ = nullptr;
   int count_ = 0;
   std::atomic<int> next_{0};
-  std::atomic<int> inside_{0};     ///< helpers that may be at work
-  std::atomic<bool> open_{false};  ///< there is a job
-  std::atomic<unsigned> jobs_{0};  ///< so far
+  std::atomic<int> inside_{0};     ///< helpers that may take parts
+  std::atomic<bool> open_{false};  ///< whether helpers may join the job
+  std::atomic<unsigned> jobs_{0};  ///< number of jobs until now
   std::atomic<int> asleep_{0};
   std::atomic<bool> stop_{false};
-  std::exception_ptr thrown_;  ///< what the job threw first; guarded by mutex_
+  std::exception_ptr thrown_;  ///< first exception of the job; guarded by mutex_
   std::mutex mutex_;
   std::condition_variable wake_;
   std::vector<std::thread> helpers_;
