@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points from a file of the format PLY, as depth cameras and their libraries write them.
+// Reads a point cloud of a depth camera from a PLY file.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,12 +8,12 @@
 
 namespace palpate {
 
-/// A point a column: x, y, z in the unit and the frame of the file.
+/// One point per column: x, y, z in the unit and the frame of the file.
 using PointCloud = Eigen::Matrix3Xd;
 
-/// The vertices of a PLY, ascii or binary of either byte order; whatever else it holds is passed over. Points that are
-/// not finite, as cameras give where they saw nothing, are left out. Throws Error, its `where` the `file`: no PLY, cut
-/// short, no vertices with x, y and z, not one finite point, or more than kMostPoints.
+/// Returns the finite vertices of a PLY file, ascii or binary of either byte order. Other elements are ignored. Cameras
+/// write vertices that are not finite for pixels without a depth. Throws Error with `file` as its place if the bytes
+/// are not a PLY file or cut short, or have no vertices with x, y and z, no finite point, or more than kMostPoints.
 PointCloud read_points(const std::string& bytes, const std::string& file);
 
 constexpr long kMostPoints = 20'000'000;

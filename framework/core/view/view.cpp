@@ -30,16 +30,16 @@ std::string bytes_of(const std::string& file) {
   throw Error(file, words_of(reading, kMostViewBytes).reason);
 }
 
-// An object's is a square that is above the desk by so many of its deviations, the desk's one that is not by fewer:
-// what lies in between may be a low thing as well as noise.
-constexpr double kClearlyAbove = 2.5;
-constexpr double kNotAbove = 1.0;
+// Height of a square above the desk, in its standard deviations: at least kObjectSigmas on an object, at most
+// kDeskSigmas on the desk. A height in between may be a low object or noise.
+constexpr double kObjectSigmas = 2.5;
+constexpr double kDeskSigmas = 1.0;
 
-/// The points in one square of the desk.
+/// Moments of the points in one square of the desk.
 struct Square {
   int count = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double squares = 0.0;  ///< sum of those of the heights
+  double squares = 0.0;  ///< sum of the squared heights
 
   void add(const Eigen::Vector3d& point) {
     ++count;
@@ -50,19 +50,20 @@ struct Square {
   double variance() const { return std::max(0.0, squares / count - mean().z() * mean().z()); }
 };
 
-/// What the desk tells of the offset of all heights: its mean and its variance, from a prior and the heights of squares
-/// of the desk, each of which errs by `noise`.
+/// Posterior of the offset of all heights, metres.
 struct Offset {
   double mean = 0.0;
   double variance = 0.0;
 };
 
-Offset offset_of(const std::vector<double>& of_desk, double noise, double bias) {
+/// Computes the offset from the heights of squares of the desk, with the standard deviations `noise` of a height and
+/// `bias` of the offset.
+Offset offset_of(const std::vector<double>& desk_heights, double noise, double bias) {
   if (bias == 0.0) return {};
-  if (noise == 0.0 && !of_desk.empty()) return {of_desk.front(), 0.0};
+  if (noise == 0.0 && !desk_heights.empty()) return {desk_heights.front(), 0.0};
   double precision = 1.0 / (bias * bias);
   double sum = 0.0;
-  for (const double height : of_desk) {
+  for (const double height : desk_heights) {
     precision += 1.0 / (noise * noise);
     sum += height / (noise * noise);
   }
@@ -105,8 +106,7 @@ void PriorOptions::list(Fields& fields) {
           "pose of the point cloud in the frame of the area; not given: the point cloud is in the frame of the area"));
   const auto trouble = trouble_in([&] { checksum = depth.empty() ? "" : hash_of(bytes_of(depth)); });
   fields.text(checksum, Field("checksum", "checksum of the file content; not given: computed from the file"));
-  // A record has the checksum, and is read without the file. The error has the place of the file, but not of who names
-  // it.
+  // A record has the checksum, so it needs no file. The error already has the file as its place.
   fields.require(!trouble || !checksum.empty(), "depth", trouble ? trouble->what() : "");
 }
 
@@ -139,20 +139,21 @@ std::vector<ViewedSquare> viewed_squares(const PointCloud& points, const PriorOp
                 "check unit and pose");
   }
   const double noise = options.noise;
-  const double reach = kClearlyAbove * math::hypot(noise, options.bias);
-  std::vector<double> of_desk;
+  const double reach = kObjectSigmas * math::hypot(noise, options.bias);
+  std::vector<double> desk_heights;
   for (const Square& one : squares) {
-    if (std::abs(one.mean().z()) <= reach && one.variance() <= 4.0 * noise * noise) of_desk.push_back(one.mean().z());
+    if (std::abs(one.mean().z()) <= reach && one.variance() <= 4.0 * noise * noise)
+      desk_heights.push_back(one.mean().z());
   }
-  const Offset offset = offset_of(of_desk, noise, options.bias);
+  const Offset offset = offset_of(desk_heights, noise, options.bias);
   std::vector<ViewedSquare> out;
   for (const Square& one : squares) {
     const Eigen::Vector3d mean = one.mean();
     const double unevenness = std::max(0.0, one.variance() - noise * noise);
     const double deviation = std::sqrt(noise * noise + unevenness + offset.variance);
     const double height = mean.z() - offset.mean;
-    const bool on = height > kClearlyAbove * deviation && scene.on_object(scene.desk() + height);
-    if (!on && height > kNotAbove * deviation) continue;
+    const bool on = height > kObjectSigmas * deviation && scene.on_object(scene.desk() + height);
+    if (!on && height > kDeskSigmas * deviation) continue;
     out.push_back({{{mean.x(), mean.y()}, on ? height : 0.0, on}, on ? deviation : noise});
   }
   return out;
