@@ -12,14 +12,14 @@ namespace palpate {
 namespace {
 
 constexpr double kBelowFloor = 0.01;      // metres
-constexpr double kMostForce = 1000.0;     // newtons: a tenth of a ton; millinewtons of a tap are beyond it
-constexpr double kMostSeconds = 86400.0;  // a day; milliseconds of a tap may be beyond it
+constexpr double kMostForce = 1000.0;     // newtons; a value in millinewtons is usually larger
+constexpr double kMostSeconds = 86400.0;  // one day; a value in milliseconds may be larger
 constexpr std::size_t kLongestLine = 200;
 
-/// In the order of Outcome, without the last, `unknown`.
+/// Names of the outcomes in their order, without the last, `unknown`.
 constexpr const char* kOutcomes[] = {"contact", "no_contact", "unreachable", "timeout", "aborted"};
 
-/// Not a number lies within nothing.
+/// Returns false for NaN.
 bool is_within(double value, double least, double most) { return value >= least && value <= most; }
 
 }  // namespace

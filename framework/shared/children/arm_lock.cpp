@@ -19,8 +19,8 @@
 namespace palpate {
 namespace {
 
-/// The sockets of this process that hold arms. A child that is forked from it would hold them, too, as long as it runs:
-/// in the child their numbers stand for the null device.
+/// Sockets of this process that lock arms. A forked child would hold the locks, too. So in the child their descriptors
+/// are replaced by the null device.
 struct Held {
   std::mutex guard;
   std::set<int> numbers;
@@ -36,7 +36,7 @@ Held& held() {
                        }
                        held().guard.unlock();
                      });
-    return new Held;  // for as long as there are processes to fork
+    return new Held;  // never destroyed, because the process may fork at any time
   }();
   return *all;
 }
@@ -51,7 +51,7 @@ Name name_of(const std::string& arm) {
   Name out;
   out.address.sun_family = AF_UNIX;
   const std::size_t length = std::min(text.size(), sizeof out.address.sun_path - 1);
-  std::memcpy(out.address.sun_path + 1, text.data(), length);  // the zero before it makes the name abstract
+  std::memcpy(out.address.sun_path + 1, text.data(), length);  // the zero byte before it makes the name abstract
   out.bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
   return out;
 }
@@ -60,7 +60,7 @@ const sockaddr* generic(const Name& name) { return reinterpret_cast<const sockad
 
 Descriptor make_socket() { return above_standard(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)); }
 
-/// The process that holds the name, in words.
+/// Returns a description of the process that holds the name.
 std::string holder_of(const Name& name) {
   const Descriptor caller = make_socket();
   ucred who{};
@@ -74,9 +74,9 @@ std::string holder_of(const Name& name) {
 
 ArmLock::ArmLock(const std::string& where, const std::string& arm) {
   const Name name = name_of(arm);
-  const std::lock_guard<std::mutex> no_fork_between(held().guard);
+  const std::lock_guard<std::mutex> no_fork(held().guard);
   Descriptor socket = make_socket();
-  // Nobody is ever accepted; who calls learns whom.
+  // The socket accepts no connection. It listens so that holder_of() can read the process id from an attempt.
   if (socket && ::bind(socket.number(), generic(name), name.bytes) == 0 && ::listen(socket.number(), SOMAXCONN) == 0) {
     held().numbers.insert(socket.number());
     socket_ = std::move(socket);
@@ -92,7 +92,7 @@ ArmLock::ArmLock(const std::string& where, const std::string& arm) {
 
 ArmLock::~ArmLock() {
   if (!socket_) return;
-  const std::lock_guard<std::mutex> no_fork_between(held().guard);
+  const std::lock_guard<std::mutex> no_fork(held().guard);
   held().numbers.erase(socket_.number());
   socket_.close();
 }

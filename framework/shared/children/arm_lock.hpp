@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A lock for each arm, whatever runs move it: the lock of a record keeps two processes from one run, but not two runs
-// from one arm.
+// A lock per arm, which keeps two runs from moving the same arm. The lock of a record only keeps two processes from the
+// same run.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -9,17 +9,16 @@
 
 namespace palpate {
 
-/// Holds the lock of an arm while it lives. The kernel keeps the lock as the name of a socket ("abstract", unix(7)). It
-/// depends on no environment, folder or user, nobody can remove it, and it ends with the process, however that ends.
-/// Children that the process forks do not hold it. Not excluded are processes of other machines, and of containers with
-/// a network of their own.
+/// Holds the lock of an arm for its lifetime. The lock is an abstract socket name of the kernel (unix(7)). It is
+/// independent of environment, folder and user, cannot be removed, and ends with the process in any case. Forked
+/// children do not hold it. It does not exclude processes on other machines or in containers with their own network.
 class ArmLock {
  public:
-  /// Holds nothing.
+  /// Creates an object without a lock.
   ArmLock() = default;
-  /// Locks `arm`, which names one arm of one robot. Only the first 95 bytes count, so that two arms with longer names
-  /// may wait for each other. Throws Error: of kind `busy`, with `where` and the process that holds the lock, where
-  /// another one does; of kind `run` where the system makes no such socket.
+  /// Locks `arm`, the name of one arm of one robot. Only the first 95 bytes count, so arms with longer names may share
+  /// a lock. Throws Error with the place `where`: of kind `busy`, with the process that holds the lock; of kind `run`
+  /// if the system cannot create the socket.
   ArmLock(const std::string& where, const std::string& arm);
   ArmLock(ArmLock&&) = default;
   ArmLock& operator=(ArmLock&&) = default;

@@ -20,7 +20,7 @@
 namespace palpate {
 namespace {
 
-/// As the C library takes them, ended by a null pointer.
+/// Returns the texts as an array of the C library, which a null pointer ends.
 std::vector<char*> pointers(const std::vector<std::string>& texts) {
   std::vector<char*> out;
   for (const std::string& text : texts) out.push_back(const_cast<char*>(text.c_str()));
@@ -28,14 +28,14 @@ std::vector<char*> pointers(const std::vector<std::string>& texts) {
   return out;
 }
 
-/// noexcept, because what is thrown must not unwind into the copy of what the parent was doing.
-[[noreturn]] void be_child(const Descriptor& parent_hears, pid_t parent,
+/// Runs the work of a forked child. noexcept, because an exception must not unwind the copied stack of the parent.
+[[noreturn]] void be_child(const Descriptor& to_parent, pid_t parent,
                            const std::function<int(const ChildProcess::Say&)>& work) noexcept {
-  // Between fork and this call the parent may have died already.
+  // The parent may have ended before the call of prctl().
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != parent) ::_exit(1);
   ::setpgid(0, 0);
   ::_exit(work([&](std::string_view text) {
-    if (!write_all(parent_hears, text)) ::_exit(1);
+    if (!write_all(to_parent, text)) ::_exit(1);
   }));
 }
 
@@ -77,8 +77,8 @@ std::vector<std::string> own_environment() {
   return out;
 }
 
-/// posix_spawn and not fork: no copy of a large process, nothing of another thread's half-held locks. And not execvp,
-/// which hands a file that is no program to a shell.
+/// Uses posix_spawn, because fork would copy a large process and the locks of other threads. execvp would run a file
+/// that is not a program with a shell.
 pid_t spawn(const Program& program, const std::vector<int>& files) {
   const std::vector<char*> words = pointers(program.words);
   const std::vector<char*> environment = pointers(program.environment);
@@ -86,14 +86,14 @@ pid_t spawn(const Program& program, const std::vector<int>& files) {
   ::posix_spawn_file_actions_init(&actions);
   int number = 0;
   for (const int file : files) ::posix_spawn_file_actions_adddup2(&actions, file, number++);
-  // Files that this process holds open without the flag, as streams of the standard library do.
+  // Closes files without O_CLOEXEC, such as streams of the standard library.
   ::posix_spawn_file_actions_addclosefrom_np(&actions, number);
   if (!program.folder.empty()) ::posix_spawn_file_actions_addchdir_np(&actions, program.folder.c_str());
   posix_spawnattr_t attributes;
   ::posix_spawnattr_init(&attributes);
   sigset_t usual;
   ::sigemptyset(&usual);
-  for (const int signal : {SIGPIPE, SIGXFSZ}) ::sigaddset(&usual, signal);  // which this process may ignore for itself
+  for (const int signal : {SIGPIPE, SIGXFSZ}) ::sigaddset(&usual, signal);  // this process may ignore them
   short flags = POSIX_SPAWN_SETSIGDEF;
   if (program.own_group) {
     sigset_t none;
@@ -119,7 +119,7 @@ std::unique_ptr<ChildProcess> ChildProcess::fork(const std::function<int(const S
   std::unique_ptr<ChildProcess> out(new ChildProcess);
   std::optional<Pipe> pipe = open_pipe();
   if (!pipe) return nullptr;
-  std::fflush(nullptr);  // or the child would print it again
+  std::fflush(nullptr);  // otherwise the child would write the buffers again
   const pid_t parent = ::getpid();
   out->pid_ = ::fork();
   if (out->pid_ == 0) {
@@ -127,14 +127,15 @@ std::unique_ptr<ChildProcess> ChildProcess::fork(const std::function<int(const S
     be_child(pipe->to_write, parent, work);
   }
   if (out->pid_ < 0) return nullptr;
-  ::setpgid(out->pid_, out->pid_);  // on both sides, because either may be first
+  ::setpgid(out->pid_, out->pid_);  // in parent and child, because either may run first
   out->pipe_ = std::move(pipe->to_read);
   return out;
 }
 
 std::unique_ptr<ChildProcess> ChildProcess::start(const Program& program, std::string_view input) {
   std::unique_ptr<ChildProcess> out(new ChildProcess);
-  // All of it beforehand in a file without a name: who writes to a program while it talks may wait for ever.
+  // The input is in an unnamed file, because writing to a program that waits for its output to be read can block for
+  // ever.
   const Descriptor given = above_standard(::memfd_create("input", MFD_CLOEXEC));
   if (!given || !write_all(given, input) || ::lseek(given.number(), 0, SEEK_SET) != 0) return nullptr;
   std::optional<Pipe> pipe = open_pipe();
@@ -153,11 +154,11 @@ ChildProcess::~ChildProcess() {
 
 void ChildProcess::listen(const std::vector<ChildProcess*>& children, double seconds) {
   std::vector<pollfd> pipes;
-  for (const ChildProcess* child : children) pipes.push_back({child->pipe_.number(), POLLIN, 0});  // -1 is passed over
-  // Rounded up: a wait that is a little too short would go round and round.
+  for (const ChildProcess* child : children) pipes.push_back({child->pipe_.number(), POLLIN, 0});  // poll() ignores -1
+  // Rounded up, because a wait that is slightly too short would repeat many times.
   ::poll(pipes.data(), pipes.size(), static_cast<int>(std::ceil(1000.0 * std::clamp(seconds, 0.0, 3600.0))));
   for (std::size_t i = 0; i < pipes.size(); ++i) {
-    if (pipes[i].revents != 0) children[i]->hear();
+    if (pipes[i].revents != 0) children[i]->read_output();
   }
 }
 
@@ -172,13 +173,13 @@ bool ChildProcess::wait(double seconds) {
 }
 
 void ChildProcess::signal(int number) const {
-  if (!ended()) ::kill(pid_, number);  // -1 would be every process of the machine
+  if (!ended()) ::kill(pid_, number);  // kill(-1) would signal every process of the machine
 }
 
-void ChildProcess::hear() {
+void ChildProcess::read_output() {
   std::array<char, 65536> some;
   const ssize_t size = ::read(pipe_.number(), some.data(), some.size());
-  if (size > 0) said_.append(some.data(), static_cast<std::size_t>(size));
+  if (size > 0) output_.append(some.data(), static_cast<std::size_t>(size));
   if (size == 0) reap();
 }
 

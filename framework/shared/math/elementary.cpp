@@ -12,24 +12,24 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr double kMostAngle = 1e9;
 constexpr double kPi = 0x1.921fb54442d18p1;
-constexpr double kPiLow = 0x1.1a62633145c07p-53;  // pi is the sum of both
-// ln 2 in two parts, the first of 32 bits: a product with an exponent is exact.
+constexpr double kPiLow = 0x1.1a62633145c07p-53;  // kPi + kPiLow is pi to twice the precision
+// ln 2 as a sum of two numbers. The first has 32 bits, so that its product with an exponent is exact.
 constexpr double kLog2 = 0x1.62e42feep-1;
 constexpr double kLog2Low = 0x1.a39ef35793c76p-33;
 
-/// A number as the sum of two, of which the second is less than half of the last place of the first.
+/// A number as a sum of two, where |low| is at most half of the last place of `high`.
 struct Pair {
   double high;
   double low;
 };
 
-/// Of two numbers of which the first is the larger.
+/// Returns a + b exactly, for |a| >= |b|.
 Pair sum(double a, double b) {
   const double high = a + b;
   return {high, b - (high - a)};
 }
 
-/// Without a fused multiplication, which some processors lack (Dekker 1971). Of numbers below 1e150.
+/// Returns a b exactly, for numbers below 1e150 (Dekker 1971). Some processors lack a fused multiplication.
 Pair product(double a, double b) {
   const auto half = [](double x) {
     const double scaled = 134217729.0 * x;  // 2^27 + 1
@@ -43,7 +43,7 @@ Pair product(double a, double b) {
   return {high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
 
-/// sum of c_i x^i.
+/// Returns the sum of c_i x^i.
 template <std::size_t kCount>
 double polynomial(const double (&coefficients)[kCount], double x) {
   double out = 0.0;
@@ -51,7 +51,7 @@ double polynomial(const double (&coefficients)[kCount], double x) {
   return out;
 }
 
-/// e^(x + low) for a low that is small beside the last place of 1.
+/// Returns e^(x + low), where |low| is small compared with the last place of 1.
 double exp_of(double x, double low) {
   if (x > 709.8) return kInfinity;
   if (!(x >= -745.2)) return std::isnan(x) ? x : 0.0;
@@ -63,7 +63,7 @@ double exp_of(double x, double low) {
   return std::ldexp(1.0 + (r + r * r * polynomial(kOf, r)), static_cast<int>(n));
 }
 
-/// x = 2^exponent (1 + f) with 1 + f from sqrt(1/2) to sqrt(2).
+/// x = 2^exponent (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)].
 struct Split {
   double exponent;
   double f;
@@ -82,7 +82,7 @@ Split split(double x) {
 constexpr double kArtanh[] = {2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11, 2.0 / 13,
                               2.0 / 15, 2.0 / 17, 2.0 / 19, 2.0 / 21, 2.0 / 23, 2.0 / 25};
 
-/// The logarithm of a finite x > 0 to about twice the digits of a double.
+/// Returns the logarithm of a finite x > 0 to about twice the precision of a double.
 Pair log_of(double x) {
   const auto [exponent, f] = split(x);
   const Pair below = sum(2.0, f);
@@ -91,9 +91,9 @@ Pair log_of(double x) {
   const double s_low = ((f - back.high) - back.low - s * below.low) / below.high;
   Pair square = product(s, s);
   square.low += 2.0 * s * s_low;
-  // 2 s + s (2 / 3 s^2) carry both parts; what follows is small.
+  // The terms 2 s and 2 / 3 s^3 are computed in both parts. The later terms are small.
   Pair third = product(square.high, kArtanh[0]);
-  third.low += square.low * kArtanh[0] + square.high * 0x1.5555555555555p-55;  // the rest of 2 / 3
+  third.low += square.low * kArtanh[0] + square.high * 0x1.5555555555555p-55;  // low part of 2 / 3
   static constexpr double kRest[] = {2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11, 2.0 / 13, 2.0 / 15,
                                      2.0 / 17, 2.0 / 19, 2.0 / 21, 2.0 / 23, 2.0 / 25};
   third.low += square.high * square.high * polynomial(kRest, square.high);
@@ -102,18 +102,18 @@ Pair log_of(double x) {
   Pair out = sum(2.0 * s, beyond.high);
   out.low += 2.0 * s_low + beyond.low;
   const Pair all = sum(exponent * kLog2, out.high);
-  // Of an exponent of 0 the first is 0, and not the larger: the sum is exact then, too.
+  // With exponent 0 the first term is 0 and the smaller one. The sum is exact in this case, too.
   return sum(all.high, all.low + out.low + exponent * kLog2Low);
 }
 
-/// x = n pi / 2 + r with |r| <= pi / 4.
+/// Reduction of an angle: x = n pi / 2 + r with |r| <= pi / 4.
 struct Reduced {
   int quarter;  ///< n modulo 4
-  Pair r;       ///< NaN where x has too few digits left
+  Pair r;       ///< NaN if |x| > kMostAngle
 };
 Reduced reduce(double x) {
   if (!(std::abs(x) <= kMostAngle)) return {0, {kNaN, kNaN}};
-  // pi / 2 in three parts, the first two of 33 bits: products with n < 2^20 are exact.
+  // pi / 2 as a sum of three numbers. The first two have 33 bits, so that products with n < 2^20 are exact.
   constexpr double kHalf[] = {0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
   const double n = std::nearbyint(x * 0x1.45f306dc9c883p-1);  // 2 / pi
   const double first = x - n * kHalf[0];
@@ -139,9 +139,9 @@ double cosine(const Pair& r) {
   return near.high + (near.low + square * square * polynomial(kOf, square) - r.high * r.low);
 }
 
-/// At 0 <= x <= 1.
+/// Returns the arctangent for 0 <= x <= 1.
 Pair arctangent(double x) {
-  // Above tan (pi / 8): pi / 4 + atan((x - 1) / (x + 1)).
+  // Above tan(pi / 8): atan x = pi / 4 + atan((x - 1) / (x + 1)).
   const bool steep = x > 0.41421356237309504880;
   const double t = steep ? (x - 1.0) / (x + 1.0) : x;
   const double square = t * t;
@@ -164,13 +164,13 @@ double log(double x) {
   const double s = f / (2.0 + f);
   const double square = s * s;
   const double half = 0.5 * f * f;
-  // 2 s = f - s f, and s f = half - s half: what is taken from f is exact to the last place of f.
+  // 2 s = f - s f and s f = half - s half. So the difference from f has an error far below the last place of f.
   return exponent * kLog2 - ((half - (s * (half + square * polynomial(kArtanh, square)) + exponent * kLog2Low)) - f);
 }
 
 double log1p(double x) {
   const double above = 1.0 + x;
-  // What was rounded off of 1 + x is taken in to first order.
+  // The rounding error of 1 + x is corrected to first order.
   if (above == 1.0) return x;
   return above == 0.0 || std::isinf(above) ? log(above) : log(above) + (x - (above - 1.0)) / above;
 }
@@ -230,8 +230,8 @@ double erfc(double x) {
     }
     return 1.0 - 2.0 / kRootPi * erf;
   }
-  // The trapezoidal rule of step h for Abramowitz and Stegun 7.4.11, with what the pole at x adds (Matta and Reichel,
-  // Mathematics of Computation 25, 1971). It leaves out e^(-pi^2 / h^2) = 7e-18 of the whole.
+  // Trapezoidal rule of step h for Abramowitz and Stegun 7.4.11, with the contribution of the pole at x (Matta and
+  // Reichel, Mathematics of Computation 25, 1971). The relative error is e^(-pi^2 / h^2) = 7e-18.
   constexpr double kStep = 0.5;
   double sum = 0.5 / (x * x);
   for (int n = 1; n <= 13; ++n) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Highway for loops that are compiled for several instruction sets and chosen as the program runs. A file of such loops
-// defines HWY_TARGET_INCLUDE as its own path and includes this header, which Highway then reads once for each set:
-// no include guard. Its functions stand in HWY_NAMESPACE, and are called by PALPATE_DISPATCH(function)(arguments).
+// Highway for loops that are compiled for several instruction sets and selected at run time. A file of such loops
+// defines HWY_TARGET_INCLUDE as its own path and includes this header. Highway includes the file once per set, so this
+// header has no include guard. The loops are in HWY_NAMESPACE, and PALPATE_DISPATCH(function)(arguments) calls them.
 //
-// Highway is used by its headers alone. Its library would choose, too, but measures clocks when it is loaded, which
-// takes as long as a fifth of a short run. Its assertions, which debug builds have, are in the library, too.
+// Only Highway's headers are used. Its library also selects a set, but measures clocks when it is loaded, which takes a
+// fifth of a short run. The assertions of debug builds need the library, so they are switched off.
 //
-// The sets are AVX2 and AVX-512 (which Highway calls AVX3) on x86, and what every processor of the architecture has: on
-// 64-bit ARM that is NEON. Vectors of SVE have no size that a compiler knows, so that arrays of them do not compile.
+// The sets are AVX2 and AVX-512 (AVX3 in Highway) on x86, and the baseline of the architecture, on 64-bit ARM NEON. SVE
+// is not used, because the size of its vectors is unknown to the compiler, so arrays of them do not compile.
 #ifndef PALPATE_DISPATCH
 #define HWY_IS_DEBUG_BUILD 0
 #ifdef __aarch64__
@@ -17,7 +17,7 @@
 #endif
 #include <hwy/detect_targets.h>
 #ifndef HWY_SSE2
-#define HWY_SSE2 0LL  // Highway has it from 1.1 on
+#define HWY_SSE2 0LL  // Highway defines it from version 1.1 on
 #endif
 #define PALPATE_DISPATCH(function)                                                          \
   (*::palpate::math::version_of<decltype(&HWY_STATIC_DISPATCH(function))>(                  \
@@ -27,10 +27,10 @@
 #include "math/instructions.hpp"
 
 #include <hwy/foreach_target.h>
-// After the above, as Highway asks for.
+// Highway requires this order.
 #include <hwy/highway.h>
 
-// Real numbers of each set, for the functions in its HWY_NAMESPACE.
+// Vectors of doubles in each set's HWY_NAMESPACE.
 HWY_BEFORE_NAMESPACE();
 namespace palpate::math::HWY_NAMESPACE {
 
@@ -39,7 +39,7 @@ inline constexpr hn::ScalableTag<double> kReals;
 using Vector = hn::Vec<hn::ScalableTag<double>>;
 inline constexpr int kLanes = hn::MaxLanes(kReals);
 
-/// `from` and `to` are aligned to a vector.
+// Load, store and broadcast. `from` and `to` are aligned to a vector.
 HWY_INLINE Vector at(const double* from) { return hn::Load(kReals, from); }
 HWY_INLINE void put(const Vector& values, double* to) { hn::Store(values, kReals, to); }
 HWY_INLINE Vector all(double value) { return hn::Set(kReals, value); }

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-/// The sets are those that Highway compiles for by the same names (math/highway.hpp).
+/// Returns the widest set of the processor. The conditions are those of Highway for its targets (math/highway.hpp).
 Instructions widest() {
 #if defined(__x86_64__)
   const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
@@ -28,16 +28,16 @@ Instructions widest() {
 #endif
 }
 
-std::atomic<Instructions>& chosen() {
+std::atomic<Instructions>& selected() {
   static std::atomic<Instructions> out{widest()};
   return out;
 }
 
 }  // namespace
 
-Instructions instructions_in_use() { return chosen().load(std::memory_order_relaxed); }
+Instructions instructions_in_use() { return selected().load(std::memory_order_relaxed); }
 
-void use_instructions(Instructions set) { chosen().store(set, std::memory_order_relaxed); }
+void use_instructions(Instructions set) { selected().store(set, std::memory_order_relaxed); }
 
 namespace math {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names of instruction sets, the choice of one by the environment, and the version of a loop that belongs to it.
+// Names of instruction sets, their selection by the environment, and the version of a loop for the selected set.
 #pragma once
 
 #include <palpate/instructions.hpp>
@@ -9,18 +9,19 @@
 
 namespace palpate::math {
 
-/// AVX-512, AVX2, NEON or baseline.
+/// Returns AVX-512, AVX2, NEON or baseline.
 const char* name_of(Instructions set);
 
-/// The sets that this processor has and loops are compiled for, the widest first.
+/// Returns the sets of this processor for which loops are compiled, the widest first.
 std::vector<Instructions> instruction_sets();
 
-/// Follows the environment variable PALPATE_INSTRUCTIONS: the set that it names; the widest if it is unset or empty.
-/// Loops give the same bytes with AVX2, AVX-512 and NEON, and other last digits with `baseline`, which has no fused
-/// multiplication and addition. Throws Error if the processor has no set of that name.
+/// Selects the set that the environment variable PALPATE_INSTRUCTIONS names, or the widest set if the variable is unset
+/// or empty. Loops give the same bytes with AVX2, AVX-512 and NEON. `baseline` gives other last digits, because it has
+/// no fused multiplication and addition. Throws Error if the processor has no set with this name.
 Instructions choose_instructions();
 
-/// Of a function that is compiled for several sets, in their order and null for those that are not, the one to call.
+/// Returns the version of a function for the set in use. `versions` are in the order of Instructions, null if not
+/// compiled.
 template <class Function>
 Function version_of(const std::array<Function, 4>& versions) {
   const Function own = versions[static_cast<std::size_t>(instructions_in_use())];

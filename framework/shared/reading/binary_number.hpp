@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers in binary files.
+// Types of numbers in binary files.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// A type of number as it lies in a file: how many bytes it has, and their value, the least significant byte first.
+/// Type of a number in a file: its size in bytes, and a function that converts little-endian bytes to a value.
 struct BinaryNumber {
   std::size_t size;
   double (*read)(const char* bytes);

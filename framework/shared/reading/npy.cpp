@@ -6,7 +6,8 @@
 namespace palpate {
 namespace {
 
-/// How many bytes of `text` are a value of a dictionary: up to a comma or a bracket that does not belong to it.
+/// Returns the length in bytes of the dictionary value at the beginning of `text`. The value ends at a comma or a
+/// closing bracket outside of its own brackets and quotes.
 std::size_t value_length(std::string_view text) {
   int depth = 0;
   bool quoted = false;
@@ -21,8 +22,8 @@ std::size_t value_length(std::string_view text) {
   return text.size();
 }
 
-/// The numbers of "(3,4)" or "(3,)"; none where it is anything else.
-std::vector<std::uint64_t> sizes_in(std::string_view shape) {
+/// Returns the numbers of a tuple such as "(3,4)" or "(3,)"; none for any other text.
+std::vector<std::uint64_t> parse_sizes(std::string_view shape) {
   constexpr std::size_t kMostDigits = 9;
   std::vector<std::uint64_t> out;
   if (shape.size() < 2 || shape.front() != '(' || shape.back() != ')') return out;
@@ -54,7 +55,7 @@ std::optional<NpyPlace> npy_header_place(std::string_view bytes) {
 }
 
 NpyHeader read_npy_header(std::string_view text) {
-  constexpr std::size_t kMost = 4096;  // of three keys
+  constexpr std::size_t kMost = 4096;  // bytes, for a header of three keys
   std::string plain;
   for (const char c : text.substr(0, kMost)) {
     if (c != ' ' && c != '\t' && c != '\r' && c != '\n') plain += c == '"' ? '\'' : c;
@@ -75,7 +76,7 @@ NpyHeader read_npy_header(std::string_view text) {
     const bool is_name = value.size() >= 2 && value.front() == '\'' && value.find('\'', 1) == value.size() - 1;
     if (key == "descr") out.type = is_name ? value.substr(1, value.size() - 2) : value;
   }
-  out.sizes = sizes_in(out.shape);
+  out.sizes = parse_sizes(out.shape);
   return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The header of an array in NumPy's format NPY, versions 1 to 3.
+// Reads the header of an array in NumPy's format NPY, versions 1 to 3.
 // Source: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html
 #pragma once
 
@@ -12,28 +12,29 @@
 
 namespace palpate {
 
-/// Bytes before the text of the header: in version 1, and the most that any version has.
+/// Bytes before the text of the header, in version 1 and in later versions.
 constexpr std::size_t kNpyStart = 10;
 constexpr std::size_t kLongNpyStart = 12;
 
-/// Where the text of a header lies, in bytes from the beginning of the file; the values follow it.
+/// Position of the header's text, in bytes from the beginning of the file. The values follow the text.
 struct NpyPlace {
   std::size_t begin = 0;
   std::size_t length = 0;
 };
 
-/// Returns the place that the first bytes of a file tell; none where they begin no such file, or are too few.
+/// Returns the position of the header's text from the first bytes of a file; nullopt if they are too few or not those
+/// of an NPY file.
 std::optional<NpyPlace> npy_header_place(std::string_view bytes);
 
-/// What a header says of the values. What it does not say, or not in the words of the format, is empty.
+/// Description of the values in a header. Missing or malformed parts are empty.
 struct NpyHeader {
-  std::string type;                  ///< byte order, kind and bytes, such as "<f8"; of a record what is written there
-  std::string order;                 ///< "False" for C's, row after row, "True" for Fortran's
-  std::string shape;                 ///< as it is written, without blanks: "(3,4)"
-  std::vector<std::uint64_t> sizes;  ///< the same as numbers; empty where one has more than nine digits
+  std::string type;   ///< byte order, kind and size, such as "<f8"; for structured types the text of the header
+  std::string order;  ///< "False" for C order (by rows), "True" for Fortran order
+  std::string shape;  ///< text of the header without blanks: "(3,4)"
+  std::vector<std::uint64_t> sizes;  ///< the numbers of the shape; empty if one has more than nine digits
 };
 
-/// Reads the text of a header, a dictionary of Python. Keys may be in any order, and in quotes of either kind.
+/// Parses the text of a header, a Python dictionary. Keys may have any order and either kind of quotes.
 NpyHeader read_npy_header(std::string_view text);
 
 }  // namespace palpate

@@ -14,26 +14,26 @@
 namespace palpate {
 namespace {
 
-/// Bytes of a scalar in a binary file; 0 for an unknown name.
+/// Returns the size of a type in a binary file, bytes; 0 for an unknown name.
 std::size_t size_of(const std::string& type) {
   const BinaryNumber* const scalar = ply_scalar(type);
   return scalar != nullptr ? scalar->size : 0;
 }
 
 struct Property {
-  std::size_t count_size = 0;  ///< of a list, of the number that says how many follow; else 0
-  std::size_t size = 0;
+  std::size_t count_size = 0;  ///< bytes of a list's number of items; 0 if not a list
+  std::size_t size = 0;        ///< bytes of an item
 };
 
 struct Element {
   std::string name;
   std::uint64_t rows = 0;
   std::vector<Property> properties;
-  std::string header;     ///< its lines
-  std::string_view body;  ///< its rows
+  std::string header;     ///< header lines of the element
+  std::string_view body;  ///< rows of the element
 };
 
-/// Splits a file; false where it is not sound.
+/// Splits a file into its elements. split() returns false for a malformed file.
 class Splitter {
  public:
   explicit Splitter(const std::string& bytes) : rest_(bytes) {}
@@ -42,12 +42,12 @@ class Splitter {
     return read_header() && std::all_of(elements.begin(), elements.end(), [&](Element& one) { return read_rows(one); });
   }
 
-  std::string begin;  ///< of the header, before the first element
+  std::string begin;  ///< header lines before the first element
   std::vector<Element> elements;
 
  private:
-  /// The next line without its end; none where no end comes.
-  std::optional<std::string_view> line() {
+  /// Removes and returns the next line without its line end; nullopt without a line end.
+  std::optional<std::string_view> take_line() {
     const std::size_t end = rest_.find('\n');
     if (end == std::string_view::npos) return std::nullopt;
     std::string_view out = rest_.substr(0, end);
@@ -58,14 +58,14 @@ class Splitter {
 
   bool read_header() {
     for (bool first = true;; first = false) {
-      const auto text = line();
+      const auto text = take_line();
       if (!text) return false;
       std::istringstream in{std::string(*text)};
       std::vector<std::string> words;
       for (std::string word; in >> word;) words.push_back(word);
       if (words.empty() || (first && words != std::vector<std::string>{"ply"})) return false;
       if (words.front() == "end_header") return words.size() == 1;
-      if (!read_line(words)) return false;
+      if (!read_header_line(words)) return false;
       std::string& header = elements.empty() ? begin : elements.back().header;
       if (words.front() == "comment" || words.front() == "obj_info") continue;
       for (const std::string& word : words) header += (&word == &words.front() ? "" : " ") + word;
@@ -73,7 +73,7 @@ class Splitter {
     }
   }
 
-  bool read_line(const std::vector<std::string>& words) {
+  bool read_header_line(const std::vector<std::string>& words) {
     const std::string& first = words.front();
     if (first == "format" && words.size() == 3) return format_ = words[1], true;
     if (first == "element" && words.size() == 3) {
@@ -98,23 +98,23 @@ class Splitter {
     return true;
   }
 
-  /// The last row may lack its end.
+  /// The last row may lack its line end.
   bool read_ascii_row() {
     if (rest_.empty()) return false;
-    if (!line()) rest_ = {};
+    if (!take_line()) rest_ = {};
     return true;
   }
 
   bool read_binary_row(const Element& element) {
     for (const Property& one : element.properties) {
-      const std::uint64_t count = one.count_size == 0 ? 1 : count_in(one.count_size);
+      const std::uint64_t count = one.count_size == 0 ? 1 : read_count(one.count_size);
       if (rest_.size() < one.count_size || (rest_.size() - one.count_size) / one.size < count) return false;
       rest_.remove_prefix(one.count_size + count * one.size);
     }
     return true;
   }
 
-  std::uint64_t count_in(std::size_t size) const {
+  std::uint64_t read_count(std::size_t size) const {
     std::uint64_t out = 0;
     for (std::size_t i = 0; i < std::min(size, rest_.size()); ++i) {
       const std::size_t at = format_ == "binary_big_endian" ? i : size - 1 - i;

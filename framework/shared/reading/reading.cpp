@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 Reading failed(int reason) {
-  // What this user may not look at is not there for him; see is_there().
+  // Only these errors mean that there is no such file. Missing permissions, for example, are a failure.
   const bool absent = reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG;
   return {absent ? Reading::Kind::absent : Reading::Kind::failed, {}, {reason, std::generic_category()}};
 }
@@ -29,7 +29,7 @@ bool is_link(const fs::path& path) {
   return ::lstat(path.c_str(), &what) == 0 && S_ISLNK(what.st_mode);
 }
 
-/// Whether a link leads to a file of a job, jobs/<id>/NAME: what a sweep names lies within its folder.
+/// Returns whether the path of a job's file, jobs/<id>/NAME, contains a link. Files of a sweep are within its folder.
 bool job_is_linked(const fs::path& file) {
   constexpr std::size_t kIdLength = 12;
   const fs::path job = file.parent_path();
@@ -39,12 +39,12 @@ bool job_is_linked(const fs::path& file) {
   return jobs.filename() == "jobs" && (is_link(job) || is_link(jobs));
 }
 
-/// Reads up to `most_bytes`. The size is a hint: files grow, and those of /proc have none.
+/// Reads up to `most_bytes`. `size` is only a hint, because files grow, and files of /proc have size 0.
 Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_bytes) {
   Reading out{Reading::Kind::whole, {}};
   if (size > most_bytes) return {Reading::Kind::too_large, {}};
   std::string& text = out.text;
-  text.resize(size + 1);  // one byte more than a file has shows its end
+  text.resize(size + 1);  // one byte more, so that one read() finds the end of the file
   for (std::size_t read = 0;;) {
     const ssize_t more = ::read(number, text.data() + read, text.size() - read);
     if (more < 0 && errno == EINTR) continue;
@@ -56,7 +56,7 @@ Reading read_descriptor(int number, std::uintmax_t size, std::uintmax_t most_byt
   }
 }
 
-/// Reads the bytes from `begin` to `end`, or as many of them as are there.
+/// Reads the bytes from `begin` to `end`, or to the end of the file.
 Reading read_part(int number, std::uintmax_t begin, std::uintmax_t end) {
   if (end > kMostLogBytes) return {Reading::Kind::too_large, {}};
   Reading out{Reading::Kind::whole, {}};
@@ -73,12 +73,12 @@ Reading read_part(int number, std::uintmax_t begin, std::uintmax_t end) {
   return out;
 }
 
-/// Opens a regular file and hands `use` its descriptor and its size.
+/// Opens a regular file and returns use(descriptor, size).
 template <class Use>
 Reading with_file(const fs::path& file, Origin origin, const Use& use) {
   const bool inner = origin == Origin::record;
   struct stat seen {};
-  // Looked at before it is opened: to open a device may already do something.
+  // The type is checked before open(), because opening a device may have an effect.
   if ((inner ? ::lstat(file.c_str(), &seen) : ::stat(file.c_str(), &seen)) != 0) return failed(errno);
   if (S_ISLNK(seen.st_mode) || (inner && job_is_linked(file))) return {Reading::Kind::link, {}};
   if (!S_ISREG(seen.st_mode)) return {Reading::Kind::not_regular, {}};
@@ -92,7 +92,7 @@ Reading with_file(const fs::path& file, Origin origin, const Use& use) {
   return out;
 }
 
-/// The code point that `text` begins with, and how many bytes it has (RFC 3629); no bytes where it is not UTF-8.
+/// Returns the first code point of `text` and its length in bytes (RFC 3629); length 0 if it is not UTF-8.
 std::pair<std::uint32_t, std::size_t> first_code_point(std::string_view text) {
   const char* end = text.data();
   const std::uint32_t point = boost::locale::utf::utf_traits<char>::decode(end, text.data() + text.size());
@@ -100,11 +100,11 @@ std::pair<std::uint32_t, std::size_t> first_code_point(std::string_view text) {
   return {point, static_cast<std::size_t>(end - text.data())};
 }
 
-/// C0, DEL and C1.
+/// Returns whether a code point is a control character: C0, DEL or C1.
 bool is_control(std::uint32_t point) { return point < 0x20 || (point >= 0x7f && point < 0xa0); }
 
-/// Unicode's Bidi_Control, and the separators that end a line.
-bool turns_text(std::uint32_t point) {
+/// Returns whether a code point has the Unicode property Bidi_Control, or is a line or paragraph separator.
+bool changes_layout(std::uint32_t point) {
   return point == 0x61c || point == 0x200e || point == 0x200f || (point >= 0x2028 && point <= 0x202e) ||
          (point >= 0x2066 && point <= 0x2069);
 }
@@ -174,7 +174,7 @@ std::string one_line(std::string_view text, std::size_t most) {
     if (out.size() >= most) return out + "...";
     const auto [point, length] = first_code_point(text);
     const std::size_t bytes = std::max<std::size_t>(length, 1);
-    out += length == 0 || is_control(point) || turns_text(point) ? " " : text.substr(0, bytes);
+    out += length == 0 || is_control(point) || changes_layout(point) ? " " : text.substr(0, bytes);
     text.remove_prefix(bytes);
   }
   return out;
@@ -192,7 +192,7 @@ std::string printable(std::string_view text) {
       const unsigned number = length == 0 ? static_cast<unsigned char>(text[at]) : point;
       std::snprintf(escape.data(), escape.size(), "\\x%02x", number);
       out += escape.data();
-    } else if (turns_text(point)) {
+    } else if (changes_layout(point)) {
       std::snprintf(escape.data(), escape.size(), "\\u%04x", point);
       out += escape.data();
     } else {

@@ -7,30 +7,30 @@ namespace palpate {
 
 std::vector<int> independent_rows(const Eigen::MatrixXd& covariance) {
   const int n = static_cast<int>(covariance.rows());
-  Eigen::VectorXd left = covariance.diagonal();  // variance that the chosen rows do not explain
-  const Eigen::VectorXd own = left;
+  Eigen::VectorXd residual = covariance.diagonal();  // residual variance given the chosen rows
+  const Eigen::VectorXd own = residual;
   std::vector<int> order;
   Eigen::MatrixXd columns(n, n);
   while (static_cast<int>(order.size()) < n) {
     int best = -1;
     for (int i = 0; i < n; ++i) {
-      const bool independent = is_regular(left(i), n - 1, own(i)) && left(i) > 0.0;
-      if (independent && (best < 0 || left(i) > left(best))) best = i;
+      const bool independent = is_regular(residual(i), n - 1, own(i)) && residual(i) > 0.0;
+      if (independent && (best < 0 || residual(i) > residual(best))) best = i;
     }
     if (best < 0) break;
     const auto k = static_cast<Eigen::Index>(order.size());
     auto column = columns.col(k);
     column = covariance.col(best);
     if (k > 0) column.noalias() -= columns.leftCols(k) * columns.row(best).head(k).transpose();
-    column /= std::sqrt(left(best));
-    left -= column.cwiseAbs2();
-    left(best) = 0.0;  // it is not chosen again
+    column /= std::sqrt(residual(best));
+    residual -= column.cwiseAbs2();
+    residual(best) = 0.0;  // excludes the row from now on
     order.push_back(best);
   }
   return order;
 }
 
-/// Whether all rows of the matrix, which has its jitter, enter.
+/// Factorises a matrix with its jitter. Returns whether all pivots are regular.
 bool RegularFactor::try_rows(const Eigen::MatrixXd& matrix) {
   factor_.compute(matrix);
   if (factor_.info() != Eigen::Success) return false;
@@ -55,7 +55,7 @@ void RegularFactor::factorise(const Eigen::MatrixXd& matrix) {
   const auto pivot = [&] {
     const Eigen::MatrixXd all = with_jitter().selfadjointView<Eigen::Lower>();
     rows_ = independent_rows(all);
-    // The guards of both factorisations differ by rounding: what the second refuses is left out, from the end.
+    // The pivots of both factorisations differ by rounding. Rows are removed from the end until the second succeeds.
     while (!rows_.empty() && !try_rows(all(rows_, rows_))) rows_.pop_back();
     if (rows_.empty()) factor_.compute(Eigen::MatrixXd(0, 0));
     report_.redundant_taps = static_cast<int>(size_) - static_cast<int>(rows_.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Cholesky factors of covariances that double precision may not tell from singular ones. The rules of rounding stand
-// here alone: which pivot is refused, how much jitter is tried, and which rows are set aside where no jitter helps.
-// Processes, the sum over outliers, the skin, the expected reductions, fits and the classifier all follow them.
+// Cholesky factors of covariances that may be singular in double precision. All rules for rounding are here: rejection
+// of pivots, amounts of jitter, and rows that are left out if no jitter helps. GPs, the outlier model, the belief from
+// any side, fits and the GP classifier use them.
 #pragma once
 
 #include <palpate/math.hpp>
@@ -18,41 +18,42 @@ namespace palpate {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// A pivot d^2 = diagonal - l.l carries a rounding error of up to about (n + 1) eps diagonal (Higham, Accuracy and
-/// Stability of Numerical Algorithms, 2002, section 10.1): one that is not above it has no correct digit.
+/// Factor of the bound of a pivot's rounding error. The pivot d^2 = diagonal - l.l has an error of up to about (n + 1)
+/// eps diagonal (Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 10.1). A smaller pivot has no
+/// correct digit.
 constexpr double kPivotGuard = 1.0;
 
-/// Jitter, in units of n eps and of the largest diagonal entry: the first amount is above what rounding can take away,
-/// the last is below what anybody would see, 100 n eps = 4e-13 for 17 rows. A matrix that is not positive definite even
-/// then is none that rounding made so.
+/// First and last amount of jitter, in units of n eps times the largest diagonal entry. The first is larger than
+/// rounding errors. The last is negligible in results, 100 n eps = 4e-13 for 17 rows. A matrix that is not positive
+/// definite with it is not so due to rounding.
 constexpr double kFirstJitter = 10.0;
 constexpr double kLastJitter = 100.0;
 
-/// The least noise, in the same units, with which a quadratic form may be taken from the entries of an explicit
-/// inverse. These reach 1 / noise, and the form is the small difference of their products: it is off by up to n eps /
-/// noise of the largest diagonal entry, here by a hundred-thousandth.
+/// Smallest noise variance, in the same units, for quadratic forms with an explicit inverse. The entries of the inverse
+/// reach 1 / noise, and the form is a small difference of their products. Its relative error is up to n eps / noise of
+/// the largest diagonal entry, here 1e-5.
 constexpr double kInverseNoise = 1e5;
 
 /// Returns whether `square`, the square of pivot `row` (from 0) of a matrix with this diagonal entry, is above
-/// rounding. False for what is not a number.
+/// rounding. False for NaN.
 inline bool is_regular(double square, Eigen::Index row, double diagonal) {
   return square > kPivotGuard * static_cast<double>(row + 1) * kEpsilon * diagonal;
 }
 
-/// Returns the rows of `covariance` (symmetric, n x n) that are independent in double precision, in the order of
-/// a Cholesky factorisation with diagonal pivoting: each the one that is least explained by those before. Rows whose
-/// pivot is not above rounding, or not a number, are left out.
+/// Returns the rows of `covariance` (symmetric, n x n) that are independent in double precision. Their order is that of
+/// a Cholesky factorisation with diagonal pivoting: the row with the largest residual variance is next. Rows whose
+/// pivot is not above rounding, or NaN, are left out.
 std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 
-/// What rounding made necessary in the factorisations of one owner: it goes into the record. What is factorised anew at
-/// every tap is counted anew at every tap.
+/// Numerical diagnostics of the factorisations of one model, for the record. If a model is factorised again at every
+/// tap, every factorisation counts.
 struct FactorReport {
-  double jitter = 0.0;     ///< variance on the diagonal beside the noise, in the unit of the matrix; as it is now
-  int raised = 0;          ///< how often that was raised
-  int pivoted = 0;         ///< how often no jitter helped, and independent rows were looked for
-  int redundant_taps = 0;  ///< rows that do not enter now
+  double jitter = 0.0;     ///< present variance on the diagonal beside the noise, in the unit of the matrix
+  int raised = 0;          ///< number of increases of the jitter
+  int pivoted = 0;         ///< number of factorisations of independent rows, because no jitter helped
+  int redundant_taps = 0;  ///< rows that are left out at present
 
-  /// Adds the counts of another owner of the same rows, and takes the larger jitter and the more rows set aside.
+  /// Adds the counts of another model of the same rows. Jitter and redundant taps become the maximum of both.
   void add(const FactorReport& other) {
     jitter = std::max(jitter, other.jitter);
     raised += other.raised;
@@ -61,9 +62,9 @@ struct FactorReport {
   }
 };
 
-/// Factorises n rows by attempt(), which uses the report's jitter and returns whether all rows entered: with as little
-/// jitter as it takes, from what the report has on, or at last by `pivot`, which takes independent rows. `scale` is the
-/// largest diagonal entry.
+/// Factorises n rows with the least sufficient jitter. attempt() factorises with the report's jitter and returns
+/// whether all rows entered. The jitter starts at that of the report. If the last amount fails, calls pivot(), which
+/// factorises the independent rows. `scale` is the largest diagonal entry.
 template <class Attempt, class Pivot>
 void regularise(FactorReport& report, Eigen::Index n, double scale, const Attempt& attempt, const Pivot& pivot) {
   const double unit = static_cast<double>(n) * kEpsilon * scale;
@@ -78,25 +79,25 @@ void regularise(FactorReport& report, Eigen::Index n, double scale, const Attemp
   }
 }
 
-/// The factor of a whole matrix at once: L L^T = K + jitter, over all rows or the independent ones.
+/// Cholesky factor L of a matrix, L L^T = K + jitter, over all rows or the independent rows.
 class RegularFactor {
  public:
-  /// Factorises a symmetric matrix, of which the lower half is read, noise included. Jitter begins at 0 each time; the
-  /// other counts of the report go on. Never throws: of a matrix without any finite row all rows are set aside.
+  /// Factorises a symmetric matrix, noise included, from its lower half. Jitter starts at 0; the counts of the report
+  /// continue. Never throws. If no row is finite, all rows are left out.
   void factorise(const Eigen::MatrixXd& matrix);
 
   Eigen::Index size() const { return size_; }
   const FactorReport& report() const { return report_; }
 
-  /// The sum of log L_ii over the rows that entered: half of the log determinant.
+  /// Returns the sum of log L_ii over the rows of the factor, half of the log determinant.
   double half_log_determinant() const { return factor_.matrixLLT().diagonal().unaryExpr(&math::log).sum(); }
 
-  /// Replaces b (n rows) by L^-1 b; rows that were set aside become 0.
+  /// Replaces b (n rows) by L^-1 b. Rows that were left out become 0.
   template <class Derived>
   void solve_lower(Eigen::MatrixBase<Derived>& b) const {
     solve_by(b, [&](auto& one) { factor_.matrixL().solveInPlace(one); });
   }
-  /// Replaces b (n rows) by (K + jitter)^-1 b; rows that were set aside become 0.
+  /// Replaces b (n rows) by (K + jitter)^-1 b. Rows that were left out become 0.
   template <class Derived>
   void solve(Eigen::MatrixBase<Derived>& b) const {
     solve_by(b, [&](auto& one) {
@@ -104,7 +105,7 @@ class RegularFactor {
       factor_.matrixU().solveInPlace(one);
     });
   }
-  /// Returns (K + jitter)^-1, n x n; rows and columns that were set aside are 0.
+  /// Returns (K + jitter)^-1, n x n. Rows and columns that were left out are 0.
   Eigen::MatrixXd inverse() const;
 
  private:
@@ -119,7 +120,7 @@ class RegularFactor {
   bool try_rows(const Eigen::MatrixXd& matrix);
 
   Eigen::Index size_ = 0;
-  std::vector<int> rows_;  ///< those that entered, in the order of the factor; read only where some did not
+  std::vector<int> rows_;  ///< rows of the factor, in its order; used only if some were left out
   Eigen::LLT<Eigen::MatrixXd> factor_;
   FactorReport report_;
 };
