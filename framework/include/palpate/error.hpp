@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one exception of the project: bad input from outside, told in one line with place, reason and remedy.
+// The only exception of the project: bad input from outside, reported in one line with place, reason and remedy.
 #pragma once
 
 #include <exception>
@@ -8,18 +8,18 @@
 
 namespace palpate {
 
-/// Thrown for input that the user can mend: a config, a file, a plugin, a robot. Numerical trouble is never an
-/// exception but part of a result. Programs print `what()` as it stands: "where: reason, hint", on one line.
+/// Thrown for input that the user can correct: a config, a file, a plugin, a robot. Numerical problems are never
+/// exceptions, but part of a result. Programs print `what()`, "where: reason, hint" on one line.
 ///
-/// Throwing it from a plugin's constructor is the right way to refuse options; leave `where` empty there or name the
-/// option, the plugin host knows the place in the config and fills it in.
+/// A plugin's constructor throws Error to reject options. There, `where` is empty or the name of the option; the plugin
+/// host adds the position in the config.
 class Error : public std::exception {
  public:
-  /// What the failure means to the caller of the program; it decides the exit status.
+  /// Class of the failure, which decides the exit status of the program.
   enum class Kind {
     usage,  ///< wrong command line, config or plugin: exit 2
     run,    ///< the run itself failed: exit 1
-    busy,   ///< not now: another process holds the run or its arm, or a program was changed; nothing was begun: exit 75
+    busy,   ///< another process holds the run or its arm, or a program was changed; nothing has started: exit 75
   };
 
   Error(std::string where, std::string reason, std::string hint = {}, Kind kind = Kind::usage)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Elementary functions that give the same bytes on every machine. The functions of a C library do not: their last
-// digits differ between libraries, and between processors. One digit is enough for another next tap.
+// Elementary functions that give the same bytes on every machine. The last digits of a C library's functions differ
+// between libraries and processors, and one digit can change the next tap.
 //
-// Use these for everything that a tap may depend on: scores, covariances, draws. Square roots, std::fma, and what
-// rounds to whole numbers are exact by IEEE 754 and need no replacement.
+// Use these functions for all numbers that a tap may depend on: scores, covariances, random draws. Square roots,
+// std::fma and rounding to whole numbers are exact by IEEE 754 and need no replacement.
 #pragma once
 
 #include <cmath>
@@ -11,11 +11,11 @@
 
 namespace palpate::math {
 
-// Errors are the largest that were measured, in units of the last place (ulp). NaN gives NaN.
+// The errors below are the largest measured errors, in units of the last place (ulp). NaN gives NaN.
 
 /// e^x, 0.9 ulp. 0 below -745.2, infinity above 709.8.
 double exp(double x);
-/// ln x, 0.8 ulp. -infinity of 0, NaN below.
+/// ln x, 0.8 ulp. -infinity for 0, NaN for x < 0.
 double log(double x);
 /// ln (1 + x), 1.2 ulp.
 double log1p(double x);
@@ -24,9 +24,9 @@ double pow(double x, double y);
 /// x in radians, 0.8 ulp up to 10^6. The error grows in proportion to x beyond; NaN above 10^9.
 double sin(double x);
 double cos(double x);
-/// The angle of (x, y) from the x axis in [-pi, pi], with the sign of y, 1.8 ulp; 0 of (0, 0). x has to be finite.
+/// Angle of (x, y) from the x axis in [-pi, pi], with the sign of y, 1.8 ulp. 0 for (0, 0). x has to be finite.
 double atan2(double y, double x);
-/// In [-pi / 2, pi / 2] and [0, pi], 2.6 ulp; NaN outside of [-1, 1].
+/// Results in [-pi / 2, pi / 2] and [0, pi], 2.6 ulp. NaN for x outside of [-1, 1].
 double asin(double x);
 double acos(double x);
 /// 2 / sqrt(pi) times the integral of e^(-t^2) from x to infinity, 8 ulp; 0 above 27.3.
@@ -37,9 +37,9 @@ inline double log2(double x) { return log(x) * 1.44269504088896340736; }
 /// sqrt(x^2 + y^2), 1 ulp, for lengths whose squares are doubles.
 inline double hypot(double x, double y) { return std::sqrt(x * x + y * y); }
 
-/// out_i = e^(x_i) for `count` numbers by the widest vectors that the processor has and PALPATE_INSTRUCTIONS allows.
-/// 1.2 ulp up to 709, 40 ulp beyond. Never below e^-708 = 3.3e-308; infinity above 709.8. `out` may be `x`. The bytes
-/// are the same on every processor with a fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
+/// Computes out_i = e^(x_i) for `count` numbers, with the widest vectors of the processor that PALPATE_INSTRUCTIONS
+/// allows. 1.2 ulp up to 709, 40 ulp above. Never below e^-708 = 3.3e-308; infinity above 709.8. `out` may be `x`. The
+/// bytes are the same on every processor with fused multiplication and addition (x86 from 2013 on, all 64-bit ARM).
 void exp(const double* x, std::ptrdiff_t count, double* out);
 
 }  // namespace palpate::math

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: MIT
-// The motions that a backend can tap with, without the backend: what each takes and how well it tells a height. A run
-// that is replayed or explained asks the same and gets the same, and no robot is there.
+// Motions of a backend's taps, with their durations and accuracies, without the backend itself. So a replayed or
+// explained run has the same motions without a robot.
 #pragma once
 
 #include <palpate/backend.hpp>
 
 namespace palpate {
 
-/// A backend whose taps may be made in several ways says so by a function of its class,
+/// A backend with a choice of motions has a function in its class,
 ///
 ///     static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene);
 ///
-/// null where the options leave but one. Then the strategy chooses for each tap, in TapRequest::motion, and weighs what
-/// it would tell against the time that it would take. Law: pure functions of their arguments.
+/// which returns null if the options allow only one motion. Otherwise the strategy chooses a motion for each tap, in
+/// TapRequest::motion, by information and time. Law: all are pure functions of their arguments.
 class Motions {
  public:
   virtual ~Motions() = default;
 
-  /// At least 2; they are numbered from 0.
+  /// Returns the number of motions, at least 2. Their indices start at 0.
   virtual int count() const = 0;
 
-  /// Robot time, seconds, of the tap as requested, by its motion, if it meets something at `surface`, metres in the
-  /// frame of the scene. Asked for every candidate before every tap: it should take no more than microseconds.
+  /// Returns the robot time, seconds, of a requested tap whose contact is at the height `surface`, metres in the frame
+  /// of the scene. Called for every candidate before every tap, so it should take microseconds.
   virtual double seconds(const TapRequest& request, double surface) const = 0;
 
-  /// Standard deviation, metres, of the height of one tap by a motion. A first idea: taps on the desk correct it.
+  /// Returns the prior standard deviation, metres, of a height by a motion. Taps on the desk correct it.
   virtual double deviation(int motion) const = 0;
 };
 

@@ -25,64 +25,64 @@
 
 namespace palpate {
 
-/// Rises when anything that crosses the plugin boundary changes its meaning or its layout.
+/// Version of the plugin interface, increased with every change of its meaning or its memory layout.
 constexpr std::uint32_t kPluginAbi = 22;
 
 struct Context;
 
-/// Makes plugin objects from their resolved options; implemented by the plugin host.
+/// Creates plugin objects from their resolved options. The plugin host implements it.
 class PluginFactory {
  public:
   virtual ~PluginFactory() = default;
-  /// An object of the interface of `choice.kind`, as a pointer to that interface.
+  /// Returns an object of the interface of `choice.kind`, as a pointer to this interface.
   virtual std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const = 0;
-  /// The motions of a backend, null of one that has but one.
+  /// Returns the motions of a backend; null for a backend with one motion.
   virtual std::shared_ptr<const Motions> motions(const PluginChoice& /*choice*/, const Scene& /*scene*/) const {
     return nullptr;
   }
 };
 
-/// What a plugin is born with. Outlives the plugin.
+/// Data for the construction of a plugin. Outlives the plugin.
 struct Context {
   const PluginFactory& factory;
   const Scene& scene;                    ///< area, desk, and for simulators the objects
-  std::uint64_t seed;                    ///< of the run; draw from it only through random()
-  const std::atomic<bool>* interrupted;  ///< set when the user wants to stop: long motions watch it; may be null
-  /// The folder of the run's record, for files that a plugin leaves beside it; empty where none is kept. It exists from
-  /// the first tap on, not before.
+  std::uint64_t seed;                    ///< seed of the run; use it only through random()
+  const std::atomic<bool>* interrupted;  ///< set if the user interrupts: long motions check it; may be null
+  /// Folder of the run's record, for files of a plugin; empty without a record. The folder exists from the first tap
+  /// on.
   std::string directory = {};
-  Instructions instructions = instructions_in_use();  ///< of the loops of palpate/math.hpp
+  Instructions instructions = instructions_in_use();  ///< set for the loops of palpate/math.hpp
 
-  /// The stream of this run for one purpose, for example "acquisition/random" at tap `number`.
+  /// Returns the run's random stream for one purpose, for example "acquisition/random" at tap `number`.
   Random random(const std::string& purpose, std::uint64_t number = 0) const { return {seed, purpose, number}; }
 
-  /// The plugin that an option named (Fields::plugin). The pointer also keeps its library loaded, which is why it is
-  /// shared: the deleter carries the library.
+  /// Creates the plugin of an option (Fields::plugin). The shared pointer also keeps the plugin's library loaded, by
+  /// its deleter.
   template <class Interface>
   std::shared_ptr<Interface> create(const PluginChoice& choice) const {
     return std::static_pointer_cast<Interface>(factory.create(choice, *this));
   }
 };
 
-/// The table behind the exported symbol. The first four members never change their place: a host compares them before
-/// it looks at anything else, so that a library of another age or of other compiler flags is refused, not run.
+/// Table that a plugin library exports. The first four members keep their position in all versions. A host compares
+/// them before it reads other members, and rejects a library of another version or with other compiler flags.
 struct PluginManifest {
   char magic[8];       ///< "palpate"
   std::uint32_t abi;   ///< kPluginAbi
   std::uint32_t size;  ///< sizeof(PluginManifest)
   const char* stamp;   ///< PALPATE_BUILD_STAMP
 
-  const char* kind;     ///< the folder of the library
-  const char* name;     ///< its file name without .so
+  const char* kind;     ///< folder of the library
+  const char* name;     ///< file name without .so
   const char* summary;  ///< one line, for `palpate plugins`
-  bool one_at_a_time;   ///< what it moves exists once: runs that use it wait for each other (Backend::kOneAtATime)
+  bool one_at_a_time;   ///< whether only one run at a time may use it (Backend::kOneAtATime)
   /// Lists the fields of a default options struct to `fields`.
   void (*describe)(Fields& fields);
-  /// Fills an options struct from `fields` and makes the object: a pointer to the kind's interface.
+  /// Reads an options struct from `fields` and creates the object. Returns a pointer to the kind's interface.
   void* (*create)(Fields& fields, const Context& context);
   void (*destroy)(void* object);
-  /// Makes the motions that these options leave open, null for one alone; itself null of a plugin that has no such
-  /// thing.
+  /// Creates the motions that the options allow; returns null for one motion. The pointer is null for a plugin without
+  /// a choice of motions.
   Motions* (*motions)(Fields& fields, const Scene& scene);
 };
 
@@ -94,8 +94,8 @@ struct PluginManifest {
 #define PALPATE_DEBUG_CONTAINERS 0
 #endif
 
-/// All that must be equal on both sides of the boundary. Eigen's alignment is here because it follows -march: a
-/// library of another alignment frees memory that it did not allocate in the same way, and corrupts the heap.
+/// Properties of a build that host and plugin must share. They include Eigen's alignment, which depends on -march: with
+/// different alignments, one side frees memory that the other allocated in another way, which corrupts the heap.
 #define PALPATE_BUILD_STAMP \
   "Eigen=" PALPATE_TEXT(EIGEN_WORLD_VERSION) "." PALPATE_TEXT(EIGEN_MAJOR_VERSION) "." PALPATE_TEXT( \
       EIGEN_MINOR_VERSION) ";EIGEN_MAX_ALIGN_BYTES=" PALPATE_TEXT(EIGEN_MAX_ALIGN_BYTES)             \
@@ -119,13 +119,13 @@ void* create(Fields& fields, const Context& context) {
   return static_cast<Interface*>(new Plugin(options, context));
 }
 
-/// Whether `Plugin` says kOneAtATime, which only backends have.
+/// True if `Plugin` has kOneAtATime, which only backends have, and it is true.
 template <class Plugin, class = void>
 struct OneAtATime : std::false_type {};
 template <class Plugin>
 struct OneAtATime<Plugin, std::enable_if_t<Plugin::kOneAtATime>> : std::true_type {};
 
-/// The motions of a plugin that has a function of that name, which only backends have.
+/// Creates the motions of a plugin with a function motions(), which only backends have.
 template <class Plugin>
 Motions* motions(Fields& fields, const Scene& scene) {
   typename Plugin::Options options;
@@ -149,7 +149,7 @@ void destroy(void* object) {
 
 }  // namespace detail
 
-/// Fills the manifest of `Plugin`, which implements `Interface`.
+/// Returns the manifest of `Plugin`, which implements `Interface`.
 template <class Interface, class Plugin>
 constexpr PluginManifest manifest_of(const char* name, const char* summary) {
   return {{'p', 'a', 'l', 'p', 'a', 't', 'e', '\0'},

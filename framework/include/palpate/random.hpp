@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random numbers without global state: a stream is named by a seed, a purpose and a number, so that no consumer can
-// disturb another and a resumed run draws what the unbroken one would have drawn.
+// Random numbers without global state. A seed, a purpose and a number name each stream. So users of random numbers do
+// not affect each other, and a resumed run draws the same numbers as an uninterrupted run.
 #pragma once
 
 #include <cstdint>
@@ -9,25 +9,25 @@
 
 namespace palpate {
 
-/// A stream of random numbers: those of std::mt19937_64, whose output the C++ standard fixes. The standard does not fix
-/// distributions, so these are palpate's own.
+/// A stream of random numbers of std::mt19937_64, whose output the C++ standard defines. The distributions are
+/// palpate's own, because the standard does not define their output.
 class Random {
  public:
-  /// Streams of different (seed, purpose, number) are independent for all that matters here: the key is mixed by
-  /// FNV-1a and SplitMix64 before it seeds the engine.
+  /// Streams with different (seed, purpose, number) are practically independent: FNV-1a and SplitMix64 mix the key
+  /// before it seeds the engine.
   Random(std::uint64_t seed, std::string_view purpose, std::uint64_t number = 0) {
     std::uint64_t key = 0xcbf29ce484222325ULL;
     for (const char c : purpose) key = (key ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
     engine_.seed(mix(mix(mix(seed) ^ key) ^ number));
   }
 
-  /// 64 random bits.
+  /// Returns 64 random bits.
   std::uint64_t bits() { return engine_(); }
 
-  /// Uniform in [0, 1), a multiple of 2^-53.
+  /// Returns a uniform number in [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
 
-  /// Uniform in {0, ..., count - 1}; `count` > 0. Unbiased: draws again rather than folding.
+  /// Returns a uniform integer in {0, ..., count - 1}; `count` > 0. Unbiased, because excess draws are rejected.
   std::uint64_t index(std::uint64_t count) {
     const std::uint64_t excess = (0 - count) % count;
     std::uint64_t draw = bits();
