@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What Python cannot do by itself: to read records, to bring models back, to run, to be asked where to tap. The words
-// for people are in palpate/__init__.py, which is all that sees this module.
-#include "asked.hpp"
+// The module palpate._palpate: reads records, computes their models again, and runs experiments. Only
+// palpate/__init__.py, the documented interface, uses it.
+#include "ask_tell_run.hpp"
 #include "config/quantity.hpp"
+#include "environment.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
 #include "records.hpp"
-#include "shop.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 #include "threads.hpp"
@@ -29,22 +29,23 @@
 namespace palpate {
 namespace {
 
-/// Hears of every tap of a run, on the thread that runs it: Ctrl-C ends the run as it does in a terminal.
-class Listener final : public Journal {
+/// Calls a Python function after every tap of a run, on the thread of the run. Interrupts the run at Ctrl-C, and if the
+/// function throws.
+class ProgressJournal final : public Journal {
  public:
-  Listener(std::atomic<bool>& interrupted, py::object progress)
+  ProgressJournal(std::atomic<bool>& interrupted, py::object progress)
       : interrupted_(interrupted), progress_(std::move(progress)) {}
   void announce(const TapRecord&) override {}
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override {
-    if (Calls::all().ended()) {
+    if (CallsWithoutGil::all().ended()) {
       interrupted_ = true;
       return;
     }
-    const py::gil_scoped_acquire held;
+    const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) return stop(py::error_already_set());
     if (progress_.is_none()) return;
     try {
-      Calls::all().call_back(progress_, tap.number);
+      CallsWithoutGil::all().call_back(progress_, tap.number);
     } catch (const py::error_already_set& trouble) {
       stop(trouble);
     }
@@ -64,38 +65,39 @@ class Listener final : public Journal {
 
 std::string run(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs,
                 bool force, const py::object& progress) {
-  Shop shop;
-  Listener listener(shop.interrupted, progress);
+  InterruptibleEnvironment environment;
+  ProgressJournal journal(environment.interrupted, progress);
   RunReport report;
   {
-    const Unlocked others_go_on;
+    const GilRelease no_gil;
     const ResolvedConfig resolved = resolve(config, overrides);
-    report = start_run(shop.workshop, resolved, directory_of(resolved, runs), force, &listener);
+    report = start_run(environment.workshop, resolved, directory_of(resolved, runs), force, &journal);
   }
-  if (listener.trouble()) throw *listener.trouble();
+  if (journal.trouble()) throw *journal.trouble();
   return report.directory.string();
 }
 
-/// Makes the directory of a sweep, with every job of it composed and checked, unless it is there. Returns where it is.
+/// Creates the directory of a sweep unless it exists, after composing and checking every job. Returns the directory.
 std::string begin_sweep(const std::string& config, const std::vector<std::string>& words, const std::string& runs) {
-  const Unlocked others_go_on;
+  const GilRelease no_gil;
   Composer fresh = composer();
   SweepDraft draft(runs);
-  const SweepPlan plan = plan_sweep(fresh, home().host, config, words, runs, [&](const Job& job, const auto& resolved) {
-    draft.add(job, resolved);
-    if (job.index % 64 == 0) check_signals();
-  });
+  const SweepPlan plan =
+      plan_sweep(fresh, module_environment().host, config, words, runs, [&](const Job& job, const auto& resolved) {
+        draft.add(job, resolved);
+        if (job.index % 64 == 0) check_signals();
+      });
   draft.publish(plan);
   return plan.sweep.directory.string();
 }
 
-std::string found(const std::string& words, const std::string& runs) {
-  const Unlocked others_go_on;
+std::string found_run(const std::string& words, const std::string& runs) {
+  const GilRelease no_gil;
   return find_record(words, Wanted::run, runs).string();
 }
 
 std::vector<std::string> found_sweep(const std::vector<std::string>& words, const std::string& runs) {
-  const Unlocked others_go_on;
+  const GilRelease no_gil;
   std::vector<std::string> out;
   for (const std::filesystem::path& one : find_records(words, runs)) out.push_back(one.string());
   return out;
@@ -107,8 +109,7 @@ std::vector<std::tuple<std::string, std::string, std::string>> tap_fields() {
   return out;
 }
 
-/// A text of the program with the arguments of Python for its options: force=True for --force, but for those of a
-/// command in quotes.
+/// Returns a text of the program with force=True in place of the option --force. Commands in quotes stay as they are.
 std::string in_python(const std::string& text) {
   std::string out;
   bool quoted = false;
@@ -122,20 +123,17 @@ std::string in_python(const std::string& text) {
   return out;
 }
 
-Array line(const Eigen::VectorXd& values) { return Array(values.size(), values.data()); }
+Array vector_of(const Eigen::VectorXd& values) { return Array(values.size(), values.data()); }
 
-}  // namespace
-}  // namespace palpate
-
-PYBIND11_MODULE(_palpate, module) {
-  using namespace palpate;
-  // Made by palpate/__init__.py, which gives it its words.
+/// Defines palpate.Error and palpate.InputError, and translates exceptions of type Error to them.
+void bind_errors(py::module_& module) {
+  // palpate/__init__.py sets the documentation of both.
   static PyObject* const error = PyErr_NewException("palpate.Error", PyExc_Exception, nullptr);
   module.attr("Error") = py::handle(error);
   static PyObject* const input_error = PyErr_NewException(
       "palpate.InputError", py::make_tuple(py::handle(error), py::handle(PyExc_ValueError)).ptr(), nullptr);
   module.attr("InputError") = py::handle(input_error);
-  // NOLINTNEXTLINE(performance-unnecessary-value-param): so pybind11 wants it
+  // By value, as pybind11 declares it. NOLINTNEXTLINE(performance-unnecessary-value-param)
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
@@ -148,9 +146,12 @@ PYBIND11_MODULE(_palpate, module) {
       PyErr_SetObject(type, one.ptr());
     }
   });
+}
+
+void bind_record(py::module_& module) {
   py::class_<Record>(module, "Record")
       .def(py::init([](const std::string& directory) {
-        const Unlocked others_go_on;
+        const GilRelease no_gil;
         return std::make_unique<Record>(directory);
       }))
       .def("is_here", &Record::is_here)
@@ -173,11 +174,14 @@ PYBIND11_MODULE(_palpate, module) {
            })
       .def("axes", [](Record& self) {
         const auto [xs, ys] = self.axes();
-        return std::pair(line(xs), line(ys));
+        return std::pair(vector_of(xs), vector_of(ys));
       });
+}
+
+void bind_sweep_record(py::module_& module) {
   py::class_<SweepRecord>(module, "SweepRecord")
       .def(py::init([](const std::vector<std::string>& directories) {
-        const Unlocked others_go_on;
+        const GilRelease no_gil;
         return std::make_unique<SweepRecord>(directories);
       }))
       .def("directory", &SweepRecord::directory)
@@ -187,6 +191,9 @@ PYBIND11_MODULE(_palpate, module) {
       .def("job", &SweepRecord::job)
       .def("table", &SweepRecord::table)
       .def("write_table", &SweepRecord::write_table);
+}
+
+void bind_tap(py::module_& module) {
   py::class_<TapRecord>(module, "Tap")
       .def_readonly("number", &TapRecord::number)
       .def_property_readonly("x", [](const TapRecord& tap) { return tap.target.x; })
@@ -195,40 +202,55 @@ PYBIND11_MODULE(_palpate, module) {
       .def_readonly("score", &TapRecord::score)
       .def_property_readonly("source", [](const TapRecord& tap) { return source_name(tap.source); })
       .def_readonly("why", &TapRecord::why);
-  // To change one would change nothing.
+}
+
+void bind_ask_tell_run(py::module_& module) {
+  // Arrays are read-only, because a changed array would not change the belief.
   const auto map = [](const Eigen::VectorXd& (TapBelief::*quantity)() const, Quantity wanted) {
-    return [quantity, wanted](Asked& self) {
+    return [quantity, wanted](AskTellRun& self) {
       Array out = array_of(self.map(quantity, wanted));
       out.attr("setflags")(py::arg("write") = false);
       return out;
     };
   };
-  py::class_<Asked>(module, "Asked")
+  py::class_<AskTellRun>(module, "AskTellRun")
       .def(py::init<const std::string&, const std::vector<std::string>&, const std::string&, bool>())
       .def(py::init<const std::string&, bool, bool>())
-      .def("ask", &Asked::ask)
-      .def("tell", [](Asked& self, const std::string& outcome, double height, double force, double seconds,
+      .def("ask", &AskTellRun::ask)
+      .def("tell", [](AskTellRun& self, const std::string& outcome, double height, double force, double seconds,
                       const std::string& reason,
                       bool ends_run) { self.tell(contact_of(outcome, height, force, seconds, reason, ends_run)); })
-      .def("finish", &Asked::finish)
-      .def("close", &Asked::close)
-      .def("finished", &Asked::finished)
-      .def("directory", &Asked::directory)
-      .def("label", &Asked::label)
-      .def("taps", &Asked::taps)
-      .def("xs", [](Asked& self) { return line(self.xs()); })
-      .def("ys", [](Asked& self) { return line(self.ys()); })
+      .def("finish", &AskTellRun::finish)
+      .def("close", &AskTellRun::close)
+      .def("finished", &AskTellRun::finished)
+      .def("directory", &AskTellRun::directory)
+      .def("label", &AskTellRun::label)
+      .def("taps", &AskTellRun::taps)
+      .def("xs", [](AskTellRun& self) { return vector_of(self.xs()); })
+      .def("ys", [](AskTellRun& self) { return vector_of(self.ys()); })
       .def("uncertainty", map(&TapBelief::uncertainty, Quantity::uncertainty))
       .def("weight", map(&TapBelief::weight, Quantity::weight))
       .def("probability", map(&TapBelief::probability, Quantity::probability))
       .def("height_mean", map(&TapBelief::height_mean, Quantity::height))
       .def("height_variance", map(&TapBelief::height_variance, Quantity::height));
+}
+
+}  // namespace
+}  // namespace palpate
+
+PYBIND11_MODULE(_palpate, module) {
+  using namespace palpate;
+  bind_errors(module);
+  bind_record(module);
+  bind_sweep_record(module);
+  bind_tap(module);
+  bind_ask_tell_run(module);
   module.def("run", &run);
   module.def("begin_sweep", &begin_sweep);
-  module.def("found", &found);
+  module.def("found", &found_run);
   module.def("found_sweep", &found_sweep);
   module.def("tap_fields", &tap_fields);
-  module.def("end_calls", [] { Calls::all().end(); });
+  module.def("end_calls", [] { CallsWithoutGil::all().end(); });
   module.attr("version") = kVersion;
-  module.attr("program") = home().installation.program.string();
+  module.attr("program") = module_environment().installation.program.string();
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What is recorded, for Python: a run with its taps and models, a sweep with its jobs.
+// Records for Python: a run with its taps and models, a sweep with its jobs.
 #pragma once
 
+#include "environment.hpp"
 #include "experiment/from_above.hpp"
 #include "experiment/metrics.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
-#include "shop.hpp"
 #include "sweep/pooled_sweep.hpp"
 #include "sweep/sweep.hpp"
 #include "threads.hpp"
@@ -22,10 +22,9 @@
 
 namespace palpate {
 
-/// NamedMaps by their names.
 using NamedMaps = std::vector<std::pair<const char*, Map>>;
 
-/// What is believed as of now.
+/// Returns maps of the present belief. Heights are in metres.
 inline NamedMaps maps_of(FromAbove& experiment) {
   experiment.build(Quantity::uncertainty | Quantity::weight | Quantity::probability | Quantity::height);
   const TapBelief& belief = experiment.belief();
@@ -40,49 +39,48 @@ inline NamedMaps maps_of(FromAbove& experiment) {
           {"surface", map(reconstruction(belief))}};
 }
 
-/// A run directory and its models. Its methods are called with Python's lock, by any thread; where they work with the
-/// models, one thread at a time has its turn.
+/// A run directory and its models. Any thread may call the methods, with the GIL; one thread at a time uses the models.
 class Record {
  public:
-  explicit Record(const std::string& directory) : recording_(read_recording(shop_.workshop, directory)) {}
-  /// A forked child has none of the threads that the models would wait for.
+  explicit Record(const std::string& directory) : recording_(read_recording(environment_.workshop, directory)) {}
+  /// In a forked child the models are leaked, because their destructor would wait for threads that the child lacks.
   ~Record() {
-    if (!owned_.is_here()) static_cast<void>(playback_.release());
+    if (!lock_.is_here()) static_cast<void>(playback_.release());
   }
 
   py::object config() const { return python_of(recording_.config.tree); }
   std::string id() const { return recording_.config.id; }
   std::vector<Column> taps() const { return columns_of(recording_.rows); }
   int size() const { return static_cast<int>(recording_.rows.size()); }
-  /// None where there is none.
+  /// Returns Python's None if no manifest is recorded.
   py::object manifest() const {
     const std::optional<Tree>& manifest = recording_.manifest;
     return manifest ? py::module_::import("json").attr("loads")(to_json(*manifest)) : py::none();
   }
-  /// As it stands now; None of a run that has not ended.
+  /// Reads the summary again. Returns Python's None for a run that has not ended.
   py::object summary() const {
     const std::optional<Row> summary = read_summary(recording_.directory);
     return summary ? py::module_::import("json").attr("loads")(to_json_line(*summary)) : py::none();
   }
-  bool is_here() const { return owned_.is_here(); }
+  bool is_here() const { return lock_.is_here(); }
 
-  /// The models after so many taps.
+  /// Returns maps of the models after the first `taps` taps.
   NamedMaps after(int taps) {
     if (taps < 0 || taps > size())
       throw Error("after", "there are " + std::to_string(size()) + " taps, not " + std::to_string(taps), "take fewer");
-    const Turn turn(owned_, "run");
-    // Whatever throws may have taken in taps that it does not count: such models are let go of.
+    const ObjectGuard guard(lock_, "run");
+    // An exception may leave taps in the models that taps() does not count. So models are kept only after success.
     std::unique_ptr<Playback> models = std::move(playback_);
-    if (!models || models->taps() > taps) models = std::make_unique<Playback>(shop_.workshop, recording_);
+    if (!models || models->taps() > taps) models = std::make_unique<Playback>(environment_.workshop, recording_);
     models->advance_to(taps);
     NamedMaps maps = maps_of(models->from_above());
     playback_ = std::move(models);
     return maps;
   }
 
-  /// The heights of the scene that was tapped; none where another world was.
+  /// Returns the heights of the simulated scene, metres; nullopt if another world was tapped.
   std::optional<Map> truth() {
-    const Turn turn(owned_, "run");
+    const ObjectGuard guard(lock_, "run");
     FromAbove& experiment = playback().from_above();
     const Truth* truth = experiment.truth();
     if (truth == nullptr) return std::nullopt;
@@ -90,47 +88,47 @@ class Record {
   }
 
   std::pair<Eigen::VectorXd, Eigen::VectorXd> axes() {
-    const Turn turn(owned_, "run");
+    const ObjectGuard guard(lock_, "run");
     const Candidates& candidates = playback().from_above().candidates();
     return {candidates.xs, candidates.ys};
   }
 
  private:
   Playback& playback() {
-    if (!playback_) playback_ = std::make_unique<Playback>(shop_.workshop, recording_);
+    if (!playback_) playback_ = std::make_unique<Playback>(environment_.workshop, recording_);
     return *playback_;
   }
 
-  Owned owned_;
-  Shop shop_;
+  ObjectLock lock_;
+  InterruptibleEnvironment environment_;
   Recording recording_;
   std::unique_ptr<Playback> playback_;
 };
 
-/// A sweep, or several sweeps and runs as one (see read_pooled()), as it stood when it was opened.
+/// A sweep, or several sweeps and runs that are read as one (see read_pooled()), in its state at the opening.
 class SweepRecord {
  public:
   explicit SweepRecord(const std::vector<std::string>& directories)
       : SweepRecord(read_pooled({directories.begin(), directories.end()}, {})) {}
 
   std::string directory() const { return sweep_.directory.string(); }
-  /// What whoever reads the numbers of several records should know, a line each.
+  /// Notes about the comparability of several records, one line each.
   const std::vector<std::string>& notes() const { return notes_; }
   std::size_t size() const { return sweep_.jobs.size(); }
   const std::vector<std::string>& keys() const { return sweep_.keys; }
   std::string job(std::size_t index) const { return job_directory(sweep_, sweep_.jobs.at(index)).string(); }
 
-  /// Makes results.csv anew from the jobs.
+  /// Writes results.csv again from the jobs.
   void write_table() const {
-    const Unlocked others_go_on;
+    const GilRelease no_gil;
     write_results(sweep_);
   }
 
-  /// A row a job, of those that have not ended the swept keys alone.
+  /// Returns one row per job. A job that has not ended has the swept keys only.
   std::vector<Column> table() const {
     std::vector<Row> rows;
     {
-      const Unlocked others_go_on;
+      const GilRelease no_gil;
       rows.reserve(sweep_.jobs.size());
       for (const Job& job : sweep_.jobs)
         rows.push_back(result_row(sweep_, job, read_outcome(job_directory(sweep_, job)).value_or(Row())));

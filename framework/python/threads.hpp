@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How threads of Python, forked processes and the end of the interpreter get on with objects of C++.
+// Access to C++ objects from threads of Python, from forked processes and at the end of the interpreter.
 #pragma once
 
 #include <palpate/error.hpp>
@@ -21,21 +21,21 @@
 
 namespace palpate {
 
-/// The calls that work without Python's lock. Once the interpreter ends, no thread may ask for that lock again: CPython
-/// 3.11 ends such a thread by unwinding its stack, which C++ answers with std::terminate().
-class Calls {
+/// Calls from Python that run without the GIL, Python's global lock. After the end of the interpreter no thread may
+/// take the GIL again: CPython 3.11 unwinds the stack of such a thread, for which C++ calls std::terminate().
+class CallsWithoutGil {
  public:
-  static Calls& all() {
-    static Calls* const one = new Calls;
+  static CallsWithoutGil& all() {
+    static CallsWithoutGil* const one = new CallsWithoutGil;
     return *one;
   }
 
-  /// Whether the calling thread, that has or had Python's lock, is never to have it again.
+  /// Returns whether the interpreter ends in another thread, so that the calling thread can never take the GIL again.
   bool ended() const { return ending_ && std::this_thread::get_id() != last_; }
 
-  /// For the end of the interpreter, from the thread that ends it, with Python's lock. Returns when no call of another
-  /// thread is at work any more; those threads, and all that call later, then wait for the end of the process. Throws
-  /// what a signal raises, as Ctrl-C does: then the process ends without the calls that still work.
+  /// Ends the calls. The thread that ends the interpreter calls this function, with the GIL. Returns when no other
+  /// thread is in a call. These threads, and all later calls, then wait for the end of the process. Throws the
+  /// exception of a signal, such as Ctrl-C; then the process ends without the remaining calls.
   void end() {
     last_ = std::this_thread::get_id();
     ending_ = true;
@@ -44,27 +44,27 @@ class Calls {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       PyEval_RestoreThread(state);
       if (PyErr_CheckSignals() == 0) continue;
-      // They may not outlive what the process destroys at its end.
+      // The remaining calls must not run while exit() destroys static objects.
       ::on_exit([](int status, void*) { static_cast<void>(std::fflush(nullptr)), ::_exit(status); }, nullptr);
       throw pybind11::error_already_set();
     }
   }
 
-  /// Calls `function(number)` of Python from within a call, with Python's lock. Throws what it raises. The end of the
-  /// interpreter does not wait for it: then this thread never returns from here.
+  /// Calls the Python function `function(number)` from within a call, with the GIL. Throws the function's exception.
+  /// The end of the interpreter does not wait for the function; then this thread never returns.
   void call_back(const pybind11::object& function, int number) {
-    Away away;
+    Callback callback;
     PyObject* const result = PyObject_CallFunction(function.ptr(), "i", number);
-    away.is_back = true;
+    callback.has_returned = true;
     if (result == nullptr) throw pybind11::error_already_set();
     Py_DECREF(result);
   }
 
  private:
-  friend class Unlocked;
+  friend class GilRelease;
 
-  Calls() {
-    // The child of a fork has none of the other threads.
+  CallsWithoutGil() {
+    // The child of a fork has only the forking thread.
     ::pthread_atfork(nullptr, nullptr, [] { all().inside_ = depth_; });
   }
   void enter() {
@@ -80,84 +80,87 @@ class Calls {
     for (;;) ::pause();
   }
 
-  /// A thread that is called back: at work it does not count. Has Python's lock where it begins and ends.
-  struct Away {
-    Away() : depth(std::exchange(depth_, 0)) { all().inside_ -= depth; }
-    ~Away() {
-      // Unless it is back, Python is unwinding the stack: see Calls.
-      if (is_back && all().ended()) PyEval_SaveThread();
-      if (!is_back || all().ended()) all().wait_for_end();
+  /// A call back to Python, during which the thread does not count as inside. The thread has the GIL at the beginning
+  /// and at the end.
+  struct Callback {
+    Callback() : depth(std::exchange(depth_, 0)) { all().inside_ -= depth; }
+    ~Callback() {
+      // Without a return, CPython is unwinding the stack of this thread.
+      if (has_returned && all().ended()) PyEval_SaveThread();
+      if (!has_returned || all().ended()) all().wait_for_end();
       depth_ = depth;
       all().inside_ += depth;
     }
-    Away(const Away&) = delete;
-    Away& operator=(const Away&) = delete;
+    Callback(const Callback&) = delete;
+    Callback& operator=(const Callback&) = delete;
 
     int depth;
-    bool is_back = false;
+    bool has_returned = false;
   };
 
-  static inline thread_local int depth_ = 0;  ///< calls of this thread: one that is called back may call again
-  std::atomic<int> inside_{0};
+  static inline thread_local int depth_ = 0;  ///< nested calls of this thread, because a callback may call again
+  std::atomic<int> inside_{0};                ///< calls of all threads
   std::atomic<bool> ending_{false};
-  std::thread::id last_;
+  std::thread::id last_;  ///< the thread that ends the interpreter
 };
 
-/// Lets other threads of Python go on for its lifetime.
-class Unlocked {
+/// Releases the GIL for its lifetime, so that other threads of Python can run.
+class GilRelease {
  public:
-  Unlocked() {
-    Calls::all().enter();
+  GilRelease() {
+    CallsWithoutGil::all().enter();
     state_ = PyEval_SaveThread();
-    if (Calls::all().ended()) Calls::all().wait_for_end();
+    if (CallsWithoutGil::all().ended()) CallsWithoutGil::all().wait_for_end();
   }
-  ~Unlocked() {
-    if (Calls::all().ended()) Calls::all().wait_for_end();
+  ~GilRelease() {
+    if (CallsWithoutGil::all().ended()) CallsWithoutGil::all().wait_for_end();
     PyEval_RestoreThread(state_);
-    Calls::all().leave();
+    CallsWithoutGil::all().leave();
   }
-  Unlocked(const Unlocked&) = delete;
-  Unlocked& operator=(const Unlocked&) = delete;
+  GilRelease(const GilRelease&) = delete;
+  GilRelease& operator=(const GilRelease&) = delete;
 
  private:
   PyThreadState* state_;
 };
 
-/// For a long call without Python's lock: throws what a signal raises, as Ctrl-C does, and once the interpreter ends.
+/// Throws the exception of a signal, such as Ctrl-C, from a long call without the GIL. Throws Error once the
+/// interpreter ends.
 inline void check_signals() {
-  if (Calls::all().ended()) throw Error("palpate", "the Python interpreter is shutting down", {}, Error::Kind::run);
-  const pybind11::gil_scoped_acquire held;
+  if (CallsWithoutGil::all().ended())
+    throw Error("palpate", "the Python interpreter is shutting down", {}, Error::Kind::run);
+  const pybind11::gil_scoped_acquire gil;
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
 }
 
-/// An object that one thread at a time works with, in the process that made it.
-class Owned {
+/// Lock of an object that one thread at a time may use, in the process that created it.
+class ObjectLock {
  public:
-  /// Returns false in the child of a fork, which has none of the threads that the object may need, and a copy of its
-  /// lock that nobody may be left to unlock.
+  /// Returns false in the child of a fork. The child lacks threads that the object may need, and its copy of the lock
+  /// may stay locked for ever.
   bool is_here() const { return process_ == ::getpid(); }
 
  private:
-  friend class Turn;
+  friend class ObjectGuard;
   pid_t process_ = ::getpid();
   std::mutex mutex_;
 };
 
-/// A thread's turn with such an object, without Python's lock. Throws Error in the child of a fork.
-class Turn {
+/// Holds an ObjectLock, without the GIL. Throws Error, with `place`, in the child of a fork.
+class ObjectGuard {
  public:
-  explicit Turn(Owned& owned, const std::string& place = "experiment") {
-    if (!owned.is_here()) {
+  explicit ObjectGuard(ObjectLock& lock, const std::string& place = "experiment") {
+    if (!lock.is_here()) {
       throw Error(place, "was opened by the parent of this forked process",
                   "open it in the child after the parent has closed it", Error::Kind::run);
     }
-    unlocked_.emplace();
-    lock_ = std::unique_lock(owned.mutex_);
+    no_gil_.emplace();
+    lock_ = std::unique_lock(lock.mutex_);
   }
 
  private:
-  std::optional<Unlocked> unlocked_;
-  std::unique_lock<std::mutex> lock_;  // unlocked first
+  std::optional<GilRelease> no_gil_;
+  std::unique_lock<std::mutex> lock_;  ///< after no_gil_, because it must be released first
 };
 
 }  // namespace palpate

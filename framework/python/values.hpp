@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What Python has for our values: arrays for maps, dicts for configs, columns for tables.
+// Conversion of values to Python: maps to arrays, configs to dicts, tables to columns.
 #pragma once
 
 #include "config/quantity.hpp"
@@ -29,14 +29,14 @@ struct Map {
   int columns;
 };
 
-/// The array keeps the values, and nothing else.
+/// Returns an array of rows x columns that owns the values.
 inline Array array_of(Map map) {
   auto* const kept = new Eigen::VectorXd(std::move(map.values));
   const py::capsule owner(kept, [](void* values) { delete static_cast<Eigen::VectorXd*>(values); });
   return Array({map.rows, map.columns}, kept->data(), owner);
 }
 
-/// What Python has for a value of a config: numbers, truth values, texts, and quantities as texts with their units.
+/// Converts a value of a config: numbers, truth values and texts. Quantities become texts with their units.
 inline py::object python_of(const Tree& tree) {
   switch (tree.kind) {
     case Tree::Kind::null:
@@ -58,7 +58,7 @@ inline py::object python_of(const Tree& tree) {
   if (tree.quoted || text.empty()) return py::str(text);
   if (text == "true" || text == "false") return py::bool_(text == "true");
   if (decimal_length(text) != text.size()) return py::str(text);
-  // Python reads them: what the C library takes for a decimal point is up to the locale, which belongs to the caller.
+  // Python parses numbers, because the decimal point of the C library depends on the caller's locale.
   if (text.find_first_not_of("-0123456789") == std::string::npos) return py::int_(py::str(text));
   return py::float_(py::str(text));
 }
@@ -77,10 +77,9 @@ inline py::object python_of(const Scalar& scalar) {
       scalar);
 }
 
-/// A column of a table: its name and its values, None where a row has none.
+/// A column of a table: name and values. A row without a value has None.
 using Column = std::pair<std::string, py::list>;
 
-/// Rows as columns.
 inline std::vector<Column> columns_of(const std::vector<Row>& rows) {
   std::vector<Column> out;
   for (const std::string& name : names_of(rows)) {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # mypy: ignore-errors
-"""The program `palpate`: what it is told, and how Python has it run a sweep."""
+"""The program `palpate`: conversion of values to its command line, sweeps as child processes, and its output files."""
 
 import csv
 import json
@@ -16,7 +16,7 @@ from ._palpate import program
 
 
 def plain(value):
-    """What JSON has for a value of NumPy, or for a path."""
+    """Converts a NumPy value or a path to a JSON value."""
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "tolist"):
@@ -25,27 +25,31 @@ def plain(value):
 
 
 def value_text(value):
-    """As the program reads it behind KEY=. A text stays as it is, where quotes do not keep it from being read as several."""
+    """Returns a value as the program reads it after KEY=. A text is quoted only if the program would read several values."""
     if not isinstance(value, str):
         return json.dumps(value, default=plain, ensure_ascii=False)
-    several = re.sub(r"\([^()]*\)", "", value)  # range(0,10) is one
+    several = re.sub(r"\([^()]*\)", "", value)  # range(0,10) is one value
     if value[:1] in ("[", "{", '"', "'") or not re.search(r",|: | #", several):
         return value
     return json.dumps(value, ensure_ascii=False)
 
 
 def values_text(value):
-    """The same of a swept key: what is a list of several is swept."""
-    if isinstance(value, range) and len(value) > 10**6:  # which the program refuses
+    """Returns the values of a swept key, separated by commas. A value that is not a list stands alone."""
+    if isinstance(value, range) and len(value) > 10**6:  # the program rejects such a range with its own message
         return f"range({value.start},{value.stop},{value.step})"
     if isinstance(value, np.ndarray):
         value = value.tolist()
     return ",".join(map(value_text, value)) if isinstance(value, (list, tuple, range)) else value_text(value)
 
 
+def override_texts(overrides, settings):
+    return [*overrides, *(f"{key}={value_text(value)}" for key, value in settings.items())]
+
+
 def conduct(command, progress):
-    """Runs a sweep; its exit status and its last line. It ends with this process, and reports each job to it."""
-    # A session of its own: Ctrl-C in a terminal would reach it twice.
+    """Runs a sweep and returns its exit status and its last line. The sweep ends with this process. Calls progress(done, jobs)."""
+    # A separate session, because otherwise Ctrl-C in a terminal would reach the child twice.
     child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                              start_new_session=True, env={**os.environ, "PALPATE_PARENT": str(os.getpid())})
     said, told, interrupted = b"", None, None
@@ -80,7 +84,7 @@ def conduct(command, progress):
 
 
 def curve_columns(file, keys):
-    """The columns of a CSV of `palpate curves` as arrays, and lists of texts; `keys` are those that are swept."""
+    """Returns the columns of a CSV of `palpate curves`: arrays of numbers, and lists of texts for the swept `keys`."""
     with open(file, encoding="utf-8", newline="") as text:
         rows = list(csv.DictReader(text))
     whole = {"n", "units", "jobs", "left_out", "failed", "unfinished", "without_value", "ended"}
@@ -99,5 +103,5 @@ def curve_columns(file, keys):
 
 
 def run_program():
-    """The command `palpate` of `pip install`."""
+    """Replaces this process by the program. Entry point of the command `palpate` of `pip install`."""
     os.execv(program, [program, *sys.argv[1:]])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # mypy: ignore-errors
-"""How runs, sweeps and experiments look in a notebook. The maps of the HTML need no library; figures need matplotlib."""
+"""HTML tables, images and figures of runs, sweeps and experiments for notebooks. Only figures need matplotlib."""
 
 import base64
 import html
@@ -10,13 +10,13 @@ import zlib
 
 import numpy as np
 
-# Viridis (matplotlib, CC0) at 0, 1/8, ..., 1.
+# Colours of Viridis (matplotlib, CC0) at 0, 1/8, ..., 1.
 _COLOURS = np.array([(68, 1, 84), (71, 44, 122), (59, 81, 139), (44, 113, 142), (33, 144, 141), (39, 173, 129),
                      (92, 200, 99), (170, 220, 50), (253, 231, 37)], dtype=float)
 
 
 def png(values):
-    """The bytes of a PNG image, one pixel per cell: dark for the lowest value, bright for the highest, its y axis upwards."""
+    """Returns a PNG image with one pixel per cell, from dark for the lowest value to bright for the highest; y points up."""
     values = np.asarray(values, dtype=float)[::-1]
     low, high = values.min(), values.max()
     share = (values - low) / (high - low) if high > low else np.zeros_like(values)
@@ -30,7 +30,7 @@ def png(values):
 
 
 def image(values, title):
-    """An HTML figure of a map of heights, metres."""
+    """Returns an HTML figure of a map of heights, metres."""
     data = base64.b64encode(png(values)).decode()
     low, high = 100 * np.min(values), 100 * np.max(values)
     return (f'<figure><img src="data:image/png;base64,{data}" alt="{html.escape(title)}" width="235" '
@@ -43,7 +43,7 @@ def _cell(value):
 
 
 def table(rows, head=()):
-    """An HTML table of rows of values, in which nothing is markup."""
+    """Returns an HTML table of rows of values. Markup in the values is escaped."""
     lines = ["".join(f"<th>{_cell(one)}</th>" for one in head)] if head else []
     lines += ["".join(f"<td>{_cell(one)}</td>" for one in row) for row in rows]
     return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
@@ -56,7 +56,7 @@ def _png_of(figure):
 
 
 def figure(**size):
-    """An empty figure of matplotlib, which a notebook shows, whatever has been set up there. Raises ImportError."""
+    """Returns an empty matplotlib figure that a notebook shows with any backend. Raises ImportError without matplotlib."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -66,7 +66,7 @@ def figure(**size):
 
 
 def draw_run(run):
-    """The surface of a run with its taps, its standard deviation, and where the truth is known its error; in cm."""
+    """Draws the surface of a run with its taps, its standard deviation and, if the truth is known, its error; in cm."""
     maps, truth = run.after(len(run)), run.truth
     panels = [("surface", maps.surface), ("standard deviation", maps.height_standard_deviation)]
     if truth is not None:
@@ -85,7 +85,7 @@ def draw_run(run):
 
 
 def draw_sweep(jobs, keys, metric):
-    """A point per finished job, in a column per setting: all keys that differ but the seed; the mean as a bar."""
+    """Draws one point per finished job and the mean as a bar, one column per setting: all keys that differ except the seed."""
     out = figure(figsize=(6.4, 4.2))
     axes = out.subplots()
     done = jobs[jobs["status"] == "done"]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where this module lies, and what all runs of its process share.
+// The installation of this module and the plugin host, which all runs of its process share.
 #pragma once
 
 #include "config/compose.hpp"
@@ -18,7 +18,7 @@
 
 namespace palpate {
 
-/// What belongs together with this module.
+/// Finds the installation to which this module belongs. Throws Error if the module's path is unknown.
 inline Installation find_own_installation() {
   Dl_info self{};
   if (::dladdr(reinterpret_cast<const void*>(&find_own_installation), &self) == 0 || self.dli_fname == nullptr)
@@ -26,15 +26,16 @@ inline Installation find_own_installation() {
   return find_installation(std::filesystem::weakly_canonical(self.dli_fname));
 }
 
-/// What all runs of this process share, in all of its threads. Never destroyed: Python lets go of objects in an order
-/// of its own.
-struct Home {
+struct ModuleEnvironment {
   Installation installation = find_own_installation();
   PluginHost host{PluginHost::search_path(installation.plugins)};
 };
-inline Home& home() {
-  static Home* const one = [] {
-    auto* const made = new Home;
+
+/// Returns the environment that all threads share. It is never destroyed, because Python destroys objects in its own
+/// order.
+inline ModuleEnvironment& module_environment() {
+  static ModuleEnvironment* const one = [] {
+    auto* const made = new ModuleEnvironment;
     made->host.set_group_names(
         [made](const std::string& kind) { return Composer(made->installation.configs, config_keys()).names_of(kind); });
     return made;
@@ -42,10 +43,10 @@ inline Home& home() {
   return *one;
 }
 
-/// A wish to stop that a run may be given, and all that the run shares with others.
-struct Shop {
+/// Environment of one run, with a flag of its own that interrupts the run.
+struct InterruptibleEnvironment {
   std::atomic<bool> interrupted{false};
-  Workshop workshop{home().host, home().installation, {"python"}, &interrupted};
+  Workshop workshop{module_environment().host, module_environment().installation, {"python"}, &interrupted};
 };
 
 inline std::vector<Override> parsed_overrides(const std::vector<std::string>& overrides) {
@@ -54,12 +55,11 @@ inline std::vector<Override> parsed_overrides(const std::vector<std::string>& ov
   return parsed;
 }
 
-/// One for each call: it keeps the files that it has read, which may have changed by the next call, and is for one
-/// thread.
-inline Composer composer() { return Composer(home().installation.configs, config_keys()); }
+/// Returns a new composer. A composer caches the files that it reads and serves one thread, so each call needs its own.
+inline Composer composer() { return Composer(module_environment().installation.configs, config_keys()); }
 
 inline ResolvedConfig resolve(const std::string& config, const std::vector<std::string>& overrides) {
-  return resolve_experiment(composer().compose(config, parsed_overrides(overrides)), home().host);
+  return resolve_experiment(composer().compose(config, parsed_overrides(overrides)), module_environment().host);
 }
 
 }  // namespace palpate

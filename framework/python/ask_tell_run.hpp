@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A run whose taps the caller makes, for Python.
+// A run for Python whose taps the caller makes: ask and tell.
 #pragma once
 
 #include "answers/answer.hpp"
+#include "environment.hpp"
 #include "experiment/from_above.hpp"
 #include "record/callers_run.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
-#include "shop.hpp"
 #include "threads.hpp"
 #include "values.hpp"
 
@@ -19,63 +19,63 @@
 
 namespace palpate {
 
-/// A run whose taps the caller makes. Its methods are called with Python's lock, by any thread, one of which at a time
-/// has its turn.
-class Asked {
+/// A run whose taps the caller makes. Any thread may call the methods, with the GIL; one thread at a time uses the run.
+class AskTellRun {
  public:
-  Asked(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs, bool force) {
-    const Turn turn(owned_);
+  AskTellRun(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs,
+             bool force) {
+    const ObjectGuard guard(lock_);
     const ResolvedConfig resolved = resolve(config, overrides);
-    run_ = CallersRun::start(shop_.workshop, resolved, directory_of(resolved, runs), force);
+    run_ = CallersRun::start(environment_.workshop, resolved, directory_of(resolved, runs), force);
     describe();
   }
-  Asked(const std::string& directory, bool retry_failed, bool force) {
-    const Turn turn(owned_);
-    run_ = CallersRun::resume(shop_.workshop, directory, {retry_failed, force});
+  AskTellRun(const std::string& directory, bool retry_failed, bool force) {
+    const ObjectGuard guard(lock_);
+    run_ = CallersRun::resume(environment_.workshop, directory, {retry_failed, force});
     describe();
   }
-  /// A forked child has none of the threads that the models would wait for.
-  ~Asked() {
-    if (!owned_.is_here()) static_cast<void>(run_.release());
+  /// In a forked child the run is leaked, because its destructor would wait for threads that the child lacks.
+  ~AskTellRun() {
+    if (!lock_.is_here()) static_cast<void>(run_.release());
   }
 
   std::optional<TapRecord> ask(const std::optional<Array>& scores) {
     std::optional<Eigen::VectorXd> values;
     if (scores) values = checked(*scores);
-    const Turn turn(owned_);
+    const ObjectGuard guard(lock_);
     const TapRecord* tap = open().begin(values ? &*values : nullptr);
     return tap != nullptr ? std::optional(*tap) : std::nullopt;
   }
 
   void tell(Contact contact) {
-    const Turn turn(owned_);
+    const ObjectGuard guard(lock_);
     open().end(std::move(contact));
   }
 
   std::string finish() {
-    const Turn turn(owned_);
+    const ObjectGuard guard(lock_);
     return to_json(open().finish().summary);
   }
-  /// Lets go of the directory, whatever is thrown. What is not finished can be carried on. With `finish` it is, unless
-  /// a tap is still to be told. In the child of a fork there is nothing to let go of.
+  /// Closes the record, also if an exception is thrown. `finish` ends the run first, unless a tap is pending. A run
+  /// that has not ended can be resumed. Does nothing in the child of a fork.
   void close(bool finish) {
-    if (!owned_.is_here()) return;
-    const Turn turn(owned_);
+    if (!lock_.is_here()) return;
+    const ObjectGuard guard(lock_);
     const std::unique_ptr<CallersRun> run = std::move(run_);
     if (run && finish && !run->finished() && !run->pending()) run->finish();
   }
 
   bool finished() {
-    const Turn turn(owned_);
+    const ObjectGuard guard(lock_);
     return open().finished();
   }
   int taps() {
-    const Turn turn(owned_);
+    const ObjectGuard guard(lock_);
     return open().experiment().counts().taps;
   }
-  /// A copy, as of now.
+  /// Returns a copy of a map of the present belief. `wanted` is the quantity that the map needs.
   Map map(const Eigen::VectorXd& (TapBelief::*quantity)() const, Quantity wanted) {
-    const Turn turn(owned_);
+    const ObjectGuard guard(lock_);
     FromAbove& experiment = open().experiment();
     experiment.build(wanted);
     return {(experiment.belief().*quantity)(), rows(), columns()};
@@ -87,7 +87,7 @@ class Asked {
   const Eigen::VectorXd& ys() const { return ys_; }
 
  private:
-  /// What stays as it is.
+  /// Sets the properties that do not change during the run.
   void describe() {
     directory_ = run_->directory().string();
     if (const Tree* label = run_->config().tree.find_path("backend.label")) label_ = label->text;
@@ -113,8 +113,8 @@ class Asked {
     return out;
   }
 
-  Owned owned_;
-  Shop shop_;
+  ObjectLock lock_;
+  InterruptibleEnvironment environment_;
   std::unique_ptr<CallersRun> run_;
   std::string directory_;
   std::string label_;
@@ -122,7 +122,7 @@ class Asked {
   Eigen::VectorXd ys_;
 };
 
-/// The result of a tap as a backend would have returned it. Throws Error for an outcome that no answer may have.
+/// Returns the result of a tap as a backend would return it. Throws Error for an outcome that no answer may have.
 inline Contact contact_of(const std::string& outcome, double height, double force, double seconds,
                           const std::string& reason, bool ends_run) {
   const std::optional<Outcome> known = answered_outcome(outcome);
