@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Run by the installation of `build`: an installed palpate has everything, and ./palpate built what was needed so far.
+# Builds the missing parts in the folder `build` before its installation. ./palpate builds only the parts that a command
+# needs, and an installation has all.
 file(STRINGS ${build}/lib/palpate/plugins.txt files)
 list(TRANSFORM files PREPEND lib/palpate/)
 list(TRANSFORM files APPEND .so)

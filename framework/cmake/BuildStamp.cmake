@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Writes the commit that is checked out, and whether the tree differs from it, into OUTPUT, if that changed. What git was
-# never told of, as notes and tables beside the sources, is no difference.
+# Writes the commit, and whether tracked files differ from it, to OUTPUT. Untracked files do not count. Leaves an equal
+# file alone.
 set(commit "unknown")
 set(dirty "null")
 find_program(GIT git)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-# Writes the source of kCoreHash into OUTPUT: a hash over the files of FILES (';' between them), objects and archives, and
-# over FLAGS, with which they were compiled and are linked.
+# Writes a source file with kCoreHash to OUTPUT: a hash over the files of FILES (objects and archives, separated by ';')
+# and over FLAGS, the compiler's and linker's flags.
 set(all "${FLAGS}")
 foreach(file ${FILES})
   file(SHA256 ${file} hash)
   string(APPEND all " ${hash}")
 endforeach()
 string(SHA256 hash "${all}")
-# Only if it changed, so that programs are linked again only then.
+# Writes only a changed file, so that programs are not linked again without need.
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "namespace palpate {
 extern const char* const kCoreHash;
 const char* const kCoreHash = \"${hash}\";

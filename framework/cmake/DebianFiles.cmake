@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Read by cpack when all is installed into a folder for each package: what Debian's policy asks of their files, and
-# nobody needs who installs below a prefix.
-string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH, if that is set
+# cpack reads this file after it has installed each package into its folder. It adds the files of Debian's policy, which an
+# installation below a prefix does not need, and compresses and strips files.
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # that of SOURCE_DATE_EPOCH, if set
 file(READ ${CPACK_PALPATE_SOURCE}/LICENSE license)
 string(REGEX REPLACE "^MIT License\n\nCopyright \\(c\\) ([^\n]*)\n\n" "" license "${license}")
 set(holder ${CMAKE_MATCH_1})
@@ -20,7 +20,7 @@ foreach(component ${CPACK_COMPONENTS_ALL})
   set(usr ${CPACK_TEMPORARY_DIRECTORY}/${component}/usr)
   set(documents ${usr}/share/doc/${name})
 
-  # dpkg-shlibdeps knows the packages of this machine's libraries only. On Debian those of another architecture have the
+  # dpkg-shlibdeps knows only the packages of this machine's architecture. The packages of other architectures have the
   # same names.
   if(CPACK_PALPATE_CROSS AND NOT component STREQUAL "dev")
     file(MAKE_DIRECTORY ${CPACK_TEMPORARY_DIRECTORY}/${component}/debian)
@@ -59,7 +59,7 @@ License: Expat
     compress(${page})
   endforeach()
 
-  # Debian's zsh has this folder for packages, the other for what the machine's owner installs.
+  # On Debian, packages use vendor-completions. The folder site-functions is for the administrator.
   if(EXISTS ${usr}/share/zsh/site-functions)
     file(RENAME ${usr}/share/zsh/site-functions ${usr}/share/zsh/vendor-completions)
   endif()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Read by cpack before it begins: what is packed is of the day of its commit, so that the same build gives the same bytes.
-# Without these tools cpack would fail late, or make packages that depend on nothing.
+# cpack reads this file first. It checks for tools without which cpack fails late or writes packages without dependencies.
+# It sets the date of the packages to that of the commit, so that the same build gives the same bytes.
 foreach(tool_and_package dpkg-shlibdeps:dpkg-dev file:file strip:binutils gzip:gzip)
   string(REPLACE ":" ";" pair ${tool_and_package})
   list(GET pair 0 tool)

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-# Packages for Debian: `cpack -B FOLDER` in a build folder makes palpate, palpate-dev and, where they are built,
-# python3-palpate and palpate-baxter, the driver with ROS, which nobody without a Baxter wants. A component of install()
-# is a package; what libraries it depends on, dpkg-shlibdeps says.
+# Packages for Debian. `cpack -B FOLDER` in a build folder makes palpate, palpate-dev and, if they are built,
+# python3-palpate and palpate-baxter. Each component of install() is a package. dpkg-shlibdeps finds the libraries that a
+# package depends on. The driver for Baxter has its own package, which keeps ROS out of the others.
 
-# Not of a build for one machine, or one that is watched.
+# Builds for one type of processor, or with a sanitizer, make no packages.
 set(PALPATE_PACKAGES OFF)
 if(CMAKE_CXX_FLAGS MATCHES "-march=|-mavx|-fsanitize")
   return()
 endif()
 set(PALPATE_PACKAGES ON)
 set(PALPATE_MAINTAINER "The palpate authors <maintainers@palpate.invalid>" CACHE STRING
-    "who answers for packages, NAME <MAIL>")
+    "maintainer of the packages, NAME <MAIL>")
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program dev)
 if(TARGET palpate_python)
@@ -20,7 +20,7 @@ if(PALPATE_BAXTER)
   list(APPEND CPACK_COMPONENTS_ALL baxter)
 endif()
 
-# Built on another Debian it depends on other libraries and is another package, of which the later one's is the newer.
+# The version names the Debian of the build, because the libraries differ. The package of a later Debian is newer.
 set(distribution "")
 if(EXISTS ${CMAKE_SYSROOT}/etc/os-release)
   file(STRINGS ${CMAKE_SYSROOT}/etc/os-release distribution REGEX "^(ID|VERSION_ID)=")
@@ -43,7 +43,7 @@ set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)  # headers
+set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)  # it has headers only
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
                                                 WORLD_EXECUTE)
@@ -58,7 +58,8 @@ if(CMAKE_CROSSCOMPILING)
                                                   ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
 endif()
 
-# debian_package COMPONENT NAME SECTION DESCRIPTION, of which the first line is the short one.
+# debian_package COMPONENT NAME SECTION DESCRIPTION sets the fields of a package. The first line of DESCRIPTION is the
+# short description.
 macro(debian_package component name section description)
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# palpate_add_plugin(KIND NAME SOURCE...) builds the plugin KIND/NAME as lib/palpate/KIND/NAME.so in the build folder.
-# Point PALPATE_PLUGIN_PATH at lib/palpate, and a config may name it.
+# palpate_add_plugin(KIND NAME SOURCE...) builds the plugin KIND/NAME as lib/palpate/KIND/NAME.so in the build folder. With
+# PALPATE_PLUGIN_PATH set to lib/palpate, a config can name the plugin.
 function(palpate_add_plugin kind name)
   set(target palpate_${kind}_${name})
   add_library(${target} MODULE ${ARGN})
