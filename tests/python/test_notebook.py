@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How the Python module shows runs, sweeps and experiments in a notebook."""
+"""Output of runs, sweeps and experiments of the Python module in a notebook."""
 
 import base64
 import html.parser
@@ -14,11 +14,11 @@ import numpy as np
 import palpate
 from palpate import _show
 
-from support import CONFIGS, DEFAULT, InFolder
+from support import CONFIGS, DEFAULT, FolderTest
 
 
 def pixels(png):
-    """The pixels of a PNG image of 8-bit RGB without filters, the top row first."""
+    """Returns the pixels of a PNG image of 8-bit RGB without filters, the top row first."""
     width, height = struct.unpack(">II", png[16:24])
     at, data = 8, b""
     while at < len(png):
@@ -33,7 +33,7 @@ def pixels(png):
 
 
 class Page(html.parser.HTMLParser):
-    """The cells, the pictures and the tags of some HTML."""
+    """Parser of the cells, the pictures and the tags of HTML."""
 
     def __init__(self, text):
         super().__init__()
@@ -53,7 +53,7 @@ class Page(html.parser.HTMLParser):
             self.cells[-1] += data
 
 
-class Notebook(InFolder):
+class Notebook(FolderTest):
     def test_a_map_is_drawn_with_y_upwards_and_brighter_where_it_is_higher(self):
         values = np.zeros((3, 4))
         values[0, 3] = 0.05  # lower right
@@ -83,7 +83,7 @@ class Notebook(InFolder):
 
     def test_a_run_from_any_side_shows_its_summary_and_why_there_is_no_map(self):
         self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(CONFIGS.parent)  # where its meshes lie
+        os.chdir(CONFIGS.parent)  # the paths of its meshes start there
         run = palpate.run("configs/any_side.yaml", "taps=3", "scene=any_bowl", runs=self.folder)
         page = Page(run._repr_html_())
         self.assertIn("done", page.cells)
@@ -92,7 +92,7 @@ class Notebook(InFolder):
         self.assertEqual(page.pictures, [])
 
     def test_an_experiment_shows_what_it_believes_and_once_closed_where_it_lies(self):
-        experiment = self.begun("taps=3")
+        experiment = self.begin("taps=3")
         experiment.ask()
         experiment.tell(0.05)
         page = Page(experiment._repr_html_())
@@ -129,12 +129,12 @@ class Notebook(InFolder):
         self.assertEqual([label.get_text() for label in axes.get_xticklabels()], ["taps=2", "taps=3"])
         shown = np.concatenate([line.get_ydata() for line in axes.lines])
         np.testing.assert_array_equal(np.sort(shown), np.sort(done.table["rmse_m"]))
-        self.refuses("plot", "no numeric column 'colour'", "column", lambda: done.plot("colour"))
+        self.assert_error("plot", "no numeric column 'colour'", "column", lambda: done.plot("colour"))
 
     def test_a_figure_without_matplotlib_is_an_error_with_its_remedy(self):
         run = palpate.run(DEFAULT, "taps=2", runs=self.folder)
         with unittest.mock.patch.dict("sys.modules", {"matplotlib": None, "matplotlib.figure": None}):
-            self.refuses("plot", "matplotlib is missing", "python3-matplotlib", run.plot)
+            self.assert_error("plot", "matplotlib is missing", "python3-matplotlib", run.plot)
 
 
 if __name__ == "__main__":

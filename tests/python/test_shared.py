@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Python module where several threads and processes use it, and at the end of each."""
+"""Use of the Python module by several threads and processes, and at their end."""
 
 import json
 import os
@@ -18,7 +18,7 @@ import unittest.mock
 import numpy as np
 import palpate
 
-from support import BUILD, CONFIGS, DEFAULT, InFolder, program
+from support import BUILD, CONFIGS, DEFAULT, FolderTest, run_palpate
 
 MAPS = ("uncertainty", "weight", "probability", "height_mean", "height_variance")
 
@@ -29,13 +29,13 @@ def taps_of(directory):
 
 
 def in_threads(count, work):
-    """What `work(number)` returned or raised in each of `count` threads."""
+    """Returns the result or the exception of `work(number)` in each of `count` threads."""
     out = [None] * count
 
     def keep(number):
         try:
             out[number] = work(number)
-        except Exception as trouble:  # the caller looks at it
+        except Exception as trouble:  # returned to the caller
             out[number] = trouble
 
     threads = [threading.Thread(target=keep, args=(number,)) for number in range(count)]
@@ -46,16 +46,16 @@ def in_threads(count, work):
     return out
 
 
-class Shared(InFolder):
+class Shared(FolderTest):
     def in_fork(self, work):
-        """The text that `work` returns, or the error that it raises, in a forked child."""
+        """Returns the text that `work` returns, or its exception as a text, from a forked child."""
         hear, say = os.pipe()
         child = os.fork()
         if child == 0:
             try:
                 try:
                     text = str(work())
-                except Exception as trouble:  # the parent looks at it
+                except Exception as trouble:  # returned to the parent
                     text = f"{type(trouble).__name__}: {trouble}"
                 os.write(say, text.encode())
             finally:
@@ -67,7 +67,7 @@ class Shared(InFolder):
         return text
 
     def test_a_forked_child_may_not_go_on_with_the_experiment_of_its_parent(self):
-        experiment = self.begun("taps=4")
+        experiment = self.begin("taps=4")
         experiment.ask()
         experiment.tell(0.0)
         for use in (lambda: experiment.ask(), lambda: experiment.tell(0.0), lambda: experiment.finish(),
@@ -80,7 +80,7 @@ class Shared(InFolder):
         self.assertEqual([tap for tap, outcome in taps_of(experiment.directory) if outcome == "contact"], [1, 2, 3, 4])
 
     def test_an_experiment_is_free_once_it_is_closed_though_a_forked_child_lives(self):
-        experiment = self.begun("taps=2")
+        experiment = self.begin("taps=2")
         wait, go = os.pipe()
         child = os.fork()
         if child == 0:
@@ -103,22 +103,22 @@ class Shared(InFolder):
         np.testing.assert_array_equal(again.surface, surface)
 
     def test_a_record_that_was_replaced_ends_the_run_that_had_it_before_its_next_tap(self):
-        experiment = self.begun("taps=4")
+        experiment = self.begin("taps=4")
         experiment.ask()
         experiment.tell(0.0)
         record = pathlib.Path(experiment.directory) / "record.jsonl"
         text = record.read_bytes()
         record.unlink()
-        record.write_bytes(text)  # as a copy is brought back
+        record.write_bytes(text)  # restores a copy
         with palpate.Experiment.resume(experiment.directory) as other:
-            self.refuses(experiment.directory, "was moved or removed while a run was writing to it", "palpate resume",
+            self.assert_error(experiment.directory, "was moved or removed while a run was writing to it", "palpate resume",
                          experiment.ask)
             while other.ask():
                 other.tell(0.0)
         self.assertEqual([tap for tap, outcome in taps_of(experiment.directory) if outcome == "contact"], [1, 2, 3, 4])
 
     def test_a_map_of_the_belief_stays_as_it_was_after_later_taps_and_the_end(self):
-        with self.begun("taps=6") as experiment:
+        with self.begin("taps=6") as experiment:
             kept = []
             while experiment.ask():
                 maps = [getattr(experiment.belief, name) for name in MAPS]
@@ -140,7 +140,7 @@ class Shared(InFolder):
         self.assertEqual(in_threads(8, look), [True] * 8)
 
     def test_the_belief_can_be_looked_at_while_another_thread_asks_and_tells(self):
-        experiment = self.begun("taps=12")
+        experiment = self.begin("taps=12")
         over = threading.Event()
 
         def work(number):
@@ -156,12 +156,12 @@ class Shared(InFolder):
                 over.set()
             return len(experiment)
         self.assertEqual(in_threads(4, work), [12, None, None, None])
-        self.assertIn("all equal", program("replay", experiment.directory))
+        self.assertIn("all equal", run_palpate("replay", experiment.directory))
 
     def test_an_experiment_resumed_after_every_tap_goes_on_as_the_unbroken_one(self):
         def taps(seed, name, resumes):
-            experiment, out = self.begun("taps=14", name=name), []
-            heights = np.random.default_rng(seed).uniform(0.0, 0.1, 14)  # many contradict each other
+            experiment, out = self.begin("taps=14", name=name), []
+            heights = np.random.default_rng(seed).uniform(0.0, 0.1, 14)  # many heights contradict each other
             while tap := experiment.ask():
                 out.append(tap.candidate)
                 experiment.tell(heights[tap.number - 1])
@@ -190,13 +190,13 @@ class Shared(InFolder):
         self.assertEqual(in_threads(8, work), [["done"] * 3, 3] * 4)
 
     def test_eight_threads_over_a_run_an_experiment_and_a_sweep_get_answers_or_errors(self):
-        """PALPATE_SECONDS=60 goes on for a minute, as under sanitizers (CONTRIBUTING.md); else each does a few things."""
+        """Each thread makes a few calls, or repeats them for PALPATE_SECONDS, as under sanitizers (CONTRIBUTING.md)."""
         seconds = float(os.environ.get("PALPATE_SECONDS", "0"))
         until = time.monotonic() + seconds
         sweep = palpate.sweep(DEFAULT, taps=4, seed=range(2), runs=self.folder)
         run = sweep[0]
         maps = [{name: getattr(run.after(taps), name) for name in MAPS[:4]} for taps in range(5)]
-        told = {}  # heights by their taps
+        told = {}  # reported heights by tap
 
         def go_on(made):
             return time.monotonic() < until if seconds else made < 12
@@ -224,24 +224,24 @@ class Shared(InFolder):
                         name = MAPS[int(random.integers(0, len(MAPS)))]
                         self.assertTrue(np.isfinite(getattr(experiment.belief, name)).all())
                     elif kind == 5 and len(experiment) > 8:
-                        experiment.close()  # under the others' hands
+                        experiment.close()  # while other threads use it
                         experiment = palpate.Experiment.resume(experiment.directory)
                     elif tap := experiment.ask():
                         height = float(np.round(random.uniform(0.0, 0.1), 6))
                         told.setdefault(tap.number, set()).add(height)
                         experiment.tell(height)
                 except palpate.Error:
-                    pass  # closed, told by another thread, or held for a moment
+                    pass  # it is closed, another thread reported the tap, or another process holds the run
             return made
 
-        experiment = self.begun("taps=40")
+        experiment = self.begin("taps=40")
         for made in in_threads(8, work):
             self.assertIsInstance(made, int)
         experiment.close()
         contacts = [tap for tap in palpate.load(experiment.directory).taps if tap["outcome"] == "contact"]
         for tap in contacts:
             self.assertTrue(any(tap["height"] in heights for heights in told.values()))
-        self.assertIn("all equal", program("replay", experiment.directory))
+        self.assertIn("all equal", run_palpate("replay", experiment.directory))
 
     def test_a_config_that_was_changed_is_read_again(self):
         own = self.folder / "own.yaml"
@@ -260,13 +260,13 @@ class Shared(InFolder):
                   "for work in (ask, run): threading.Thread(target=work, daemon=True).start()\n"
                   "begun.wait(); time.sleep(float(sys.argv[3]))\n")
         for seconds in (0.0, 0.02, 0.05):
-            done = self.ended(script, DEFAULT, self.folder / str(seconds), seconds)
+            done = self.run_script(script, DEFAULT, self.folder / str(seconds), seconds)
             self.assertEqual((done.returncode, done.stderr), (0, ""), seconds)
 
     def test_the_interpreter_ends_while_a_daemon_thread_is_called_back(self):
         script = ("import sys, threading, time, palpate\n"
                   "class Late:\n"
-                  "    def __del__(self, sleep=time.sleep): sleep(0.5)  # when no other thread may have Python's lock again\n"
+                  "    def __del__(self, sleep=time.sleep): sleep(0.5)  # after the GIL is no longer available to other threads\n"
                   "sys.late, called = Late(), threading.Event()\n"
                   "def progress(n):\n"
                   "    called.set()\n"
@@ -275,7 +275,7 @@ class Shared(InFolder):
                   "threading.Thread(target=run, daemon=True).start()\n"
                   "called.wait()\n")
         for seconds in (None, 0.2):
-            done = self.ended(script, DEFAULT, self.folder / str(seconds), seconds, seconds=30)
+            done = self.run_script(script, DEFAULT, self.folder / str(seconds), seconds, seconds=30)
             self.assertEqual((done.returncode, done.stderr), (0, ""), seconds)
 
     def test_ctrl_c_ends_an_interpreter_that_waits_for_the_call_of_a_daemon_thread(self):
@@ -305,11 +305,11 @@ class Shared(InFolder):
                   "    try: run.surface\n"
                   "    except palpate.Error as trouble: print(trouble)\n"
                   "    print(numpy.array_equal(run.after(len(run) - 1).height_mean, expected))\n")
-        done = self.ended(script, DEFAULT, self.folder, PALPATE_PLUGIN_PATH=str(BUILD / "tests/bad_plugins/throws_when_told"))
+        done = self.run_script(script, DEFAULT, self.folder, PALPATE_PLUGIN_PATH=str(BUILD / "tests/bad_plugins/throws_when_told"))
         self.assertEqual((done.stdout, done.stderr), ("footprint/throws_when_told: no touch today\nTrue\n" * 2, ""))
 
     def test_with_closes_an_experiment_however_it_is_left(self):
-        with self.begun("taps=4", name="broken") as experiment:
+        with self.begin("taps=4", name="broken") as experiment:
             while tap := experiment.ask():
                 if tap.number == 3:
                     break
@@ -318,7 +318,7 @@ class Shared(InFolder):
         with palpate.Experiment.resume(experiment.directory) as again:
             self.assertEqual(len(again), 3, "the tap that nobody told is one of outcome unknown")
             again.close()
-        with self.begun("taps=4", name="between") as experiment:
+        with self.begin("taps=4", name="between") as experiment:
             experiment.ask()
             experiment.tell(0.0)
         self.assertEqual(palpate.load(experiment.directory).summary["stop_reason"], "ended by the caller")
@@ -336,7 +336,7 @@ class Shared(InFolder):
         self.assertEqual(run.after(np.int32(2)).taps, 2)
         done = palpate.sweep(DEFAULT, taps=np.int64(2), seed=np.arange(2), workers=np.int64(1), runs=self.folder)
         self.assertEqual(len(done[np.int64(1)]), 2)
-        with self.begun(taps=np.int16(1), seed=np.int64(9)) as experiment:
+        with self.begin(taps=np.int16(1), seed=np.int64(9)) as experiment:
             experiment.ask()
             experiment.tell(np.float32(0.0), force=np.int64(8))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sweeps from Python, which the program runs."""
+"""Sweeps from Python, run by the program."""
 
 import os
 import pathlib
@@ -14,18 +14,18 @@ import unittest.mock
 import numpy as np
 import palpate
 
-from support import BUILD, DEFAULT, InFolder, cells, program
+from support import BUILD, DEFAULT, FolderTest, read_csv, run_palpate
 
 
-class Sweeps(InFolder):
+class Sweeps(FolderTest):
     def test_a_sweep_from_python_leaves_the_table_that_the_program_leaves(self):
         heard = []
         by_python = palpate.sweep(DEFAULT, "taps=4,6", seed=range(3), runs=self.folder / "a",
                                   progress=lambda done, jobs: heard.append((done, jobs)))
-        program("sweep", DEFAULT, "taps=4,6", "seed=0,1,2", "--quiet", "--runs", self.folder / "b")
+        run_palpate("sweep", DEFAULT, "taps=4,6", "seed=0,1,2", "--quiet", "--runs", self.folder / "b")
         other = next((self.folder / "b").glob("*/*"))
         self.assertEqual(pathlib.Path(by_python.directory).name, other.name)
-        rows, expected = (cells(folder / "results.csv") for folder in (pathlib.Path(by_python.directory), other))
+        rows, expected = (read_csv(folder / "results.csv") for folder in (pathlib.Path(by_python.directory), other))
         self.assertEqual(len(rows), 6)
         self.assertEqual([row["rmse_m"] for row in rows], [row["rmse_m"] for row in expected])
         self.assertEqual(heard, sorted(set(heard)))
@@ -55,8 +55,8 @@ class Sweeps(InFolder):
         heard = []
         curves = done.curves("rmse_m", by="acquisition", progress=lambda now, jobs: heard.append((now, jobs)))
         self.assertEqual(heard[-1], (10, 10))
-        program("curves", done.directory, "--by", "acquisition", "-o", self.folder / "curves.csv")
-        rows = cells(self.folder / "curves.csv")
+        run_palpate("curves", done.directory, "--by", "acquisition", "-o", self.folder / "curves.csv")
+        rows = read_csv(self.folder / "curves.csv")
         self.assertEqual(len(rows), 10)
         self.assertEqual([(group, str(at)) for group, at in zip(curves["acquisition"], curves["at"])],
                          [(row["acquisition"], row["at"]) for row in rows])
@@ -67,7 +67,7 @@ class Sweeps(InFolder):
         table = done.table[done.table["acquisition"] == "weighted"]
         self.assertAlmostEqual(float(last["mean"][0]), float(np.mean(table["rmse_m"])), delta=1e-15)
         self.assertEqual(int(last["n"][0]), 5)
-        self.refuses("curves", "does not vary 'acqisition'", "", lambda: done.curves(by="acqisition"))
+        self.assert_error("curves", "does not vary 'acqisition'", "", lambda: done.curves(by="acqisition"))
 
     def told(self, seeds, **more):
         return palpate.begin_sweep(DEFAULT, "candidates.count=12", "backend.scene_is_truth=true", taps=4, name="told",
@@ -87,12 +87,12 @@ class Sweeps(InFolder):
         for number, experiment in enumerate(sweep.experiments()):
             if number == 1:
                 self.tap(experiment, 2)
-                experiment.close()  # broken off in the middle
+                experiment.close()  # interrupted in the middle
                 break
             with experiment:
                 self.tap(experiment)
         self.assertEqual(list(sweep.table["status"]), ["done"] + [None] * 5)
-        self.assertIn("made by the caller's own program", program("resume", sweep.directory, code=2))
+        self.assertIn("made by the caller's own program", run_palpate("resume", sweep.directory, code=2))
         again = self.told(range(3))
         self.assertEqual(again.directory, sweep.directory)
         carried_on = []
@@ -110,18 +110,18 @@ class Sweeps(InFolder):
         errors = {label: table["rmse_m"][table["backend.label"] == label] for label in ("default", "left")}
         by_run = [run.summary["rmse_m"] for run in loaded]
         self.assertEqual(sorted(map(float, table["rmse_m"])), sorted(by_run))
-        compared = program("compare", sweep.directory, "--by", "backend.label", "--metric", "rmse_m", "--format", "csv")
+        compared = run_palpate("compare", sweep.directory, "--by", "backend.label", "--metric", "rmse_m", "--format", "csv")
         pair = [line.split(",") for line in compared.splitlines()]
         mean = float(pair[-1][pair[0].index("mean")])
         self.assertAlmostEqual(mean, float(np.mean(errors["left"] - errors["default"])), delta=1e-12)
-        program("curves", sweep.directory, "-o", self.folder / "told.png")
+        run_palpate("curves", sweep.directory, "-o", self.folder / "told.png")
         self.assertTrue((self.folder / "told.png").exists())
         self.assertEqual(sorted(set(loaded.curves()["backend.label"])), ["default", "left"])
-        self.assertEqual(len(cells(pathlib.Path(sweep.directory) / "results.csv")), 6)
-        listed = program("list", self.folder / "told")
+        self.assertEqual(len(read_csv(pathlib.Path(sweep.directory) / "results.csv")), 6)
+        listed = run_palpate("list", self.folder / "told")
         self.assertIn("default, left", listed)
         self.assertIn("6 of 6 jobs done", listed)
-        program("report", sweep.directory)
+        run_palpate("report", sweep.directory)
         self.assertTrue((pathlib.Path(sweep.directory) / "report.html").exists())
 
     def test_labels_are_texts_whatever_stands_in_them(self):
@@ -139,7 +139,7 @@ class Sweeps(InFolder):
     def test_runs_of_a_loop_and_several_sweeps_are_loaded_as_one_sweep(self):
         for label in ("a", "b"):
             for seed in (1, 2):
-                with self.begun("candidates.count=12", f"backend.label={label}", "backend.scene_is_truth=true", taps=2,
+                with self.begin("candidates.count=12", f"backend.label={label}", "backend.scene_is_truth=true", taps=2,
                                 name="loop", seed=seed) as experiment:
                     self.assertEqual(experiment.label, label)
                     while experiment.ask():
@@ -178,9 +178,9 @@ class Sweeps(InFolder):
         self.assertLess(sum(palpate.load_sweep("default@latest", runs=self.folder).table["status"] == "done"), 3)
 
     def test_what_is_wrong_with_a_sweep_is_said_with_place_reason_and_remedy(self):
-        self.refuses("command line", "has no closing ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
-        self.refuses("sweep", "workers", "at least 1", lambda: palpate.sweep(DEFAULT, seed=[1, 2], workers=0))
-        self.refuses("nothing", "of that name", "palpate list", lambda: palpate.load_sweep("nothing", self.folder))
+        self.assert_error("command line", "has no closing ')'", "quotes", lambda: palpate.sweep(DEFAULT, "seed=range(0,"))
+        self.assert_error("sweep", "workers", "at least 1", lambda: palpate.sweep(DEFAULT, seed=[1, 2], workers=0))
+        self.assert_error("nothing", "of that name", "palpate list", lambda: palpate.load_sweep("nothing", self.folder))
 
     def test_a_text_with_commas_is_one_value_of_a_sweep(self):
         done = palpate.sweep(DEFAULT, taps=2, name="cup, left: blue", seed=[1, 2], runs=self.folder)
@@ -189,7 +189,7 @@ class Sweeps(InFolder):
         self.assertEqual(palpate.run(DEFAULT, "taps=2", name="a, b", runs=self.folder).config["name"], "a, b")
 
     def test_a_range_of_very_many_values_is_refused_before_they_are_made(self):
-        self.refuses("command line", "has more than a million values", "wider step",
+        self.assert_error("command line", "has more than a million values", "wider step",
                      lambda: palpate.sweep(DEFAULT, taps=2, seed=range(10**9), runs=self.folder))
 
     def test_a_sweep_takes_more_values_than_a_command_line(self):
@@ -211,7 +211,7 @@ class Sweeps(InFolder):
                            "echo '0 of 2 jobs done, 0 running, 0 failed' >&2\nexit 1\n", encoding="utf-8")
         failing.chmod(0o755)
         with unittest.mock.patch.object(palpate._palpate, "program", str(failing)):
-            self.refuses("/default/", "ended with status 1: job 0: no process can be made", "repeat the call to resume it",
+            self.assert_error("/default/", "ended with status 1: job 0: no process can be made", "repeat the call to resume it",
                          lambda: palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder))
         self.assertEqual(list(palpate.sweep(DEFAULT, taps=2, seed=range(2), runs=self.folder).table["status"]), ["done"] * 2)
 
@@ -232,7 +232,7 @@ class Sweeps(InFolder):
                   "print(heard[-1])\n")
         if resource.getrlimit(resource.RLIMIT_NOFILE)[1] < 1500:
             self.skipTest("needs 1500 open files")
-        done = self.ended(script, DEFAULT, self.folder)
+        done = self.run_script(script, DEFAULT, self.folder)
         self.assertEqual((done.stdout, done.stderr), ("(3, 3)\n", ""))
 
     def test_a_sweep_ends_with_an_interpreter_that_is_killed(self):
@@ -244,14 +244,14 @@ class Sweeps(InFolder):
         killed.kill()
         killed.communicate()
         sweep = palpate.load_sweep("default", runs=self.folder)
-        until = time.monotonic() + 60.0  # the tap under way is made
+        until = time.monotonic() + 60.0  # the present tap ends first
         while self.at_work() and time.monotonic() < until:
             time.sleep(0.05)
         self.assertEqual(self.at_work(), [])
         self.assertLess(sum(sweep.table["status"] == "done"), 100)
 
     def at_work(self):
-        """Command lines of processes that are about this test's folder."""
+        """Returns the command lines of processes that contain this test's folder."""
         out = []
         for process in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
             try:
