@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "calibrate/calibrate.hpp"
+#include "cli/calibrate.hpp"
 
-#include "cli/commands.hpp"
+#include "calibrate/calibrate.hpp"
 #include "cli/output.hpp"
 
 namespace palpate::cli {
 
-int calibrate(Program& program, const std::vector<std::string>& directories) {
+int calibrate(Program& program, const CalibrateArguments& arguments) {
   std::vector<Recording> recordings;
-  for (const std::string& directory : directories) {
+  for (const std::string& directory : arguments.runs) {
     check_one_run(directory);
     recordings.push_back(read_recording(program, directory));
   }

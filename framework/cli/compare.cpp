@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "cli/compare.hpp"
+
 #include "analysis/compare_report.hpp"
-#include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"

@@ -3,7 +3,7 @@
 // The scripts in cli/shells ask for it, at every press of the tabulator, and offer files where there is nothing.
 #pragma once
 
-#include "cli/commands.hpp"
+#include "cli/program.hpp"
 
 #include <string>
 #include <vector>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "report/words/explain.hpp"
-#include "cli/output.hpp"
+#include "cli/explain.hpp"
 
-#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "report/words/explain.hpp"
 
 namespace palpate::cli {
 
-int explain(Program& program, const std::string& directory, int tap) {
-  check_one_run(directory);
-  const Recording recording = read_recording(program, directory);
-  print_text(explain_tap(program, recording, tap));
+int explain(Program& program, const ExplainArguments& arguments) {
+  check_one_run(arguments.directory);
+  const Recording recording = read_recording(program, arguments.directory);
+  print_text(explain_tap(program, recording, arguments.tap));
   return kDone;
 }
 

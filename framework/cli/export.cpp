@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/export.hpp"
+
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "record/files.hpp"
@@ -56,10 +57,10 @@ int export_tables(const fs::path& directory, const std::string& to) {
 
 }  // namespace
 
-int export_run(Program& program, const std::string& directory, const std::string& format, const std::string& to) {
-  check_one_run(directory);
-  if (format == "csv") return export_tables(directory, to);
-  const Recording recording = read_recording(program, directory);
+int export_run(Program& program, const ExportArguments& arguments) {
+  check_one_run(arguments.directory);
+  if (arguments.format == "csv") return export_tables(arguments.directory, arguments.to);
+  const Recording recording = read_recording(program, arguments.directory);
   Playback playback(program, recording);
   playback.advance_to(static_cast<int>(recording.taps.size()));
   const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
@@ -68,7 +69,7 @@ int export_run(Program& program, const std::string& directory, const std::string
       any_side != nullptr ? surface_ply(*any_side, run) : surface_ply(reconstruct(playback.from_above()), run);
   if (playback.truth_lost())
     mention(fmt::format("surface.ply has no true heights: {}\n", playback.truth_lost()->what()));
-  const fs::path folder = folder_for(recording.directory, to);
+  const fs::path folder = folder_for(recording.directory, arguments.to);
   mention_state(recording.directory, recording.taps.size());
   write_into(folder, "surface.ply", surface);
   write_into(folder, "taps.ply", taps_ply(recording, playback.experiment().counts(), run));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "cli/list.hpp"
+
 #include "analysis/runs_table.hpp"
-#include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/trouble.hpp"

@@ -3,7 +3,7 @@
 // built; the program never compiles anything.
 #pragma once
 
-#include "cli/commands.hpp"
+#include "cli/program.hpp"
 
 #include <string>
 #include <vector>
@@ -27,6 +27,10 @@ class Needs final : public PluginSource {
   void config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps);
   /// What a run named; everything for a sweep.
   void record(const std::string& directory);
+  void whole_and_record(const std::string& directory) {
+    whole();
+    record(directory);
+  }
   /// The plugins that `palpate plugins` lists: "", KIND or KIND/NAME.
   void listing(const std::string& what);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A plugin to begin with: the one of its kind in plugins/starters, under the name that is asked for.
-#include "cli/commands.hpp"
+#include "cli/command_line.hpp"
 #include "cli/output.hpp"
 #include "reading/reading.hpp"
 
@@ -8,6 +8,7 @@
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
@@ -34,9 +35,14 @@ std::string next_steps(const Installation& installation, const std::string& name
                    prefix, name);
 }
 
-}  // namespace
+struct NewArguments {
+  std::string kind;
+  std::string name;
+  bool python = false;
+};
 
-int new_plugin(Program& program, const std::string& kind, const std::string& name, bool python) {
+int new_plugin(Program& program, const NewArguments& arguments) {
+  const auto& [kind, name, python] = arguments;
   const std::vector<std::string> kinds = PluginHost::kinds();
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
     throw Error("", fmt::format("there is no plugin kind '{}'", kind), suggestion(kind, kinds));
@@ -88,6 +94,21 @@ int new_plugin(Program& program, const std::string& kind, const std::string& nam
   print_out("{0}/{0}.cpp is the plugin {1}/{0}, and {0}/{0}.yaml an experiment with it. {2}", name, kind,
             next_steps(program.installation, name));
   return kDone;
+}
+
+}  // namespace
+
+void add_new(CommandLine& line) {
+  auto [command, arguments] = line.add<NewArguments>("new", "Create a starter plugin and an experiment that uses it",
+                                                     new_plugin, [](Needs&, const NewArguments&) {});
+  command.argument("KIND", arguments.kind, "KIND",
+                   fmt::format("kind of the plugin: {}", fmt::join(PluginHost::kinds(), ", ")), {required()});
+  command.argument("NAME", arguments.name, "NAME", "name of the plugin; the new folder has the same name",
+                   {required()});
+  command.flag("--python", arguments.python,
+               "create the acquisition as a Python function with a test; no compilation is needed");
+  command.examples(
+      {"palpate new kernel my_kernel", "palpate new acquisition curious", "palpate new acquisition --python curious"});
 }
 
 }  // namespace palpate::cli

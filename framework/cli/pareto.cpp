@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "cli/pareto.hpp"
+
 #include "analysis/gnuplot.hpp"
 #include "analysis/pareto_report.hpp"
 #include "analysis/readable.hpp"
-#include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"

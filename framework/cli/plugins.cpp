@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/command_line.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/describe.hpp"
@@ -42,9 +42,13 @@ void print_one(const PluginHost& host, const PluginListing& row) {
   print_text(options.empty() ? "  no options\n" : describe_text(options));
 }
 
-}  // namespace
+struct PluginsArguments {
+  std::string plugin;  ///< KIND or KIND/NAME; "": all
+  bool json = false;
+};
 
-int plugins(Program& program, const std::string& what, bool json) {
+int plugins(Program& program, const PluginsArguments& arguments) {
+  const std::string& what = arguments.plugin;
   const auto slash = what.find('/');
   const std::string kind = what.substr(0, slash);
   const std::string name = slash == std::string::npos ? std::string() : what.substr(slash + 1);
@@ -59,7 +63,7 @@ int plugins(Program& program, const std::string& what, bool json) {
 
   const bool broken =
       std::any_of(rows.begin(), rows.end(), [](const PluginListing& row) { return !row.trouble.empty(); });
-  if (json) {
+  if (arguments.json) {
     Tree list = Tree::list();
     for (const PluginListing& row : rows) list.items.push_back(row_tree(program.host, row));
     print_data(to_json(list));
@@ -74,6 +78,18 @@ int plugins(Program& program, const std::string& what, bool json) {
     if (!row.trouble.empty()) mention(row.trouble + "\n");
   }
   return broken ? kFailed : kDone;
+}
+
+}  // namespace
+
+void add_plugins(CommandLine& line) {
+  auto [command, arguments] =
+      line.add<PluginsArguments>("plugins", "List all plugins, or show the options of one plugin", plugins,
+                                 [](Needs& needs, const PluginsArguments& given) { needs.listing(given.plugin); });
+  command.argument("PLUGIN", arguments.plugin, "KIND[/NAME]",
+                   "plugin kind, for example kernel, or plugin, for example kernel/rbf");
+  command.flag("--json", arguments.json, "print the list as JSON");
+  command.examples({"palpate plugins", "palpate plugins kernel/rbf"});
 }
 
 }  // namespace palpate::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/command_line.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "math/instructions.hpp"
@@ -13,14 +13,14 @@
 
 namespace palpate::cli {
 
-void check_one_run(const std::filesystem::path& directory) {
-  if (!is_sweep(directory)) return;
-  const std::string jobs = (directory / "jobs").string();
-  throw Error(directory.string(), "is a sweep of many runs",
-              fmt::format("name one run: {0}/<id>; 'palpate list {0} --where \"seed == 3\"' finds it", jobs));
-}
+namespace {
 
-int replay(Program& program, const std::string& directory) {
+struct ReplayArguments {
+  std::string directory;
+};
+
+int replay(Program& program, const ReplayArguments& arguments) {
+  const std::string& directory = arguments.directory;
   constexpr std::size_t kShown = 10;
   check_one_run(directory);
   const ReplayReport report = replay_run(program, directory);
@@ -43,6 +43,16 @@ int replay(Program& program, const std::string& directory) {
     print_out("the run began with the instruction set {}, this command uses {}: the last digits may differ\n",
               recorded->text, math::name_of(instructions_in_use()));
   return kFailed;
+}
+
+}  // namespace
+
+void add_replay(CommandLine& line) {
+  auto [command, arguments] = line.add<ReplayArguments>(
+      "replay", "Recompute a run from its recorded taps and compare every number with the record", replay,
+      [](Needs& needs, const ReplayArguments& given) { needs.record(given.directory); });
+  command.record("DIR", arguments.directory, Wanted::run, "run");
+  command.examples({"palpate replay runs/object_i/422cd70eb5f7", "palpate replay runs/first/*"});
 }
 
 }  // namespace palpate::cli

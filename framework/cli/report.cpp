@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/report.hpp"
+
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "record/files.hpp"

@@ -1,39 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
-#include "cli/gate.hpp"
+#include "cli/resume.hpp"
+
+#include "cli/conduct_run.hpp"
+#include "cli/sweep.hpp"
 #include "record/run_directory.hpp"
 
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 
-#include <utility>
-
 namespace palpate::cli {
-
-void check_launch(const LaunchArguments& launch) {
-  const bool on_cluster = launch.launcher != kLocal;
-  const std::pair<const char*, bool> given[]{{"--partition", !launch.partition.empty()},
-                                             {"--time", !launch.time.empty()},
-                                             {"--account", !launch.account.empty()},
-                                             {"--sbatch", !launch.sbatch.empty()},
-                                             {"--jobs-per-task", launch.jobs_per_task.has_value()},
-                                             {"--wait", launch.wait}};
-  for (const auto& [name, is_given] : given) {
-    if (!is_given || on_cluster) continue;
-    throw Error("command line", fmt::format("{} needs a cluster, but the launcher is '{}'", name, launch.launcher),
-                "add --launcher slurm, or leave it out");
-  }
-  if (on_cluster && !launch.junit.empty() && !launch.wait) {
-    throw Error("command line", "--junit: results exist only after all jobs have ended",
-                "add --wait, or use --junit with 'palpate resume' afterwards");
-  }
-  check_junit(launch.junit);
-}
+namespace {
 
 int resume(Program& program, const ResumeArguments& arguments) {
   check_launch(arguments.launch);
-  if (is_sweep(arguments.directory)) return resume_sweep(program, arguments);
+  if (is_sweep(arguments.directory)) return call_in_whole(resume_sweep, program, arguments);
   if (!arguments.jobs.empty()) {
     throw Error("command line", "--jobs: " + arguments.directory + " is not a sweep", "leave it out");
   }
@@ -48,6 +29,27 @@ int resume(Program& program, const ResumeArguments& arguments) {
   return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
     return resume_run(program, arguments.directory, arguments.options, display, step);
   });
+}
+
+}  // namespace
+
+void add_resume(CommandLine& line) {
+  auto [command, arguments] = line.add<ResumeArguments>("resume", "Resume an interrupted run or sweep", resume,
+                                                        [](Needs& needs, const ResumeArguments& given) {
+                                                          if (given.launch.watch) needs.whole();
+                                                          needs.record(given.directory);
+                                                        });
+  command.record("DIR", arguments.directory, Wanted::any, "run or sweep");
+  command.flag("--retry-failed", arguments.options.retry_failed, "also resume failed runs");
+  command.flag("--force", arguments.options.force,
+               "resume even if another build of palpate or its plugins started the run");
+  command.argument(
+      "--jobs", arguments.jobs, "NUMBERS",
+      "numbers of the sweep's jobs to resume, for example 0-7,12. Jobs that another process runs are skipped");
+  const Argument quiet = add_launch(command, arguments.launch);
+  command.flag("--step", arguments.step, kStepHelp, {not_with(quiet)});
+  command.examples(
+      {"palpate resume runs/object_i/422cd70eb5f7", "palpate resume runs/many/5b0c4e1d77aa --retry-failed -j 2"});
 }
 
 }  // namespace palpate::cli

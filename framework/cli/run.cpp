@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/command_line.hpp"
+#include "cli/conduct_run.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/output.hpp"
-#include "cli/step.hpp"
-#include "cli/watcher.hpp"
 #include "config/expand.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
-#include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "scene/sizes.hpp"
 
@@ -18,13 +15,28 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <string>
 
 #include <unistd.h>
 
 namespace palpate::cli {
 namespace {
+
+struct RunArguments {
+  std::string config;
+  std::vector<std::string> overrides;
+  std::string runs = "runs";
+  bool json = false;
+  bool quiet = false;
+  bool dry_run = false;
+  bool force = false;
+  bool step = false;
+  bool print_config = false;
+  bool origins = false;
+  bool identity = false;
+  bool watch = false;
+  std::string junit;
+};
 
 /// The groups with their files, every value with its place, one a line, and what a later choice of type left behind.
 void print_origins(const std::vector<Composer::Group>& groups, const ResolvedConfig& config) {
@@ -93,8 +105,6 @@ void offer_the_rest(const Program& program) {
       "now\n");
 }
 
-}  // namespace
-
 int run(Program& program, const RunArguments& arguments) {
   check_given_once(arguments.overrides);
   std::vector<Override> overrides;
@@ -138,31 +148,35 @@ int run(Program& program, const RunArguments& arguments) {
   return status;
 }
 
-int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
-                const RunAction& action) {
-  listen_for_interrupts();
-  outlive_reader();
-  const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.interrupted);
-  std::unique_ptr<Journal> display;
-  if (output.table) display = std::make_unique<TapTable>(config.options.taps);
-  std::optional<Watcher> watcher;
-  if (!output.watched.empty()) watcher.emplace(program, output.watched, display.get());
-  const GateOutput gate{config.options.name, output.junit, output.table};
-  RunReport report;
-  const std::optional<Error> trouble = trouble_in([&] {
-    report = action(watcher ? &*watcher : display.get(), step.get());
-    if (watcher) watcher->start();  // of a run that had no tap left to make
-  });
-  std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
-  // A run that failed is a result, too: continuous integration shall see it as one.
-  if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
-  if (trouble) throw *trouble;
-  name_record(record_line(report));
-  if (output.json) print_data(to_json(report.summary));
-  if (output.table) print_summary(report);
-  if (report.interrupted) return kInterrupted;
-  runs.front().summary = report.summary;
-  return conclude(config.expectations, runs, gate) ? kDone : kFailed;
+}  // namespace
+
+void add_run(CommandLine& line) {
+  auto [command, arguments] =
+      line.add<RunArguments>("run", "Run one experiment", run, [](Needs& needs, const RunArguments& given) {
+        if (given.watch) needs.whole();
+        needs.config(given.config, given.overrides, false);
+      });
+  command.argument("CONFIG", arguments.config, "CONFIG", "YAML file of the experiment", {required()});
+  command.argument("OVERRIDE", arguments.overrides, "KEY=VALUE",
+                   "value that replaces the value in the config, for example kernel.length_scale=2cm for a key, or "
+                   "kernel=matern52 for a config group");
+  command.argument("--runs", arguments.runs, "FOLDER", kRunsHelp, {with_default()});
+  command.flag("--json", arguments.json, "print summary.json and nothing else");
+  const Argument quiet = command.flag("--quiet", arguments.quiet, "print nothing");
+  command.flag("--dry-run", arguments.dry_run, "print the planned run and its directory; nothing moves");
+  command.flag("--force", arguments.force,
+               "run again even if a run with the same id exists. The existing run is moved to another folder");
+  command.flag("--step", arguments.step, kStepHelp, {not_with(quiet)});
+  command.flag("--watch", arguments.watch, kWatchHelp);
+  const Argument print = command.flag("--print-config", arguments.print_config, "print the resolved config and stop");
+  const Argument origins =
+      command.flag("--origins", arguments.origins,
+                   "print each resolved value with the file or argument that set the value", {only_with(print)});
+  command.flag("--identity", arguments.identity, "print the text that is hashed to make the id of the run",
+               {only_with(print), not_with(origins)});
+  command.argument("--junit", arguments.junit, "FILE", kJunitHelp);
+  command.examples({"palpate run configs/paper/object_i.yaml",
+                    "palpate run configs/default.yaml scene=ring kernel.length_scale=3cm seed=7"});
 }
 
 }  // namespace palpate::cli

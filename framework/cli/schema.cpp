@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/command_line.hpp"
 #include "cli/output.hpp"
 #include "config/describe.hpp"
 #include "experiment/experiment_options.hpp"
@@ -111,9 +111,9 @@ void sweep_schema(Tree& sweep) {
   blocks.at("where") = any_of({of_type("string", condition), several});
 }
 
-}  // namespace
+struct SchemaArguments {};
 
-int schema(Program& program) {
+int schema(Program& program, const SchemaArguments&) {
   ExperimentOptions options;
   const std::vector<FieldDescription> fields =
       describe_fields([&](Fields& visitor) { options.list(visitor); },
@@ -138,6 +138,16 @@ int schema(Program& program) {
   out.at("title") = Tree::quote("palpate experiment");
   print_data(to_json(out));
   return kDone;
+}
+
+}  // namespace
+
+void add_schema(CommandLine& line) {
+  const Command command =
+      line.add<SchemaArguments>("schema", "Print the JSON Schema of config files, for completion and checks in editors",
+                                schema, [](Needs& needs, const SchemaArguments&) { needs.every_plugin(); })
+          .first;
+  command.examples({"palpate schema > palpate.schema.json", "palpate schema | grep length_scale"});
 }
 
 }  // namespace palpate::cli

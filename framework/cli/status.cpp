@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/command_line.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
+#include "cli/sweep.hpp"
 #include "config/scale.hpp"
 #include "record/run_directory.hpp"
 
 namespace palpate::cli {
 
-int status(Program& program, const std::string& directory) {
-  if (is_sweep(directory)) return status_of_sweep(program, directory);
+namespace {
+
+struct StatusArguments {
+  std::string directory;
+};
+
+int status(Program& program, const StatusArguments& arguments) {
+  const std::string& directory = arguments.directory;
+  if (is_sweep(directory)) return call_in_whole(status_of_sweep, program, directory);
   // The config is read and not resolved: a status needs no plugin.
   const Tree config = read_run_config(directory);
   const RunStatus status = read_status(directory);
@@ -29,6 +37,17 @@ int status(Program& program, const std::string& directory) {
             "part\n");
   }
   return kDone;
+}
+
+}  // namespace
+
+void add_status(CommandLine& line) {
+  auto [command, arguments] = line.add<StatusArguments>("status", "Show the state of a run or sweep", status,
+                                                        [](Needs& needs, const StatusArguments& given) {
+                                                          if (is_sweep(given.directory)) needs.whole();
+                                                        });
+  command.record("DIR", arguments.directory, Wanted::any, "run or sweep");
+  command.examples({"palpate status runs/object_i/422cd70eb5f7", "palpate status runs/first/*"});
 }
 
 }  // namespace palpate::cli

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The commands about many runs: to begin them, to carry them on, to look at them.
+#include "cli/sweep.hpp"
+
 #include "analysis/sweep_table.hpp"
-#include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/output.hpp"
+#include "cli/resume.hpp"
 #include "cli/sweep_display.hpp"
 #include "cli/watcher.hpp"
 #include "config/trouble.hpp"
 #include "launch/children.hpp"
 #include "launch/job.hpp"
 #include "launch/mounts.hpp"
-#include "launch/slurm.hpp"
 #include "launch/slurm_launcher.hpp"
 #include "record/callers_run.hpp"
 #include "record/files.hpp"
@@ -115,17 +115,12 @@ bool is_on_cluster(const Campaign& campaign) { return campaign.launch.launcher !
 LaunchOptions launch_options(const Campaign& campaign) {
   const LaunchArguments& launch = campaign.launch;
   const int workers = launch.workers.value_or(is_on_cluster(campaign) ? 1 : cores());
-  std::vector<std::string> words;
-  if (!launch.partition.empty()) words.push_back("--partition=" + launch.partition);
-  if (!launch.time.empty()) words.push_back("--time=" + launch.time);
-  if (!launch.account.empty()) words.push_back("--account=" + launch.account);
-  words.insert(words.end(), launch.sbatch.begin(), launch.sbatch.end());
   return {campaign.one_at_a_time ? 1 : workers,
           campaign.options,
           launch.attempts,
           campaign.only.empty(),
           campaign.one_at_a_time,
-          std::move(words),
+          launch.cluster,
           launch.jobs_per_task.value_or(1)};
 }
 
@@ -149,7 +144,7 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
   };
   const Program& program = campaign.program;
   const std::unique_ptr<Launcher> launcher =
-      make_launcher(campaign.launch.launcher, {program, campaign.sweep, launch_options(campaign), print_array});
+      launcher_type(campaign.launch.launcher).make({program, campaign.sweep, launch_options(campaign), print_array});
   if (is_on_cluster(campaign)) {
     if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // there is nothing to submit
     if (!campaign.launch.wait) {
@@ -257,9 +252,10 @@ std::size_t jobs_of_sweep(Program& program, const std::string& config) {
 
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
-  check_sbatch_words(arguments.launch.sbatch);
-  // Before there is a folder that nobody would run.
-  if (arguments.launch.launcher != kLocal && !arguments.list) slurm::check_installed();
+  const LauncherType& launcher = launcher_type(arguments.launch.launcher);
+  if (launcher.check_options != nullptr) launcher.check_options(arguments.launch.cluster);
+  // A missing scheduler must not leave a sweep behind that nothing can run.
+  if (launcher.check_installed != nullptr && !arguments.list) launcher.check_installed();
   bool one_at_a_time = false;
   std::optional<ResolvedConfig> first;
   std::optional<SweepDraft> draft;
@@ -298,7 +294,8 @@ int sweep(Program& program, const SweepArguments& arguments) {
 }
 
 int resume_sweep(Program& program, const ResumeArguments& arguments) {
-  check_sbatch_words(arguments.launch.sbatch);
+  const LauncherType& launcher = launcher_type(arguments.launch.launcher);
+  if (launcher.check_options != nullptr) launcher.check_options(arguments.launch.cluster);
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);

@@ -2,7 +2,7 @@
 // What a person sees of a sweep while it goes on, and at its end.
 #pragma once
 
-#include "cli/commands.hpp"
+#include "cli/program.hpp"
 #include "launch/conduct.hpp"
 #include "sweep/sweep.hpp"
 

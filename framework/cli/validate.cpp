@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/command_line.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
+#include "cli/sweep.hpp"
 #include "config/trouble.hpp"
 #include "scene/sizes.hpp"
 
@@ -11,16 +12,23 @@
 
 namespace palpate::cli {
 
-int validate(Program& program, const std::vector<std::string>& configs) {
+namespace {
+
+struct ValidateArguments {
+  std::vector<std::string> configs;
+};
+
+int validate(Program& program, const ValidateArguments& arguments) {
   int bad = 0;
   // Said at the end: over a sweep, this process may become another program, which begins anew.
   std::vector<std::pair<bool, std::string>> said;  // whether it is of a valid one
-  for (const std::string& file : configs) {
+  for (const std::string& file : arguments.configs) {
     // All files are looked at, so that one run of the command shows every file that needs a hand.
     const std::optional<Error> trouble = trouble_in([&] {
       const Tree tree = program.composer.compose(file, {});
       if (tree.find("sweep") != nullptr) {
-        said.emplace_back(true, fmt::format("{}: valid, a sweep of {} jobs\n", file, jobs_of_sweep(program, file)));
+        said.emplace_back(
+            true, fmt::format("{}: valid, a sweep of {} jobs\n", file, call_in_whole(jobs_of_sweep, program, file)));
       } else {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
         // Only building finds a broken mesh, or objects for which there is no room.
@@ -36,6 +44,18 @@ int validate(Program& program, const std::vector<std::string>& configs) {
   }
   for (const auto& [valid, line] : said) valid ? print_text(line) : mention(line);
   return bad == 0 ? kDone : kUsage;
+}
+
+}  // namespace
+
+void add_validate(CommandLine& line) {
+  auto [command, arguments] = line.add<ValidateArguments>("validate", "Check configs without running them", validate,
+                                                          [](Needs& needs, const ValidateArguments& given) {
+                                                            for (const std::string& config : given.configs)
+                                                              needs.config(config, {}, true);
+                                                          });
+  command.argument("CONFIG", arguments.configs, "CONFIG", "YAML files of experiments", {required()});
+  command.examples({"palpate validate configs/default.yaml", "palpate validate configs/paper/*.yaml"});
 }
 
 }  // namespace palpate::cli

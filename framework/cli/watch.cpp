@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/watch.hpp"
+
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "record/run_directory.hpp"

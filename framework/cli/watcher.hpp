@@ -2,7 +2,7 @@
 // `--watch`: the page of what a command begins, served by a process of its own.
 #pragma once
 
-#include "cli/commands.hpp"
+#include "cli/program.hpp"
 #include "experiment/tap_record.hpp"
 
 #include <filesystem>

@@ -162,7 +162,8 @@ class FakeSlurm : public ::testing::Test {
     return lines_of(test::text_of(folder_.path() / ("calls." + name)));
   }
   std::unique_ptr<Launcher> launcher(const LaunchOptions& options = {}) {
-    return slurm_launcher({workshop_, sweep_, options, [this](const TaskArray& array) { heard_.push_back(array); }});
+    return slurm_launcher.make(
+        {workshop_, sweep_, options, [this](const TaskArray& array) { heard_.push_back(array); }});
   }
   /// Asks until jobs return, which they must.
   static std::vector<std::size_t> returned(Launcher& launcher) {
@@ -187,7 +188,7 @@ TEST_F(FakeSlurm, HearsOptionsOnlyIfTheyAreGivenAndUsersWordsBeforeThem) {
   launcher()->submit({3});
   LaunchOptions options;
   options.workers = 2;
-  options.more = {"--mem=4G", "--nice"};
+  options.cluster.words = {"--mem=4G", "--nice"};
   launcher(options)->submit({3, 4, 12});
   const auto words = [&](int submission, const char* user, const char* array, int cores, int first) {
     const std::string folder = (sweep_.directory / "slurm" / std::to_string(submission)).string();

@@ -21,40 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Where the files of a group are, the first first. A whole config is a strategy, too: configs/default.yaml is the
-/// strategy `default`. It comes last, so that a user's weighted.yaml may build on the strategy of its name.
-std::vector<fs::path> folders_of(const std::string& group) {
-  return group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
-}
-
-/// Where a group's file was found: the folder beside which its bases are looked for.
-fs::path root_of(const fs::path& file, const std::string& group) {
-  const fs::path folder = file.parent_path();
-  return folder.filename() == group ? folder.parent_path() : folder;
-}
-
-/// The first file of a group in folders, empty if there is none. Throws Error where a folder may not be searched: what
-/// it would have given is not what a later one gives.
-fs::path find_in(const std::vector<fs::path>& roots, const std::string& group, const std::string& name) {
-  for (const fs::path& folder : folders_of(group)) {
-    for (const fs::path& root : roots) {
-      std::error_code trouble;
-      fs::path file = root / folder / (name + ".yaml");
-      if (fs::exists(file, trouble)) return file;
-      if (trouble == std::errc::permission_denied) {
-        throw Error(file.string(), "cannot be accessed", "check the permissions of its folder");
-      }
-    }
-  }
-  return {};
-}
-
-/// The path as the user would name it: relative when it lies below the working directory.
-fs::path shown(const fs::path& path) {
-  const fs::path near = path.lexically_proximate(fs::current_path());
-  return near.empty() || *near.begin() == ".." ? path : near;
-}
-
 /// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
 constexpr Layer kLayersOfGroup = 16;
 
@@ -87,20 +53,6 @@ template <class Container, class Holds>
 void drop(Container& from, const Holds& holds) {
   from.erase(std::remove_if(from.begin(), from.end(), holds), from.end());
 }
-
-/// Whether a folder is there and gives all of these rights.
-bool gives(const fs::path& folder, fs::perms rights) {
-  std::error_code none;
-  const fs::file_status status = fs::status(folder, none);
-  return fs::exists(status) && (status.permissions() & rights) == rights;
-}
-
-bool others_may_write(const fs::path& folder) { return gives(folder, fs::perms::others_write); }
-
-/// Whether all users share a folder, each with files of their own, as the one for temporary files. Where others may
-/// write and also remove, the config itself may be theirs, and groups beside it make nothing worse: so are all folders
-/// of some mounted disks.
-bool is_common(const fs::path& folder) { return gives(folder, fs::perms::others_write | fs::perms::sticky_bit); }
 
 /// A group that is chosen brings its types, those of the groups within it included.
 void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
@@ -159,67 +111,6 @@ const Tree& Composer::load(const fs::path& file) {
   if (!tree.is_map()) throw Error(tree.place.text(), "a config is a map", "write key: value");
   mark_complete(tree);
   return files_.emplace(key, std::move(tree)).first->second;
-}
-
-Composer::Roots Composer::roots(const fs::path& beside) const {
-  Roots out;
-  const auto add = [&](const fs::path& folder, bool is_open) { (is_open ? out.open : out.safe).push_back(folder); };
-  const fs::path own = (fs::current_path() / beside).lexically_normal();
-  add(own, is_common(own));
-  for (fs::path folder = own.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (folder.filename() != "configs") continue;
-    add(folder, is_common(folder));
-    break;
-  }
-  // Nobody chose this one: it is enough that others could have made it.
-  const fs::path working = fs::current_path();
-  add(working / "configs", others_may_write(working) || others_may_write(working / "configs"));
-  add(shipped_, false);
-  return out;
-}
-
-fs::path Composer::find_group(const std::string& group, const std::string& name, const Place& place,
-                              const fs::path& beside) const {
-  const std::array<std::string, 3> key{group, name, beside.string()};
-  if (const auto known = found_.find(key); known != found_.end()) return known->second;
-  const Roots places = roots(beside);
-  fs::path file = find_in(places.safe, group, name);
-  if (file.empty()) {
-    if (const fs::path doubtful = find_in(places.open, group, name); !doubtful.empty()) {
-      throw Error(place.text(), fmt::format("{} is in a folder where other users can write", doubtful.string()),
-                  "move the config and its groups to a folder of your own");
-    }
-  } else {
-    file = shown(file);
-  }
-  return found_.emplace(key, std::move(file)).first->second;
-}
-
-std::map<std::string, fs::path> Composer::files_of(const std::string& group, const fs::path& beside) const {
-  std::map<std::string, fs::path> out;
-  for (const fs::path& folder : folders_of(group)) {
-    for (const fs::path& root : roots(beside).safe) {
-      for (const fs::path& file : list_folder(root / folder)) {
-        if (file.extension() == ".yaml") out.emplace(file.stem().string(), file);
-      }
-    }
-  }
-  return out;
-}
-
-std::vector<std::string> Composer::names_of(const std::string& group) const {
-  std::vector<std::string> out;
-  for (const auto& [name, file] : files_of(group, beside_)) out.push_back(name);
-  return out;
-}
-
-Error Composer::no_file(const std::string& group, const std::string& name, const Place& place,
-                        const fs::path& beside) const {
-  std::vector<std::string> names;
-  for (const auto& [known, file] : files_of(group, beside)) names.push_back(known);
-  return {place.text(), fmt::format("no file {}/{}.yaml", group, name),
-          !names.empty() ? suggestion(name, names)
-                         : "put it beside the config, or into 'configs' above it, ./configs or the program's configs"};
 }
 
 Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
@@ -410,14 +301,6 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
 void Composer::note_group(const Choice& choice, const fs::path& beside) {
   fs::path file = find_group(last_key(choice.path), choice.value.text, choice.value.place, beside);
   if (!file.empty()) groups_.push_back({choice.path, choice.value.text, std::move(file)});
-}
-
-fs::path Composer::found(const fs::path& file) const {
-  std::error_code none;
-  if (file.empty() || *file.begin() != "configs" || fs::status(file, none).type() != fs::file_type::not_found)
-    return file;
-  const fs::path own = shipped_ / file.lexically_relative("configs");
-  return fs::is_regular_file(own, none) ? own.lexically_normal() : file;
 }
 
 Tree Composer::compose(const fs::path& named, const std::vector<Override>& overrides) {

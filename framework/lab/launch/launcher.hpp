@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Who runs the jobs of a sweep, and where. A launcher takes jobs and lets go of them; whether a job is done it does not
-// say, because schedulers err: that stands in the job's directory alone, and the job itself (launch/job.hpp) sees to it
-// that nothing runs twice, however many launchers have it in hand.
+// The interface of launchers, which run the jobs of a sweep on this machine or on a cluster. A launcher accepts jobs
+// and returns them. The directory of a job alone records whether the job is done, because schedulers err. The job
+// itself (launch/job.hpp) guarantees that it runs only once, also when several launchers hold it.
 //
-// A new one is a class in files of its own, and stands in kLaunchers and make_launcher() below.
+// A new launcher NAME is a file launch/NAME_launcher.cpp that defines the LauncherType NAME_launcher, and its name in
+// the table of lab/CMakeLists.txt.
 #pragma once
 
 #include "record/session.hpp"
@@ -20,42 +21,47 @@ namespace palpate {
 
 class Launcher {
  public:
-  /// What poll() saw.
+  /// The result of poll().
   struct State {
-    std::vector<std::size_t> returned;  ///< jobs that it let go since the last call, in whatever state
-    bool all_recorded = true;           ///< false where one of them could not record its end or write its files
-    bool blocked = false;               ///< a job could not begin, nor could the next, so that none is waiting now
-    int running = 0;                    ///< jobs, as far as it knows
-    int waiting = 0;                    ///< jobs
+    std::vector<std::size_t> returned;  ///< jobs that ended or were given up since the last call
+    bool all_recorded = true;           ///< false: a returned job could not record its end or write its files
+    bool blocked = false;               ///< a job could not begin, for a reason that holds for all; no job is waiting
+    int running = 0;                    ///< number of jobs, as far as the launcher can see
+    int waiting = 0;                    ///< number of jobs
     bool empty_handed() const { return running == 0 && waiting == 0; }
   };
 
   virtual ~Launcher() = default;
 
-  /// Takes these jobs (indices into Sweep::jobs, ascending, none of them in its hands) and returns without waiting for
-  /// any. Throws Error when none can be taken.
+  /// Accepts jobs (ascending indices into Sweep::jobs, none accepted before) and returns without waiting for them.
+  /// Throws Error if no job can be accepted.
   virtual void submit(const std::vector<std::size_t>& jobs) = 0;
 
-  /// Waits until something happens, but not for more than `seconds`, nor beyond a signal, nor with empty hands. Throws
-  /// Error when nothing can be known any more.
+  /// Waits for the next event, for at most `seconds`. Returns early after a signal, and at once if no job runs or
+  /// waits. Throws Error if the state of the jobs can no longer be found out.
   virtual State poll(double seconds) = 0;
 
-  /// Asks what runs to stop after the tap under way, and forgets what waits; what is running is still returned.
+  /// Stops running jobs after their present tap and drops waiting jobs. poll() still returns the running jobs.
   virtual void cancel() = 0;
 
-  /// The command by which a user ends what goes on without this process; "" where nothing does.
+  /// Returns the command that ends the jobs that outlive this process; "" if no job does.
   virtual std::string stop_command() const { return {}; }
 };
 
-/// How jobs are to be run.
+/// Options for the scheduler of a cluster.
+struct ClusterOptions {
+  std::string partition, time, account;  ///< in the form that the scheduler reads; "": the default of the cluster
+  std::vector<std::string> words{};      ///< further options of the scheduler, dashes included
+};
+
 struct LaunchOptions {
-  int workers = 1;              ///< jobs at a time; on a cluster those of a task, each with a core of its own
-  ResumeOptions resume;         ///< for every job
-  int most_attempts = 3;        ///< a job that was begun so often and always killed has failed
-  bool wait_for_others = true;  ///< here: jobs that other processes have in hand are awaited, in case those die
-  // On a cluster:
-  bool one_at_a_time = false;       ///< tasks, of all arrays together
-  std::vector<std::string> more{};  ///< words for sbatch, each with its dashes
+  int workers = 1;              ///< parallel jobs; on a cluster: parallel jobs of one task, each with its own core
+  ResumeOptions resume;         ///< of every job
+  int most_attempts = 3;        ///< starts per job; a job that was killed this often has failed
+  bool wait_for_others = true;  ///< waits for jobs that other processes run, and runs them if those processes die
+  // Only for clusters:
+  bool one_at_a_time = false;  ///< runs one task at a time, over all arrays
+  ClusterOptions cluster{};
   int jobs_per_task = 1;
 };
 
@@ -63,30 +69,39 @@ struct LaunchOptions {
 struct TaskArray {
   int id = 0;
   int tasks = 0;
-  int jobs = 0;  ///< that are missing
+  int jobs = 0;  ///< of all tasks
   std::filesystem::path logs;
-  std::string doubt;  ///< why nothing can run it now, in the scheduler's words; "" if something can
+  std::string doubt;  ///< why no node can run the array now, in the words of the scheduler; "": a node can
 };
 
-/// What a launcher is made from. Workshop and sweep must outlive it.
+/// What a launcher is made from. `workshop` and `sweep` must outlive the launcher.
 struct LaunchOrder {
   const Workshop& workshop;
   const Sweep& sweep;
   LaunchOptions options;
-  std::function<void(const TaskArray&)> submitted;  ///< hears of every array as soon as a cluster has taken it
+  std::function<void(const TaskArray&)> submitted;  ///< called with each array once the cluster has accepted it
 };
 
-/// The launcher of this machine; all others are clusters, where jobs go on without this process.
+/// An entry of the table of launchers.
+struct LauncherType {
+  std::unique_ptr<Launcher> (*make)(const LaunchOrder& order);
+  /// Throws Error for options that this launcher rejects; null: it accepts all.
+  void (*check_options)(const ClusterOptions& options) = nullptr;
+  /// Throws Error if this machine lacks the programs of the scheduler; null: none is needed.
+  void (*check_installed)() = nullptr;
+};
+
+/// The launcher of this machine. All others are clusters, where jobs go on without this process.
 inline constexpr const char* kLocal = "local";
-/// Their names: what --launcher takes.
-inline constexpr std::array<const char*, 2> kLaunchers{kLocal, "slurm"};
 
-std::unique_ptr<Launcher> local_launcher(const LaunchOrder& order);
-std::unique_ptr<Launcher> slurm_launcher(const LaunchOrder& order);
+/// The names in the table of launchers (lab/CMakeLists.txt). A program needs no launcher to read them.
+inline constexpr std::array kLaunchers{
+#define PALPATE_LAUNCHER(name) #name,
+#include "launch/launcher_table.inc"
+#undef PALPATE_LAUNCHER
+};
 
-/// The launcher of one of the names. Here, because a program that reads the names alone has none of them.
-inline std::unique_ptr<Launcher> make_launcher(const std::string& name, const LaunchOrder& order) {
-  return name == "slurm" ? slurm_launcher(order) : local_launcher(order);
-}
+/// Returns the entry with this name, one of kLaunchers.
+const LauncherType& launcher_type(const std::string& name);
 
 }  // namespace palpate

@@ -31,7 +31,8 @@ bool is_crash(int signal) {
 
 }  // namespace
 
-std::unique_ptr<Launcher> local_launcher(const LaunchOrder& order) { return std::make_unique<LocalLauncher>(order); }
+extern const LauncherType local_launcher{
+    [](const LaunchOrder& order) -> std::unique_ptr<Launcher> { return std::make_unique<LocalLauncher>(order); }};
 
 void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
   waiting_.insert(waiting_.end(), jobs.begin(), jobs.end());

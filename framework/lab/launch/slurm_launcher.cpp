@@ -130,8 +130,13 @@ class SlurmLauncher final : public Launcher {
   /// For an array of `count` tasks from `first` on.
   std::vector<std::string> words_for(std::size_t first, std::size_t count, const fs::path& folder) const {
     const bool one_at_a_time = order_.options.one_at_a_time;
-    // Behind the user's words, so that one of those without its value takes nothing away unnoticed.
-    std::vector<std::string> words = order_.options.more;
+    const ClusterOptions& cluster = order_.options.cluster;
+    std::vector<std::string> words;
+    if (!cluster.partition.empty()) words.push_back("--partition=" + cluster.partition);
+    if (!cluster.time.empty()) words.push_back("--time=" + cluster.time);
+    if (!cluster.account.empty()) words.push_back("--account=" + cluster.account);
+    // The user's words come before the next ones: an option that lacks its value there makes sbatch fail.
+    words.insert(words.end(), cluster.words.begin(), cluster.words.end());
     words.push_back(fmt::format("--array=0-{}{}", count - 1, one_at_a_time ? "%1" : ""));
     words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
     // A percent sign begins what Slurm fills in.
@@ -225,6 +230,8 @@ std::string task_script(const fs::path& program, const fs::path& directory, cons
   return out;
 }
 
-std::unique_ptr<Launcher> slurm_launcher(const LaunchOrder& order) { return std::make_unique<SlurmLauncher>(order); }
+const LauncherType slurm_launcher{
+    [](const LaunchOrder& order) -> std::unique_ptr<Launcher> { return std::make_unique<SlurmLauncher>(order); },
+    [](const ClusterOptions& options) { check_sbatch_words(options.words); }, slurm::check_installed};
 
 }  // namespace palpate

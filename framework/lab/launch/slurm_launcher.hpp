@@ -12,6 +12,8 @@
 
 namespace palpate {
 
+extern const LauncherType slurm_launcher;
+
 /// `text` as one word of a shell, in quotes only where it needs them.
 std::string shell_word(const std::string& text);
 

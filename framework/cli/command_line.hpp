@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// The declaration of commands: name, arguments, examples, and the parts of the build that a command needs. CLI11 reads
+// the words of the command line into the variables that the declarations name.
+#pragma once
+
+#include "cli/needs.hpp"
+#include "cli/program.hpp"
+#include "record/catalogue.hpp"
+
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace palpate::cli {
+
+/// An option or positional argument of a command, and a rule for one.
+using Argument = CLI::Option*;
+using Rule = std::function<void(CLI::Option&)>;
+
+Rule required();
+/// Shows in the help the default, which is the present value of the variable.
+Rule with_default();
+Rule at_least(int least);
+Rule between(int least, int most);
+Rule one_of(const std::vector<std::string>& values);
+/// Reads several values from one word.
+Rule comma_separated();
+/// Reads one value per occurrence of the option, which can be repeated.
+Rule one_per_option();
+/// Lists the option below this heading in the help.
+Rule below(const std::string& heading);
+/// Rejects a command line that has the option without `other`.
+Rule only_with(Argument other);
+Rule not_with(Argument other);
+
+/// A command under declaration.
+class Command {
+ public:
+  using Rules = std::initializer_list<Rule>;
+
+  /// `finds_records`: whether a run or sweep that does not exist is an error.
+  Command(CLI::App* app, bool finds_records) : app_(app), finds_records_(finds_records) {}
+
+  /// Adds an option (its name begins with a dash) or a positional argument. The help calls the value `of`. Defined for
+  /// text, whole numbers, optional ones, and lists of either.
+  template <class Value>
+  Argument argument(const char* name, Value& value, const char* of, const std::string& help, Rules rules = {}) const;
+  Argument flag(const char* name, bool& value, const std::string& help, Rules rules = {}) const;
+
+  /// Adds a required argument for a run or sweep, or for several. The variable gets directories: see find_record().
+  template <class Texts>
+  void record(const char* name, Texts& directories, Wanted wanted, const std::string& help) const;
+  /// Adds a required argument for sweeps and runs that count as one sweep. The variable gets the words of the command
+  /// line: see find_records().
+  void pooled_records(std::vector<std::string>& words) const;
+
+  /// Sets the example command lines of the help.
+  void examples(const std::vector<std::string>& lines) const;
+
+ private:
+  CLI::App* app_;
+  bool finds_records_;
+};
+
+/// The command line of the program.
+class CommandLine {
+ public:
+  /// `is_query`: the caller wants completions or the parts that a command needs, and performs no command.
+  CommandLine(const Installation& installation, bool is_query);
+  ~CommandLine();
+
+  /// Adds a command and returns it with its arguments, which live as long as this object. `function` performs the
+  /// command and returns the exit status; it may be a function that only `palpate-whole` has. `needed` adds the parts
+  /// of the build that the command needs.
+  template <class Arguments>
+  std::pair<Command, Arguments&> add(const char* name, const char* help, int (*function)(Program&, const Arguments&),
+                                     void (*needed)(Needs&, const Arguments&)) {
+    auto arguments = std::make_shared<Arguments>();
+    const Command command = add(name, help,
+                                {[=](Program& program) { return call_in_whole(function, program, *arguments); },
+                                 [=](Needs& needs) { needed(needs, *arguments); }});
+    return {command, *arguments};
+  }
+
+  /// Reads the words. Returns an exit status if that is all: after --help and --version. Throws Error, of kind usage.
+  std::optional<int> parse(int argc, char** argv);
+  int perform(Program& program) const { return chosen_.perform(program); }
+  void need(Needs& needs) const { chosen_.need(needs); }
+
+  CLI::App& app() { return *app_; }
+
+ private:
+  struct Actions {
+    std::function<int(Program&)> perform;
+    std::function<void(Needs&)> need;
+  };
+  Command add(const char* name, const char* help, Actions actions);
+
+  std::unique_ptr<CLI::App> app_;
+  bool is_query_;
+  Actions chosen_;  ///< of the command that the words name
+};
+
+/// Adds `named`, if there is such a command, else all commands, in the order of `--help`. To add all takes a tenth of
+/// the time of a short run.
+void add_commands(CommandLine& line, const std::string& named);
+
+/// For commands that need all of the program, or also all plugins, with any arguments.
+constexpr auto kNeedsWhole = [](Needs& needs, const auto&) { needs.whole(); };
+constexpr auto kNeedsEverything = [](Needs& needs, const auto&) { needs.everything(); };
+
+constexpr const char* kRunsHelp = "folder in which the run directories are made";
+constexpr const char* kJunitHelp = "output file in JUnit XML format, with the results of all runs and expectations";
+constexpr const char* kStepHelp =
+    "for a robot: before each tap, show position, path and force limits, and wait for an answer. Enter makes the tap, "
+    "q interrupts the run. 'palpate resume' continues the run";
+constexpr const char* kWatchHelp =
+    "serve a web page that follows the run or sweep, and print the address of the page. The server ends as with "
+    "'palpate watch --until-left'";
+constexpr int kMaxWorkers = 1024;
+
+}  // namespace palpate::cli

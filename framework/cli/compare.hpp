@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Arguments of `palpate compare`.
+#pragma once
+
+#include "cli/command_line.hpp"
+
+namespace palpate::cli {
+
+struct CompareArguments {
+  std::vector<std::string> records;  ///< words for sweeps and runs that count as one sweep: see find_records()
+  std::vector<std::string> by;
+  std::vector<std::string> metrics;
+  std::optional<std::string> where;
+  std::optional<std::string> baseline;
+  std::vector<int> at;               ///< numbers of taps; empty: the ends of the jobs
+  std::optional<std::string> until;  ///< COLUMN=VALUE, or the tap that reached the value
+  bool ratio = false;
+  std::string format = "text";
+  std::optional<int> workers;
+};
+PALPATE_WHOLE int compare(Program& program, const CompareArguments& arguments);
+
+inline void add_compare(CommandLine& line) {
+  auto [command, query] = line.add<CompareArguments>(
+      "compare", "Compare groups of jobs of a sweep, with confidence intervals and paired tests", compare,
+      [](Needs& needs, const CompareArguments& arguments) {
+        arguments.at.empty() && !arguments.until ? needs.whole() : needs.everything();
+      });
+  command.pooled_records(query.records);
+  command.argument("--by", query.by, "KEYS", "swept keys that define the groups, for example acquisition,kernel",
+                   {comma_separated(), required()});
+  command.argument("--metric", query.metrics, "COLUMNS",
+                   "columns of results.csv to compare, for example object_taps,footprint_iou",
+                   {comma_separated(), required()});
+  command.argument("--where", query.where, "CONDITION",
+                   "compare only jobs that satisfy this condition, for example \"first_hit_tap <= 3\"");
+  command.argument("--baseline", query.baseline, "GROUP",
+                   "group with which every other group is compared, for example uncertainty");
+  const Argument at = command.argument("--at", query.at, "NUMBERS",
+                                       "numbers of taps after which the jobs are compared, for example 17,30",
+                                       {comma_separated(), at_least(1)});
+  command.argument("--until", query.until, "COLUMN=VALUE",
+                   "value of a summary field, for example rmse_m=8mm. Each job is compared at the tap that reaches the "
+                   "value. A job that never reaches the value is compared at its end",
+                   {not_with(at)});
+  command.flag("--ratio", query.ratio, "also print the ratio of the means of each pair");
+  command.argument("--format", query.format, "NAME",
+                   "output format. text also writes CSV files next to results.csv. csv and json contain groups and "
+                   "pairs. latex is a booktabs table of means, intervals and n. markdown is a table of means",
+                   {one_of({"text", "markdown", "csv", "json", "latex"}), with_default()});
+  command.argument("-j", query.workers, "N",
+                   "number of jobs that --at or --until computes in parallel; default: number of cores",
+                   {between(1, kMaxWorkers)});
+  command.examples(
+      {"palpate compare runs/many/* --by acquisition --metric object_taps",
+       "palpate compare runs/many/* --by acquisition --metric rmse_m,footprint_iou --at 17,30 --format latex"});
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "cli/conduct_run.hpp"
+
+#include "cli/display.hpp"
+#include "cli/gate.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/output.hpp"
+#include "cli/step.hpp"
+#include "cli/watcher.hpp"
+#include "config/trouble.hpp"
+#include "record/json.hpp"
+
+#include <memory>
+#include <optional>
+
+namespace palpate::cli {
+
+int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
+                const RunAction& action) {
+  listen_for_interrupts();
+  outlive_reader();
+  const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.interrupted);
+  std::unique_ptr<Journal> display;
+  if (output.table) display = std::make_unique<TapTable>(config.options.taps);
+  std::optional<Watcher> watcher;
+  if (!output.watched.empty()) watcher.emplace(program, output.watched, display.get());
+  const GateOutput gate{config.options.name, output.junit, output.table};
+  RunReport report;
+  const std::optional<Error> trouble = trouble_in([&] {
+    report = action(watcher ? &*watcher : display.get(), step.get());
+    if (watcher) watcher->start();  // of a run that had no tap left to make
+  });
+  std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
+  // A run that failed is a result, too: continuous integration shall see it as one.
+  if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
+  if (trouble) throw *trouble;
+  name_record(record_line(report));
+  if (output.json) print_data(to_json(report.summary));
+  if (output.table) print_summary(report);
+  if (report.interrupted) return kInterrupted;
+  runs.front().summary = report.summary;
+  return conclude(config.expectations, runs, gate) ? kDone : kFailed;
+}
+
+}  // namespace palpate::cli

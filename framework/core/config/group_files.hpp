@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The search for the files of config groups.
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <palpate/error.hpp>
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Finds the file <folder>/<group>/<name>.yaml of a group, in the first folder that has one: the folder of the config,
+/// the nearest folder named `configs` above it, ./configs, and the configs of the program.
+///
+/// A group may name a program that a run starts, so the file must be the user's own. A file is rejected if all users may
+/// put files into its folder (a folder with the sticky bit, such as /tmp) or, for ./configs, if others may write there.
+class GroupFiles {
+ public:
+  /// `shipped`: the configs of the program. The folder need not exist.
+  explicit GroupFiles(std::filesystem::path shipped) : shipped_(std::move(shipped)) {}
+
+  /// Returns the file for a config in the folder `beside`, or "" if there is none. Throws Error, with `place`, if the only
+  /// file is in a folder where others may write, or if a folder may not be searched.
+  std::filesystem::path find(const std::string& group, const std::string& name, const Place& place,
+                             const std::filesystem::path& beside) const;
+
+  /// Returns all files of a group for a config in the folder `beside`, by their names.
+  std::map<std::string, std::filesystem::path> list(const std::string& group,
+                                                    const std::filesystem::path& beside) const;
+
+  /// Returns the error for a name that has no file, with the nearest name as the hint.
+  Error missing(const std::string& group, const std::string& name, const Place& place,
+                const std::filesystem::path& beside) const;
+
+  /// Returns `file`, or the program's own config of that name if `file` is a relative name configs/... that does not
+  /// exist. An installed program so has the configs of a clone in every folder.
+  std::filesystem::path config(const std::filesystem::path& file) const;
+
+  /// Returns the folder that has the folder of the group `file`. Groups below this one are searched from there.
+  static std::filesystem::path root_of(const std::filesystem::path& file, const std::string& group);
+
+ private:
+  /// Folders to search, in order.
+  struct Roots {
+    std::vector<std::filesystem::path> safe;
+    std::vector<std::filesystem::path> open;  ///< where others may have put a file
+  };
+  Roots roots(const std::filesystem::path& beside) const;
+
+  std::filesystem::path shipped_;
+  /// Results of find() by group, name and folder: a sweep asks for the same groups once per job.
+  mutable std::map<std::array<std::string, 3>, std::filesystem::path> found_;
+};
+
+}  // namespace palpate
