@@ -5,7 +5,6 @@
 #include "config/resolve.hpp"
 #include "config/trouble.hpp"
 #include "config/yaml.hpp"
-#include "reading/reading.hpp"
 
 #include <palpate/error.hpp>
 
@@ -21,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Every group has a few layers: its own content is on the highest, below it the groups that it builds on.
+/// Number of layers of a group: its own content is on the highest, the groups that it builds on are below.
 constexpr Layer kLayersOfGroup = 16;
 
 [[noreturn]] void refuse_depth(const Place& place) {
@@ -29,8 +28,8 @@ constexpr Layer kLayersOfGroup = 16;
               "merge them into fewer files");
 }
 
-/// Notes in `chain`, which leads from one file to the next, that `group` is to be read now. Throws Error for what is no
-/// name, and for a file that is being read already.
+/// Appends a group to `chain`, the files under way from the config to this one. Throws Error for an invalid name and
+/// for a file that is already in the chain.
 void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
   if (!is_name(name))
     throw Error(place.text(), fmt::format("'{}' is not a valid name in the group {}", name, group), kNameHint);
@@ -41,8 +40,8 @@ void add_link(const std::string& group, const std::string& name, const Place& pl
   if (chain.size() > static_cast<std::size_t>(kLayersOfGroup)) refuse_depth(place);
 }
 
-/// Throws Error where a group lies on more layers than there are between two groups: what it builds on may have been
-/// read before, in a shorter chain.
+/// Throws Error if a group has more layers than kLayersOfGroup. The length of the chain does not show this, because a
+/// base may have been read before, in a shorter chain.
 void check_layers(const Tree& content, const Place& place) {
   Layer lowest = 0;
   for_all(content, [&](const Tree& one) { lowest = std::min(lowest, one.layer); });
@@ -54,7 +53,7 @@ void drop(Container& from, const Holds& holds) {
   from.erase(std::remove_if(from.begin(), from.end(), holds), from.end());
 }
 
-/// A group that is chosen brings its types, those of the groups within it included.
+/// Moves the types of a chosen group, and of the groups within it, to `layer`.
 void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
   for (Tree::Entry& entry : content.entries) {
     if (entry.value.is_map()) set_layer_of_type(entry.value, layer, place);
@@ -64,14 +63,14 @@ void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
   }
 }
 
-/// Fills what inherits from another key (Field::inherits()), where present, so that it may name only what differs.
+/// Completes groups that inherit from another key (Field::inherits()): a config may set only their differences.
 void inherit_shared(Tree& tree, const ConfigKeys& keys) {
   for (const auto& [heir, from] : keys.heirs()) {
     const Tree* own = tree.find_path(heir);
     const Tree* base = tree.find_path(from);
     if (own == nullptr || base == nullptr || !own->is_map() || !base->is_map()) continue;
     Tree merged = *base;
-    // What the shared one says is older than anything said for this process alone.
+    // The inherited values rank below all values of the heir.
     merged.shift_layer(-2 * kCommandLineLayer);
     merged.merge(*own);
     merged.place = own->place;
@@ -85,7 +84,7 @@ void mark_complete(Tree& config) {
   const Tree* complete = config.find("complete");
   if (complete == nullptr) return;
   std::int64_t number = 0;
-  trouble_in([&] { number = read_integer(*complete, "complete"); });  // resolving says what else is wrong
+  trouble_in([&] { number = read_integer(*complete, "complete"); });  // resolving reports other errors
   if (number > kRecordVersion) {
     throw Error(
         complete->place.text(),
@@ -105,42 +104,57 @@ bool Composer::is_inner(const std::string& path) const {
 const Tree& Composer::load(const fs::path& file) {
   if (file.empty()) throw Error("command line", "the name of the config is empty", "name a YAML file");
   const fs::path key = fs::absolute(file).lexically_normal();
-  const auto found = files_.find(key);
-  if (found != files_.end()) return found->second;
+  const auto found = loaded_.find(key);
+  if (found != loaded_.end()) return found->second;
   Tree tree = read_yaml(file);
   if (!tree.is_map()) throw Error(tree.place.text(), "a config is a map", "write key: value");
   mark_complete(tree);
-  return files_.emplace(key, std::move(tree)).first->second;
+  return loaded_.emplace(key, std::move(tree)).first->second;
+}
+
+std::vector<std::string> Composer::names_of(const std::string& group) const {
+  std::vector<std::string> out;
+  for (const auto& [name, file] : files_of(group, beside_)) out.push_back(name);
+  return out;
 }
 
 Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
                              const fs::path& beside, std::vector<std::string>& chain) {
   add_link(group, name, place, chain);
-  const fs::path file = find_group(group, name, place, beside);
+  const fs::path file = group_files_.find(group, name, place, beside);
+  if (file.empty() && !keys_.is_plugin(group)) throw group_files_.missing(group, name, place, beside);
+  Tree content = Tree::map();
+  content.place = place;
   if (file.empty()) {
-    if (!keys_.is_plugin(group)) throw no_file(group, name, place, beside);
-    Tree content = Tree::map();
-    content.place = place;
     content.at("type") = Tree::scalar(name);
     content.at("type").place = place;
-    chain.pop_back();
-    return content;
+  } else {
+    Tree own = load(file);
+    content.place = own.place;
+    own.set_layer(0);
+    lay_bases(content, group, take_defaults(own), GroupFiles::root_of(file, group), chain);
+    lay_group_file(content, group, own);
+    check_layers(content, place);
   }
-  Tree own = load(file);
-  Tree content = Tree::map();
-  content.place = own.place;
-  own.set_layer(0);
-  const std::vector<Choice> bases = take_defaults(own);
+  chain.pop_back();
+  return content;
+}
+
+void Composer::lay_bases(Tree& content, const std::string& group, const std::vector<Choice>& bases,
+                         const fs::path& beside, std::vector<std::string>& chain) {
   for (std::size_t i = 0; i < bases.size(); ++i) {
     const Choice& base = bases[i];
     if (base.path != group) {
       throw Error(base.value.place.text(), fmt::format("a {} may build only on another {}", group, group),
                   fmt::format("write '- {}: name'", group));
     }
-    Tree below = base_content(group, base.value, root_of(file, group), chain);
+    Tree below = base_content(group, base.value, beside, chain);
     below.shift_layer(static_cast<int>(i) - static_cast<int>(bases.size()));
     content.merge(below);
   }
+}
+
+void Composer::lay_group_file(Tree& content, const std::string& group, const Tree& own) const {
   const std::string beside_group = keys_.beside(group);
   for (const Tree::Entry& entry : own.entries) {
     const bool is_beside = !beside_group.empty() && entry.key == beside_group;
@@ -163,9 +177,6 @@ Tree Composer::group_content(const std::string& group, const std::string& name, 
       content.merge(entry.value);
     }
   }
-  check_layers(content, place);
-  chain.pop_back();
-  return content;
 }
 
 Tree Composer::base_content(const std::string& group, const Tree& name, const fs::path& beside,
@@ -173,8 +184,8 @@ Tree Composer::base_content(const std::string& group, const Tree& name, const fs
   const std::array<std::string, 3> key{group, name.text, beside.string()};
   if (const auto known = bases_.find(key); known != bases_.end()) return known->second;
   Tree content = group_content(group, name.text, name.place, beside, chain);
-  // A plugin without a file has the place of whoever names it.
-  if (!find_group(group, name.text, name.place, beside).empty()) bases_.emplace(key, content);
+  // A plugin without a file has the place of its name, which differs from use to use.
+  if (!group_files_.find(group, name.text, name.place, beside).empty()) bases_.emplace(key, content);
   return content;
 }
 
@@ -182,7 +193,7 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
   std::vector<Choice> choices;
   const Tree* defaults = own.find("defaults");
   if (defaults == nullptr) {
-    // Without this, the first complaint would be of a group that is not chosen.
+    // Otherwise the first error would be about a group that the misspelt list chooses.
     for (const Tree::Entry& entry : own.entries) {
       if (nearest(entry.key, {"defaults"}).empty()) continue;
       throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), "did you mean 'defaults'?");
@@ -233,8 +244,8 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
-  // What a group brings for the key beside it, as a backend its motion, counts unless that is chosen: by an override,
-  // or by the config that chooses the group, wherever it says so.
+  // A group may bring options for the key beside it, as a backend brings its motion. These options count unless that
+  // key is chosen by an override, or anywhere in the config that chooses the group.
   const auto is_chosen = [&](const std::string& key, Layer since) {
     return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) {
       return one.path == key && (one.value.layer >= kSweepLayer || since < kSweepLayer);
@@ -256,7 +267,7 @@ void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const 
     if (slot.place.line == 0) slot.place = content.place;
     slot.merge(content);
   };
-  // A part behind every whole: it takes the place of what that has there.
+  // A part (scene.effects) comes after all whole groups (scene), because the part replaces their content at its path.
   for (const bool parts : {false, true}) {
     for (const Choice& choice : choices) {
       if (keys_.is_part(choice.path) == parts) lay(choice);
@@ -272,8 +283,8 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   const Choice choice = *last;
   drop(choices, is_strategy);
   add_link(kStrategy, choice.value.text, choice.value.place, chain);
-  const fs::path file = find_group(kStrategy, choice.value.text, choice.value.place, beside);
-  if (file.empty()) throw no_file(kStrategy, choice.value.text, choice.value.place, beside);
+  const fs::path file = group_files_.find(kStrategy, choice.value.text, choice.value.place, beside);
+  if (file.empty()) throw group_files_.missing(kStrategy, choice.value.text, choice.value.place, beside);
   note_group(choice, beside);
   Tree own = load(file);
   own.set_layer(kGroupLayer);
@@ -288,7 +299,7 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
   drop(own.entries, [&](const Tree::Entry& one) { return is_of_run(one.key); });
   take_names(own, "", inner);
   drop(inner, [&](const Choice& one) { return is_of_run(one.path); });
-  const fs::path root = root_of(file, kStrategy);
+  const fs::path root = GroupFiles::root_of(file, kStrategy);
   lay_strategy(tree, inner, root, layer, chain);
   for (auto& [key, part] : brought) brought_[key] = std::move(part);
   lay_groups(tree, inner, root, layer);
@@ -299,17 +310,11 @@ Layer Composer::lay_strategy(Tree& tree, std::vector<Choice>& choices, const fs:
 }
 
 void Composer::note_group(const Choice& choice, const fs::path& beside) {
-  fs::path file = find_group(last_key(choice.path), choice.value.text, choice.value.place, beside);
+  fs::path file = group_files_.find(last_key(choice.path), choice.value.text, choice.value.place, beside);
   if (!file.empty()) groups_.push_back({choice.path, choice.value.text, std::move(file)});
 }
 
-Tree Composer::compose(const fs::path& named, const std::vector<Override>& overrides) {
-  groups_.clear();
-  brought_.clear();
-  const fs::path file = found(named);
-  Tree own = load(file);
-  const fs::path beside = fs::absolute(file).parent_path();
-  beside_ = beside;
+std::vector<Composer::Choice> Composer::take_choices(Tree& own, const std::vector<Override>& overrides) const {
   std::vector<Choice> choices = take_defaults(own);
   take_names(own, "", choices);
   for (const Override& one : overrides) {
@@ -317,36 +322,49 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
     drop(choices, [&](const Choice& choice) { return choice.path == one.path; });
     choices.push_back(one);
   }
+  return choices;
+}
 
+Tree Composer::compose(const fs::path& named, const std::vector<Override>& overrides) {
+  groups_.clear();
+  brought_.clear();
+  const fs::path file = found(named);
+  Tree own = load(file);
+  beside_ = fs::absolute(file).parent_path();
+  std::vector<Choice> choices = take_choices(own, overrides);
   Tree tree = Tree::map();
   tree.place = own.place;
   Layer layer = kGroupLayer;
   std::vector<std::string> chain;
-  if (lay_strategy(tree, choices, beside, layer, chain) >= kSweepLayer) {
+  if (lay_strategy(tree, choices, beside_, layer, chain) >= kSweepLayer) {
     drop(choices,
          [&](const Choice& one) { return one.value.layer < kSweepLayer && tree.find(first_key(one.path)) != nullptr; });
     for (const Tree::Entry& entry : tree.entries) own.erase(entry.key);
   }
-  lay_groups(tree, choices, beside, layer);
+  lay_groups(tree, choices, beside_, layer);
   tree.merge(own);
   tree.complete = own.complete;
   for (const auto& [key, part] : brought_) {
     if (tree.find(key) == nullptr) tree.at_path(key, part.place) = part;
   }
-  for (const Override& one : overrides) {
-    if (keys_.is_group(one.path) && one.value.is_scalar()) {
-      if (is_inner(one.path)) choose_inner(tree, one, beside);
-      continue;
-    }
-    Tree& slot = tree.at_path(one.path, one.value.place);
-    if (keys_.is_group(one.path) && !keys_.is_part(one.path) && slot.is_map() && one.value.is_map()) {
-      slot.merge(one.value);
-    } else {
-      tree.put(one.path, one.value);
-    }
-  }
+  for (const Override& one : overrides) lay_override(tree, one);
   inherit_shared(tree, keys_);
   return tree;
+}
+
+void Composer::lay_override(Tree& tree, const Override& override) {
+  const auto& [path, value] = override;
+  const bool is_group = keys_.is_group(path);
+  if (is_group && value.is_scalar()) {
+    if (is_inner(path)) choose_inner(tree, override, beside_);
+    return;
+  }
+  Tree& slot = tree.at_path(path, value.place);
+  if (is_group && !keys_.is_part(path) && slot.is_map() && value.is_map()) {
+    slot.merge(value);
+  } else {
+    tree.put(path, value);
+  }
 }
 
 void Composer::choose_inner(Tree& tree, const Choice& choice, const fs::path& beside) {

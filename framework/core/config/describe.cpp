@@ -29,7 +29,8 @@ std::string range_text(const Field& field) {
 class Describer final : public Fields {
  public:
   explicit Describer(const PluginCases& plugins) : plugins_(plugins) {
-    constexpr std::size_t kUsual = 16;  // descriptions are not small, and every first run makes hundreds
+    constexpr std::size_t kUsual =
+        16;  // a usual number of fields, reserved because a first run describes hundreds of options
     rows.reserve(kUsual);
   }
 
@@ -133,7 +134,7 @@ void append_text(std::vector<std::vector<std::string>>& lines, const std::vector
   }
 }
 
-/// A quantity in a config is a text such as "1.7 cm"; the pattern lets an editor say so while one types.
+/// Returns a pattern for quantities such as "1.7 cm", with which an editor can check a value while the user types.
 std::string quantity_pattern(Unit unit) {
   return fmt::format("^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *({})$", fmt::join(unit_names(unit), "|"));
 }
@@ -143,19 +144,19 @@ Tree number_schema(Unit unit) {
   return Tree::map({{"type", Tree::quote("string")}, {"pattern", Tree::quote(quantity_pattern(unit))}});
 }
 
-/// A plugin of that kind.
+/// Returns a reference to the schema of a plugin kind.
 Tree plugin_schema(const std::string& kind) { return Tree::map({{"$ref", Tree::quote("#/definitions/" + kind)}}); }
 
 Tree array_schema(Tree items) { return Tree::map({{"type", Tree::quote("array")}, {"items", std::move(items)}}); }
 
-/// As many numbers as `field` has in a row.
+/// Returns the schema of a row of `field`, with its number of values.
 Tree row_schema(const FieldDescription& field) {
   Tree out = array_schema(number_schema(field.unit));
   for (const char* bound : {"minItems", "maxItems"}) out.at(bound) = Tree::scalar(std::to_string(field.count));
   return out;
 }
 
-/// A group with a type has a schema for each of its cases, with the fields of that and of no other.
+/// Returns the schema of a group whose type is a choice: one alternative per case, with the fields of that case only.
 Tree group_schema(const std::vector<FieldDescription>& fields) {
   const auto typed = std::find_if(fields.begin(), fields.end(), [](const FieldDescription& field) {
     return std::any_of(field.cases.begin(), field.cases.end(), [](const auto& one) { return !one.fields.empty(); });
@@ -171,7 +172,7 @@ Tree group_schema(const std::vector<FieldDescription>& fields) {
   return Tree::map({{"anyOf", any}});
 }
 
-/// A group, or a word in its place.
+/// Returns the schema of a group, or of a word in its place.
 Tree section_schema(const FieldDescription& field) {
   Tree group = group_schema(field.fields);
   if (!field.optional && !field.group) return group;
@@ -182,7 +183,7 @@ Tree section_schema(const FieldDescription& field) {
   return Tree::map({{"anyOf", Tree::list({field.group ? name : none, std::move(group)})}});
 }
 
-/// A schema in which any number may be drawn: `uniform(3 cm, 8 cm)`.
+/// Returns a schema that also accepts a range for any number, such as `uniform(3 cm, 8 cm)`.
 Tree or_drawn(Tree schema) {
   const Tree* type = schema.find("type");
   if (schema.find("pattern") != nullptr || (type != nullptr && (type->text == "number" || type->text == "integer"))) {
@@ -195,7 +196,7 @@ Tree or_drawn(Tree schema) {
   return schema;
 }
 
-/// A list of groups, or what draws one: see scene/draw.hpp.
+/// Returns the schema of a list of groups, or of a random draw of that list: see scene/draw.hpp.
 Tree list_schema(const FieldDescription& field) {
   Tree item = group_schema(field.fields);
   Tree list = array_schema(item);
@@ -214,7 +215,7 @@ Tree list_schema(const FieldDescription& field) {
   return Tree::map({{"anyOf", Tree::list({std::move(list), closed(Tree::map({{"draw", draw}}))})}});
 }
 
-/// What values a field takes.
+/// Returns the schema of a field's values.
 Tree value_schema(const FieldDescription& field) {
   switch (field.type) {
     case Type::real:
@@ -242,7 +243,7 @@ Tree value_schema(const FieldDescription& field) {
       if (field.adopted) return Tree::map({{"type", Tree::quote("string")}});
       break;
     case Type::plugins: {
-      // In a list no group is chosen by its name: every item is a map with a type.
+      // An item of a list cannot be chosen by a group's name, so that it must be a map with a type.
       const Tree typed = Tree::map({{"type", Tree::quote("object")}, {"required", Tree::list({Tree::quote("type")})}});
       return array_schema(Tree::map({{"allOf", Tree::list({plugin_schema(field.kind), typed})}}));
     }
@@ -258,7 +259,7 @@ Tree field_schema(const FieldDescription& field) {
   return out;
 }
 
-/// Adds the properties of `fields`, those of the cases of a choice included.
+/// Adds the properties of `fields`, including those of all cases of a choice.
 void add_properties(Tree& properties, const std::vector<FieldDescription>& fields) {
   for (const FieldDescription& field : fields) {
     properties.at(field.name) = field_schema(field);
@@ -269,7 +270,7 @@ void add_properties(Tree& properties, const std::vector<FieldDescription>& field
 }  // namespace
 
 std::string FieldDescription::type_name() const {
-  // In the order of Type.
+  // In the order of FieldDescription::Type.
   constexpr std::array kNames{"{dimension}",
                               "{count} {dimension}s",
                               "rows of {count} {dimension}s",

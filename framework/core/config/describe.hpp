@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Option lists turned into text for people and into JSON Schema for editors.
+// Descriptions of options, as text for people and as JSON Schema for editors.
 #pragma once
 
 #include "config/tree.hpp"
@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// All that is known of one field.
+/// The description of one field of an option list.
 struct FieldDescription {
   enum class Type { real, reals, table, integer, flag, text, choice, section, sections, plugin, plugins };
   struct CaseDescription;
@@ -25,20 +25,20 @@ struct FieldDescription {
   std::string meaning;
   std::string source;
   bool required = false;
-  bool optional = false;  ///< a `section` that is absent unless it is written
+  bool optional = false;  ///< a `section` that is absent by default
   bool group = false;     ///< see Field::group()
-  bool adopted = false;   ///< see Fields::adopt(); of a plugin whose options, unknown here, stand beside the field
+  bool adopted = false;   ///< see Fields::adopt(): the options of the plugin, which are unknown here, follow the field
   bool drawable = false;  ///< see Field::drawable()
   std::string heir_of;    ///< see Field::inherits(); "" for none
   Owner owner = Owner::unsaid;
   std::string beside;                  ///< see Field::with_beside(); "" for none
   std::string neutral;                 ///< see Field::neutral(): as in a config, "none" where it is absent; "" for none
-  std::size_t count = 0;               ///< of `reals`, and of a row of `table`
-  std::string kind;                    ///< of `plugin`
-  std::vector<CaseDescription> cases;  ///< of `choice`
+  std::size_t count = 0;               ///< number of values of `reals`, or of a row of `table`
+  std::string kind;                    ///< of a `plugin`
+  std::vector<CaseDescription> cases;  ///< of a `choice`
   std::vector<FieldDescription> fields;  ///< of `section` and `sections`
 
-  /// "length", "whole number", "one of a, b", ...
+  /// Returns for example "length", "whole number" or "one of a, b".
   std::string type_name() const;
 };
 
@@ -48,28 +48,28 @@ struct FieldDescription::CaseDescription {
   std::vector<FieldDescription> fields;
 };
 
-/// Of a key that is no option and says nothing but what it is.
+/// Describes a key that is not an option.
 FieldDescription describe_key(const Field& field);
 
-/// The option that stands beside the plugin at `field` (Field::with_beside()), its fields unknown.
+/// Describes the option next to the plugin at `field` (Field::with_beside()), without its fields.
 FieldDescription describe_beside(const FieldDescription& field);
 
-/// Every plugin of a kind, with its options.
+/// Returns all plugins of a kind, with their options.
 using PluginCases = std::function<std::vector<FieldDescription::CaseDescription>(const std::string& kind)>;
 
-/// The description of what `list` lists. A plugin whose options stand among them (Fields::adopt) is one of the cases
-/// that `plugins` tells; without it, or if there are none, only its kind is known.
+/// Describes the fields that `list` lists. The plugins of an adopted field (Fields::adopt()) are its cases, if
+/// `plugins` returns any; otherwise only their kind is described.
 std::vector<FieldDescription> describe_fields(const std::function<void(Fields&)>& list,
                                               const PluginCases& plugins = {});
 
-/// An aligned table, a field a line, nested fields indented by their path.
+/// Returns a table with one line per field. Nested fields have the path as their name.
 std::string describe_text(const std::vector<FieldDescription>& fields);
 
-/// The same as a tree to be printed as JSON: name, type, unit, range, default, meaning, source, required.
+/// Returns the descriptions for JSON: name, type, unit, range, default, meaning, source, required.
 Tree describe_tree(const std::vector<FieldDescription>& fields);
 
-/// The `properties` of a JSON Schema object that allows exactly `fields`, and any beside an adopted one. A plugin field
-/// refers to "#/definitions/<kind>".
+/// Returns a JSON Schema of an object that allows exactly `fields`, or any further keys if a field is adopted. A plugin
+/// field refers to "#/definitions/<kind>".
 Tree schema_of(const std::vector<FieldDescription>& fields);
 
 }  // namespace palpate

@@ -14,15 +14,15 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMaxValues = 1'000'000;        ///< of an axis
-constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< of all axes
+constexpr std::size_t kMaxValues = 1'000'000;        ///< per axis
+constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< for all axes together
 constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or logspace(1cm,5cm,8), both ends with the same unit";
 
 [[noreturn]] void refuse(const Tree& tree, const std::string& key, const std::string& reason, const std::string& hint) {
   throw Error(tree.place.text(), fmt::format("{}: '{}' {}", key, tree.text, reason), hint);
 }
 
-/// Splits at commas that stand in no bracket and no quotes.
+/// Splits at commas outside of brackets and quotes.
 std::vector<std::string> split_top(const std::string& text) {
   std::vector<std::string> parts(1);
   int depth = 0;
@@ -57,7 +57,7 @@ Bound parse_bound(const std::string& text, const Tree& tree, const std::string& 
 
 constexpr double kRounding = 1e-9;
 
-/// 3 * 0.1 is 0.30000000000000004, but whoever steps by 0.1 means 0.3: 15 digits are as many as any decimal keeps.
+/// Rounds to 15 digits, which each decimal keeps: 3 * 0.1 is 0.30000000000000004, but a step of 0.1 means 0.3.
 double as_decimal(double value) {
   const std::string text = fmt::format("{:.15g}", value);
   double out = value;
@@ -68,7 +68,7 @@ double as_decimal(double value) {
 std::vector<Tree> expand_range(const std::vector<Bound>& from, const Tree& tree, const std::string& key,
                                ValueCount& counted) {
   const double step = from.size() == 3 ? from[2].value : 1.0;
-  // (1.3 - 1) / 0.1 is 3.0000000000000004: rounding must not let the end in.
+  // (1.3 - 1) / 0.1 is 3.0000000000000004, but the end must not be included by rounding.
   const double count = std::ceil((from[1].value - from[0].value) / step - kRounding);
   if (!(count >= 1.0)) refuse(tree, key, "has no value", "the end must lie beyond the start");
   if (count > static_cast<double>(kMaxValues)) refuse(tree, key, "has more than a million values", "use a wider step");
@@ -92,7 +92,7 @@ std::vector<Tree> expand_logspace(const std::vector<Bound>& from, const Tree& tr
   std::vector<Tree> out;
   for (int i = 0; i < static_cast<int>(count); ++i) {
     const double share = i / (count - 1.0);
-    // The ends are as written; between them, rounding does not matter.
+    // The ends are exactly as written. Rounding between them does not matter.
     const double value = i == 0 ? first : share == 1.0 ? last : first * math::pow(last / first, share);
     out.push_back(number(value, from[0].unit, tree));
   }
@@ -175,7 +175,7 @@ Axis parse_axis(const std::string& text, ValueCount& count) {
   Axis axis{whole.path, {}, Tree::list()};
   for (const std::string& part : parts) {
     const Override one = parse_override(whole.path + "=" + boost::trim_copy(part));
-    // Beside other values a list is one value: at=[1cm,1cm],[2cm,2cm].
+    // Next to other values, a list is one value: at=[1cm,1cm],[2cm,2cm].
     if (one.value.kind == Tree::Kind::list) {
       axis.values.push_back(one.value);
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The values that a swept key takes, from the texts that name them.
+// The values of swept keys, parsed from lists, `range` and `logspace`; and continuous ranges.
 #pragma once
 
 #include "config/compose.hpp"
@@ -12,11 +12,11 @@
 
 namespace palpate {
 
-/// A key that is swept, and its values in order.
+/// A swept key and its values.
 struct Axis {
   std::string key;  ///< dotted path
   std::vector<Tree> values;
-  Tree written;  ///< what they were read from, and can be read from again
+  Tree written;  ///< the text of the values, which can be parsed again
 };
 
 /// A number of a range, with its unit as written.
@@ -25,59 +25,59 @@ struct Bound {
   std::string unit;  ///< "" for none
 };
 
-/// `name(1cm, 5cm)` taken apart.
+/// The parts of a text such as `range(1cm, 5cm)`.
 struct Call {
   std::string name;
   std::vector<Bound> bounds;
 };
 
-/// None unless `value` is the text `name(...)` for one of `names`. Throws Error, with `how_to` as its hint, where what
-/// stands in the parentheses are no numbers.
+/// Parses `name(...)` for one of `names`. Returns nullopt for any other value. Throws Error, with the hint `how_to`, if
+/// an argument is not a number.
 std::optional<Call> parse_call(const Tree& value, const std::string& key, const std::vector<std::string>& names,
                                const std::string& how_to);
 
 /// A continuous range: `uniform(a, b)`, or `log_uniform(a, b)`, which is uniform in the logarithm.
 struct ContinuousRange {
   bool logarithmic = false;
-  double first = 0.0;  ///< in `unit`; below `last`, and above 0 if logarithmic
+  double first = 0.0;  ///< in `unit`; below `last`, and positive if logarithmic
   double last = 1.0;
   std::string unit;  ///< "" for none
 
-  /// Returns the number at `share` of the way, 0 to 1.
+  /// Returns the number at `share` (0 to 1) of the range.
   double at(double share) const;
 };
 
-/// Returns nullopt for a value that is no such text. Throws Error, with `key`, for ends with different units or in the
-/// wrong order.
+/// Returns nullopt for a value that is not a continuous range. Throws Error, with `key`, for ends with different units
+/// or in the wrong order.
 std::optional<ContinuousRange> parse_continuous(const Tree& value, const std::string& key);
 
-/// How a continuous range is written: the hint of an error.
+/// The hint of errors about continuous ranges.
 inline constexpr const char* kContinuousHint =
     "write uniform(0.1 mm, 1 mm) or log_uniform(1 cm, 10 cm), both ends with the same unit";
 
-/// A number as people write it, with its unit, at the place of `like`.
+/// Returns a number with its unit as text, at the place of `like`.
 Tree number(double value, const std::string& unit, const Tree& like);
 
-/// Counts the values of all axes of a sweep before they are made: a line of text can name a million.
+/// Counts the values of all axes before they are made, because a short text can stand for a million values.
 class ValueCount {
  public:
-  /// Throws Error, with `place` and `key`, for more than two million values together.
+  /// Throws Error, with `place` and `key`, for more than two million values in total.
   void add(std::size_t values, const Place& place, const std::string& key);
 
  private:
   std::size_t all_ = 0;
 };
 
-/// The values of a list, of `range(first, end)`, `range(first, end, step)` (end excluded) or of
-/// `logspace(first, last, count)` (both included, evenly spaced in the logarithm; both with the same unit); any other
-/// value is the only one. Throws Error.
+/// Returns the values of a list, of `range(first, end)` or `range(first, end, step)` (end excluded), or of
+/// `logspace(first, last, count)` (both ends included, same unit, evenly spaced in the logarithm). Any other value is a
+/// single value. Throws Error.
 std::vector<Tree> expand_values(const Tree& value, const std::string& key, ValueCount& count);
 
-/// `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=logspace(1cm,5cm,8)`: as typed behind `palpate sweep`. A list
-/// among several values is one value.
+/// Parses KEY=VALUES of `palpate sweep`: `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=logspace(1cm,5cm,8)`. A
+/// list next to other values is one value.
 Axis parse_axis(const std::string& text, ValueCount& count);
 
-/// The text of a swept value as it stands in results.csv.
+/// Returns the text of a swept value in results.csv.
 std::string value_text(const Tree& value);
 
 }  // namespace palpate

@@ -12,8 +12,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the folders of a group's files in their order. A whole config is a strategy, too: configs/default.yaml is the
-/// strategy `default`. Its folder comes last, so that a user's weighted.yaml may build on the strategy `weighted`.
+/// Returns the folders of a group's files in their order. A whole config is a strategy, too: configs/default.yaml is
+/// the strategy `default`. Its folder comes last, so that a user's weighted.yaml may build on the strategy `weighted`.
 std::vector<fs::path> folders_of(const std::string& group) {
   return group == kStrategy ? std::vector<fs::path>{group, ""} : std::vector<fs::path>{group};
 }
@@ -48,8 +48,9 @@ bool gives(const fs::path& folder, fs::perms rights) {
 
 bool others_may_write(const fs::path& folder) { return gives(folder, fs::perms::others_write); }
 
-/// Returns whether all users keep files of their own in a folder, such as /tmp. If others may also remove files, they may
-/// have replaced the config itself, so that groups add no danger. All folders of some mounted disks are of that kind.
+/// Returns whether all users keep files of their own in a folder, such as /tmp. If others may also remove files, they
+/// may have replaced the config itself, so that groups add no danger. All folders of some mounted disks are of that
+/// kind.
 bool is_common(const fs::path& folder) { return gives(folder, fs::perms::others_write | fs::perms::sticky_bit); }
 
 }  // namespace

@@ -17,15 +17,16 @@ namespace palpate {
 /// Finds the file <folder>/<group>/<name>.yaml of a group, in the first folder that has one: the folder of the config,
 /// the nearest folder named `configs` above it, ./configs, and the configs of the program.
 ///
-/// A group may name a program that a run starts, so the file must be the user's own. A file is rejected if all users may
-/// put files into its folder (a folder with the sticky bit, such as /tmp) or, for ./configs, if others may write there.
+/// A group may name a program that a run starts, so the file must be the user's own. A file is rejected if all users
+/// may put files into its folder (a folder with the sticky bit, such as /tmp) or, for ./configs, if others may write
+/// there.
 class GroupFiles {
  public:
   /// `shipped`: the configs of the program. The folder need not exist.
   explicit GroupFiles(std::filesystem::path shipped) : shipped_(std::move(shipped)) {}
 
-  /// Returns the file for a config in the folder `beside`, or "" if there is none. Throws Error, with `place`, if the only
-  /// file is in a folder where others may write, or if a folder may not be searched.
+  /// Returns the file for a config in the folder `beside`, or "" if there is none. Throws Error, with `place`, if the
+  /// only file is in a folder where others may write, or if a folder may not be searched.
   std::filesystem::path find(const std::string& group, const std::string& name, const Place& place,
                              const std::filesystem::path& beside) const;
 

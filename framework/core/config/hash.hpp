@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Hashes that name runs and builds. Not meant to resist anyone, only to tell things apart.
+// Hashes that identify runs and builds. They are not cryptographic.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// 128 bits of XXH3 as 32 hex digits.
+/// Returns the 128 bits of XXH3 as 32 hexadecimal digits.
 std::string hash_of(std::string_view bytes);
 
 }  // namespace palpate

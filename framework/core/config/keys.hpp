@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the field list of a config says of its keys for those who compose configs: which are groups, which take over
-// what they do not say, and which a strategy sets.
+// The properties of config keys for the composition of configs: groups, inheritance between keys, and keys of a
+// strategy. All come from the field list of the config.
 #pragma once
 
 #include <palpate/options.hpp>
@@ -14,52 +14,55 @@
 
 namespace palpate {
 
-/// The group that is no option: its file is a config like any other. See Composer.
+/// The group that is not an option. Its file is a config like any other: see Composer.
 constexpr const char* kStrategy = "strategy";
 
 class ConfigKeys {
  public:
-  /// `list` visits all top-level keys. Throws std::logic_error for one that does not say whether a strategy sets it.
+  /// `list` visits all top-level keys. Throws std::logic_error for a key whose owner (strategy or run) is not set.
   explicit ConfigKeys(const std::function<void(Fields&)>& list);
 
-  /// Whether a name at a dotted path chooses a file: at the path of a group, and wherever a plugin of a kind that is a
-  /// group stands under the kind's name, as in another plugin.
+  /// Returns whether a name at a dotted path chooses a file. This holds for the paths of groups, and for a plugin
+  /// within another one if its key is a plugin kind that is a group.
   bool is_group(const std::string& path) const;
-  /// Whether a name without such a file is the type of a plugin; `path` is that of a group, or its last key.
+  /// Returns whether a name without a file is the type of a plugin. `path`: the path of a group, or its last key.
   bool is_plugin(const std::string& path) const;
-  /// Whether a group lies within another, as scene.effects does.
+  /// Returns whether a group lies within another group, as scene.effects does.
   bool is_part(const std::string& path) const;
-  /// The paths that the list calls groups.
+  /// Returns the paths that the field list declares as groups.
   const std::vector<std::string>& groups() const { return groups_; }
 
-  /// Whether the value at a dotted path may come from a strategy. What no list knows may: it is refused later.
+  /// Returns whether a strategy may set the value at a dotted path. Unknown paths are accepted here and rejected later.
   bool is_of_strategy(const std::string& path) const;
-  /// Whether a strategy brings a top-level key along only for runs that do not say it: Field::with_beside().
+  /// Returns whether a strategy sets a top-level key only for configs that do not set it: Field::with_beside().
   bool is_brought(const std::string& key) const;
-  /// The key beside the plugin at a top-level path that has its options, "" for none: `motion` of `backend`.
+  /// Returns the key that stands next to a plugin and has its options, for example `motion` for `backend`; "" if there
+  /// is none.
   std::string beside(const std::string& path) const;
-  /// Whether what is chosen at `choice`, a group, decides the value at a dotted path: within the group, or beside it.
+  /// Returns whether the group at `choice` decides the value at a dotted path, which lies within the group or within
+  /// the key next to it.
   bool is_decided(const std::string& path, const std::string& choice) const;
 
-  /// Pairs of paths: what the first does not say, the second says.
+  /// Returns pairs of paths. The first path of a pair inherits from the second.
   const std::vector<std::pair<std::string, std::string>>& heirs() const { return heirs_; }
-  /// Where else the value at a dotted path is taken over: that of kernel.nu at height.kernel.nu and label.kernel.nu.
+  /// Returns the paths that inherit the value at a dotted path. For kernel.nu, these are height.kernel.nu and
+  /// label.kernel.nu.
   std::vector<std::string> heirs_of(const std::string& path) const;
 
  private:
   class Reader;
 
   std::vector<std::string> groups_;
-  std::set<std::string> plugins_;  ///< groups that are plugins: their names
+  std::set<std::string> plugins_;  ///< names of plugin kinds that are groups
   std::set<std::string> of_run_;
-  std::map<std::string, std::string> beside_;  ///< by the plugin's key
+  std::map<std::string, std::string> beside_;  ///< by the key of the plugin
   std::vector<std::pair<std::string, std::string>> heirs_;
 };
 
-/// Whether a dotted path is `top` or leads to something within it.
+/// Returns whether a dotted path is `top` or lies within it.
 bool is_at_or_below(const std::string& path, const std::string& top);
 
-/// The first and the last key of a dotted path.
+/// Return the first and the last key of a dotted path.
 std::string first_key(const std::string& path);
 std::string last_key(const std::string& path);
 

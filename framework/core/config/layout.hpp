@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Text in lines and columns.
+// Line wrapping and columns of text.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,8 +11,7 @@
 
 namespace palpate {
 
-/// Returns the words of `text` in lines of at most `width` letters, one blank between two words. A longer word has a
-/// line of its own.
+/// Splits `text` into lines of at most `width` characters, at blanks. A longer word gets its own line.
 inline std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
   std::istringstream words(text);
@@ -26,8 +25,8 @@ inline std::vector<std::string> wrapped(const std::string& text, std::size_t wid
   return lines;
 }
 
-/// Returns lines of equally many cells as columns, two blanks apart; `sides` has an l or r per column. A column that is
-/// empty in all lines takes no room.
+/// Aligns the cells of lines as columns, two blanks apart. `sides` has one letter per column, l (left) or r (right).
+/// Columns that are empty in all lines are omitted.
 inline std::string aligned(const std::vector<std::vector<std::string>>& lines, const std::string& sides) {
   std::vector<std::size_t> widths(sides.size(), 0);
   for (const auto& line : lines) {

@@ -16,13 +16,13 @@
 namespace palpate {
 namespace {
 
-/// Whether a key is a dotted path, as the command line takes them, that begins with a known option.
+/// Returns whether a key is a dotted path, as on the command line, that begins with a known option.
 bool is_below_one_of(const std::string& key, const std::vector<std::string>& known) {
   const auto dot = key.find('.');
   return dot != std::string::npos && std::find(known.begin(), known.end(), key.substr(0, dot)) != known.end();
 }
 
-/// What a dotted key stands for, as a file has it: `label: {clip: yes}`.
+/// Returns the form of a dotted key in a file, for example `label: {clip: yes}`.
 std::string nested(const Tree::Entry& entry) {
   const auto groups = std::count(entry.key.begin(), entry.key.end(), '.');
   constexpr std::size_t kShort = 40;
@@ -56,7 +56,7 @@ MapReader::MapReader(const Tree& input, std::string path, ResolveNotes& notes, A
 Tree MapReader::finish(const std::vector<std::string>& elsewhere) {
   for (const Tree::Entry& entry : input_.entries) {
     if (silent_ || is_known(entry.key)) continue;
-    Layer highest = entry.value.layer;  // of the last who had a say in it
+    Layer highest = entry.value.layer;  // the latest source of any part of the value
     for_all(entry.value, [&](const Tree& one) { highest = std::max(highest, one.layer); });
     if (highest < type_layer_) {
       notes_.dropped.push_back({path_of(entry.key), entry.value.place.text()});
@@ -90,7 +90,7 @@ void MapReader::retired(const Field& field, const FixedValue& last) {
 
 void MapReader::require(bool holds, const char* field, const std::string& reason) {
   if (holds) return;
-  if (notes_.missing) throw Error(*notes_.missing);  // which may be why
+  if (notes_.missing) throw Error(*notes_.missing);  // probably the cause
   const Place place = input_.place_of(field);
   const std::string_view path = field;
   const std::string key(path.substr(0, path.find('.')));
@@ -143,7 +143,7 @@ const Tree* MapReader::claim_list(const Field& field) {
 const Tree* MapReader::neutral(const Field& field, bool may_be_absent) {
   const FixedValue& value = field.neutral_value;
   const bool is_absent = value.kind == FixedValue::Kind::none;
-  if (is_absent && !may_be_absent && !enters(field)) return nullptr;  // any value will do
+  if (is_absent && !may_be_absent && !enters(field)) return nullptr;  // the value does not matter
   if (is_absent && !may_be_absent) {
     miss(field.name, {where(), fmt::format("'{}' is missing", name(field)),
                       "a config with 'complete' needs every option: restore it, or remove 'complete'"});
@@ -229,7 +229,7 @@ bool MapReader::is_known(const std::string& key) const {
 
 void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const {
   if (is_beside(entry.key)) {
-    const Tree* last = &entry.value;  // who said any of it last
+    const Tree* last = &entry.value;  // the latest source of any part of the value
     for_all(entry.value, [&](const Tree& one) { last = one.layer > last->layer ? &one : last; });
     throw Error((last->layer > entry.value.layer ? last->place : entry.place).text(),
                 fmt::format("{} has no {}", plugin_, entry.key), fmt::format("remove '{}'", path_of(entry.key)));
@@ -237,7 +237,7 @@ void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::
   const std::string reason = fmt::format("unknown option '{}'", entry.key);
   if (is_below_one_of(entry.key, known)) throw Error(entry.place.text(), reason, "write " + nested(entry));
   const std::string hint = suggestion(entry.key, known);
-  // A list of all that is known says little without the name of what knows it.
+  // The hint lists all known keys, so that the message must name their owner.
   const bool listed = hint.rfind("known: ", 0) == 0;
   const std::string of = !plugin_.empty() ? plugin_ : owner();
   throw Error(entry.place.text(), reason + (listed && !(path_.empty() && plugin_.empty()) ? " of " + of : ""), hint);

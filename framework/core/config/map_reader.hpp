@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One map of a config while its fields are read: which keys are known, what stands at a field, what enters the id. What
-// is done with each kind of field, see resolve.cpp.
+// The reading of one map of a config: known keys, values of fields, and the text for the id of the run. See resolve.cpp
+// for the kinds of fields.
 #pragma once
 
 #include "config/resolve.hpp"
@@ -15,28 +15,28 @@
 
 namespace palpate {
 
-/// What readers of nested groups take from the one around.
+/// Properties that a nested map takes over from the map around it.
 struct Around {
   Place place;
-  std::string id_path;    ///< as the path, but with the names that fields had first (Field::was)
+  std::string id_path;    ///< the path, with former names of fields (Field::was())
   bool enters_id = true;  ///< see Field::not_identifying()
   bool complete = false;  ///< see Tree::complete
 };
 
 class MapReader : public Fields {
  public:
-  /// Where `input` is null every field has its default, or of a record its neutral value, and where it has no place
-  /// errors name that of what is around. `path` is "" at the top, else it ends in a dot.
+  /// If `input` is null, each field has its default or, in a record, its neutral value. If `input` has no place, errors
+  /// have the place in `around`. `path` is "" at the top, otherwise it ends with a dot.
   MapReader(const Tree& input, std::string path, ResolveNotes& notes, Around around);
 
-  /// Refuses keys that no field has claimed, and gives away what was written. `elsewhere`: see resolve().
+  /// Rejects keys that no field has claimed, and returns the resolved map. `elsewhere`: see resolve().
   Tree finish(const std::vector<std::string>& elsewhere = {});
 
   void retired(const Field& field, const FixedValue& last) override;
   void require(bool holds, const char* field, const std::string& reason) override;
 
  protected:
-  /// The name by which messages call a field: its whole path.
+  /// Returns the full path of a field for messages.
   std::string name(const Field& field) const { return path_of(field.name); }
   std::string path_of(const std::string& key) const { return (is_beside(key) ? above_ : path_) + key; }
   bool is_beside(const std::string& key) const { return !beside_.empty() && key == beside_; }
@@ -49,27 +49,28 @@ class MapReader : public Fields {
   [[noreturn]] void refuse(const Tree& at, const Field& field, const std::string& reason,
                            const std::string& hint) const;
   void check_list(const Tree& tree, const Field& field, const char* hint) const;
-  /// Refuses a key that is nearly the name of what is missing; else notes that that is missing: see ResolveNotes.
+  /// Rejects a key that is nearly `name`, or else notes the missing option: see ResolveNotes.
   void miss(const std::string& name, Error missing);
 
-  /// What the config has at the field, or a record at the name that it had then. Null when it does not say it.
+  /// Returns the value of a field, in a record also under its former name; null if there is none.
   const Tree* find(const Field& field);
 
-  /// What it means that a record has no value for a field.
+  /// The meaning of a missing field in a record.
   enum class Missing { refused, absent, of_its_parts };
-  /// Finds the field's value and remembers that the field exists. Null when the config does not say it; a record always
-  /// says it, if not by itself then by the neutral value: see resolve().
+  /// Marks a field as known and returns its value. Returns null if a config does not set it. In a record, a missing
+  /// field has its neutral value: see resolve().
   const Tree* claim(const Field& field, Missing missing = Missing::refused);
-  /// Of a list, which may have no items.
+  /// The same for a list, whose neutral value is the empty list.
   const Tree* claim_list(const Field& field);
 
-  /// What chose the fields beside it: where it was not the record, these are its defaults, not what a record must have.
+  /// Notes the type that decides which fields exist. If the type was not chosen by the record itself, missing fields
+  /// have their defaults instead of their neutral values.
   void note_type(const Tree& type);
 
   double quantity(const Tree& tree, const Field& field) const;
   std::int64_t whole(const Tree& tree, const Field& field) const;
 
-  // What enters the id (identity_text()):
+  // The text for the id of the run (identity_text()):
   bool enters(const Field& field) const { return enters_id_ && field.enters_id; }
   std::string id_name(const Field& field) const;
   void identify(std::string path, std::string_view value) {
@@ -77,26 +78,26 @@ class MapReader : public Fields {
   }
   static std::string sized(const std::string& text) { return std::to_string(text.size()) + ":" + text; }
   static std::string id_text(const double* values, std::size_t count, Unit unit);
-  /// A field that is absent enters the id only where that is not neutral.
+  /// Adds an absent field to the id, unless absence is its neutral value.
   void note_absent(const Field& field);
-  /// Returns whether the items are to follow.
+  /// Adds the number of items to the id. Returns whether the items must follow.
   bool note_count(const Field& field, std::size_t count);
 
-  /// Writes a field that has been claimed; `id_text` is its value in the id, "" of what enters it otherwise.
+  /// Writes a claimed field. `id_text` is its value in the id; "" if the id gets it in another way.
   void write(const Field& field, Tree value, std::string_view id_text);
-  /// The same of a scalar that enters the id as it is written.
+  /// The same for a scalar whose id text is its own text.
   void write(const Field& field, std::string text);
 
-  /// For what stands at `name` of this map, which is the field or an item of it.
+  /// Returns the properties for the map at `name`, which is the field or one of its items.
   Around around(const Field& field, const std::string& name) const;
 
   const Tree& input_;
   std::string path_;
   std::string plugin_;    ///< whose options these are; "" for none
   std::string beside_;    ///< the option of the plugin that stands beside it: Field::with_beside(); "" for none
-  std::string above_;     ///< the path of what is around such a plugin
-  std::string id_above_;  ///< the same for the id
-  bool silent_ = false;   ///< a plugin among these is: any key may be its
+  std::string above_;     ///< path of the map around such a plugin
+  std::string id_above_;  ///< the same with former names of fields
+  bool silent_ = false;   ///< the options of a plugin are unknown, so that any key may be valid
   std::string adopted_;   ///< whose options stand among them; "" for none
   ResolveNotes& notes_;
   Tree output_;
@@ -107,13 +108,13 @@ class MapReader : public Fields {
 
  private:
   bool is_known(const std::string& key) const;
-  /// The value that an option has in a record of a palpate that did not know it; null for its default.
+  /// Returns the neutral value of an option, which records have that are older than the option; null for the default.
   const Tree* neutral(const Field& field, bool may_be_absent);
   double checked(double value, const Tree& tree, const Field& field) const;
-  /// `known`: what it may have been meant for.
+  /// `known`: candidates for the hint.
   [[noreturn]] void refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const;
-  const Tree* claimed_ = nullptr;  ///< of the field that was claimed last
-  Tree neutral_;                   ///< what it points to where a record lacks the field
+  const Tree* claimed_ = nullptr;  ///< value of the last claimed field
+  Tree neutral_;                   ///< the neutral value to which claimed_ may point
   Layer type_layer_ = std::numeric_limits<Layer>::min();
 };
 

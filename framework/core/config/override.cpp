@@ -16,13 +16,13 @@ namespace {
 
 constexpr const char* kCommandLine = "command line";
 
-/// Where in an override a comment of YAML begins; npos where there is none.
+/// Returns the position of a YAML comment in the value of an override; npos if there is none.
 std::size_t comment_in(const std::string& value, const Tree& read) {
   const auto begins = [&](std::size_t at) {
     return value[at] == '#' && (at == 0 || value[at - 1] == ' ' || value[at - 1] == '\t');
   };
   for (std::size_t at = 0; at < value.size(); ++at) {
-    // Within quotes it is text: there, what stands before it reads otherwise than the whole.
+    // A # within quotes is text: without the rest, the value would read differently.
     if (begins(at) && parse_value(value.substr(0, at), kCommandLine).canonical() == read.canonical()) return at;
   }
   return std::string::npos;

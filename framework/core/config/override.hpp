@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a command line says of a config: KEY=VALUE, a dotted path and a value in YAML.
+// Overrides on the command line: KEY=VALUE, where KEY is a dotted path and VALUE is YAML.
 #pragma once
 
 #include "config/tree.hpp"
@@ -9,19 +9,19 @@
 
 namespace palpate {
 
-/// One `KEY=VALUE`.
+/// An override of one value.
 struct Override {
   std::string path;
   Tree value;
 };
 
-/// Splits and reads `KEY=VALUE` as typed. Throws Error for a missing '=', an empty key and a value with a comment.
+/// Parses `KEY=VALUE`. Throws Error for a missing '=', an empty key, and a value with a comment.
 Override parse_override(const std::string& text);
 
-/// Throws Error where two of these KEY=VALUE are of the same key: nobody could tell which one is meant.
+/// Throws Error if two overrides have the same key.
 void check_given_once(const std::vector<std::string>& texts);
 
-/// Throws Error, with `place`, for what is no dotted path, and for one of more than 100 levels or 1024 characters.
+/// Throws Error, with `place`, for an invalid path, and for a path of more than 100 levels or 1024 characters.
 void check_path(const std::string& path, const std::string& place);
 
 }  // namespace palpate

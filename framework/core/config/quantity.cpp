@@ -16,12 +16,12 @@
 namespace palpate {
 namespace {
 
-/// A unit is a power of ten where it can be, because a decimal shifted in its text stays exact.
+/// A unit. Its factor is a power of ten if possible, because moving the decimal point in the text is exact.
 struct UnitName {
   std::string_view name;
   Unit unit;
-  int power;            ///< of ten
-  double factor = 1.0;  ///< beside it
+  int power;            ///< exponent of ten
+  double factor = 1.0;  ///< additional factor
 };
 
 constexpr double kPi = 3.14159265358979323846;
@@ -52,7 +52,7 @@ constexpr std::array kUnits{
     UnitName{"N/mm", Unit::newton_per_metre, 3},
 };
 
-/// Whether `text` is a continuous range: config/expand.hpp.
+/// Returns whether `text` is a continuous range: see config/expand.hpp.
 bool is_continuous_range(std::string_view text) {
   for (const std::string_view name : {"uniform(", "log_uniform("}) {
     if (text.substr(0, name.size()) == name) return true;
@@ -94,7 +94,7 @@ const Dimension& dimension_of(Unit unit) { return kDimensions[static_cast<std::s
   refuse(tree, name, reason, fmt::format("write {}", dimension_of(unit).example));
 }
 
-/// Splits a scalar into number and unit, refusing what is not a scalar with a decimal number in front.
+/// Splits a scalar into number and unit. Throws Error if it does not begin with a decimal number.
 std::pair<std::string_view, std::string_view> split(const Tree& tree, const std::string& name, Unit unit) {
   if (tree.kind == Tree::Kind::null) refuse(tree, name, "has no value", unit);
   if (!tree.is_scalar()) refuse(tree, name, "is a list or a map, not a number", unit);
@@ -116,7 +116,7 @@ std::pair<std::string_view, std::string_view> split(const Tree& tree, const std:
 }
 
 double to_double(std::string_view number, int power, const Tree& tree, const std::string& name, Unit unit) {
-  // from_chars knows no leading '+', and shifting the exponent in the text keeps the decimal exact.
+  // from_chars accepts no leading '+'. A power of ten is applied to the exponent in the text, which is exact.
   if (number[0] == '+') number.remove_prefix(1);
   std::string text(number);
   if (power != 0) {
@@ -143,7 +143,7 @@ double to_double(std::string_view number, int power, const Tree& tree, const std
 
 std::size_t decimal_length(std::string_view text) {
   const std::size_t sign = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
-  // from_chars would take a second sign, infinity and the like, which are no decimals.
+  // from_chars would also accept a second sign and infinity.
   if (sign == text.size() || (!is_digit(text[sign]) && text[sign] != '.')) return 0;
   double value = 0.0;
   const auto read = std::from_chars(text.data() + sign, text.data() + text.size(), value);
@@ -202,7 +202,7 @@ std::optional<AnyQuantity> any_quantity(const std::string& text) {
     unit = known->unit;
   }
   std::optional<AnyQuantity> out;
-  // 1e999 m, say, is a text like others for whoever asks whether it is a quantity.
+  // A value such as 1e999 m is not an error here, but a text.
   trouble_in([&] { out = AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit}; });
   return out;
 }
@@ -223,7 +223,7 @@ std::int64_t read_integer(const Tree& tree, const std::string& name) {
 }
 
 std::string write_quantity(double value, Unit unit) {
-  // An angle reads back through its own unit; all written units are SI, so no factor is involved.
+  // All units that are written are SI units, so that no factor is needed.
   const std::string number = fmt::format("{}", value);
   const std::string symbol = unit_symbol(unit);
   return symbol.empty() ? number : number + " " + symbol;

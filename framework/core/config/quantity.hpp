@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers as people write them in configs, with and without unit, read strictly.
+// Quantities and numbers in configs: strict parsing, and writing.
 #pragma once
 
 #include "config/tree.hpp"
@@ -14,41 +14,42 @@
 
 namespace palpate {
 
-/// The length of the decimal number that `text` begins with, perhaps one too large for a double; 0 if it does not.
+/// Returns the length of the decimal number at the beginning of `text`, even if it is too large for a double; 0 if
+/// there is none.
 std::size_t decimal_length(std::string_view text);
 
-/// Reads `1.7 cm` as 0.017. The value is the double nearest to the decimal as written, so that `17 mm`, `1.7 cm` and
-/// `0.017 m` are the same bits. Throws Error at the tree's place for anything but a finite decimal with a unit of the
-/// dimension: a bare number, another dimension, an octal or hexadecimal look, NaN, infinity.
+/// Reads `1.7 cm` as 0.017. The value is the double nearest to the written decimal, so that `17 mm`, `1.7 cm` and
+/// `0.017 m` give the same bits. Throws Error at the tree's place for anything but a finite decimal with a unit of the
+/// right dimension.
 double read_quantity(const Tree& tree, const std::string& name, Unit unit);
 
-/// A number with whatever unit it has, in SI.
+/// A number and its unit, in SI.
 struct AnyQuantity {
   double value;
   Unit unit;
 };
 
-/// The same as read_quantity() where the dimension is not known beforehand; none for what is no quantity.
+/// Reads a quantity of any dimension; nullopt if `text` is not a quantity.
 std::optional<AnyQuantity> any_quantity(const std::string& text);
 
-/// Reads a whole number; same strictness.
+/// Reads a whole number, as strictly as read_quantity().
 std::int64_t read_integer(const Tree& tree, const std::string& name);
 
-/// `0.017 m`, the shortest text that reads back as the same bits.
+/// Returns for example `0.017 m`, the shortest text that gives the same bits again.
 std::string write_quantity(double value, Unit unit);
 
-/// A constant as a config has it: "none" for what is absent, "" for none.
+/// Returns a constant as in a config: "none" for an absent value, "" for no constant.
 std::string constant_text(const FixedValue& constant, Unit unit);
 
-/// Several of them: a list.
+/// Returns several quantities as a list.
 Tree write_quantities(const double* values, std::size_t count, Unit unit);
-/// Row after row of `columns`: a list of lists.
+/// Returns a table with rows of `columns` values as a list of lists.
 Tree write_table(const std::vector<double>& values, std::size_t columns, Unit unit);
 
-/// "m", "s", "N", "rad", "m/s" or "".
+/// Returns "m", "s", "N", "rad", "m/s", ..., or "" for no unit.
 std::string unit_symbol(Unit unit);
 
-/// "a length", "a time", ... and the units that may be written, for messages and descriptions.
+/// Returns "a length", "a time", ... with the accepted units, for messages and descriptions.
 std::string dimension_name(Unit unit);
 std::vector<std::string> unit_names(Unit unit);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a value satisfies a condition: the one place that compares a measured number with a bound, for expectations,
-// conditions on jobs, stop rules and choices.
+// The comparison of a value with a bound, for expectations, conditions on jobs, stop rules and choices.
 #pragma once
 
 #include <optional>
@@ -8,17 +7,17 @@
 
 namespace palpate {
 
-/// How a condition relates a value to a bound.
+/// The relation of a value to a bound.
 enum class Relation { at_least, above, at_most, below, equal, unequal };
 
-/// The sign that a condition writes for it: ">=", ">", "<=", "<", "==", "!=".
+/// Returns the operator of a relation: ">=", ">", "<=", "<", "==" or "!=".
 std::string_view sign_of(Relation relation);
 
-/// The relation that `sign` stands for, or none.
+/// Returns the relation of an operator; nullopt for any other text.
 std::optional<Relation> relation_of(std::string_view sign);
 
-/// Returns whether there is a `value`, it is finite, and it is in `relation` to `bound`, both in the same unit. A value
-/// that is missing, infinite or not a number satisfies no relation, `unequal` included.
+/// Returns whether `value` exists, is finite, and is in `relation` to `bound`, in the same unit. A missing, infinite or
+/// NaN value satisfies no relation, not even `unequal`.
 bool satisfies(const std::optional<double>& value, Relation relation, double bound);
 
 }  // namespace palpate

@@ -14,20 +14,21 @@
 namespace palpate {
 namespace {
 
-/// What stands for what a config does not say.
+/// The value of a key that the config lacks.
 const Tree kNothing;
 
-/// What a file is called that stands in a config at `place`: see Field::names_file().
+/// Returns the path of a file that a config names at `place`: see Field::names_file().
 std::string found_from(const Place& place, const std::string& file) {
   namespace fs = std::filesystem;
-  constexpr int kMostLevels = 6;  // from the config of a job up to the folder in which its sweep was begun
+  constexpr int kMostLevels =
+      6;  // levels from the config of a job up to the folder of the command that started the sweep
   std::error_code none;
-  const bool is_in_file = place.file != nullptr && place.line > 0;  // and not on a command line
+  const bool is_in_file = place.file != nullptr && place.line > 0;  // not on a command line
   if (file.empty() || !is_in_file || fs::path(file).is_absolute() || fs::exists(file, none)) return file;
   fs::path folder = (fs::current_path() / *place.file).lexically_normal();
   for (int level = 0; level < kMostLevels && folder.has_relative_path(); ++level) {
     folder = folder.parent_path();
-    // No link is followed to where nobody pointed.
+    // Links are not followed, because a record of a stranger must not lead to other files.
     if (fs::is_regular_file(fs::symlink_status(folder / file, none))) return (folder / file).string();
   }
   return file;
@@ -37,7 +38,7 @@ bool is_row(const Tree& tree, std::size_t values) {
   return tree.kind == Tree::Kind::list && tree.items.size() == values;
 }
 
-/// Reads one map and writes its resolved twin. Nested groups get a resolver of their own.
+/// Reads one map of a config and writes its resolved form. Nested maps have their own resolver.
 class Resolver final : public MapReader {
  public:
   Resolver(const Tree& input, std::string path, const PluginSource& plugins, ResolveNotes& notes, Around around)
@@ -210,14 +211,14 @@ class Resolver final : public MapReader {
 
   void adopt(PluginChoice& choice, const Field& field) override {
     const Tree* const claimed = claim(field);
-    if (claimed == nullptr) throw Error(*notes_.missing);  // without it nothing is known of the keys beside it
+    if (claimed == nullptr) throw Error(*notes_.missing);  // without the type, the other keys cannot be checked
     const Tree& type = *claimed;
     choice.type = name_of_plugin(type, choice.kind, name(field));
     note_type(type);
     write(field, choice.type);
     adopted_ = choice.kind + "/" + choice.type;
     Tree options = Tree::map();
-    options.place = type.place;  // where the plugin's own complaints will point, and what it lacks is missing
+    options.place = type.place;  // place of the plugin's own errors
     std::swap(output_.place, options.place);
     const std::size_t before = output_.entries.size();
     list_plugin(choice, type.place.text(), *this);
@@ -227,7 +228,7 @@ class Resolver final : public MapReader {
   }
 
  private:
-  /// What a config says of the plugin at `field`, with the options that stand beside it: see Field::with_beside().
+  /// Returns the options of the plugin at `field`, together with the option next to it: see Field::with_beside().
   Tree with_beside(const Tree* tree, const Field& field) const {
     Tree out = tree != nullptr ? *tree : Tree::map();
     check_beside(out, field.name, field.beside);
@@ -237,34 +238,34 @@ class Resolver final : public MapReader {
     return out;
   }
 
-  /// Nested options at `name`, as of around(); `tree` is null where the config does not say them.
+  /// Reads nested options at `name` (see around()). `tree` is null if the config does not set them.
   Tree read_group(Options& options, const Tree* tree, const Field& field, const std::string& name) {
     Resolver inner(tree != nullptr ? *tree : kNothing, path_of(name) + ".", plugins_, notes_, around(field, name));
     options.list(inner);
     return inner.finish();
   }
 
-  /// What stands at `path` to name a plugin.
+  /// Returns the plugin name at `path`.
   static const std::string& name_of_plugin(const Tree& tree, const std::string& kind, const std::string& path) {
     if (tree.is_scalar()) return tree.text;
     throw Error(tree.place.text(), fmt::format("{} is not a name", path),
                 fmt::format("'palpate plugins {}' lists the types", kind));
   }
 
-  /// Lists the plugin's options to `fields`; trouble with its library is told at `place`.
+  /// Lists the plugin's options to `fields`. Errors about its library get the place `place`.
   void list_plugin(const PluginChoice& choice, const std::string& place, Resolver& fields) {
     notes_.plugins.emplace(choice.kind, choice.type);
     fields.silent_ = plugins_.is_silent(choice.kind, choice.type);
     if (fields.silent_) return;
     try {
       plugins_.describe(choice.kind, choice.type, fields);
-    } catch (const Error& trouble) {  // thrown on: a source of plugins knows no places
+    } catch (const Error& trouble) {  // the plugin source does not know the place
       if (!trouble.where().empty()) throw;
       throw Error(place, trouble.reason(), trouble.hint(), trouble.kind());
     }
   }
 
-  /// What names the type of the plugin at `path`.
+  /// Returns the type of the plugin at `path`.
   static const Tree& type_of(const Tree& tree, const std::string& kind, const std::string& path) {
     if (!tree.is_map())
       throw Error(tree.place.text(), fmt::format("{} is not a group of options", path), "write {type: ...}");
@@ -273,8 +274,7 @@ class Resolver final : public MapReader {
                 fmt::format("'palpate plugins {}' lists the types", kind));
   }
 
-  /// Fills `choice`; returns what goes into the resolved config at `name`, as of around(). `tree` is null where the
-  /// config does not say the plugin and `choice` names the default.
+  /// Fills `choice` and returns its resolved form at `name` (see around()). If `tree` is null, `choice` is the default.
   Tree read_plugin(PluginChoice& choice, const Tree* tree, const Field& field, const std::string& name) {
     const std::string path = path_ + name;
     const Tree* const type = tree != nullptr ? &type_of(*tree, choice.kind, path) : nullptr;
@@ -286,14 +286,14 @@ class Resolver final : public MapReader {
     inner.above_ = path_;
     inner.id_above_ = id_path_;
     inner.known_.emplace_back("type");
-    inner.note_type(type != nullptr ? *type : kNothing);  // options older than it may be dropped
+    inner.note_type(type != nullptr ? *type : kNothing);  // older options that this type lacks are dropped
     if (inner.enters_id_) inner.identify(inner.id_path_ + "type", choice.type);
-    // What the type needs is missing where it was chosen, not in the group file that it was laid over.
+    // A missing option is reported at the choice of the type, not in the group file below.
     if (type != nullptr && type->place.file) inner.output_.place = type->place;
     notes_.origins.push_back({inner.path_ + "type", type != nullptr ? at : "default"});
     list_plugin(choice, at, inner);
     Tree options = inner.finish();
-    if (type != nullptr) options.place = type->place;  // where the plugin's own complaints will point
+    if (type != nullptr) options.place = type->place;  // place of the plugin's own errors
     choice.options = std::make_shared<const Tree>(std::move(options));
     Tree written = Tree::map();
     written.at("type") = Tree::scalar(choice.type);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From a composed tree to checked options and to the resolved config: every field with its final value, nothing else.
+// From a composed config to checked options and the resolved config, which has the final value of every field and
+// nothing else.
 #pragma once
 
 #include "config/tree.hpp"
@@ -15,47 +16,49 @@
 
 namespace palpate {
 
-/// Where plugins' option lists come from. Implemented by the plugin host; a library is opened when it is asked for.
+/// Source of the option lists of plugins. The plugin host opens a library when its options are needed.
 class PluginSource {
  public:
   virtual ~PluginSource() = default;
-  /// Lists the options of a plugin to `fields`. Throws Error, without place, when there is no such plugin or when it
-  /// cannot be loaded.
+  /// Lists the options of a plugin to `fields`. Throws Error, without a place, if the plugin does not exist or cannot
+  /// be loaded.
   virtual void describe(const std::string& kind, const std::string& name, Fields& fields) const = 0;
-  /// Whether a plugin cannot tell its options, because it is not built yet: then any may stand in the config.
+  /// Returns whether the options of a plugin are unknown, because it is not built yet. Any options are then accepted.
   virtual bool is_silent(const std::string&, const std::string&) const { return false; }
 };
 
-/// Plugins by kind and name.
+/// Pairs of kind and name.
 using PluginNames = std::set<std::pair<std::string, std::string>>;
 
-/// What resolving found out beside the values.
+/// Further results of resolve().
 struct ResolveNotes {
   struct Origin {
     std::string path;   ///< dotted, for example "kernel.length_scale"
     std::string place;  ///< "file:line:column", "command line", or "default"
   };
-  std::vector<Origin> origins;  ///< of every value, in the order of the resolved config
-  std::vector<Origin> dropped;  ///< options left behind by a type that was chosen after them
-  PluginNames plugins;          ///< every plugin that the config names
-  /// Lines `path=value` of all that decides what a run computes, in the order of the fields: see identity_of().
+  std::vector<Origin> origins;  ///< of each value, in the order of the resolved config
+  std::vector<Origin> dropped;  ///< options that a type lacks which was chosen later
+  PluginNames plugins;          ///< all plugins of the config
+  /// Lines `path=value` of all values that affect the results of a run, in the order of the fields: see identity_of().
   std::vector<std::string> identity;
-  std::optional<Error> missing;  ///< the first needed option that is not there; resolve() throws it
+  std::optional<Error> missing;  ///< first missing option; resolve() throws it
 };
 
-/// Throws Error where `group`, the options of the plugin at the key `plugin`, holds the `option` that stands beside it:
-/// see Field::with_beside(). "" for none.
+/// Throws Error if `group`, the options of the plugin at the key `plugin`, contains `option`, which must stand next to
+/// it (Field::with_beside()). `option` may be "".
 void check_beside(const Tree& group, const std::string& plugin, const std::string& option);
 
-/// Reads `input` into `options` and returns the resolved tree. Strict: throws Error with the place of the first
-/// unknown key, wrong type, missing unit or value out of range, and only then of what is missing, which may stand under
-/// an unknown key. `elsewhere` are keys beside those of `options` that
-/// others read: the hint of an unknown one names them. In a map that is Tree::complete an option that is missing has
-/// its neutral value (Field::neutral). Without one it is an error, unless the option enters no id.
+/// Reads `input` into `options` and returns the resolved config. Throws Error, with its place, for the first unknown
+/// key, wrong type, missing unit or value out of range, and only then for a missing option, because an unknown key may
+/// be its misspelt name.
+///
+/// `elsewhere`: keys at the top that other code reads; hints may name them. In a map with Tree::complete, a missing
+/// option has its neutral value (Field::neutral()). A missing option without a neutral value is an error, unless it is
+/// not part of the id.
 Tree resolve(Options& options, const Tree& input, const PluginSource& plugins, ResolveNotes& notes,
              const std::vector<std::string>& elsewhere = {});
 
-/// Lists the fields that `describe` knows into the values of a tree that was resolved before: how plugins are made.
+/// Lists the fields of `describe` and fills them from a resolved tree. The plugin host creates plugins in this way.
 void fill(const Tree& resolved, const PluginSource& plugins, const std::string& path,
           const std::function<void(Fields&)>& describe);
 

@@ -11,17 +11,17 @@
 namespace palpate {
 namespace {
 
-/// Below this, in SI, a number with a unit is 0: what rounding leaves of coordinates.
+/// Smaller numbers with a unit (in SI) are shown as 0, because they are rounding errors of coordinates.
 constexpr double kReadsAsZero = 1e-9;
 
 bool reads_as_zero(const std::string& text) { return text.find_first_of("123456789") == std::string::npos; }
 
-/// The decimals that `digits` significant digits of `value` take; negative for large values.
+/// Returns the number of decimals of `digits` significant digits of `value`; negative for large values.
 int decimals_for(double value, int digits) {
   return digits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value))));
 }
 
-/// The unit in which numbers of which the largest is `largest`, in SI, are read.
+/// Returns the unit for numbers of which `largest` (in SI) is the largest.
 Scale unit_for(Unit unit, double largest, LengthKind kind) {
   if (unit == Unit::metre) {
     const bool nothing = largest < kReadsAsZero;
@@ -88,7 +88,7 @@ Scale usual_scale(Unit unit, LengthKind kind) {
 
 std::string readable(double value, Unit unit, int digits, LengthKind kind) {
   Scale scale = unit_for(unit, std::abs(value), kind);
-  if (scale.unit == "cm" && std::abs(value) >= kReadsAsZero) {  // alone, a place has the unit that suits it
+  if (scale.unit == "cm" && std::abs(value) >= kReadsAsZero) {  // a single position has the unit that suits it
     if (std::abs(value) < 0.00995) scale = {"mm", 1e-3};
     if (std::abs(value) >= 1.0) scale = {"m", 1.0};
   }
@@ -99,7 +99,7 @@ std::string readable(double value, Unit unit, int digits, LengthKind kind) {
 std::string significant(double value, int digits) {
   if (value == 0.0) return "0";
   if (!std::isfinite(value)) return fmt::format("{}", value);
-  // %g turns to an exponent where whole digits outnumber the significant ones: 1234 with three is 1230 to people.
+  // %g switches to an exponent if there are more whole digits than significant ones. People prefer 1234 to 1.23e+03.
   const int decimals = decimals_for(value, digits);
   if (decimals < 0 && std::abs(value) < 1e6) return fmt::format("{:.0f}", value);
   return fmt::format("{:.{}g}", value, digits);

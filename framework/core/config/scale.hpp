@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// How quantities are shown to people: one unit per quantity, and the digits that it deserves. Tables, summaries, status
-// lines and reports format numbers by this file alone; common.js of the pages has the same rule. Machine formats (CSV,
-// JSON, records) keep full digits in SI.
+// Units and digits of quantities for people. Tables, summaries, status lines and reports format numbers only by this
+// file; common.js of the pages follows the same rule. Machine formats (CSV, JSON, records) have all digits in SI.
 //
-// Unit: places, heights and their standard deviations are in centimetres, errors in millimetres, times in seconds, all
-// else in SI. A column or an axis has one unit. It is another one only where the largest of its numbers would have too
-// many digits before the point, or too many zeros behind it. A length alone in a sentence has the unit that suits it.
+// Units: positions, heights and their standard deviations are in centimetres, errors in millimetres, times in seconds,
+// all else in SI. A column or axis has one unit. The unit changes only if the largest number would have too many digits
+// before the point or too many zeros after it. A single length in a sentence has the unit that suits it.
 //
-// Digits: a column has as many decimals as its smallest number needs for three significant digits, four at most. A
-// number that would then read as 0 has two significant digits. Below a nanometre or a nanosecond a number is 0.
+// Digits: a column has as many decimals as its smallest number needs for three significant digits, at most four. A
+// number that would be shown as 0 gets two significant digits. Numbers below a nanometre or a nanosecond are 0.
 #pragma once
 
 #include <palpate/options.hpp>
@@ -19,46 +18,48 @@
 
 namespace palpate {
 
-/// Kinds of lengths: each has its unit.
+/// Kinds of lengths, which have different units.
 enum class LengthKind { error, place };
 
-/// Unit and decimals of the numbers of one column, axis or sentence.
+/// Unit and decimals of the numbers of a column, axis or sentence.
 struct Scale {
   std::string unit;     ///< "" for none
-  double factor = 1.0;  ///< SI units in one of `unit`
+  double factor = 1.0;  ///< SI units per `unit`
   int decimals = 0;
   bool scientific = false;  ///< "1.23e-09": numbers without a unit that are too small or too large for decimals
-  bool open = false;        ///< its values are not known yet: each has two significant digits at least
+  bool open = false;        ///< the values are not known yet; each gets at least two significant digits
 
-  /// Returns "3.21", `value` in SI without its unit; "nan" and "inf" of what is not finite.
+  /// Returns for example "3.21" for `value` in SI, without its unit; "nan" or "inf" for values that are not finite.
   std::string number(double value) const;
-  /// Returns "-" for nothing.
+  /// Returns "-" for nullopt.
   std::string number(const std::optional<double>& value) const { return value ? number(*value) : "-"; }
-  /// Returns the number with its sign: "+0.3". What rounds to 0 has none.
+  /// Returns the number with its sign, for example "+0.3". A number that is rounded to 0 has no sign.
   std::string difference(double value) const;
-  /// Returns "3.21 [3.02, 3.40]" of a mean with its interval, "-" of no values: see analysis/readable.hpp.
+  /// Returns for example "3.21 [3.02, 3.40]" for a mean and its interval; "-" without values. See
+  /// analysis/readable.hpp.
   template <class Mean>
   std::string estimate(const Mean& mean) const;
-  /// Returns "5 mm".
+  /// Returns for example "5 mm".
   std::string with_unit(const std::string& number) const { return number + (unit.empty() ? "" : " " + unit); }
-  /// Returns "3.2 mm" of a value in SI.
+  /// Returns for example "3.2 mm" for a value in SI.
   std::string quantity(double value) const { return with_unit(number(value)); }
-  /// Returns "robot_seconds [s]".
+  /// Returns for example "robot_seconds [s]".
   std::string title(const std::string& name) const { return name + (unit.empty() ? "" : " [" + unit + "]"); }
 };
 
-/// Returns the scale for a column with these values in SI, whose smallest number (0 apart) gets `digits` significant
+/// Returns the scale of a column with these values in SI. Its smallest number except 0 gets `digits` significant
 /// digits.
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3, LengthKind kind = LengthKind::error);
 
-/// Returns the scale for a table whose values come one by one: the usual unit with two decimals for places, else one,
-/// and more for small lengths.
+/// Returns the scale of a table whose later values are unknown: the usual unit, with two decimals for positions and one
+/// for other quantities, and more for small lengths.
 Scale usual_scale(Unit unit, LengthKind kind = LengthKind::error);
 
-/// Returns "1.57 cm": one value in SI that stands alone, with `digits` significant digits and no trailing zeros.
+/// Returns for example "1.57 cm": a single value in SI with `digits` significant digits and without trailing zeros.
 std::string readable(double value, Unit unit, int digits = 3, LengthKind kind = LengthKind::error);
 
-/// Returns `value` with `digits` significant digits and without trailing zeros: "0.00123", "1.2e-07", "65.5".
+/// Returns `value` with `digits` significant digits and without trailing zeros, for example "0.00123", "1.2e-07" or
+/// "65.5".
 std::string significant(double value, int digits = 3);
 
 }  // namespace palpate

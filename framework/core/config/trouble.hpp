@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors as values: for who goes on without what could not be done, or has more to say of it.
+// Errors as values, for callers that go on after an error or add information to it.
 #pragma once
 
 #include <palpate/error.hpp>
@@ -8,12 +8,12 @@
 
 namespace palpate {
 
-/// Does `work` and returns the Error that it threw, none if it did not.
+/// Calls `work` and returns the Error that it threw; nullopt if it returned.
 template <class Work>
 std::optional<Error> trouble_in(const Work& work) {
   try {
     work();
-  } catch (const Error& trouble) {  // each caller says what becomes of it
+  } catch (const Error& trouble) {  // the caller decides what to do
     return trouble;
   }
   return std::nullopt;

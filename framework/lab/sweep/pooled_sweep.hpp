@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Several sweeps and runs, made of different plans, as one sweep: comparisons, curves and fronts take it as any other.
+// Several sweeps and runs of different plans as one sweep, for comparisons, curves and Pareto fronts.
 #pragma once
 
 #include "sweep/sweep.hpp"
@@ -10,30 +10,31 @@
 
 namespace palpate {
 
-/// The jobs of several records. Nothing of it stands in a file.
+/// The jobs of several records. No file has this sweep.
 struct PooledSweep {
   Sweep sweep;
-  std::vector<std::string> notes;  ///< one line each, for whoever reads the numbers
+  std::vector<std::string> notes;  ///< notes for the reader of the results, one line each
 };
 
-/// Reads sweeps and runs as one sweep, in the order of `records`; one sweep alone is what read_sweep() returns.
+/// Reads sweeps and runs as one sweep, in the order of `records`. A single sweep is returned as by read_sweep().
 ///
-/// Keys are all that the sweeps vary, `by`, the seed, and every other option in which the recorded configs differ: the
-/// name of a plugin's block (`acquisition`) where its type differs, else the option (`kernel.length_scale`). What
-/// belongs to a strategy, if one is swept, or to a name, if `by` has `name`, is no key of its own unless `by` has it:
-/// options that have one value for each of these, but for the scene. `log` and what else decides nothing is no key.
+/// The keys are all swept keys, `by`, the seed, and each further option in which the recorded configs differ. If the
+/// types of a plugin differ, the key is the plugin's block (`acquisition`), else the option (`kernel.length_scale`).
+/// Options that have one value per strategy are part of the swept strategy, and options that have one value per name
+/// are part of the name if `by` has `name`; scenes are never part of a name. Such options are keys only if `by` has
+/// them. Options that do not affect results, such as `log`, are no keys.
 ///
-/// The value of a key that a record does not sweep is read from the config of its jobs. Values are the same where the
-/// configs are: `2 cm` and `0.02 m`, `scene=ring` and a config that has the objects of it. They are written as the
-/// first sweep that sweeps them has them, and a value of the same name that is another has the name of its record
-/// behind it. `strategy`, which no recorded config has, is the name of the record there.
+/// The value of a key that a record does not sweep comes from the configs of its jobs. Values are equal if the configs
+/// are equal: `2 cm` and `0.02 m`, or `scene=ring` and a config with the same objects. The text of a value is that of
+/// the first sweep with the value. If two different values have the same text, the later one is followed by the name of
+/// its record. The value of `strategy` for a record that does not sweep it is the name of the record.
 ///
-/// A run that stands in several records is one job, the first of them that has ended; where `by` has `name`, one job of
-/// each record. The directory is the folder that has all records. Throws Error for no record, for what is neither a run
-/// nor a sweep, or damaged, and for runs with the same id and other taps.
+/// A run in several records is one job, the first one that has ended. If `by` has `name`, it is one job per record. The
+/// directory of the sweep is the common folder of the records. Throws Error for an empty list, for a directory without
+/// a run or sweep, for a damaged record, and for runs with the same id but different taps.
 PooledSweep read_pooled(const std::vector<std::filesystem::path>& records, const std::vector<std::string>& by);
 
-/// Returns the folder that has all of these directories.
+/// Returns the innermost folder that contains all of these directories.
 std::filesystem::path common_folder(const std::vector<std::filesystem::path>& directories);
 
 }  // namespace palpate

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The settings of pooled records (pooled_sweep.hpp): the keys in which they differ, and their values at these keys.
+#pragma once
+
+#include "config/tree.hpp"
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Jobs of a record that differ in nothing but the seed. One config describes all of them.
+struct PooledSetting {
+  std::size_t record = 0;  ///< index of the record
+  std::string record_name;
+  Tree config;
+  std::map<std::string, std::string> origins;  ///< see recorded_origins()
+  std::map<std::string, std::string> swept;    ///< values of the keys that the record sweeps, except for the seed
+};
+
+/// Returns whether a run depends on the option at `path`. It does not depend on the folder of a program, for example.
+bool decides_run(const std::string& path);
+
+/// Returns the options in which the configs differ although none of `keys` decides them. The options of plugins with
+/// different types count as one option, the plugin's block.
+std::vector<std::string> further_differences(const std::vector<PooledSetting>& settings,
+                                             const std::vector<std::string>& keys);
+
+/// Returns the value of each setting at `key`, one of `keys`, as text. Settings have the same text exactly if their
+/// configs have equal values there.
+std::vector<std::string> pooled_values(const std::vector<PooledSetting>& settings, const std::string& key,
+                                       const std::vector<std::string>& keys);
+
+}  // namespace palpate
