@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside results.csv. Comparisons on other conditions, or after fewer taps, have files of their own.
+/// Returns the path of the table, next to results.csv. Each condition and each number of taps has its own file.
 fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std::string& where) {
   std::string name = fmt::format("compare_{}_{}", slug(fmt::format("{}", fmt::join(comparison.by, "_"))),
                                  slug(comparison.metric.name));
@@ -33,7 +33,7 @@ fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std:
   return sweep.directory / (name + where_suffix(where) + ".csv");
 }
 
-/// Those that are asked for, each once, in the order given.
+/// Returns the taps after which the jobs are compared, each once, in the order of the command line.
 std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
   std::vector<Occasion> out;
   if (arguments.until) out.push_back(Occasion::once(field_name(*arguments.until)));
@@ -44,7 +44,8 @@ std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
   return out;
 }
 
-/// What the format shows. Throws Error where pairs are asked for that it has no place for.
+/// Returns the parts of a comparison that the output format shows. Throws Error for options about pairs with a format
+/// that has no pairs.
 CompareExtent extent_of(const CompareArguments& arguments) {
   const bool pairs = arguments.format != "markdown" && arguments.format != "latex";
   for (const char* const option : {arguments.ratio ? "--ratio" : "", arguments.baseline ? "--baseline" : ""}) {
@@ -56,7 +57,7 @@ CompareExtent extent_of(const CompareArguments& arguments) {
   return arguments.format == "latex" ? CompareExtent::intervals : CompareExtent::means;
 }
 
-/// The rows of all comparisons for programs: as CSV, or as a list of JSON objects, one a line.
+/// Returns the rows of all comparisons as CSV, or as a JSON list with one object per line.
 std::string rows_text(const std::vector<Comparison>& comparisons, const CompareArguments& arguments) {
   std::vector<Row> rows;
   for (const Comparison& one : comparisons) {
@@ -69,8 +70,9 @@ std::string rows_text(const std::vector<Comparison>& comparisons, const CompareA
   return out + "\n]\n";
 }
 
-/// All that is asked, of the jobs as they ended or as they were at some occasions; none if it was interrupted. Made as
-/// a whole before anything is shown: an unknown metric is no reason for half of an answer.
+/// Returns all comparisons: one per metric at the end of the jobs, or one per metric and number of taps. Returns
+/// nullopt after an interrupt. All are computed before the first is printed, so that an unknown metric gives an error
+/// and no output.
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
   std::optional<Condition> where;
@@ -90,7 +92,8 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
     add(sweep_results(sweep), std::nullopt);
     return comparisons;
   }
-  // What cannot be compared is found out before anything is computed; of which jobs a condition holds is not known yet.
+  // Invalid metrics are rejected before the computation. The condition is left out here, because its values do not
+  // exist yet.
   for (const std::string& metric : arguments.metrics) {
     if (arguments.until && metric == kReached) continue;
     palpate::compare(sweep, sweep_results(sweep),

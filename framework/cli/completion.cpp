@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using boost::starts_with;
 
-/// The argument of `command` whose value `last` begins, behind the word `previous` and all that `command` has parsed;
-/// or null.
+/// Returns the argument of `command` to which the word `last` belongs, after the word `previous`, or null. `command`
+/// has parsed all earlier words.
 const CLI::Option* begun(const CLI::App& command, const std::string& previous, const std::string& last) {
   const auto with_value = [&](const std::string& word) {
     const CLI::Option* option = starts_with(word, "-") ? command.get_option_no_throw(word) : nullptr;
@@ -45,7 +45,7 @@ std::vector<Completion> options_of(const CLI::App& command) {
   return out;
 }
 
-/// Folders and YAML files.
+/// Returns folders and YAML files.
 std::vector<Completion> configs(const std::string& typed) {
   const std::string folder = typed.substr(0, typed.rfind('/') + 1);
   std::vector<Completion> out;
@@ -63,7 +63,7 @@ std::vector<Completion> configs(const std::string& typed) {
   return out;
 }
 
-/// Runs, sweeps or, for DIR, both below runs/, where they are made.
+/// Returns the runs, the sweeps or (for DIR) both in runs/.
 std::vector<Completion> records(const std::string& of) {
   std::vector<Completion> out;
   std::error_code none;
@@ -73,7 +73,7 @@ std::vector<Completion> records(const std::string& of) {
         if (of != "RUN") out.push_back({id.string(), "a sweep"});
       } else if (of != "SWEEP" && fs::exists(id / "config.yaml", none)) {
         bool ended = false;
-        trouble_in([&] { ended = read_ending(id).end.has_value(); });  // of one that cannot be read no end is known
+        trouble_in([&] { ended = read_ending(id).end.has_value(); });  // a damaged record counts as not ended
         out.push_back({id.string(), ended ? "a run, ended" : "a run, not ended"});
       }
     }
@@ -81,7 +81,7 @@ std::vector<Completion> records(const std::string& of) {
   return out;
 }
 
-/// Kinds, and with `names` each plugin as KIND/NAME.
+/// Returns the plugin kinds and, if `names`, each plugin as KIND/NAME.
 std::vector<Completion> plugins_by_kind(const Program& program, bool names) {
   std::vector<Completion> out;
   for (const std::string& kind : PluginHost::kinds()) {
@@ -92,7 +92,8 @@ std::vector<Completion> plugins_by_kind(const Program& program, bool names) {
   return out;
 }
 
-/// Completions of what stands behind the last comma, as whole words.
+/// Completes the value after the last comma. `values` are completions of the part without commas; the results are whole
+/// words.
 std::vector<Completion> behind_comma(const std::string& typed, std::size_t from, std::vector<Completion> values) {
   const auto comma = typed.rfind(',');
   if (comma == std::string::npos || comma < from) return values;
@@ -100,7 +101,7 @@ std::vector<Completion> behind_comma(const std::string& typed, std::size_t from,
   return values;
 }
 
-/// A sweep's KEY=VALUES: as KEY=VALUE, one behind the other.
+/// Completes a sweep's KEY=VALUES, where each value is completed as in KEY=VALUE.
 std::vector<Completion> axis(Program& program, const std::string& config, const std::string& typed) {
   const auto equals = typed.find('=');
   if (equals == std::string::npos) return complete_key(program, config, {}, typed);
@@ -110,7 +111,7 @@ std::vector<Completion> axis(Program& program, const std::string& config, const 
   return behind_comma(typed, equals + 1 + bracket, std::move(out));
 }
 
-/// By the word that help has for a value; nothing for files and for what only the user knows.
+/// Returns completions according to the name of the value in the help. Files and free texts have none.
 std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& option, const std::string& typed,
                                   Program& program) {
   std::vector<Completion> out;
@@ -145,7 +146,7 @@ std::vector<Completion> completions(CLI::App& app, Program& program, const std::
   } else {
     try {
       app.parse(std::vector<std::string>(words.rbegin() + 1, words.rend()));
-    } catch (const CLI::Error&) {  // a command line that is typed so far may lack something
+    } catch (const CLI::Error&) {  // the words typed so far may be incomplete
     }
     if (app.get_subcommands().empty()) return {};
     const CLI::App& command = *app.get_subcommands().front();

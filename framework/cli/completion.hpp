@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What may be typed next: commands and their options, configs, groups, keys with their meaning, values, plugins, runs.
-// The scripts in cli/shells ask for it, at every press of the tabulator, and offer files where there is nothing.
+// Shell completion of commands, options, configs, groups, keys, values, plugins and runs. The scripts in cli/shells
+// call the program each time the user presses Tab, and offer files if there is no completion.
 #pragma once
 
 #include "cli/program.hpp"
@@ -14,15 +14,15 @@ class App;
 
 namespace palpate::cli {
 
-/// One way to go on.
+/// A completion of a word.
 struct Completion {
-  std::string word;     ///< the whole word; one that ends in '=', '.', '/' or ',' goes on
+  std::string word;     ///< the whole word; more may follow after '=', '.', '/' or ','
   std::string meaning;  ///< one line; may be ""
 };
 
-/// Returns the completions of the last of `words`, which stand behind `palpate` and of which the last may be empty or
-/// half typed. Nothing is written, run or built; a config or plugin that is broken is as if it were not there. Opens at
-/// most the plugins whose options are asked for.
+/// Returns the completions of the last of `words`, the words after `palpate`. The last word may be empty or incomplete.
+/// Nothing is written, run or built, broken configs and plugins are skipped, and only the plugins whose options are
+/// needed are opened.
 std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words);
 
 }  // namespace palpate::cli

@@ -28,10 +28,10 @@ int conduct_run(const Program& program, const ResolvedConfig& config, const RunO
   RunReport report;
   const std::optional<Error> trouble = trouble_in([&] {
     report = action(watcher ? &*watcher : display.get(), step.get());
-    if (watcher) watcher->start();  // of a run that had no tap left to make
+    if (watcher) watcher->start();  // for a run without further taps, which calls neither announce() nor record()
   });
   std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};
-  // A run that failed is a result, too: continuous integration shall see it as one.
+  // A failed run is a result that continuous integration must see.
   if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
   name_record(record_line(report));

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 4> kExtensions{".csv", ".png", ".pdf", ".svg"};
 
-/// The files to write: those that are named, else a picture and a table beside results.csv. A PDF comes last, because
-/// the script of a name draws the last picture of that name, and papers take the PDF.
+/// Returns the files to write: the given ones, or else one picture and one table next to results.csv. A PDF comes last,
+/// because all pictures of one name share a gnuplot script, and papers use the PDF.
 std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arguments,
                                   const std::vector<std::string>& by, const std::string& metric) {
   std::vector<fs::path> out(arguments.outputs.begin(), arguments.outputs.end());
@@ -51,7 +51,7 @@ std::vector<fs::path> curve_files(const Sweep& sweep, const CurvesArguments& arg
   return {sweep.directory / (name + ".csv"), sweep.directory / (name + ".png")};
 }
 
-/// The width of pictures, metres.
+/// Returns the width of the pictures, metres.
 double width_of(const CurvesArguments& arguments) {
   if (!arguments.width) return kFigureWidth;
   constexpr double kLeast = 0.05;
@@ -77,7 +77,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
                 "draw one figure per column");
   std::optional<Condition> where;
   if (arguments.where) where = Condition::of_command_line(*arguments.where);
-  // What cannot be asked is found out before anything is computed.
+  // Invalid keys and metrics are rejected before the computation.
   check_group_keys(sweep, by);
   if (!results.empty()) find_metric(sweep, asked, names_of(results));
   const std::string metric = field_name(asked);
@@ -103,7 +103,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
     const auto trouble = trouble_in([&] { note = write_curves_figure(made, title, width, file); });
     const fs::path script = fs::path(file).replace_extension(".gnuplot");
     if (std::error_code none; fs::is_regular_file(script, none)) scripts.insert(script);
-    // Asked for by name it is all that was asked for; else the table is there.
+    // Without -o, the table remains a result, so that a missing picture is not an error.
     if (trouble && !arguments.outputs.empty()) throw *trouble;
     if (trouble) {
       mention(fmt::format("no picture was drawn: {}\n", trouble->what()));

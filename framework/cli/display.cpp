@@ -23,8 +23,8 @@ std::string error_words(double metres) { return usual_scale(Unit::metre).quantit
 
 std::string share_text(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "-"; }
 
-/// "error: 2.6 mm over the scene (expected 3.1 mm), 5.9 mm on the object; footprint IoU 1.00"; without truth what is
-/// expected alone, empty where not even that is known.
+/// Returns for example "error: 2.6 mm over the scene (expected 3.1 mm), 5.9 mm on the object; footprint IoU 1.00".
+/// Without the truth, only the expected error remains; "" if there is none either.
 std::string error_line(const Row& summary) {
   const Errors errors = errors_in(summary);
   const std::optional<double> expected = summary.number(kExpectedError);
@@ -37,7 +37,7 @@ std::string error_line(const Row& summary) {
                      errors.footprint_iou ? "; footprint IoU " + share_text(errors.footprint_iou) : "");
 }
 
-/// What had to be done about rounding, in one line; empty when nothing was.
+/// Returns one line with the counts of numerical problems; "" if there were none.
 std::string numerics_line(const Row& row) {
   std::string line;
   const auto add = [&](const char* kind, const char* words) {
@@ -51,7 +51,7 @@ std::string numerics_line(const Row& row) {
   return line.empty() ? line : fmt::format("numerics: {}; runs/README.md explains these terms\n", line);
 }
 
-/// Names the taps whose label at the end is another than their line of the table, and taps.csv, has; empty if there is
+/// Returns a line with the taps whose final label differs from their line in the table and in taps.csv; "" if there are
 /// none.
 std::string relabelled_line(const Row& summary) {
   std::string line;
@@ -62,7 +62,7 @@ std::string relabelled_line(const Row& summary) {
   return line.empty() ? line : fmt::format("relabelled at the end: {}\n", line);
 }
 
-/// "suspected outliers: tap 8 (0.93), tap 12 (0.61)", "" of none.
+/// Returns for example "suspected outliers: tap 8 (0.93), tap 12 (0.61)"; "" if there are none.
 std::string outliers_line(const Row& row) {
   const Scalar* const value = row.find("suspected_outliers");
   const auto* const list = value != nullptr ? std::get_if<JsonList>(value) : nullptr;
@@ -111,7 +111,7 @@ std::string displayable(std::string_view text) {
 }
 
 void mention(const std::string& text) {
-  // In the order in which they were printed, also where both streams are one.
+  // Keeps the order of stdout and stderr if both go to the same file.
   flush_output();
   std::fputs(displayable(text).c_str(), stderr);
 }
@@ -123,7 +123,7 @@ std::string record_line(const RunReport& report) {
 
 void print_summary(const RunReport& report) {
   const Row& row = report.summary;
-  // The live line of a tap that was broken off and is made again.
+  // Erases the live line of the interrupted tap.
   std::string text = report.interrupted && ::isatty(STDOUT_FILENO) != 0 ? std::string(kClearLine) : "";
   if (report.already_done) {
     text += fmt::format("already done, not run again: {}\n", report.directory.string());

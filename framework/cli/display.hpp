@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a person sees of a run while it goes on, and at its end.
+// The output of a run on the terminal: one line per tap, and the summary.
 #pragma once
 
 #include "record/session.hpp"
@@ -11,7 +11,7 @@
 
 namespace palpate::cli {
 
-/// Prints a line a tap on stdout; on a terminal also a live line while the tap is under way.
+/// Prints one line per tap on stdout. A terminal also shows a live line during the tap.
 class TapTable final : public Journal {
  public:
   explicit TapTable(std::int64_t budget);
@@ -26,20 +26,20 @@ class TapTable final : public Journal {
   bool header_ = false;
 };
 
-/// Takes the line of a terminal away on which something was shown for a while.
+/// Terminal codes that erase the current line.
 constexpr std::string_view kClearLine = "\r\x1b[K";
 
-/// Returns `text` as printable() has it, but for kClearLine, which it may begin with.
+/// Returns `text` as printable() does, except for kClearLine at its beginning.
 std::string displayable(std::string_view text);
 
-/// Writes on stderr, as displayable() has it, what only accompanies the work. That nobody can read it any more, because
-/// the terminal is closed, is no reason to break the work off, as fmt::print would.
+/// Writes a message about the work on stderr, as displayable() returns it. A closed terminal is not an error here,
+/// unlike in fmt::print.
 void mention(const std::string& text);
 
-/// Where the record of a run is, or how it goes on.
+/// Returns the path of the record, or the command that resumes the run.
 std::string record_line(const RunReport& report);
 
-/// The result of a run in a few lines.
+/// Prints the result of a run in a few lines.
 void print_summary(const RunReport& report);
 
 }  // namespace palpate::cli

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Says of a run that is not done that the files hold only its first `taps`: more may follow.
+/// Warns on stderr if the run has not ended, so that the files hold only its first `taps` taps.
 void mention_state(const fs::path& directory, std::size_t taps) {
   const RunStatus status = read_status(directory);
   if (status.state == RunStatus::State::done) return;
@@ -26,7 +26,8 @@ void mention_state(const fs::path& directory, std::size_t taps) {
   mention(fmt::format("this run {}; the export uses its first {} taps\n", how, taps));
 }
 
-/// Makes the folder to write into. Throws Error where it is that of the record, which has files of these names.
+/// Creates the output folder and returns it. Throws Error for the directory of the run, because its files have the same
+/// names.
 fs::path folder_for(const fs::path& directory, const std::string& to) {
   if (to.empty()) return make_inner_folder(directory / "export");
   fs::path folder = make_folder(to);
@@ -41,7 +42,7 @@ void write_into(const fs::path& folder, const char* name, const std::string& tex
   print_out("{}\n", (folder / name).string());
 }
 
-/// The parts of a record, a table each: needs no plugin, and no tap.
+/// Writes one table per part of the record. No plugin is needed, and the run may have no tap.
 int export_tables(const fs::path& directory, const std::string& to) {
   const RunRecord record = read_run_record(directory);
   if (!record.manifest)

@@ -11,13 +11,13 @@
 namespace palpate::cli {
 namespace {
 
-/// The first Ctrl-C asks the run to stop after the tap under way, the second ends the program.
+/// The first Ctrl-C stops the run after the present tap, the second one ends the program.
 extern "C" void on_key(int signal) {
   if (interrupted.exchange(true)) std::_Exit(128 + signal);
 }
 
-/// A terminal that is closed says so more than once; so does a scheduler that ends a job, to each process of it, which
-/// also hears it from the one that started it. Nobody means to leave a robot's arm where it is by that.
+/// SIGTERM and SIGHUP only set the flag, however often they come. A closed terminal sends several, and a scheduler
+/// signals each process of a job. None of them means to leave a robot's arm where it is.
 extern "C" void on_request(int) { interrupted = true; }
 
 bool followed = false;
@@ -36,10 +36,10 @@ void follow_parent() {
   const char* const value = std::getenv("PALPATE_PARENT");
   if (value == nullptr) return;
   const std::string parent = value;
-  ::unsetenv("PALPATE_PARENT");  // what this program starts is not meant
+  ::unsetenv("PALPATE_PARENT");  // child processes must not inherit the variable
   followed = true;
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (parent != std::to_string(::getppid())) std::_Exit(128 + SIGTERM);  // it has ended meanwhile
+  if (parent != std::to_string(::getppid())) std::_Exit(128 + SIGTERM);  // the parent has already ended
 }
 
 void keep_parent() {

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Ctrl-C and SIGTERM. They end the program at once, as nobody is surprised by, until a command begins what has to come
-// to an end of its own: a tap that an arm is making, jobs that must be told.
+// Ctrl-C, SIGTERM and SIGHUP. They end the program at once, unless a command must first finish a tap of an arm or stop
+// its jobs.
 #pragma once
 
 #include <atomic>
 
 namespace palpate::cli {
 
-/// Set by a signal once listen_for_interrupts() was called, and never reset.
+/// True after a signal that followed listen_for_interrupts(). The value is never reset.
 extern std::atomic<bool> interrupted;
 
-/// From here on a signal only asks, by `interrupted`: call it right before what looks at that again and again. A second
-/// Ctrl-C ends the program all the same.
+/// Makes signals set `interrupted` instead of ending the program. Call this function right before a loop that reads the
+/// flag. A second Ctrl-C still ends the program.
 void listen_for_interrupts();
 
-/// Ends the program, as SIGTERM does, when the process that began it ends, if that asks for it by PALPATE_PARENT, its
-/// process id. So the sweep of a Python that is killed does not go on. Call it first, from the only thread.
+/// Ends this program as SIGTERM does when its parent ends, if the environment variable PALPATE_PARENT is the process id
+/// of the parent. So the sweep of a killed Python does not go on. Call this function first, with a single thread.
 void follow_parent();
-/// Asks the same of the program that this process is about to become.
+/// Sets PALPATE_PARENT again for the program that this process is about to execute.
 void keep_parent();
 
-/// Whether such a process reads how far a sweep has come, as people do on a terminal.
+/// Returns whether the parent set PALPATE_PARENT. Such a parent reads the progress of a sweep.
 bool is_followed();
 
 }  // namespace palpate::cli

@@ -18,8 +18,8 @@ namespace {
 using Type = FieldDescription::Type;
 using Descriptions = std::vector<FieldDescription>;
 
-/// The config as far as it is typed. Overrides that cannot be read, as a sweep's lists for a group, are left out; a
-/// config that cannot is empty.
+/// Returns the config with the overrides typed so far. Invalid overrides, such as a sweep's list for a group, are left
+/// out. An invalid config is empty.
 Tree config_so_far(Composer& composer, const std::string& config, const std::vector<std::string>& before) {
   Tree out = Tree::map();
   std::vector<Override> overrides;
@@ -31,7 +31,7 @@ Tree config_so_far(Composer& composer, const std::string& config, const std::vec
   return out;
 }
 
-/// The keys of a config, level by level, with the values that the config has.
+/// The keys of a config, level by level, and their values.
 class Keys {
  public:
   Keys(const PluginHost& host, const Tree& config) : host_(host), config_(config) {}
@@ -48,7 +48,7 @@ class Keys {
     return out;
   }
 
-  /// What stands within the field at `path`.
+  /// Returns the fields within the field at `path`.
   Descriptions within(const FieldDescription& field, const std::string& path) const {
     if (field.type == Type::section && !field.kind.empty()) return of_option(field, path);
     if (field.type == Type::section) return beside(field.fields, path + ".");
@@ -67,7 +67,7 @@ class Keys {
     return out;
   }
 
-  /// As the config has it, or the default; "" for what has no value that could be typed again.
+  /// Returns the value in the config or else the default; "" for a value that is not a single word.
   std::string value(const FieldDescription& field, const std::string& path) const {
     const Tree* own = config_.find_path(path);
     if (own != nullptr) return own->is_scalar() ? own->text : "";
@@ -88,7 +88,7 @@ class Keys {
     return out;
   }
 
-  /// The fields of an option that stands beside its plugin, whose key is its kind: Field::with_beside().
+  /// Returns the fields of an option that stands next to its plugin instead of in it (Field::with_beside()).
   Descriptions of_option(const FieldDescription& option, const std::string& path) const {
     FieldDescription plugin;
     for (const FieldDescription& one : options_of(option.kind, chosen_plugin(plugin, option.kind))) {
@@ -112,7 +112,7 @@ class Keys {
     return out;
   }
 
-  /// The fields, and those that the values of choices among them bring along.
+  /// Returns the fields, and the additional fields that the values of choices bring.
   Descriptions beside(const Descriptions& fields, const std::string& prefix) const {
     Descriptions out = fields;
     for (const FieldDescription& field : fields) {
@@ -131,7 +131,7 @@ class Keys {
   const Tree& config_;
 };
 
-/// Whether keys stand within it.
+/// Returns whether there are keys within the field.
 bool goes_on(const FieldDescription& field, const Tree& config, const std::string& path) {
   if (field.type == Type::section || (field.type == Type::plugin && !field.adopted)) return true;
   if (field.type != Type::sections && field.type != Type::plugins) return false;

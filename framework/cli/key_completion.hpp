@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What may be typed next of KEY=VALUE, from the field lists that read configs.
+// Completion of KEY=VALUE from the field lists of the config.
 #pragma once
 
 #include "cli/completion.hpp"
@@ -10,16 +10,17 @@
 
 namespace palpate::cli {
 
-/// For `typed`, the beginning of an override of the config in the file `config`, behind the overrides `before`. Keys
-/// come level by level, as folders do: `kernel.`, then `kernel.length_scale=`. Which options a plugin's group has
-/// depends on the plugin that config and overrides choose; where they cannot be read, on defaults.
+/// Returns the completions of `typed`, the beginning of an override of the config in the file `config`, after the
+/// overrides `before`. Keys come level by level, as folders do: first `kernel.`, then `kernel.length_scale=`. The
+/// options of a plugin are those of the plugin that the config and the overrides choose, or of the default plugin if
+/// they cannot be read.
 std::vector<Completion> complete_key(Program& program, const std::string& config,
                                      const std::vector<std::string>& before, const std::string& typed);
 
-/// The first sentence of a config, where it begins with a comment that says what it is for; "" if it does not.
+/// Returns the first sentence of the comment at the beginning of a config; "" if there is none.
 std::string purpose_of(const std::filesystem::path& config);
 
-/// The names of a kind's plugins, with what the shipped config of that name says.
+/// Returns the names of the plugins of a kind, with the purposes of the shipped configs of the same names.
 std::vector<Completion> plugin_names(const Program& program, const std::string& kind);
 
 }  // namespace palpate::cli

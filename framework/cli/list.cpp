@@ -30,7 +30,7 @@ void print_json(const std::vector<Row>& rows) {
   print_data(fmt::format("[{}{}{}]\n", lines.empty() ? "" : "\n", fmt::join(lines, ",\n"), lines.empty() ? "" : "\n"));
 }
 
-/// Why fewer are listed than there are folders.
+/// Prints the numbers of folders that are not listed.
 void mention_others(const Catalogue& all, const fs::path& folder) {
   std::vector<std::string> others;
   if (all.strangers > 0) others.push_back(counted(all.strangers, "folder") + " without a run");
@@ -53,7 +53,7 @@ int list_runs(Program&, const ListArguments& arguments) {
   std::vector<ListedRecord> records;
   for (const fs::path& directory : all.records) {
     const auto trouble = trouble_in([&] { records.push_back(list_record(directory)); });
-    // One that is damaged is no reason to be silent about the others.
+    // A damaged record does not keep the others from the list.
     if (trouble) mention(fmt::format("{}\n", trouble->what()));
   }
   tell_apart(records);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a command line needs beside `palpate` itself. ./palpate asks, with --needs before the other words, and has that
-// built; the program never compiles anything.
+// The parts of the build that a command line needs besides `palpate` itself. The script ./palpate calls the program
+// with --needs before the other words, and builds these parts.
 #pragma once
 
 #include "cli/program.hpp"
@@ -10,34 +10,35 @@
 
 namespace palpate::cli {
 
-/// Gathers what a command takes; it is a source of plugins that notes for which ones it is asked. No member throws:
-/// what is wrong with a config the command says. Plugins that only plugins name come to light once those are built.
+/// Collects the parts that a command needs. As a PluginSource it notes each plugin whose options are read. The
+/// functions do not throw, because the command itself reports an invalid config. Plugins named by other plugins become
+/// visible once the latter are built.
 class Needs final : public PluginSource {
  public:
   explicit Needs(Program& program) : program_(program) {}
 
-  /// The program with every command.
+  /// Adds palpate-whole.
   void whole() { whole_ = true; }
-  /// All of this build.
+  /// Adds all plugins of this build.
   void every_plugin() { every_plugin_ = true; }
-  /// Both: what the jobs of a sweep name is only known once it is planned.
+  /// Adds both. The plugins of a sweep are known only after planning.
   void everything() { whole_ = every_plugin_ = true; }
-  /// The plugins that a config names, by itself or because they are defaults; with `sweeps`, everything where it is
-  /// one.
+  /// Adds the plugins of a config, including default ones. With `sweeps`, a config with a 'sweep:' block needs
+  /// everything.
   void config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps);
-  /// What a run named; everything for a sweep.
+  /// Adds the plugins of a run; everything for a sweep.
   void record(const std::string& directory);
   void whole_and_record(const std::string& directory) {
     whole();
     record(directory);
   }
-  /// The plugins that `palpate plugins` lists: "", KIND or KIND/NAME.
+  /// Adds the plugins that `palpate plugins` lists for "", KIND or KIND/NAME.
   void listing(const std::string& what);
 
-  /// Prints the targets of the build, one a line. Nothing where the program is installed and has all.
+  /// Prints the targets of the build, one per line; nothing for an installed program, which is complete.
   void print() const;
 
-  /// What is not built is silent about its options.
+  /// Returns whether a plugin is not built, so that its options are unknown.
   bool is_silent(const std::string& kind, const std::string& name) const override;
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
 

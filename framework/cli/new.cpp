@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A plugin to begin with: the one of its kind in plugins/starters, under the name that is asked for.
+// `palpate new`: copies the starter plugin of a kind from plugins/starters, under a new name.
 #include "cli/command_line.hpp"
 #include "cli/output.hpp"
 #include "reading/reading.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How it is built against this program, which a build folder has to install first.
+/// Returns the commands that build and run the plugin. A build folder must first be installed.
 std::string next_steps(const Installation& installation, const std::string& name) {
   const bool installed = installation.whole == installation.program;
   const fs::path folder = installation.program.parent_path();
@@ -76,7 +76,8 @@ int new_plugin(Program& program, const NewArguments& arguments) {
     for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {
       write(starters / "python" / file, boost::replace_all_copy(std::string(file), "starter", name));
     }
-    const std::string module = "palpate_acquisition.py";  // for the test, which palpate does not start
+    const std::string module =
+        "palpate_acquisition.py";  // the test imports this module, and `palpate` does not start the test
     write(program.installation.plugins / "python" / module, module);
     const fs::path script = program.installation.configs.parent_path() / "palpate";
     const std::string called = fs::equivalent("palpate", script, trouble) ? "./palpate"

@@ -16,7 +16,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr int kUnknown = -1;
-/// Why stdout failed first; 0: it has not.
+/// The errno of the first failure of stdout; 0: none.
 int failure = 0;
 bool outlives = false;
 std::string record;
@@ -30,7 +30,7 @@ void note_failure() {
 void occupy_standard_files() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(number, F_GETFD) >= 0) continue;
-    // Gets this very number, the lowest that is free.
+    // The new file gets this number, the lowest free one.
     ::open(number == STDIN_FILENO ? "/dev/full" : "/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
@@ -57,8 +57,8 @@ void name_record(std::string line) { record = std::move(line); }
 int finish_output(int status) {
   flush_output();
   errno = 0;
-  if (std::ferror(stdout) != 0) note_failure();  // of what CLI11 prints
-  // A file system may report only at close what it did not take.
+  if (std::ferror(stdout) != 0) note_failure();  // CLI11 prints by std::cout
+  // Some file systems report lost data only when the file is closed.
   errno = 0;
   const int copy = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   if (copy >= 0 && ::close(copy) != 0) note_failure();

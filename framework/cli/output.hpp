@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Standard output of the program. What cannot be printed ends no command, but decides its exit status: a table that was
-// lost must not look like one that was printed.
+// The standard output of the program. A failed write does not end a command, but changes its exit status, so that a
+// lost table does not look like a printed one.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,14 +11,14 @@
 
 namespace palpate::cli {
 
-/// Opens those of the files 0, 1 and 2 that the process was started without, the wrong way round: no file of a record
-/// gets such a number, and printing fails instead of going nowhere. To be called first.
+/// Opens those of the files 0, 1 and 2 that are closed, in the wrong direction. So no file of a record gets such a
+/// number, and a write to them fails. Call this function first.
 void occupy_standard_files();
 
-/// Prints text for people on stdout, as printable() has it: parts of it may come from a stranger. The reason of the
-/// first failure is kept, and what follows it is dropped. Never throws for that.
+/// Prints text for people on stdout, with control characters replaced (printable()), because it may contain foreign
+/// text. After a failure, the first reason is kept and further text is dropped. Does not throw.
 void print_text(std::string_view text);
-/// The same for programs, byte for byte: JSON, YAML, the words of a completion.
+/// Prints data for programs unchanged: JSON, YAML, words of a completion.
 void print_data(std::string_view text);
 template <class... Arguments>
 void print_out(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -26,16 +26,16 @@ void print_out(fmt::format_string<Arguments...> format, Arguments&&... arguments
 }
 void flush_output();
 
-/// From here on a reader that is gone, as `head` or `tee` may be, does not end the program: for commands whose record
-/// is worth more than their words.
+/// From now on, the program survives the end of the reader of stdout, such as `head`. For commands whose record is
+/// worth more than their output.
 void outlive_reader();
 
-/// A line about the record of the command, which finish_output() repeats on stderr if stdout has failed.
+/// Sets a line about the record of the command. finish_output() prints it on stderr if stdout has failed.
 void name_record(std::string line);
 
-/// Hands all that was printed to the file of stdout and checks that it took it. Returns the exit status of the program:
-/// `status`, or 1 where that is 0 and words were lost. A reader that is gone loses none; after outlive_reader() stderr
-/// has the line about the record, and without it the process ends by SIGPIPE before this is called.
+/// Flushes stdout and checks that all output was written. Returns `status`, or 1 if `status` is 0 and output was lost.
+/// A reader that has ended is not a loss: after outlive_reader(), stderr gets the line about the record. Without
+/// outlive_reader(), SIGPIPE has already ended the process.
 int finish_output(int status);
 
 }  // namespace palpate::cli

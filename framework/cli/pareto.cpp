@@ -27,7 +27,7 @@ std::string title_of(const std::string& name, const Pareto& pareto) {
                      seeds_words(pareto));
 }
 
-/// The picture and the table beside results.csv.
+/// Writes the picture and the table next to results.csv.
 void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& name, const std::string& where,
                  const std::optional<double>& bound, const Setting* chosen) {
   const fs::path stem = sweep.directory / fmt::format("pareto_{}_{}{}", slug(pareto.cost.name), slug(pareto.error.name),
@@ -45,12 +45,12 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
   }
 }
 
-/// The resolved config of the setting's first job, with a head that says why it was chosen. What the sweep expected of
-/// all its runs is not expected of this one.
+/// Prints the config of the first job of a setting, after a comment with the reason for the choice. The expectations of
+/// the sweep are left out, because they do not apply to a single run.
 void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chosen, double bound) {
   Tree config = read_run_config(job_directory(sweep, sweep.jobs[chosen.first_job]));
   config.erase("expect");
-  // Not among the sweeps of this name: what is said of them below, runs/NAME/*, would no longer be one directory.
+  // A new name keeps runs/NAME/* a single directory, which the examples of other commands rely on.
   Tree& name = config.at("name");
   name = Tree::scalar(name.text + "_best", true);
   const char* const kept =
@@ -78,7 +78,7 @@ int pareto(Program&, const ParetoArguments& arguments) {
         fmt::format("{} of {} jobs have not ended, run them with 'palpate resume'\n", pareto.unfinished, pareto.jobs));
   }
   asked ? mention(pareto_table(pareto)) : print_text(pareto_table(pareto));
-  // First what was asked for: the directory may be one where nothing can be written.
+  // The config comes first, because writing the files may fail.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);
   write_files(sweep, pareto, sweep_name(sweep), arguments.where.value_or(""), bound, chosen);
   if (!bound || chosen != nullptr) return kDone;

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Speaks on stderr once a second, so that whoever waits knows for what.
+/// Prints the progress on stderr, at most once per second.
 class Patience {
  public:
   explicit Patience(const char* what) : what_(what) {}
@@ -55,14 +55,14 @@ void show(const Figures& figures) {
   for (const fs::path& picture : figures.pictures) print_out("{}\n", picture.string());
 }
 
-/// Throws Error, with `what` in its reason, for a run from any side.
+/// Throws Error with the reason `what` for a run from any side.
 void check_from_above(const Recording& recording, const std::string& what) {
   if (recording.config.options.scene.touch != SceneOptions::Touch::any) return;
   throw Error(recording.directory.string(), "is a run from any side, but " + what,
               "use 'palpate report' without options for its page");
 }
 
-/// Says of a run whose truth is not known any more that its errors are those of the record.
+/// Warns on stderr if the truth of the scene is lost, so that errors come from the record.
 void mention_lost(const History& history) {
   if (history.truth_lost) mention(truth_lost_words(*history.truth_lost) + "\n");
 }
@@ -116,7 +116,7 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
 }  // namespace
 
 int report(Program& program, const ReportArguments& arguments) {
-  // Here is no tap to be ended first, and files appear whole: what interrupts may do so at once.
+  // An interrupt may end this command at once: no tap is under way, and each file is replaced as a whole.
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
   if (!arguments.to.empty()) make_folder(arguments.to);
   if (arguments.directories.size() > 1) {

@@ -38,7 +38,7 @@ struct RunArguments {
   std::string junit;
 };
 
-/// The groups with their files, every value with its place, one a line, and what a later choice of type left behind.
+/// Prints the files of the groups, each value with its place, and the options that a later choice of type dropped.
 void print_origins(const std::vector<Composer::Group>& groups, const ResolvedConfig& config) {
   for (const Composer::Group& one : groups) print_out("# {} {}: {}\n", one.path, one.name, one.file.string());
   std::size_t width = 0;
@@ -55,8 +55,8 @@ void print_origins(const std::vector<Composer::Group>& groups, const ResolvedCon
   }
 }
 
-/// What `trouble` is about may be an override that is meant for `palpate sweep`, many values of a key: then it is said
-/// so.
+/// Returns a clearer error if `trouble` is about an override with several values of a key, as for `palpate sweep`;
+/// otherwise returns `trouble`.
 Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector<std::string>& texts,
                        const Error& trouble) {
   const auto mentions = [&](const std::string& text) { return trouble.reason().find(text) != std::string::npos; };
@@ -64,7 +64,7 @@ Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector
     const Override& one = overrides[i];
     const bool about = one.value.is_scalar() && trouble.where() == one.value.place.text() &&
                        (mentions(one.path + ":") || mentions("'" + one.value.text + "'"));
-    // A comma between digits is more often that of a number.
+    // A comma between digits is more often a decimal comma than a list.
     if (!about || mentions("decimal comma")) continue;
     ValueCount count;
     if (parse_axis(texts[i], count).values.size() < 2) continue;
@@ -74,7 +74,7 @@ Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector
   return trouble;
 }
 
-/// The models that taps will be chosen from, with who reads them; in comments, as what is printed is a config.
+/// Prints the models for the choice of taps and their readers, as comments, because stdout is a config.
 void print_models(const Program& program, const ResolvedConfig& config) {
   std::map<std::string, std::string> models;
   const std::optional<Error> trouble = trouble_in([&] {
@@ -97,7 +97,7 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
             status.state == RunStatus::State::absent ? "not run yet" : state_name(status.state));
 }
 
-/// After the first run other commands are still to be built, and whoever is at the terminal may have time now.
+/// Names the command that builds the rest, if the first run was made from a terminal.
 void offer_the_rest(const Program& program) {
   if (::isatty(STDERR_FILENO) == 0 || is_there(program.installation.whole)) return;
   mention(

@@ -16,7 +16,8 @@
 namespace palpate::cli {
 namespace {
 
-/// The plugins of a kind that can be used, with their options; `palpate plugins` tells what is wrong with the others.
+/// Returns the usable plugins of a kind with their options. Broken plugins are left out; `palpate plugins` reports
+/// them.
 std::vector<FieldDescription::CaseDescription> plugins_of(const PluginHost& host, const std::string& kind) {
   std::vector<FieldDescription::CaseDescription> out;
   for (const PluginListing& row : host.list(kind, "")) {
@@ -34,9 +35,9 @@ Tree of_type(const char* type, const char* description = nullptr) {
 
 Tree any_of(std::vector<Tree> schemas) { return Tree::map({{"anyOf", Tree::list(std::move(schemas))}}); }
 
-/// A group of a kind: its name as plain text, or the options of one of its plugins. The type may be left to a group
-/// named under `defaults`, so it is not required.
-/// `beside`: the options that stand beside a plugin of this kind (Field::with_beside()) and are left out.
+/// Returns the schema of a plugin kind: a name as plain text, or the options of one of its plugins. The type is not
+/// required, because a group in `defaults` may set it. `beside`: options that stand next to a plugin of this kind and
+/// are left out (Field::with_beside()).
 Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set<std::string>& beside) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("name of a group file or of a plugin");
@@ -51,7 +52,8 @@ Tree kind_schema(const PluginHost& host, const std::string& kind, const std::set
   return any_of(std::move(any));
 }
 
-/// What may stand beside a plugin of this kind: the name of a group file, or the options of one of the plugins.
+/// Returns the schema of the key next to a plugin of this kind: the name of a group file, or the options of one of the
+/// plugins.
 Tree beside_schema(const PluginHost& host, const std::string& kind, const std::string& option) {
   std::vector<Tree> any{of_type("string")};
   any.front().at("description") = Tree::quote("name of a group file");
@@ -65,11 +67,11 @@ Tree beside_schema(const PluginHost& host, const std::string& kind, const std::s
   return any_of(std::move(any));
 }
 
-/// `expect:`: fields of the summary and their statistics, with a comparison or several.
+/// Fills the schema of `expect:`: fields of the summary and their statistics, with one or more comparisons.
 void expect_schema(Tree& expect) {
   std::string fields = kFailedRuns;
   for (const RecordField& field : summary_fields()) fields += "|" + field.name;
-  // A dot is any character to a pattern, which is near enough for an editor.
+  // A dot of a field name matches any character in this pattern, which is precise enough for an editor.
   const std::string keys = fmt::format("^(({0})|({1})\\(({0})\\))$", fields, fmt::join(statistic_names(), "|"));
   expect.at("type") = Tree::quote("object");
   expect.at("patternProperties").at(keys) = any_of({of_type("string"), of_type("boolean"), of_type("array")});
@@ -77,7 +79,7 @@ void expect_schema(Tree& expect) {
   expect = any_of({of_type("string"), expect});
 }
 
-/// `defaults:`: groups with their names.
+/// Fills the schema of `defaults:`: groups with their names.
 void defaults_schema(Tree& defaults) {
   defaults.at("type") = Tree::quote("array");
   Tree& item = defaults.at("items") = of_type("object");
@@ -86,7 +88,7 @@ void defaults_schema(Tree& defaults) {
   item.at("maxProperties") = Tree::scalar("1");
 }
 
-/// `sweep:`: its blocks, whose keys may be any.
+/// Fills the schema of `sweep:`, whose blocks accept any keys.
 void sweep_schema(Tree& sweep) {
   sweep.at("type") = Tree::quote("object");
   sweep.at("additionalProperties") = Tree::scalar("false");

@@ -19,7 +19,7 @@
 namespace palpate::cli {
 namespace {
 
-/// How long a wish to stop may go unseen: another thread may have taken the signal, and then nothing wakes this one.
+/// Longest delay of an interrupt: if another thread handles the signal, poll() does not return early.
 constexpr int kGlance = 100;  // ms
 
 std::string who_chose(const TapRecord& tap) {
@@ -64,7 +64,7 @@ bool Step::permits(const TapRecord& tap, const Preview& preview) {
   }
 }
 
-/// Without the line end; none when the terminal is gone, its user has ended the input, or wants to stop.
+/// Returns the line without its line end; nullopt after the end of input or an interrupt.
 std::optional<std::string> Step::read_line() const {
   std::string line;
   while (line.empty() || line.back() != '\n') {
@@ -73,7 +73,7 @@ std::optional<std::string> Step::read_line() const {
     if (interrupted_ != nullptr && interrupted_->load()) return std::nullopt;
     if (ready <= 0) continue;
     char piece[256];
-    const ssize_t size = ::read(STDIN_FILENO, piece, sizeof piece);  // a terminal gives one line at most
+    const ssize_t size = ::read(STDIN_FILENO, piece, sizeof piece);  // a terminal returns at most one line
     if (size <= 0) return std::nullopt;
     line.append(piece, static_cast<std::size_t>(size));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `--step`: a person at a terminal sees every tap before it is made, and lets it be made or ends the run.
+// `--step`: each tap is shown on the terminal and waits for the permission of the user.
 #pragma once
 
 #include "record/session.hpp"
@@ -14,12 +14,12 @@ namespace palpate::cli {
 /// Shows each tap on stderr and waits for a line on stdin.
 class Step final : public Supervisor {
  public:
-  /// None unless `wanted`. Throws Error without a terminal to show and to ask: before anything is connected or moves.
+  /// Returns null unless `wanted`. Throws Error without a terminal, before a connection is made or anything moves.
   static std::unique_ptr<Step> when(bool wanted, const ExperimentOptions& options,
                                     const std::atomic<bool>* interrupted);
 
-  /// True for Enter; false for q, Ctrl-D, and whatever sets `interrupted`. What was typed before the question is no
-  /// answer to it.
+  /// Returns true for Enter; false for q, for Ctrl-D, and once `interrupted` is set. Input from before the question is
+  /// discarded.
   bool permits(const TapRecord& tap, const Preview& preview) override;
 
  private:

@@ -35,24 +35,26 @@
 namespace palpate::cli {
 namespace {
 
-/// A sweep that is begun or carried on.
+/// A sweep that starts or resumes.
 struct Campaign {
   const Program& program;
   const Sweep& sweep;
   ResumeOptions options;
   const LaunchArguments& launch;
-  std::vector<std::size_t> only;  ///< these jobs; none for all
-  bool one_at_a_time = false;     ///< a job's backend moves what exists only once
-  /// As the command line has it now, with what is expected now; none of a sweep that is resumed.
+  std::vector<std::size_t> only;  ///< job numbers; empty: all
+  bool one_at_a_time = false;     ///< a backend moves something that exists only once, such as an arm
+  /// The config of the first job with the present expectations, when `palpate sweep` starts the sweep; nullopt for
+  /// `palpate resume`.
   std::optional<ResolvedConfig> first = std::nullopt;
 };
 
-/// Those that are to run, as far as they are missing.
+/// Returns the jobs that this process is responsible for, done or not.
 std::vector<std::size_t> jobs_of(const Campaign& campaign) {
   return campaign.only.empty() ? all_jobs(campaign.sweep) : campaign.only;
 }
 
-/// Some jobs of many, as a task of a cluster runs them: what is said of the whole is said elsewhere.
+/// Ends a part of a sweep, as in a task of a cluster. The process that submitted the tasks prints the results of the
+/// whole.
 int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted, bool all_recorded) {
   const bool complete = std::all_of(sweep.jobs.begin(), sweep.jobs.end(),
                                     [&](const Job& job) { return has_ended(job_directory(sweep, job)); });
@@ -63,7 +65,7 @@ int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted, boo
   return end.open.empty() ? kDone : kBusy;
 }
 
-/// The config of a job; none of a damaged one, which the job itself says, and costs itself alone.
+/// Returns the config of a job; nullopt if it is damaged. The job then fails by itself and reports the reason.
 std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::size_t job) {
   std::optional<ResolvedConfig> config;
   trouble_in(
@@ -71,11 +73,12 @@ std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::siz
   return config;
 }
 
-/// `blocked`: some jobs could not begin, for a reason that is on stderr and that all others have, too.
+/// State of the jobs after the launch. `blocked`: a job could not begin, for a reason that holds for all jobs and is on
+/// stderr.
 enum class Launched { submitted, ended, ended_unrecorded, blocked };
 
-/// How many of a job's taps are initial ones, at most; nullopt where that depends on what a camera sees. A search, and
-/// a run from any side, goes on until it hits: its starts without contact are those that never do.
+/// Returns the maximum number of initial taps of a job; nullopt if it depends on a camera's view. A search, and a run
+/// from any side, may last until the end of the run, so that all of its taps may be initial.
 std::optional<int> initial_taps_of(const ExperimentOptions& options) {
   if (options.space && options.space->view) return std::nullopt;
   return static_cast<int>(options.initial.searches() || options.space ? options.taps : options.initial.count);
@@ -100,7 +103,7 @@ int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupt
                       : "resume with: palpate resume",
             directory);
   if (interrupted) return kInterrupted;
-  // What is expected stands in every job's config, and is judged of all: the first that can be read will do.
+  // The expectations are the same in the configs of all jobs, so the first readable config is enough.
   std::optional<ResolvedConfig> config = campaign.first;
   for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(campaign, job);
   if (!config) throw Error(sweep.directory.string(), "no job has a readable config.yaml", "restore these files");
@@ -124,7 +127,7 @@ LaunchOptions launch_options(const Campaign& campaign) {
           launch.jobs_per_task.value_or(1)};
 }
 
-/// Says how to go on with what a cluster has in hand.
+/// Prints the commands that follow, continue and stop the jobs on a cluster.
 void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
   const std::string directory = shell_word(std::filesystem::absolute(campaign.sweep.directory).string());
   print_out("watch progress with: palpate status {}\n", directory);
@@ -132,8 +135,7 @@ void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
   print_out("stop: {}\n", launcher.stop_command());
 }
 
-/// Has the launcher run what is open, and returns at the end of that, or, on a cluster without --wait, once it is
-/// submitted.
+/// Runs the open jobs until all have ended. On a cluster without --wait, returns once they are submitted.
 Launched launch_open(const Campaign& campaign, const Standing& begun) {
   const auto print_array = [](const TaskArray& array) {
     print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
@@ -146,13 +148,13 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
   const std::unique_ptr<Launcher> launcher =
       launcher_type(campaign.launch.launcher).make({program, campaign.sweep, launch_options(campaign), print_array});
   if (is_on_cluster(campaign)) {
-    if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // there is nothing to submit
+    if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // nothing to submit
     if (!campaign.launch.wait) {
       launcher->submit(begun.open);
       print_ways_on(campaign, *launcher);
       return Launched::submitted;
     }
-    // A terminal that is closed ends the waiting, not the jobs; under nohup not even that.
+    // A closed terminal ends the waiting, but not the jobs. Under nohup, the waiting goes on.
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   }
   SweepLine line(campaign.launch.quiet);
@@ -165,7 +167,7 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
   return blocked ? Launched::blocked : all_recorded ? Launched::ended : Launched::ended_unrecorded;
 }
 
-/// All that are not done, ascending.
+/// Returns all jobs that are not done, ascending.
 std::vector<std::size_t> undone(const Standing& standing) {
   std::vector<std::size_t> out = standing.open;
   for (const SweepFailure& one : standing.failures) out.push_back(one.job);
@@ -173,8 +175,7 @@ std::vector<std::size_t> undone(const Standing& standing) {
   return out;
 }
 
-/// Throws Error if one of these jobs was begun by another build, unless that is forced: before the first job runs.
-/// Notes whether only one may run at a time.
+/// Sets one_at_a_time. Throws Error if another build started one of these jobs, unless --force is given.
 void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
   for (const std::size_t job : jobs) {
     const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
@@ -187,12 +188,12 @@ void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
   }
 }
 
-/// Runs what is missing of jobs that stand as in `begun`, prints the result and judges it. Returns the exit status.
+/// Runs the open jobs, prints the result and checks the expectations. Returns the exit status.
 int run_campaign(const Campaign& campaign, Standing begun) {
   const Sweep& sweep = campaign.sweep;
   check_locks(sweep.directory);
   const bool whole = campaign.only.empty();
-  // A node that runs a part of the jobs may have mounted the folder otherwise than the one that submitted them.
+  // The node that runs a part of the jobs may mount the folder in another way than the node that submitted them.
   if (is_on_cluster(campaign) || !whole) check_shared_locks(sweep.directory);
   listen_for_interrupts();
   outlive_reader();
@@ -205,14 +206,15 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
   const Launched launched = launch_open(campaign, begun);
   if (launched == Launched::submitted) return kDone;
-  // A job whose files could not be written was not recorded whole; one of another build may never have them again.
+  // Missing files do not count here: `conduct` has reported them, and a job of another build may never get them back.
   const Standing end = standing_of(sweep, jobs, Also::nothing);
   const bool interrupted = campaign.program.interrupted->load();
   if (whole) return conclude_whole(campaign, end, interrupted, launched);
   return conclude_part(sweep, end, interrupted, launched != Launched::ended_unrecorded);
 }
 
-/// The jobs in "0-7,12", ascending, each once. Throws Error for what is none of `count`.
+/// Returns the job numbers in a text such as "0-7,12", ascending, each once. Throws Error for a number that is not
+/// below `count`.
 std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) {
   const auto refuse = [&] {
     return Error("command line", fmt::format("--jobs: '{}' is not a list of job numbers", text),
@@ -237,7 +239,7 @@ std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) 
   return {jobs.begin(), jobs.end()};
 }
 
-/// Throws Error for a job whose taps a program of Python makes.
+/// Throws Error for a sweep whose taps are made by a Python program.
 void check_who_taps(const ResolvedConfig& config, const std::string& place) {
   if (config.options.backend.type != kCaller) return;
   throw Error(place, "the taps of this sweep are made by the caller's own program, not by palpate",
@@ -281,7 +283,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   const bool is_new = draft->publish(*plan);
   const std::filesystem::path directory = plan->sweep.directory;
   draft.reset();
-  plan.reset();  // the process of every job would copy the memory that planning took
+  plan.reset();  // each child process would copy the memory of the planning
   const Sweep planned = read_sweep(directory);
   Campaign campaign{program, planned, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
   if (!is_new) check_builds(campaign, jobs_of(campaign));
@@ -316,7 +318,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
   return run_campaign(campaign, std::move(begun));
 }
 
-/// From the jobs' directories alone: whoever runs them, a scheduler or a process that has died, is not asked.
+/// Reads the directories of the jobs alone, and asks neither the scheduler nor another process.
 int status_of_sweep(Program&, const std::string& directory) {
   const Sweep sweep = read_sweep(directory);
   Standing now = standing_of(sweep, all_jobs(sweep), Also::running);

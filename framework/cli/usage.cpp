@@ -18,7 +18,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr std::size_t kWidth = 100;
-constexpr std::size_t kColumn = 28;  ///< where meanings begin
+constexpr std::size_t kColumn = 28;  ///< first column of the descriptions
 
 std::string full_name(const CLI::App& app) {
   return app.get_parent() == nullptr ? "palpate" : "palpate " + app.get_name();
@@ -38,11 +38,11 @@ std::string synopsis(const CLI::App& app) {
   return out;
 }
 
-/// "--launcher NAME", "CONFIG", "OVERRIDE KEY=VALUE ...".
+/// Returns for example "--launcher NAME", "CONFIG", "OVERRIDE KEY=VALUE ...".
 std::string head_of(const CLI::Option& option) {
   const std::string value = value_of(option);
   if (option.get_positional()) {
-    // A positional argument is called after its value, except for a value that has a form.
+    // The name of a positional argument is that of its value, except for values with a form such as KEY=VALUE.
     if (value.find_first_of("=/") == std::string::npos) return option.get_name();
     return fmt::format("{} {}{}", option.get_name(), value, option.get_items_expected_max() > 1 ? " ..." : "");
   }
@@ -52,7 +52,8 @@ std::string head_of(const CLI::Option& option) {
   return fmt::format("{}{}{}", fmt::join(names, ", "), value.empty() ? "" : " ", value);
 }
 
-/// What the checks of `option` accept: "1 to 1024", "{local,slurm}". CLI11 appends it to the name of the value.
+/// Returns the accepted values of an option, for example "1 to 1024" or "{local,slurm}". CLI11 appends them to the name
+/// of the value.
 std::string accepted_by(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const auto colon = type.find(':');
@@ -79,7 +80,7 @@ std::vector<Section> sections_of(const CLI::App& app) {
   return out;
 }
 
-/// A term and its meaning beside it, or below where the term is too long.
+/// Formats a term with its description to the right, or below a long term.
 std::string entry(const std::string& term, const std::string& meaning) {
   std::string out = "  " + term;
   if (out.size() + 2 > kColumn) out += "\n" + std::string(kColumn, ' ');
@@ -87,7 +88,7 @@ std::string entry(const std::string& term, const std::string& meaning) {
   return out + fmt::format("{}\n", fmt::join(wrapped(meaning, kWidth - kColumn), "\n" + std::string(kColumn, ' ')));
 }
 
-/// A text as roff prints it: hyphens can be searched for and pasted, and no line is a request.
+/// Escapes a text for roff: hyphens can be searched for and pasted, and no line is a request.
 std::string roff(std::string text) {
   boost::replace_all(text, "\\", "\\e");
   boost::replace_all(text, "-", "\\-");
@@ -95,7 +96,7 @@ std::string roff(std::string text) {
   return "\\&" + text;
 }
 
-/// What holds for all commands: the exit statuses are those of commands.hpp.
+/// The part of the manual that all commands share. The exit statuses are those of program.hpp.
 constexpr const char* kCommon =
     ".SH EXIT STATUS\n"
     ".TP\n.B 0\nsuccess\n"

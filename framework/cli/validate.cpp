@@ -20,10 +20,10 @@ struct ValidateArguments {
 
 int validate(Program& program, const ValidateArguments& arguments) {
   int bad = 0;
-  // Said at the end: over a sweep, this process may become another program, which begins anew.
-  std::vector<std::pair<bool, std::string>> said;  // whether it is of a valid one
+  // All lines are printed at the end, because for a sweep this process may execute palpate-whole, which starts again.
+  std::vector<std::pair<bool, std::string>> said;  // true: a valid config
   for (const std::string& file : arguments.configs) {
-    // All files are looked at, so that one run of the command shows every file that needs a hand.
+    // All files are checked, so that one command reports every invalid file.
     const std::optional<Error> trouble = trouble_in([&] {
       const Tree tree = program.composer.compose(file, {});
       if (tree.find("sweep") != nullptr) {
@@ -31,7 +31,7 @@ int validate(Program& program, const ValidateArguments& arguments) {
             true, fmt::format("{}: valid, a sweep of {} jobs\n", file, call_in_whole(jobs_of_sweep, program, file)));
       } else {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
-        // Only building finds a broken mesh, or objects for which there is no room.
+        // Only the construction of the scene finds a broken mesh, or objects that do not fit into the area.
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
         for (const std::string& line : half_said_sizes(config.tree, config.notes))
           said.emplace_back(false, line + "\n");

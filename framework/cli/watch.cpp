@@ -14,8 +14,8 @@ namespace palpate::cli {
 
 int watch(Program& program, const WatchArguments& arguments) {
   constexpr int kPatience = 120;
-  // What is watched goes first wherever there is not enough for both: a run above all, which is computed again here.
-  // The page of a sweep that has all cores busy takes little, and is to come all the same.
+  // The watched run has priority over this process, which computes the run a second time. The page of a sweep needs
+  // little time and gets a higher priority, because the jobs occupy all cores.
   ::setpriority(PRIO_PROCESS, 0, is_sweep(arguments.directory) ? 10 : 19);
   Site site(program, arguments.directory);
   Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kPatience : 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `--watch`: the page of what a command begins, served by a process of its own.
+// `--watch`: starts a process that serves the page of a run or sweep.
 #pragma once
 
 #include "cli/program.hpp"
@@ -9,15 +9,14 @@
 
 namespace palpate::cli {
 
-/// Starts `palpate watch DIRECTORY --until-left` and prints the address on stderr, once it is there, or why there is
-/// none: nothing else depends on it. It hears none of the terminal's signals and outlives this process.
+/// Starts `palpate watch DIRECTORY --until-left`. Prints on stderr the address of the page, or the reason why there is
+/// none, which is not an error. The process ignores the terminal's signals and outlives this process.
 void start_watcher(const Program& program, const std::filesystem::path& directory);
 
-/// Starts it once the run has begun, before its first tap: until then the directory is not there, and nothing says that
-/// the run begins at all.
+/// Starts the watcher right before the first tap, because the run directory does not exist earlier.
 class Watcher final : public Journal {
  public:
-  /// `display` may be null; both must outlive it.
+  /// `display` may be null. Both objects must outlive this one.
   Watcher(const Program& program, std::filesystem::path directory, Journal* display)
       : program_(program), directory_(std::move(directory)), display_(display) {}
 

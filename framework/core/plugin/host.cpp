@@ -40,7 +40,8 @@ namespace {
   throw Error("", fmt::format("{}: {}: {}", file.string(), step, reason), hint);
 }
 
-/// Boost words its failures as "<function> failed (dlerror system message: <text>): <unrelated errno text>".
+/// Returns the message of dlerror from the message of Boost, "<function> failed (dlerror system message: <text>):
+/// <unrelated errno text>".
 std::string dlerror_part(const std::string& what) {
   const std::string mark = "dlerror system message: ";
   const auto begin = what.find(mark);
@@ -50,13 +51,13 @@ std::string dlerror_part(const std::string& what) {
   return what.substr(from, end == std::string::npos || end < from ? std::string::npos : end - from);
 }
 
-/// What is at the places of a text between `separator`s.
+/// Splits a text at each `separator`.
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> out;
   return boost::split(out, text, [separator](char c) { return c == separator; });
 }
 
-/// "what is 32 here and 16 in the program" for the first part of the stamps that differs.
+/// Returns for example "built with ..., the program with ...", with the first part of the stamps that differs.
 std::string stamp_difference(const std::string& theirs, const std::string& ours) {
   const std::vector<std::string> other = parts_of(theirs, ';');
   const std::vector<std::string> own = parts_of(ours, ';');
@@ -72,8 +73,8 @@ std::string read_library(const fs::path& file) {
   return std::move(reading.text);
 }
 
-/// dlopen maps what the headers of a library promise, and a shorter file then kills the process (SIGBUS). So the
-/// promise is compared with the length first. What else may be wrong with a header, dlopen finds and tells.
+/// Throws Error for an incomplete library. dlopen maps the segments that the headers of the file name, and a shorter
+/// file then kills the process (SIGBUS). dlopen itself reports other faults of the headers.
 void check_complete(const fs::path& file, const std::string& bytes) {
   const auto size = std::uint64_t{bytes.size()};
   const auto holds = [size](std::uint64_t offset, std::uint64_t count) {
@@ -92,7 +93,7 @@ void check_complete(const fs::path& file, const std::string& bytes) {
   if (known < EI_NIDENT) incomplete();
   constexpr char kNativeClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
   if (header.e_ident[EI_CLASS] != kNativeClass) return;
-  // Linkers write the section headers last: a file that holds them was not cut short.
+  // Linkers write the section headers last, so that a file with all of them is complete.
   const bool sections = holds(header.e_shoff, std::uint64_t{header.e_shnum} * header.e_shentsize);
   if (known < sizeof header || !sections) incomplete();
   std::vector<ElfW(Phdr)> segments(header.e_phnum);
@@ -128,8 +129,8 @@ const PluginManifest& check_manifest(const boost::dll::shared_library& library, 
   return manifest;
 }
 
-/// Calls into a plugin. An exception thrown there has its code in the plugin: only copies of its text may leave.
-/// `options` may be null; a refusal that names one of them is told at the place where that was written.
+/// Calls into a plugin. The code of an exception thrown there belongs to the plugin, so that only copies of its text
+/// may leave. `options` may be null; an error about an option gets the place of that option.
 template <class Call>
 void guarded(const Tree* options, const std::string& plugin, const char* failure, Call call) {
   const std::string place = options != nullptr ? options->place.text() : std::string();
@@ -141,7 +142,7 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
       throw Error(option->place.file ? option->place.text() : place,
                   fmt::format("{}: {}: {}", plugin, refusal.where(), refusal.reason()), refusal.hint(), refusal.kind());
     }
-    // What the plugin says of the place, a file of its own perhaps, is nearer to the cause than the config is.
+    // The plugin's own place, such as a file of its own, is nearer to the cause than the config.
     if (!refusal.where().empty()) throw Error(refusal.where(), refusal.reason(), refusal.hint(), refusal.kind());
     throw Error(place, fmt::format("{}: {}", plugin, refusal.reason()), refusal.hint(), refusal.kind());
   } catch (const std::exception& trouble) {
@@ -151,7 +152,7 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
   }
 }
 
-/// What keeps all plugins of a folder from being found; "" if it has some.
+/// Returns the reason why a folder has no plugins; "" if it has some.
 std::string trouble_of_folder(const fs::path& folder) {
   std::error_code none;
   if (!fs::exists(folder, none)) return "does not exist";
@@ -177,7 +178,7 @@ PluginNames plugins_of_build(const fs::path& folder) {
   return out;
 }
 
-/// One loaded library. Closed when the last object made by it is gone.
+/// A loaded library, which is closed after the end of the last object that it created.
 class PluginHost::Library {
  public:
   Library(const fs::path& from, const std::string& kind, const std::string& name) : file(from) {
@@ -203,7 +204,7 @@ class PluginHost::Library {
 
 PluginHost::PluginHost(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
-    // One folder named twice does not make its plugins ambiguous.
+    // A folder that is named twice counts once, so that its plugins are not ambiguous.
     const bool known = std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& other) {
       std::error_code none;
       return fs::equivalent(folder, other, none);
@@ -313,7 +314,7 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
     fill(*choice.options, *this, choice.kind,
          [&](Fields& fields) { object = holder->manifest->create(fields, context); });
   });
-  // The deleter owns the library, which therefore outlives the object.
+  // The deleter holds the library, which so outlives the object.
   return named(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest->destroy(gone); }});
 }
 
@@ -325,7 +326,7 @@ std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, c
     fill(*choice.options, *this, choice.kind, [&](Fields& fields) { made = holder->manifest->motions(fields, scene); });
   });
   if (made == nullptr) return nullptr;
-  // As above: what comes of a library goes before it.
+  // The object is deleted before its library is closed, as above.
   return named(choice.kind + "/" + choice.type,
                std::shared_ptr<Motions>(made, [holder](const Motions* gone) { delete gone; }));
 }
@@ -333,7 +334,7 @@ std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, c
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {
   std::string summary = library(kind, name)->manifest->summary;
   describe_fields([&](Fields& fields) { describe(kind, name, fields); });
-  libraries_.clear();  // a library may break down over its end, too
+  libraries_.clear();  // closing a broken library may crash, too
   return summary;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A look at every library there is, each in a process of its own: one that is damaged may crash or hang whoever looks.
+// The list of all libraries. Each is loaded in its own child process, because a damaged library may crash or hang it.
 #include "children/child_process.hpp"
 #include "plugin/host.hpp"
 
@@ -22,11 +22,11 @@ namespace {
 
 constexpr double kPatience = 5.0;  ///< s
 
-// How a process that looked ends, unless the library has ended it.
+// Exit statuses of the child process, unless the library ends it.
 constexpr int kSound = 100;
 constexpr int kBroken = 101;
 
-/// In the process of its own.
+/// Silences the child process and its crashes.
 void be_quiet() {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -35,7 +35,7 @@ void be_quiet() {
   for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(crash, SIG_DFL);
 }
 
-/// What has ended a process in which nobody said what is to be said; "" for nothing.
+/// Returns the reason why a child process ended without a result; "" if it has a result.
 std::string trouble_of(int status) {
   if (WIFSIGNALED(status))
     return fmt::format("crashed, signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
@@ -43,13 +43,13 @@ std::string trouble_of(int status) {
   return ended == kSound || ended == kBroken ? "" : fmt::format("ended the program with status {}", ended);
 }
 
-/// Notes in `row` the summary that `look` returns, or what is wrong.
+/// Sets the summary or the error of a library in `row`. `look` runs in a child process.
 void look_apart(const std::function<std::string()>& look, PluginListing& row) {
   const std::unique_ptr<ChildProcess> child = ChildProcess::fork([&](const ChildProcess::Say& say) {
     be_quiet();
     try {
       say(look());
-    } catch (const Error& trouble) {  // told by who waits
+    } catch (const Error& trouble) {  // the parent reports it
       say(trouble.what());
       return kBroken;
     }
@@ -73,7 +73,7 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
     if (!kind.empty() && one != kind) continue;
     for (const auto& [stem, file] : files(one)) {
       if (!name.empty() && stem != name) continue;
-      // The files are sorted: a name in a second folder comes right after the first, whose row names both.
+      // The files are sorted, so that the same name in a second folder follows at once. The first row reports both.
       if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
       out.push_back({one, stem, file, {}, {}});
       look_apart([this, &row = out.back()] { return look(row.kind, row.name); }, out.back());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What names a plugin's library in manifests.
+// The hash that identifies a plugin's library in manifests.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace palpate {
 
-/// A hash, 32 hex digits, over what gets into memory of a shared library that this process has loaded, all of its file:
-/// code and data with their places. The table of symbols and that of sections, which a package is stripped of, do not
-/// count: the same build is the same before and after.
+/// Returns a hash (32 hexadecimal digits) over the loaded parts of a shared library: code and data with their
+/// addresses. `library`: all bytes of its file, which this process has loaded. The symbol and section tables, which
+/// packages strip, are left out, so that a build has the same hash before and after packaging.
 std::string hash_of_loaded(std::string_view library);
 
 }  // namespace palpate

@@ -20,16 +20,17 @@
 namespace palpate {
 namespace {
 
-/// A plugin has read what it did not declare. By whatever parts of it the call went, it is the plugin's own fault.
+/// A plugin has read a quantity that it did not declare. This is the error of that plugin, even if the call went
+/// through another one.
 class Undeclared final : public Error {
  public:
   using Error::Error;
 };
 
-/// A belief of which a plugin may read what it said it reads.
+/// A belief that allows a plugin to read only the quantities that it declared.
 class Declared final : public Belief {
  public:
-  /// `belief` and the plugin's `name` must outlive it.
+  /// `belief` and `name`, the name of the plugin, must outlive this object.
   Declared(const Belief& belief, Quantities reads, const std::string& name)
       : belief_(belief), reads_(reads), name_(name) {}
   const Points& candidates() const override { return belief_.candidates(); }
@@ -78,14 +79,14 @@ bool are_finite(const std::vector<Value>& values) {
   return std::all_of(values.begin(), values.end(), [](const Value& one) { return are_finite(one); });
 }
 
-/// An object of a plugin, behind the interface that it implements: every call goes through here.
+/// An object of a plugin behind its interface. All calls go through this class.
 template <class Interface>
 class Named : public Interface {
  public:
   Named(std::string name, std::shared_ptr<Interface> inner) : name_(std::move(name)), inner_(std::move(inner)) {}
 
  protected:
-  /// What the method of that name does in the plugin.
+  /// Calls the method of the plugin's object. Any exception becomes an Error with the name of the plugin.
   template <class Method, class... Arguments>
   auto call(Method method, Arguments&&... arguments) const {
     try {
@@ -102,7 +103,7 @@ class Named : public Interface {
     }
   }
 
-  /// Refuses what a function of the plugin gave unless it is finite: no model is made of anything else.
+  /// Throws Error if a result of the plugin is not finite.
   template <class Values>
   void require_finite(const char* function, const Values& values) const {
     if (are_finite(values)) return;
@@ -110,14 +111,14 @@ class Named : public Interface {
                 Error::Kind::run);
   }
 
-  /// Returns the value if it is finite.
+  /// Returns the value, or throws Error if it is not finite.
   template <class Values>
   Values finite(const char* function, Values values) const {
     require_finite(function, values);
     return values;
   }
 
-  /// `belief` as far as the plugin may read it.
+  /// Returns `belief` with the access that the plugin has declared.
   Declared declared(const Belief& belief) const { return Declared(belief, call(&Interface::reads), name_); }
 
  private:
@@ -151,8 +152,7 @@ class NamedKernel final : public Named<Kernel> {
     call(&Kernel::set_parameters, values);
     reasonable_ = (values.array() > kLeast && values.array() < kMost).all();
   }
-  /// The hyperparameters stay, a fit has chosen them: from now on a number that is not finite is refused, whatever they
-  /// are.
+  /// Checks all results from now on, because the fit has chosen the hyperparameters.
   void settle() { reasonable_ = true; }
   void derivatives(const PointsView& a, const PointsView& b, MatrixOut value, MatrixOut slopes) const override {
     call(&Kernel::derivatives, a, b, value, slopes);
@@ -168,7 +168,8 @@ class NamedKernel final : public Named<Kernel> {
   }
 
  private:
-  /// A fit that looks too far takes hyperparameters of which no kernel makes numbers, and turns back by itself.
+  /// During a fit, hyperparameters outside of these bounds may give results that are not finite. The fit itself then
+  /// rejects them.
   static constexpr double kLeast = 1e-12;
   static constexpr double kMost = 1e12;
 
@@ -255,7 +256,7 @@ class NamedBackend final : public Named<Backend> {
 class NamedShape final : public Named<Shape> {
  public:
   using Named::Named;
-  // A line that misses has its hit at infinity, and its top at minus infinity.
+  // A line without intersection has its first intersection at infinity and its top at minus infinity.
   double first_intersection(const Line& line) const override {
     const double out = call(&Shape::first_intersection, line);
     if (out != kNever) require_finite("first_intersection()", out);
@@ -289,7 +290,7 @@ class NamedMotions final : public Named<Motions> {
   }
 };
 
-/// A pointer to the interface, as it was: what becomes of it is cast back to that.
+/// Returns a pointer to the interface, because callers cast the result back to that type.
 template <class Wrapper, class Interface>
 std::shared_ptr<void> wrapped(const std::string& name, const std::shared_ptr<void>& object) {
   return std::shared_ptr<Interface>(std::make_shared<Wrapper>(name, std::static_pointer_cast<Interface>(object)));

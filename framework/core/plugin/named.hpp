@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What goes wrong inside of a plugin is told with the plugin's name.
+// The wrapper of plugins: errors get the name of the plugin, and its results are checked.
 #pragma once
 
 #include <memory>
@@ -9,13 +9,13 @@ namespace palpate {
 
 class Motions;
 
-/// `object`, which implements the interface of `kind`, behind another of that interface: whatever it throws becomes an
-/// Error whose place is <kind>/<type>. Only copies of its words leave the plugin, where the code of its exceptions is.
-/// A function that gives a number which is not finite, where its interface asks for a finite one, ends the run
-/// likewise. Two are checked where their numbers are used: scores, and contacts, which become failed taps.
+/// Returns `object`, which implements the interface of `kind`, behind a wrapper of the same interface. Any exception
+/// becomes an Error with the place <kind>/<type>, whose texts are copies, because the code of the exception belongs to
+/// the library. A result that is not finite ends the run if the interface demands a finite one, except for scores and
+/// contacts, which their users check.
 std::shared_ptr<void> named(const std::string& kind, const std::string& type, const std::shared_ptr<void>& object);
 
-/// The same of the motions of a backend, `name` <kind>/<type>.
+/// The same for the motions of a backend. `name` is <kind>/<type>.
 std::shared_ptr<const Motions> named(const std::string& name, const std::shared_ptr<Motions>& motions);
 
 }  // namespace palpate

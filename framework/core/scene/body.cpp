@@ -15,7 +15,7 @@ Body::Body(std::shared_ptr<const Shape> shape, double tilt)
 }
 
 void Body::place(double x, double y, double rotation) {
-  // What rounding may add to an outline; beyond, the shape need not be asked.
+  // Margin for rounding. Outside of the widened bounds, the shape is not evaluated.
   constexpr double kMargin = 1e-9;
   x_ = x;
   y_ = y;
@@ -32,7 +32,7 @@ double Body::height(double x, double y) const {
   const double s = cosine_ * (x - x_) + sine_ * (y - y_);
   const double t = cosine_ * (y - y_) - sine_ * (x - x_);
   if (upright_) return std::max(0.0, shape_->top(s, t));
-  // Down the vertical through (s, t), from the desk.
+  // A vertical line downwards through (s, t), from the height of the desk.
   const Line line{untilted(s, t, -lift_), untilted(0.0, 0.0, -1.0)};
   return std::max(0.0, -shape_->first_intersection(line));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A shape somewhere on the desk: tilted, set down, turned and moved.
+// A shape with its pose on the desk: tilted, set down, rotated and moved.
 #pragma once
 
 #include <palpate/math.hpp>
@@ -11,28 +11,30 @@
 
 namespace palpate {
 
-/// Coordinates relative to the desk: x, y in the frame of the area, z above the desk.
+/// Coordinates are relative to the desk: x and y in the frame of the area, z above the desk, metres.
 class Body {
  public:
-  /// Tilted by `tilt` and set down, so that its lowest point touches the desk; at the origin, not rotated.
+  /// The shape is tilted by `tilt` (radians) and set down, so that its lowest point touches the desk. Its position is
+  /// the origin, its rotation 0.
   Body(std::shared_ptr<const Shape> shape, double tilt);
 
-  /// Rotates it about the vertical, and moves the origin of its frame over (x, y).
+  /// Rotates the body about the vertical axis, and moves the origin of its frame to (x, y).
   void place(double x, double y, double rotation);
 
-  /// Height above the desk at (x, y): 0 beside the body; its outline belongs to it.
+  /// Returns the height above the desk at (x, y); 0 outside of the body. The outline belongs to the body.
   double height(double x, double y) const;
 
-  /// Where a line first meets it, metres from the line's origin; +infinity if it does not.
+  /// Returns the distance from the line's origin to its first intersection with the body, metres; +infinity if there is
+  /// none.
   double first_intersection(const Line& line) const;
 
-  /// Which parts of a line lie in it, in their order.
+  /// Returns the intervals of a line inside the body, in their order.
   std::vector<Stretch> intervals(const Line& line) const;
 
-  /// Of its highest point, above the desk.
+  /// Returns the height of the highest point above the desk.
   double highest() const;
 
-  /// How far it reaches from its own place in a horizontal direction of unit length.
+  /// Returns the largest distance of the body from its position in a horizontal direction of unit length.
   double reach(double direction_x, double direction_y) const;
 
   double x() const { return x_; }
@@ -40,9 +42,9 @@ class Body {
   double rotation() const { return math::atan2(sine_, cosine_); }
 
  private:
-  /// A line in the frame of the shape.
+  /// Returns a line in the frame of the shape.
   Line own(const Line& line) const;
-  /// A vector of the frame that is not tilted, in that of the shape.
+  /// Returns a vector of the untilted frame in the frame of the shape.
   Eigen::Vector3d untilted(double along, double across, double up) const;
 
   std::shared_ptr<const Shape> shape_;
@@ -51,7 +53,7 @@ class Body {
   double lift_;
   double x_ = 0.0, y_ = 0.0;
   double cosine_ = 1.0, sine_ = 0.0;
-  double left_ = 0.0, right_ = 0.0, low_ = 0.0, high_ = 0.0;  ///< bounds of its outline, slightly widened
+  double left_ = 0.0, right_ = 0.0, low_ = 0.0, high_ = 0.0;  ///< bounds of the outline, slightly widened
 };
 
 }  // namespace palpate

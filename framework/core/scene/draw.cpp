@@ -37,7 +37,7 @@ struct DrawOptions : Options {
   }
 };
 
-/// What stands in the place of a list of objects.
+/// The options in place of a list of objects.
 struct DrawnObjects : Options {
   DrawOptions draw;
   void list(Fields& fields) override {
@@ -45,8 +45,8 @@ struct DrawnObjects : Options {
   }
 };
 
-/// Puts a number in the place of each range of an object, in their order: at a share of the way from its lower end to
-/// its upper one, which `share` tells of the range with that number. Returns how many there are.
+/// Replaces each range of an object, in their order, by a number: range number i by the number at share(i) of it, from
+/// 0 at the lower end to 1 at the upper end. Returns the number of ranges so far.
 int settle(Tree& tree, const std::string& path, const std::function<double(int)>& share, int count = 0) {
   if (const auto range = parse_continuous(tree, path)) {
     tree = number(range->at(share(count)), range->unit, tree);
@@ -58,8 +58,8 @@ int settle(Tree& tree, const std::string& path, const std::function<double(int)>
   return count;
 }
 
-/// Reads `described`, what stands at scene.objects, with its ranges where `share` puts them; returns how many ranges
-/// the object with the most has.
+/// Reads `described`, the value of scene.objects, with each range replaced as in settle(). Returns the largest number
+/// of ranges of an object.
 int read_drawn(DrawnObjects& options, Tree described, const std::function<double(int)>& share,
                const PluginSource& plugins) {
   int most = 0;
@@ -78,7 +78,7 @@ int read_drawn(DrawnObjects& options, Tree described, const std::function<double
 
 bool draws_objects(const Tree& config) {
   const Tree* objects = config.find_path(kObjects);
-  // One object without the brackets of a list is told so where the list is read.
+  // A single object without brackets is reported when the list is read.
   return objects != nullptr && objects->is_map() && objects->find_path("type") == nullptr;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Objects drawn from the seed: `scene.objects: {draw: {least: 2, most: 6, of: [...]}}` stands for a list of objects,
-// and is that list before anything else reads the config. The record of a run, and all that comes after, knows the list
-// alone.
+// Random objects: `scene.objects: {draw: {least: 2, most: 6, of: [...]}}` is replaced by a list of objects, drawn from
+// the seed, before any other code reads the config. The record has the list.
 #pragma once
 
 #include "config/resolve.hpp"
@@ -11,15 +10,15 @@
 
 namespace palpate {
 
-/// Whether the objects of a composed config are drawn, or meant to be.
+/// Returns whether the objects of a composed config are drawn. An invalid draw counts, too.
 bool draws_objects(const Tree& config);
 
-/// Puts the objects that `seed` draws in the place of `draw`. Their number is uniform in least..most; each is one of
-/// `of`, any as likely as another, and each `uniform(a, b)` or `log_uniform(a, b)` in it a number of that range. Every
-/// object has a stream of its own, so that the first of many are those of few.
+/// Replaces `draw` by the objects that `seed` draws. Their number is uniform between `least` and `most`. Each object is
+/// one of `of`, with equal probabilities, and each `uniform(a, b)` or `log_uniform(a, b)` in it becomes a number in
+/// that range. Each object has its own random stream, so that more objects begin with the same ones.
 ///
-/// Throws Error for what no object may be, whether it is drawn or not: all of `of` are read with every range at its
-/// lower and at its upper end, and with each range alone at the other end.
+/// Throws Error for invalid objects, also if they are not drawn: each item of `of` is read with all ranges at their
+/// lower ends, with all at their upper ends, and with each single range at the opposite end.
 void draw_objects(Tree& config, std::uint64_t seed, const PluginSource& plugins);
 
 }  // namespace palpate

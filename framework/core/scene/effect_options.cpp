@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The part `scene.effects:` of a config.
+// The options of `scene.effects:` in a config: one list per effect.
 #include "scene/scene_options.hpp"
 
 namespace palpate {
@@ -178,7 +178,7 @@ struct Group : Options {
   void list(Fields& fields) override { palpate::list(effect, fields); }
 };
 
-/// An effect that may be absent.
+/// Lists an optional effect as a group that may be absent.
 template <class Effect>
 void section(Fields& fields, std::optional<Effect>& effect, const Field& field) {
   bool present = effect.has_value();

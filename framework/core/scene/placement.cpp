@@ -15,18 +15,19 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Whether a plane across (dx, dy), a direction of unit length from `a` to `b`, separates them.
+/// Returns whether a vertical plane normal to (dx, dy) separates two bodies. The direction points from `a` to `b` and
+/// has unit length.
 bool separates(const Body& a, const Body& b, double dx, double dy) {
   return a.reach(dx, dy) + b.reach(-dx, -dy) <= dx * (b.x() - a.x()) + dy * (b.y() - a.y());
 }
 
-/// How far the body reaches beyond the area, where it does most; not positive if it lies wholly inside.
+/// Returns the largest distance by which the body reaches beyond the area, metres; not positive if it lies inside.
 double beyond(const Body& body, const Area& area) {
   return std::max({body.reach(-1, 0) - body.x(), body.x() - (area.width - body.reach(1, 0)),
                    body.reach(0, -1) - body.y(), body.y() - (area.depth - body.reach(0, 1))});
 }
 
-/// Draws until the body lies wholly inside the area.
+/// Draws poses until the body lies inside the area.
 void draw_inside(Body& body, const Area& area, Random& random, std::size_t number) {
   constexpr int kTries = 100'000;
   for (int i = 0; i < kTries; ++i) {
@@ -40,8 +41,8 @@ void draw_inside(Body& body, const Area& area, Random& random, std::size_t numbe
               "make the object smaller or the area larger");
 }
 
-/// Whether a vertical plane separates two bodies, so that neither is over the other. May say no of two that are apart
-/// by less than a thousandth of their size; never says yes of two that overlap.
+/// Returns whether a vertical plane separates two bodies. May return false for bodies closer than a thousandth of their
+/// size, but never returns true for bodies that overlap.
 bool separate(const Body& a, const Body& b) {
   const double dx = b.x() - a.x();
   const double dy = b.y() - a.y();
@@ -49,7 +50,7 @@ bool separate(const Body& a, const Body& b) {
   if (distance == 0.0) return false;
   const double along = dx / distance;
   const double across = dy / distance;
-  // Outwards from the line between the two centres, where most pairs are told apart at once.
+  // Directions near the line between the centres come first, because they separate most pairs.
   constexpr int kDirections = 180;
   for (int i = 0; i < kDirections; ++i) {
     const double angle = 0.5 * kPi * i / kDirections;
@@ -88,7 +89,7 @@ void check_inside(const std::vector<Body>& bodies, const Area& area) {
 void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed) {
   std::vector<Random> streams;
   for (std::size_t i = 0; i < bodies.size(); ++i) streams.emplace_back(seed, "scene/placement", i);
-  // All are drawn anew when any two overlap: what stands first would otherwise decide where room is left.
+  // All poses are drawn again if any two bodies overlap. Otherwise the first body would limit the poses of the others.
   constexpr int kRounds = 10'000;
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t i = 0; i < bodies.size(); ++i) draw_inside(bodies[i], area, streams[i], i);
@@ -99,7 +100,7 @@ void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t 
 }
 
 bool push_about(std::vector<Body>& bodies, const Area& area, const Push& push, std::uint64_t seed, int taps) {
-  // Where nothing fits after so many looks it stays: it leans on another, or on the rim of the area.
+  // After this many draws the body stays, because another body or the rim of the area blocks it.
   constexpr int kTries = 100;
   bool moved = false;
   for (int tap = 1; tap <= taps; ++tap) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects wholly inside the area, where the config puts them or at places drawn from the seed.
+// Placement of objects inside the area: checks of configured poses, random poses, and pushes.
 #pragma once
 
 #include "scene/body.hpp"
@@ -11,17 +11,17 @@
 
 namespace palpate {
 
-/// Throws Error, its `where` the path in the config, for the first body that does not lie wholly inside the area: no
-/// tap would find what is outside, and no error measure would miss it.
+/// Throws Error, with the path in the config as its place, for the first body that is not wholly inside the area. Taps
+/// would miss the part outside, but error measures would not show it.
 void check_inside(const std::vector<Body>& bodies, const Area& area);
 
-/// Draws rotation and position of each body until all lie wholly inside the area and none overlaps another: uniform
-/// over all such poses. Each has a stream of random numbers of its own, so that one more object leaves the draws of the
-/// others alone. Throws Error, its `where` the path in the config, when no such poses are found.
+/// Draws rotation and position of all bodies until all are inside the area and no two overlap, which is uniform over
+/// all such poses. Each body has its own random stream, so that a further object does not change the draws of the
+/// others. Throws Error, with the path in the config as its place, if no such poses are found.
 void place_at_random(std::vector<Body>& bodies, const Area& area, std::uint64_t seed);
 
-/// Pushes bodies about as so many taps have; says whether any stands elsewhere. They stay wholly inside the area, and
-/// apart.
+/// Pushes bodies as after `taps` taps. Returns whether a body has moved. The bodies stay inside the area and apart from
+/// each other.
 bool push_about(std::vector<Body>& bodies, const Area& area, const Push& push, std::uint64_t seed, int taps);
 
 }  // namespace palpate

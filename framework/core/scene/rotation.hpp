@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rotations by palpate's own sine and cosine: those of Eigen take the platform's.
+// Rotations with palpate's own sine and cosine, which give the same bits on all machines.
 #pragma once
 
 #include <palpate/math.hpp>
@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// The matrix that rotates by `angle`, radians, about a unit axis (Rodrigues' formula).
+/// Returns the matrix of the rotation by `angle`, radians, about a unit axis (Rodrigues' formula).
 inline Eigen::Matrix3d rotation_about(const Eigen::Vector3d& axis, double angle) {
   const double cosine = math::cos(angle);
   Eigen::Matrix3d cross;

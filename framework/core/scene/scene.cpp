@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects on a desk as heights over x and y: nothing is computed but the height that is asked for.
+// The scene: objects on a desk, whose heights are computed on demand.
 #include "scene/body.hpp"
 #include "scene/placement.hpp"
 #include "scene/scene_options.hpp"
@@ -23,7 +23,7 @@ class Desk final : public Scene {
         any_side_(options.touch == SceneOptions::Touch::any),
         effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
-    // Shapes see a desk that is still bare.
+    // Shapes are created over an empty desk.
     std::vector<Body> bodies;
     for (const ObjectOptions& object : options.objects) {
       bodies.emplace_back(context_.create<const Shape>(object.shape), object.tilt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The part `scene:` of a config: the area, the desk and the objects on it.
+// The options of `scene:` in a config: the area, the desk and the objects.
 #pragma once
 
 #include <palpate/effects.hpp>
@@ -20,16 +20,16 @@ struct AreaOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// One object: a shape and where it stands.
+/// The shape of an object and its pose.
 struct ObjectOptions : Options {
-  PluginChoice shape{"shape", {}, nullptr};  ///< chosen by `type`, its options beside those below
+  PluginChoice shape{"shape", {}, nullptr};  ///< chosen by `type`, with its options next to those below
   double at[2] = {0.115, 0.115};
   double rotation = 0.0;
   double tilt = 0.0;
   void list(Fields& fields) override;
 };
 
-/// One group for each member of Effects, absent by default.
+/// One optional group per member of Effects.
 struct EffectOptions : Options {
   Effects values;
   void list(Fields& fields) override;
@@ -48,9 +48,9 @@ struct SceneOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// Builds the world. With random placement `seed` decides where each object stands and how it is turned; throws Error
-/// when the objects do not fit into the area; its `where` is the path in the config. `factory` makes the
-/// shapes, and must outlive the scene; what it throws passes through.
+/// Builds the scene. With random placement, `seed` decides position and rotation of each object. `factory` creates the
+/// shapes and must outlive the scene; its exceptions are passed on. Throws Error, with the path in the config as its
+/// place, if the objects do not fit into the area.
 std::unique_ptr<const Scene> build_scene(const SceneOptions& options, std::uint64_t seed, const PluginFactory& factory);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sizes of objects that a config says in part.
+// The warning about objects whose sizes a config sets only in part.
 #pragma once
 
 #include "config/resolve.hpp"
@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-/// Returns a line for each object of which the config says some lengths and leaves others at their defaults:
-/// "e.yaml:4:7: scene.objects.0: not said and so at its default: height 5 cm". `resolved` is the tree that resolve()
-/// returned with `notes`.
+/// Returns one line per object with some lengths from the config and others at their defaults, for example "e.yaml:4:7:
+/// scene.objects.0: not given, so the default is used: height 5 cm". `resolved` and `notes` are the results of
+/// resolve().
 std::vector<std::string> half_said_sizes(const Tree& resolved, const ResolveNotes& notes);
 
 }  // namespace palpate

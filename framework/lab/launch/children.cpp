@@ -19,8 +19,8 @@
 namespace palpate {
 namespace {
 
-/// What a child says: a dot for each thing that is done; a '!' and behind it what went wrong, its last words; or
-/// nothing more.
+/// Messages of a child: one dot per finished item; or, as its last message, an exclamation mark and the text of an
+/// error.
 constexpr const char* kDone = ".";
 constexpr const char* kTrouble = "!";
 
@@ -36,12 +36,12 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
   for (std::size_t first = 0; first < step; ++first) {
     owned.push_back(ChildProcess::fork([&](const ChildProcess::Say& say) {
       try {
-        // Every `step`-th thing: neighbours take about as long, so that all children end together.
+        // Neighbouring items take similar times, so that a stride of `step` lets all children end together.
         for (std::size_t i = first; i < count; i += step) {
           work(i);
           say(kDone);
         }
-      } catch (const std::exception& trouble) {  // thrown again in the parent
+      } catch (const std::exception& trouble) {  // the parent throws it again
         say(kTrouble + std::string(trouble.what()));
       }
       return 0;
@@ -53,7 +53,7 @@ bool in_children(std::size_t count, int workers, const std::function<void(std::s
   }
   std::size_t done = 0;
   for (bool any = step > 0; any;) {
-    constexpr double kGlance = 0.1;  // s
+    constexpr double kGlance = 0.1;  // s between two looks
     ChildProcess::listen(children, kGlance);
     const std::size_t before = std::exchange(done, 0);
     any = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Work on many things that leave files and nothing else, shared among child processes: plugins need not bear threads.
+// Distribution of work among child processes, for work whose only results are files. Plugins need not be thread-safe.
 #pragma once
 
 #include <atomic>
@@ -8,12 +8,12 @@
 
 namespace palpate {
 
-/// Of this machine, at least 1.
+/// Returns the number of cores of this machine, at least 1.
 int cores();
 
-/// Calls `work` for every number below `count`, in up to `workers` processes forked from this one, which die with it.
-/// `progress` (may be null) hears after each how many are done. Returns whether all are: false once `interrupted` (may
-/// be null) is set. Throws Error, of kind `run`, with what the first of them could not do; the others are then ended.
+/// Calls `work` for each number below `count`, in up to `workers` forked child processes, which end with this process.
+/// Calls `progress` (may be null) with the number of finished items. Returns false if `interrupted` (may be null) was
+/// set first. Throws Error (run) with the error of the first child that failed, after ending the others.
 bool in_children(std::size_t count, int workers, const std::function<void(std::size_t)>& work,
                  const std::atomic<bool>* interrupted, const std::function<void(std::size_t)>& progress);
 

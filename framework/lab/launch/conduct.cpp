@@ -14,22 +14,22 @@ namespace {
 
 constexpr double kPollSeconds = 0.5;
 
-/// Whether the sweep's folder is no longer there. A file system that cannot tell just now has not lost it.
+/// Returns whether the sweep's folder is gone. An error of the file system does not count.
 bool is_gone(const Sweep& sweep) {
   std::error_code trouble;
   return !std::filesystem::exists(sweep.directory / "manifest.jsonl", trouble) && !trouble;
 }
 
-/// Where a job stands.
+/// The state of a job.
 struct JobStanding {
   RunStatus::State state = RunStatus::State::absent;
-  int attempts = 0;  ///< of one that failed
+  int attempts = 0;  ///< only of a failed job
   std::string reason;
 };
 
 JobStanding look_at(const std::filesystem::path& directory, Also also) {
   RunStatus status = also == Also::running ? read_standing(directory) : read_ending(directory);
-  // Whoever takes it up finds it done, and makes the files that are missing.
+  // A process that resumes the job finds it done and writes the missing files.
   if (also == Also::missing_files && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
     status.state = RunStatus::State::unfinished;
   if (status.state != RunStatus::State::failed) return {status.state, 0, ""};
@@ -84,10 +84,10 @@ bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::
     if (gone) continue;
     for (const std::size_t job : state.returned) {
       const std::filesystem::path directory = job_directory(sweep, sweep.jobs[job]);
-      // The record alone tells. Files come after its end, and NFS may hide them for a minute from this node.
+      // Only the record counts, because other files follow the end of the record, and NFS may delay them by a minute.
       const RunStatus now = read_ending(directory);
       const bool done = now.state == RunStatus::State::done;
-      // Where not even a failure could be recorded, as on a full disk, there is none to be read.
+      // On a full disk, not even the failure can be recorded.
       const bool failed = now.state == RunStatus::State::failed;
       const bool lost = !done && !failed && !cancelled && !is_running(directory);
       all_recorded = all_recorded && !lost;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sweep under way: hands what is missing to a launcher and reads from the jobs' directories what became of it.
+// The execution of a sweep: a launcher runs the open jobs, and the jobs' directories give their results.
 #pragma once
 
 #include "launch/launcher.hpp"
@@ -13,47 +13,48 @@
 
 namespace palpate {
 
-/// Counts while a sweep runs, of the jobs in question.
+/// Progress of the jobs of this launch.
 struct SweepProgress {
   int jobs = 0;
   int done = 0;
   int failed = 0;
   int running = 0;
-  int before = 0;        ///< of done and failed: those that were so when it began
-  bool blocked = false;  ///< a job could not begin, for a reason that the others have, too: see Launcher::State
+  int before = 0;        ///< jobs done or failed before the launch
+  bool blocked = false;  ///< see Launcher::State
   bool last = false;
 };
 
-/// A job that failed.
+/// A failed job.
 struct SweepFailure {
   std::size_t job = 0;
   int attempts = 0;
   std::string reason;
 };
 
-/// Where some jobs of a sweep stand, by their directories.
+/// The states of some jobs, according to their directories.
 struct Standing {
   std::map<RunStatus::State, int> counts;
-  std::vector<std::size_t> open;       ///< neither done nor failed, nor known to be running
-  std::vector<SweepFailure> failures;  ///< both in the order of the jobs
+  std::vector<std::size_t> open;       ///< jobs that are neither done nor failed, nor known to be running
+  std::vector<SweepFailure> failures;  ///< in the order of the jobs, like `open`
 };
 
-/// What is asked of jobs beside their records: nothing; whether one that is done lacks files, as after a power cut, and
-/// so is open; whether a process has an unfinished one in hand.
+/// What to look for besides the record: nothing; missing files of done jobs, which are then open, as after a power cut;
+/// or whether a process runs an unfinished job.
 enum class Also { nothing, missing_files, running };
 
-/// Looks through `jobs`. Only where this node ran the jobs itself, or before any runs, `missing_files` has an answer:
-/// NFS may hide files of other nodes for a minute.
+/// Reads the states of `jobs`. `missing_files` is reliable only if this node ran the jobs, or before any job runs,
+/// because NFS may hide files of other nodes for a minute.
 Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, Also also = Also::missing_files);
 
-/// Makes the failed jobs open again, however often they were begun.
+/// Makes failed jobs open again, whatever their number of attempts.
 void try_again(Standing& standing);
 
-/// Has `launcher` run what is open, where jobs stand as in `begun`, and waits until it has none in its hands, or until
-/// `interrupted`, when it cancels them. `progress` is called when something changed and at least every half second.
-/// Returns whether each job that ended has a record of its end, and its files where this machine ran it: on a full disk
-/// not even a failure may get one. Throws
-/// Error where the sweep's directory is moved or removed meanwhile, when it has cancelled them.
+/// Runs the open jobs with `launcher`, and waits until all have been returned. After `interrupted`, the jobs are
+/// cancelled. `progress` is called after each event and at least every half second.
+///
+/// Returns whether all ended jobs have a record of their end and, if they ran on this machine, all their files. On a
+/// full disk they may not. Throws Error if the sweep's directory is moved or removed meanwhile, after cancelling the
+/// jobs.
 bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
              const std::function<void(const SweepProgress&)>& progress);
 

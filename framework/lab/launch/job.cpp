@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// None if another process has it in hand.
+/// Takes the lock of the job; nullopt if another process has it.
 std::optional<RunDirectory> hold(const fs::path& directory) {
   std::optional<RunDirectory> held;
   const std::optional<Error> trouble = trouble_in([&] { held.emplace(directory); });
@@ -27,12 +27,12 @@ std::optional<RunDirectory> hold(const fs::path& directory) {
   return held;
 }
 
-/// Its reason is kept unless the job has ended for another one.
+/// Records a failure, unless the job has already ended.
 void write_failure(RunDirectory& held, const std::string& reason) {
   if (!has_ended(held.path())) held.fail(reason);
 }
 
-/// Under the lock: the attempt from its beginning to its end.
+/// Makes one attempt at the job, whose lock is held.
 JobEnd attempt_job(const Workshop& workshop, RunDirectory& held, const ResumeOptions& options) {
   const fs::path& directory = held.path();
   JobEnd end = JobEnd::failed;
@@ -40,13 +40,13 @@ JobEnd attempt_job(const Workshop& workshop, RunDirectory& held, const ResumeOpt
     const ResolvedConfig config = load_run(workshop.host, directory);
     end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
   });
-  if (trouble) {  // ends the job alone, not the sweep
-    // Another process has the arm: no failure of this job, which stays open.
+  if (trouble) {  // an error ends only this job, not the sweep
+    // Another process uses the arm. The job has not failed and stays open.
     if (trouble->kind() == Error::Kind::busy) throw *trouble;
     if (!is_there(directory / "config.yaml")) throw *trouble;
-    // Of a run that is done only the files that are made from its record may be missing: no reason of a failure.
+    // The job is done, and only files made from its record are missing, which is not a failure.
     if (read_ending(directory).state == RunStatus::State::done) throw *trouble;
-    // What failed before the run could begin has left no end.
+    // An error before the start of the run has left no end in the record.
     write_failure(held, trouble->what());
   }
   return end;
@@ -78,7 +78,7 @@ JobEnd run_job(const Workshop& workshop, const fs::path& directory, const Resume
               .c_str(),
           stderr);
     }
-    // A damaged record ends the job as failed, and nothing can be made from it.
+    // A failed job keeps its failure, also if its record is damaged.
     if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;
   }

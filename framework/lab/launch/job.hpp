@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// One job of a sweep, run at most once to its end however many processes try. The guarantee is here and needs nobody's
-// good behaviour:
+// The execution of one job of a sweep, at most once to its end, however many processes try. The guarantee needs no
+// cooperation of launchers:
 //
-// 1. the lock of the job's record is taken, or the job is busy;
-// 2. under it, the last line of the record says whether there is anything to do;
-// 3. the attempt is appended, then the run begins or goes on behind its last recorded tap;
-// 4. the line `end` is the result, and summary.json its copy. What dies before it leaves an unfinished run, to be
-//    carried on.
+// 1. The process takes the lock of the job's record, or the job is busy.
+// 2. The last line of the record tells whether anything is left to do.
+// 3. The process appends the attempt, and starts the run or resumes it after its last recorded tap.
+// 4. The line `end` is the result, and summary.json is its copy. A process that dies earlier leaves an unfinished run
+// that
+//    can be resumed.
 #pragma once
 
 #include "record/session.hpp"
@@ -16,32 +17,34 @@
 
 namespace palpate {
 
-/// How an attempt at a job ended, and the exit status of a process that made it.
+/// The end of an attempt, also used as the exit status of the child process.
 enum class JobEnd {
-  done = 0,           ///< now or before
-  failed = 1,         ///< now or before; the record has the reason
-  unrecorded = 2,     ///< not even that could be recorded
-  blocked = 3,        ///< its arm or its program cannot be had now, and the child has said kBlocked; the job stays open
-  busy = 75,          ///< another process has it in hand; nothing was done
-  interrupted = 130,  ///< by the user's wish; it can be carried on
+  done = 0,           ///< by this attempt or before
+  failed = 1,         ///< by this attempt or before; the record has the reason
+  unrecorded = 2,     ///< the end could not be recorded
+  blocked = 3,        ///< the arm or the program is not available; the job stays open
+  busy = 75,          ///< another process runs the job; nothing was done
+  interrupted = 130,  ///< by the user; the job can be resumed
 };
 
-/// What a child says before it ends with `blocked`: a plugin may end it with any status.
+/// Message of a child before it ends with `blocked`, because a plugin may end the child with the same status.
 inline constexpr const char* kBlocked = "blocked";
 
-/// Runs the job in `directory`, whose name is its id, unless it is done, or has failed and is not to be tried again.
-/// What goes wrong becomes the reason of its failure; but a config that was deleted is none, as `palpate sweep` puts it
-/// back. Throws Error where nothing is recorded, and where a file of a job that is done cannot be written; of kind
-/// `busy` where another process has the arm in hand, or the program is not as it was.
+/// Runs the job in `directory`, whose name is the job's id. Does nothing if the job is done, or has failed and
+/// options.retry_failed is false. An error becomes the reason of a recorded failure, except for a deleted config, which
+/// `palpate sweep` writes again.
+///
+/// Throws Error if nothing can be recorded, or if a file of a done job cannot be written. Throws Error (busy) if
+/// another process uses the arm, or if the external program has changed.
 JobEnd run_job(const Workshop& workshop, const std::filesystem::path& directory, const ResumeOptions& options);
 
-/// Whether the job is done or has failed.
+/// Returns whether the job is done or has failed.
 bool has_ended(const std::filesystem::path& directory);
 
-/// How often the job has been begun since it last came to an end, as its record says.
+/// Returns the number of attempts since the job last ended, according to its record.
 int attempts_of(const std::filesystem::path& directory);
 
-/// Ends the job as failed, unless it has ended or somebody has it in hand: for processes that died over it.
+/// Records a failure of a job whose process died, unless the job has ended or another process runs it.
 void record_failure(const std::filesystem::path& directory, const std::string& reason);
 
 }  // namespace palpate

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kBusyPause{200};
 
-/// Signals by which a program breaks down by itself; others come from outside.
+/// Returns whether the signal means a crash of the program itself.
 bool is_crash(int signal) {
   constexpr std::array<int, 7> kCrashes{SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
   return std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
@@ -40,11 +40,11 @@ void LocalLauncher::submit(const std::vector<std::size_t>& jobs) {
 
 bool LocalLauncher::start(std::size_t job) {
   std::unique_ptr<ChildProcess> process = ChildProcess::fork([&](const ChildProcess::Say& say) -> int {
-    // What it may open is for its own files.
+    // The child needs its file descriptors for its own files.
     for (const Running& other : running_) other.process->forget();
     const JobEnd end = run(job);
     if (end == JobEnd::blocked) say(kBlocked);
-    // Not as children end otherwise: plugins have things to take down, such as a robot's node.
+    // A full exit, unlike that of other children, because plugins must release things such as a robot's node.
     std::exit(static_cast<int>(end));
   });
   if (!process && !running_.empty()) return false;
@@ -59,10 +59,10 @@ JobEnd LocalLauncher::run(std::size_t job) const {
   JobEnd end = JobEnd::unrecorded;
   try {
     return run_job(order_.workshop, directory_of(job), order_.options.resume);
-  } catch (const std::exception& trouble) {  // which nobody but the terminal can be told of
+  } catch (const std::exception& trouble) {  // the error cannot be recorded, so that only the terminal gets it
     const auto* const error = dynamic_cast<const Error*>(&trouble);
     if (error != nullptr && error->kind() == Error::Kind::busy) end = JobEnd::blocked;
-    // Who conducts the sweep says once that all of it is gone. fmt::print would throw where a terminal was closed.
+    // conduct() reports a missing folder once for all jobs. fmt::print would throw if the terminal is closed.
     std::error_code unknown;
     if (std::filesystem::exists(order_.sweep.directory, unknown) || unknown) {
       std::fputs(fmt::format("job {}: {}\n", job, printable(trouble.what())).c_str(), stderr);
@@ -85,7 +85,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
   if (running_.empty() && later_.empty()) seconds = 0.0;
   ChildProcess::listen(processes, seconds);
   State state;
-  // All that ran: who has just ended makes room for the next at once.
+  // The count includes jobs that have just ended, because others take their places at once.
   state.running = static_cast<int>(running_.size());
   const auto ended =
       std::stable_partition(running_.begin(), running_.end(), [](const Running& one) { return !one.process->ended(); });
@@ -106,7 +106,7 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State
     later_.push_back(job);
     return;
   }
-  if (end == JobEnd::blocked && process.said() == kBlocked) {  // and the next job would be, too
+  if (end == JobEnd::blocked && process.said() == kBlocked) {  // the next job would be blocked, too
     waiting_.clear();
     later_.clear();
     state.blocked = true;
@@ -115,7 +115,7 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State
   state.all_recorded = state.all_recorded && end != JobEnd::unrecorded;
   const bool ended = end == JobEnd::done || end == JobEnd::failed;
   const bool known = ended || end == JobEnd::unrecorded || end == JobEnd::busy || end == JobEnd::interrupted;
-  // A plugin that calls exit(), with 0 or 1, too, leaves no result behind.
+  // A plugin that calls exit(0) or exit(1) leaves no result.
   if (!cancelled_ && (!known || (ended && !has_ended(directory_of(job))))) {
     record_failure(directory_of(job), fmt::format("its process ended with status {}", WEXITSTATUS(wait_status)));
   }
@@ -123,13 +123,13 @@ void LocalLauncher::conclude(std::size_t job, const ChildProcess& process, State
 }
 
 void LocalLauncher::was_killed(std::size_t job, int signal, State& state) {
-  // Who is killed before its attempt is noted counts, too, or it would be begun for ever.
+  // Kills before the first record of an attempt count, too. Otherwise such a job would start again forever.
   const int attempts = std::max(attempts_of(directory_of(job)), ++kills_[job]);
   const std::string name = fmt::format("signal {} ({})", signal, ::strsignal(signal));
   if (is_crash(signal)) {
     record_failure(directory_of(job), "crashed: " + name);
   } else if (cancelled_) {
-    // As wished.
+    // The user cancelled the job.
   } else if (attempts >= order_.options.most_attempts) {
     record_failure(directory_of(job),
                    fmt::format("was killed by {}{} in attempt {}", name,

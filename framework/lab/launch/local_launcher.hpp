@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The launcher of this machine: a child process a job, forked from this one, which has the plugins loaded already. A
-// job that crashes costs that child alone, and children die with this process, however it dies: nothing goes on behind
-// the back of `resume`.
+// The launcher of this machine: one forked child process per job, in which the plugins are already loaded. A crash ends
+// only the job's own child. The children end with this process, so that `resume` never meets a job that still runs.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -19,7 +18,7 @@ namespace palpate {
 
 class LocalLauncher final : public Launcher {
  public:
-  /// At its end it kills what still runs.
+  /// The destructor kills the running jobs.
   explicit LocalLauncher(LaunchOrder order) : order_(std::move(order)) {}
 
   void submit(const std::vector<std::size_t>& jobs) override;
@@ -28,15 +27,15 @@ class LocalLauncher final : public Launcher {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// A job under way.
+  /// A running job.
   struct Running {
     std::size_t job = 0;
     std::unique_ptr<ChildProcess> process;
   };
 
-  /// Returns false where this process may have no more files or children, and has to go on with those it has.
+  /// Starts a job. Returns false if the limit of processes or files is reached while other jobs run.
   bool start(std::size_t job);
-  /// In the child.
+  /// Runs in the child process.
   JobEnd run(std::size_t job) const;
   void conclude(std::size_t job, const ChildProcess& process, State& state);
   void was_killed(std::size_t job, int signal, State& state);
@@ -46,10 +45,10 @@ class LocalLauncher final : public Launcher {
 
   LaunchOrder order_;
   std::deque<std::size_t> waiting_;
-  std::vector<std::size_t> later_;  ///< that others had in hand, to be looked at again
-  Clock::time_point again_;         ///< when
+  std::vector<std::size_t> later_;  ///< jobs that other processes run, to be tried again
+  Clock::time_point again_;         ///< time of the next try
   std::vector<Running> running_;
-  std::map<std::size_t, int> kills_;  ///< of each job's processes
+  std::map<std::size_t, int> kills_;  ///< per job
   bool cancelled_ = false;
 };
 

@@ -24,10 +24,10 @@ namespace {
 struct Mount {
   std::string point;
   std::string type;
-  std::string options;  ///< of the file system, with commas
+  std::string options;  ///< of the file system, separated by commas
 };
 
-/// The kernel writes blanks, line ends and backslashes of a path as \ooo.
+/// Decodes \ooo, the kernel's form of blanks, line ends and backslashes in paths.
 std::string without_escapes(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -42,7 +42,7 @@ std::string without_escapes(const std::string& text) {
   return out;
 }
 
-/// ID PARENT MAJOR:MINOR ROOT POINT OPTIONS [TAG]... - TYPE SOURCE OPTIONS
+/// Reads a line "ID PARENT MAJOR:MINOR ROOT POINT OPTIONS [TAG]... - TYPE SOURCE OPTIONS".
 std::optional<Mount> read_mount(const std::string& line) {
   std::vector<std::string> words;
   boost::split(words, line, boost::is_any_of(" "));
@@ -58,7 +58,7 @@ bool lies_in(const fs::path& folder, const fs::path& point) {
 }  // namespace
 
 void check_shared_locks(const fs::path& folder, std::string_view mountinfo) {
-  Mount holds;  // the innermost, of several at one place the last
+  Mount holds;  // innermost mount; of several at the same point, the last
   std::istringstream lines{std::string(mountinfo)};
   for (std::string line; std::getline(lines, line);) {
     const std::optional<Mount> mount = read_mount(line);

@@ -22,10 +22,10 @@
 namespace palpate::slurm {
 namespace {
 
-constexpr double kPatience = 30.0;  ///< s for an answer
+constexpr double kPatience = 30.0;  ///< s
 constexpr const char* kAskedElsewhere = "run this on the login node of a cluster, or leave out '--launcher slurm'";
 
-/// The last number that `pattern` has in its first group, none where there is no such thing.
+/// Returns the last number in the first group of `pattern`; nullopt if there is no match.
 std::optional<int> last_number(const std::string& text, const std::string& pattern) {
   const std::regex wanted(pattern);
   std::optional<int> out;
@@ -33,16 +33,16 @@ std::optional<int> last_number(const std::string& text, const std::string& patte
   return out;
 }
 
-/// The number behind `name` and an equals sign, blanks around it or not.
+/// Returns the number after `name` and an equals sign.
 std::optional<int> setting(const std::string& text, const std::string& name) {
   return last_number(text, name + "[ \t]*=[ \t]*([0-9]{1,9})\\b");
 }
 
-/// Runs a program to its end, which may take `patience` seconds, and returns what it said.
+/// Runs a program to its end, for at most `patience` seconds, and returns its output.
 std::string ask(const std::vector<std::string>& words, const std::string& hint = kAskedElsewhere,
                 double patience = kPatience) {
   Program program{words};
-  // By these users change what the commands print or how long they stay, behind the back of who reads it.
+  // Users set these variables to change the output or the duration of Slurm's commands.
   static const std::regex users("^(SQUEUE_|SBATCH_WAIT=)");
   const auto is_users = [](const std::string& one) { return std::regex_search(one, users); };
   auto& sees = program.environment;
@@ -106,7 +106,7 @@ Submission submit(const std::vector<std::string>& words) {
   const char* const hint = "no job of this array was submitted; 'sinfo' lists the partitions";
   const auto doubt = trouble_in([&] { ask(all, hint); });
   all[1] = "--parsable";
-  // However long it takes: cut off, it could have submitted or not.
+  // Without a time limit, because an interrupted command may or may not have submitted the array.
   const std::string said = ask(all, hint, std::numeric_limits<double>::infinity());
   const std::optional<int> id = parse_array_id(said);
   if (!id) throw Error("sbatch", words_of(said), hint);

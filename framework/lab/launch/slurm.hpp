@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The only door to Slurm: its commands sbatch, squeue, scontrol and scancel, and what they print. Nothing here knows of
-// jobs; a task is one index of an array.
+// The interface to Slurm: calls of sbatch, squeue, scontrol and scancel, and the parsing of their output. A task is one
+// index of a job array. Jobs of a sweep are unknown here.
 #pragma once
 
 #include <optional>
@@ -9,42 +9,43 @@
 
 namespace palpate::slurm {
 
-/// How many tasks the controller takes as one array, numbered from 0: from what `scontrol show config` prints. Throws
-/// Error when it says nothing of arrays, or takes none.
+/// Returns the maximum number of tasks in an array, from the output of `scontrol show config`. Throws Error if the
+/// output has no limit, or if the cluster accepts no arrays.
 int parse_most_tasks(const std::string& config);
 
-/// A task in the queue: it waits, runs, or is about to be gone.
+/// A task in the queue. A task that does not wait runs or is about to end.
 struct Task {
   int array = 0;
   bool waiting = false;
 };
-/// From lines "ARRAY STATE" with the short names of states; other lines are skipped.
+/// Parses lines "ARRAY STATE" with short state names. Other lines are skipped.
 std::vector<Task> parse_queue(const std::string& lines);
 
-/// The array's id in what `sbatch --parsable` printed, warnings around it or not.
+/// Returns the array's id in the output of `sbatch --parsable`, which may contain warnings.
 std::optional<int> parse_array_id(const std::string& output);
 
-/// What a program of Slurm said, in one line without its name before each.
+/// Returns the messages of a Slurm command as one line, without the name of the command.
 std::string words_of(const std::string& output);
 
-/// Throws Error where Slurm's commands are not installed; asks no daemon.
+/// Throws Error if Slurm's commands are not installed. Asks no daemon.
 void check_installed();
 
-/// Asks the controller. Throws Error when Slurm is not installed or does not answer.
+/// Asks the controller for the maximum number of tasks in an array. Throws Error if Slurm is not installed or does not
+/// answer.
 int most_tasks();
 
 struct Submission {
   int array = 0;
   std::string doubt;  ///< why no node can run it now, in sbatch's words; "" if one can
 };
-/// Submits by `sbatch` with `words` behind it. Throws Error in sbatch's words. What no node can ever run and what waits
-/// for nodes that are drained look the same, so both are submitted, with a doubt.
+/// Submits an array: `sbatch` with `words`. Throws Error with the message of sbatch. An array that can never run, and
+/// an array that waits for drained nodes, look the same, so that both are submitted with a doubt.
 Submission submit(const std::vector<std::string>& words);
 
-/// This user's tasks. Throws Error when squeue does not answer.
+/// Returns this user's tasks. Throws Error if squeue does not answer.
 std::vector<Task> queue();
 
-/// Takes these arrays out of the queue; what runs is told to end. Throws Error.
+/// Removes arrays from the queue and ends their running tasks. Throws Error.
 void cancel(const std::vector<int>& arrays);
 
 }  // namespace palpate::slurm

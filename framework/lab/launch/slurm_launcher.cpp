@@ -31,10 +31,10 @@ namespace {
 constexpr const char* kScript = "task.sh";
 constexpr const char* kJobs = "jobs";
 constexpr std::chrono::minutes kMostSilence{10};
-constexpr std::chrono::seconds kPause{1};  ///< between two looks, at least
+constexpr std::chrono::seconds kPause{1};  ///< shortest time between two looks at the queue
 constexpr std::chrono::seconds kMostPause{60};
 
-/// What palpate says to sbatch, and how a user has a say in it.
+/// An option of sbatch that palpate sets, and what the user can do instead.
 struct OwnWord {
   const char* name;
   const char* letter;
@@ -54,12 +54,12 @@ constexpr std::array<OwnWord, 10> kOwnWords{{{"--partition", "-p", kOwnOption},
 
 class SlurmLauncher final : public Launcher {
  public:
-  /// The program and the sweep lie on a file system that the nodes share. What was submitted does not end with this.
+  /// The nodes must share the file system of the program and the sweep. Submitted tasks outlive this object.
   explicit SlurmLauncher(LaunchOrder order) : order_(std::move(order)) {}
 
-  /// Writes the script, and which task has which of `jobs`, to slurm/N in the sweep's directory, where the logs will
-  /// be, and submits it. Throws Error when Slurm cannot be asked, or when an array is refused; those that
-  /// LaunchOrder::submitted heard of stay.
+  /// Writes the script and the list of jobs per task into slurm/N in the sweep's directory, and submits them. Slurm
+  /// writes the logs there. Throws Error if Slurm does not answer or rejects an array. Arrays passed to
+  /// LaunchOrder::submitted remain in the queue.
   void submit(const std::vector<std::size_t>& jobs) override {
     if (jobs.empty()) return;
     const auto most = static_cast<std::size_t>(slurm::most_tasks());
@@ -67,7 +67,8 @@ class SlurmLauncher final : public Launcher {
     const auto each = static_cast<std::size_t>(order_.options.jobs_per_task);
     const std::size_t tasks = (jobs.size() + each - 1) / each;
     const auto begin_of = [&](std::size_t task) { return std::min(task * each, jobs.size()); };
-    // Between the first and the last of a task lie only such as it leaves alone.
+    // A line names the range from the first to the last job of a task. Jobs in between that the task must not run are
+    // done.
     std::string list;
     for (std::size_t task = 0; task < tasks; ++task)
       list += fmt::format("{}-{}\n", jobs[begin_of(task)], jobs[begin_of(task + 1) - 1]);
@@ -86,14 +87,14 @@ class SlurmLauncher final : public Launcher {
     }
   }
 
-  /// A job has returned when its result is there or no task is left in the queue. Throws Error when Slurm has said
-  /// nothing for ten minutes.
+  /// Returns jobs whose results exist, and all jobs once the queue has no task left. Throws Error if Slurm has not
+  /// answered for ten minutes.
   State poll(double seconds) override {
     State state;
     if (open_.empty()) return state;
     const double pause = std::chrono::duration<double>(next_ - Clock::now()).count();
     if (pause > 0.0) {
-      ::poll(nullptr, 0, static_cast<int>(1000.0 * std::min(seconds, pause)) + 1);  // not beyond a signal
+      ::poll(nullptr, 0, static_cast<int>(1000.0 * std::min(seconds, pause)) + 1);  // returns early after a signal
     } else {
       look(state.returned);
     }
@@ -119,7 +120,7 @@ class SlurmLauncher final : public Launcher {
                   "rename it");
     make_inner_folder(all);
     std::error_code trouble;
-    // Another submission may be looking for its number, too: who makes the folder has it.
+    // Another process may look for a number at the same time. The process that creates the folder gets the number.
     for (int number = 1; !trouble; ++number) {
       fs::path folder = all / std::to_string(number);
       if (fs::create_directory(folder, trouble)) return folder;
@@ -127,7 +128,7 @@ class SlurmLauncher final : public Launcher {
     throw Error(all.string(), "cannot be made: " + trouble.message());
   }
 
-  /// For an array of `count` tasks from `first` on.
+  /// Returns the arguments of sbatch for an array of `count` tasks, from task `first` on.
   std::vector<std::string> words_for(std::size_t first, std::size_t count, const fs::path& folder) const {
     const bool one_at_a_time = order_.options.one_at_a_time;
     const ClusterOptions& cluster = order_.options.cluster;
@@ -135,21 +136,22 @@ class SlurmLauncher final : public Launcher {
     if (!cluster.partition.empty()) words.push_back("--partition=" + cluster.partition);
     if (!cluster.time.empty()) words.push_back("--time=" + cluster.time);
     if (!cluster.account.empty()) words.push_back("--account=" + cluster.account);
-    // The user's words come before the next ones: an option that lacks its value there makes sbatch fail.
+    // The user's words come before --array. An option without its value then takes --array as its value, and all tasks
+    // fail at once.
     words.insert(words.end(), cluster.words.begin(), cluster.words.end());
     words.push_back(fmt::format("--array=0-{}{}", count - 1, one_at_a_time ? "%1" : ""));
     words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
-    // A percent sign begins what Slurm fills in.
+    // A percent sign begins a placeholder of Slurm.
     words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
     words.push_back(fmt::format("--cpus-per-task={}", order_.options.workers));
-    // The limit is each array's own: one begins when the other has ended.
+    // The limit %1 holds within one array, so that each array waits for the end of the one before.
     if (one_at_a_time && !arrays_.empty()) words.push_back(fmt::format("--dependency=afterany:{}", arrays_.back()));
     words.push_back((folder / kScript).string());
     words.push_back(std::to_string(first));
     return words;
   }
 
-  /// Asks for the queue, and appends the jobs that have returned.
+  /// Reads the queue, and appends returned jobs to `returned`.
   void look(std::vector<std::size_t>& returned) {
     const auto begun = Clock::now();
     const std::optional<Error> trouble = trouble_in([&] {
@@ -167,24 +169,25 @@ class SlurmLauncher final : public Launcher {
       throw Error("squeue", fmt::format("has not answered for ten minutes: {}", trouble->reason()),
                   "the jobs continue; follow them with 'palpate status'", Error::Kind::run);
     }
-    // A failed job that is tried again has its old result until it begins: only the queue tells.
+    // With --retry-failed, a failed job keeps its old result until it begins, so that only the queue tells whether it
+    // has ended.
     const auto ended = std::stable_partition(open_.begin(), open_.end(), [&](std::size_t job) {
       return trouble || (!queued_.empty() && (order_.options.resume.retry_failed ||
                                               !has_ended(job_directory(order_.sweep, order_.sweep.jobs[job]))));
     });
     returned.assign(ended, open_.end());
     open_.erase(ended, open_.end());
-    // Over many jobs on a slow file system a look takes long: most of the time is left to others.
+    // A look at many jobs on a slow file system takes long. The pause leaves most of the time to others.
     next_ = Clock::now() + std::clamp<Clock::duration>(10 * (Clock::now() - begun), kPause, kMostPause);
   }
 
   LaunchOrder order_;
   fs::path directory_ = absolute(order_.sweep.directory / "").lexically_normal().parent_path();
   std::vector<int> arrays_;
-  std::vector<std::size_t> open_;          ///< jobs that have not returned
-  std::set<int> queued_;                   ///< arrays that have tasks in the queue, as last seen
-  int running_ = 0;                        ///< their tasks that run
-  Clock::time_point next_ = Clock::now();  ///< look
+  std::vector<std::size_t> open_;          ///< jobs that have not been returned
+  std::set<int> queued_;                   ///< arrays with tasks in the queue at the last look
+  int running_ = 0;                        ///< number of running tasks
+  Clock::time_point next_ = Clock::now();  ///< time of the next look
   std::optional<Clock::time_point> silent_since_;
 };
 
@@ -217,7 +220,8 @@ std::string task_script(const fs::path& program, const fs::path& directory, cons
       "#!/bin/sh\n# A task of a Slurm array resumes the jobs of the sweep that one line of a list names. The line "
       "number is the first\n# argument, 0 if absent, plus the array index. Jobs that are done or held by another "
       "process are skipped.\n";
-  out += fmt::format("cd {}\n", shell_word(fs::current_path().string()));  // from here, too, paths of plugins lead on
+  out += fmt::format("cd {}\n",
+                     shell_word(fs::current_path().string()));  // relative paths of plugins refer to this folder
   for (const char* name : {"PALPATE_PLUGIN_PATH", "PALPATE_INSTRUCTIONS"}) {
     const char* const value = std::getenv(name);
     out += value != nullptr ? fmt::format("export {}={}\n", name, shell_word(value)) : fmt::format("unset {}\n", name);

@@ -18,7 +18,7 @@ namespace palpate {
 namespace {
 
 using Value = Condition::Value;
-/// Whether something holds; nullopt where that is undecided.
+/// The truth of a condition; nullopt: undecided.
 using Decision = std::optional<bool>;
 
 constexpr const char* kHowTo = "write it like taps >= 12 and not surface == two_part";
@@ -29,7 +29,7 @@ bool is_space(char c) { return std::string_view(" \t\n\r").find(c) != std::strin
 bool is_quote(char c) { return c == '\'' || c == '"'; }
 bool ends_word(char c) { return is_sign(c) || is_space(c) || is_quote(c) || c == '(' || c == ')'; }
 
-/// What people write who think of another language, and what it is here.
+/// Returns the hint for an operator of another language.
 std::string meant_by(const std::string& sign) {
   constexpr std::array<std::array<const char*, 2>, 8> kMeant{{{"=", "=="},
                                                               {"===", "=="},
@@ -43,10 +43,10 @@ std::string meant_by(const std::string& sign) {
   return found != kMeant.end() ? fmt::format("write '{}'", (*found)[1]) : "known: ==, !=, <, <=, >, >=";
 }
 
-/// Reads the text of a condition by descent, or, and, not, comparison, and decides it on the way.
+/// A recursive-descent parser (or, and, not, comparison) that evaluates the condition while it reads.
 class Reader {
  public:
-  /// Without `value_of` nothing is decided.
+  /// Without `value_of`, only the syntax is checked.
   Reader(const std::string& text, const std::string& place, const Condition::Values& value_of = nullptr,
          const std::vector<std::string>& known = {})
       : text_(text), place_(place), value_of_(value_of), known_(known) {
@@ -90,7 +90,7 @@ class Reader {
   bool at_sign() const { return next_ < tokens_.size() && is_sign(tokens_[next_].front()); }
   bool at_quoted() const { return next_ < tokens_.size() && is_quote(tokens_[next_].front()); }
 
-  /// Whether a value may go on here: no word of the language.
+  /// Returns whether the next token is a value, not a keyword or an operator.
   bool at_value() const {
     constexpr std::array<const char*, 5> kOthers{"and", "or", "not", "(", ")"};
     return next_ < tokens_.size() && !at_sign() &&
@@ -103,11 +103,11 @@ class Reader {
     return there;
   }
 
-  /// The next token as it is read: of a quoted text what stands in the quotes.
+  /// Returns the next token without its opening quote.
   std::string shown() const { return tokens_[next_].substr(at_quoted() ? 1 : 0); }
 
-  /// Parts with `word` between them: one that comes out as `decides` decides for all, and what follows is read only;
-  /// else one that is undecided does.
+  /// Reads parts that are joined by `word`. A part with the value `decides` decides the result, and the rest is only
+  /// parsed. Otherwise an undecided part makes the result undecided.
   Decision joined(bool decides, const char* word, Decision (Reader::*part)(int, bool), int depth, bool asked) {
     Decision out = (this->*part)(depth, asked);
     while (take(word)) {
@@ -147,7 +147,7 @@ class Reader {
     const bool quoted = at_quoted();
     std::string value = shown();
     ++next_;
-    // A number and its unit are two words.
+    // A number and its unit are two tokens.
     while (!quoted && !at_quoted() && at_value()) value += " " + tokens_[next_++];
     if (at_sign()) {
       const bool joins = shown()[0] == '&' || shown()[0] == '|';
@@ -157,7 +157,7 @@ class Reader {
     if (!value_of_) return std::nullopt;
     const std::string written = fmt::format("{} {} {}", name, sign, value);
     const std::optional<Value> left = value_of_(name);
-    // Names that no evaluation may reach are checked all the same.
+    // Names are checked also where their values cannot change the result.
     if (!left)
       throw Error(place_, fmt::format("the condition '{}' has the unknown name '{}'", written, name),
                   suggestion(name, known_));
@@ -167,7 +167,7 @@ class Reader {
   Decision decide(const Value& left, Relation relation, const std::string& value, bool quoted,
                   const std::string& written) const {
     const Value right = quoted ? Value{value} : value_of_(value).value_or(Value{value});
-    // A value as it is written is never empty unless it is quoted: who has none is a name.
+    // An unquoted value is never empty, so an empty right side is a name without a value.
     const bool lacks_right = right.text.empty() && !quoted;
     if ((left.text.empty() && left.is_result) || (lacks_right && right.is_result)) return std::nullopt;
     if (left.text.empty() || lacks_right) return false;
@@ -192,7 +192,7 @@ class Reader {
   const std::string& place_;
   const Condition::Values& value_of_;
   const std::vector<std::string>& known_;
-  std::vector<std::string> tokens_;  ///< a word, a sign, a parenthesis, or a quoted text behind its first quote
+  std::vector<std::string> tokens_;  ///< words, operators, parentheses, and quoted texts that keep their first quote
   std::size_t next_ = 0;
 };
 

@@ -17,11 +17,11 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMaxCombinations = 1'000'000;
-constexpr std::size_t kMaxSettings = 20'000'000;  ///< of all combinations: one per combination and key
-/// Of a group or a type that is swept: above the options that are swept beside it.
+constexpr std::size_t kMaxSettings = 20'000'000;  ///< over all combinations: one setting per combination and key
+/// Layer of a swept group or type. It is above the swept options, which may not exist for every type.
 constexpr Layer kChoiceLayer = kSweepLayer + 1;
 
-/// Whether `key` is that group, or lies in it.
+/// Returns whether `key` is the group or lies within it.
 bool is_below(const std::string& key, const std::string& group) {
   return key == group || boost::starts_with(key, group + ".");
 }
@@ -38,7 +38,7 @@ bool is_empty(const Tree& block) {
   return (block.is_map() && block.entries.empty()) || (block.kind == Tree::Kind::list && block.items.empty());
 }
 
-/// Each of `slower` with each of `faster` behind it.
+/// Returns each combination of `slower` followed by each of `faster`.
 std::vector<Combination> product(const std::vector<Combination>& slower, const std::vector<Combination>& faster) {
   std::vector<Combination> out;
   for (const Combination& slow : slower) {
@@ -50,7 +50,7 @@ std::vector<Combination> product(const std::vector<Combination>& slower, const s
   return out;
 }
 
-/// Every key of a map with its values.
+/// Returns the keys of a map with their values.
 std::vector<Axis> read_axes(const Tree& described, const std::string& name, const char* hint, ValueCount& count) {
   if (!described.is_map()) {
     throw Error(described.place.text(), fmt::format("{}: expects a map of keys to values", name), hint);
@@ -74,7 +74,7 @@ void check_key(const Axis& axis) {
   }
 }
 
-/// Takes a key out of all blocks but the grid: the command line says what becomes of it.
+/// Removes a key of the command line from all blocks except the grid.
 void take_out(Tree& blocks, const std::string& key) {
   if (Tree* zip = blocks.find("zip")) zip->erase(key);
   Tree* sobol = blocks.find("sobol");
@@ -87,7 +87,7 @@ void take_out(Tree& blocks, const std::string& key) {
   std::vector<Tree>& items = list->items;
   if (std::none_of(items.begin(), items.end(), [&](const Tree& item) { return item.find(key) != nullptr; })) return;
   for (Tree& item : items) item.erase(key);
-  // Those that differed by this key alone are one now.
+  // Items that differed only in this key are now equal.
   std::set<std::string> kept;
   const auto is_twin = [&](const Tree& item) { return !kept.insert(item.canonical()).second; };
   items.erase(std::remove_if(items.begin(), items.end(), is_twin), items.end());
@@ -231,8 +231,8 @@ void SweepDescription::combine() {
   }
 }
 
-/// Whether what `name` stands for is decided by a choice: kernel.alpha by kernel, scene.objects.0.length by its type,
-/// and nearly all by a strategy.
+/// Returns whether a choice decides what `name` means: kernel decides kernel.alpha, the type of an object decides its
+/// scene.objects.0.length, and a strategy decides nearly all options.
 bool SweepDescription::depends(const std::string& name, const std::string& choice) const {
   if (!is_choice(choice)) return false;
   if (choice == kStrategy) return name != choice && config_keys().is_of_strategy(name);
@@ -250,8 +250,8 @@ bool SweepDescription::wanted(const Combination& combination, const Condition::V
     const bool swept = std::find(keys_.begin(), keys_.end(), name) != keys_.end();
     for (const std::string& choice : keys_) {
       if (!depends(name, choice)) continue;
-      if (swept) return Condition::Value{};  // another item of the list has it
-      // Nearly any word could be an option of a strategy; one that nobody knows is a value.
+      if (swept) return Condition::Value{};  // another item of the list sets it
+      // Nearly any word could be an option of a strategy, so an unknown word is a value.
       if (choice == kStrategy && !base(name)) continue;
       throw Error(*place, fmt::format("'{}' depends on '{}', which is swept", name, choice),
                   fmt::format("sweep it too, or compare '{}'", choice));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a sweep varies, as the config's `sweep:` and the words behind `palpate sweep` describe it: which keys take which
-// values together. Nothing is known here of what the keys mean.
+// The description of a sweep: the keys and values in `sweep:` of a config and on the command line, and their
+// combinations. The meaning of the keys is not checked here.
 #pragma once
 
 #include "config/compose.hpp"
@@ -14,67 +14,68 @@
 
 namespace palpate {
 
-/// `palpate sweep CONFIG` is followed by words of three kinds.
+/// The words after `palpate sweep CONFIG`, by their kind.
 struct SweepWords {
   std::vector<Axis> axes;                            ///< KEY=VALUES
   std::vector<std::pair<std::string, Tree>> blocks;  ///< sweep.BLOCK=...
-  std::vector<Override> expectations;                ///< expect...=...: they hold for the whole sweep and are no axes
+  std::vector<Override> expectations;                ///< expect...=...: not swept, but valid for the whole sweep
 };
 
-/// Throws Error.
+/// Throws Error for invalid words.
 SweepWords parse_sweep_words(const std::vector<std::string>& words);
 
-/// What one combination says of one key: a value of an axis.
+/// The value of one key in a combination.
 struct SweptValue {
-  const Axis* axis;   ///< lives as long as its description
-  std::size_t digit;  ///< which of its values
+  const Axis* axis;   ///< belongs to the SweepDescription
+  std::size_t digit;  ///< index of the value
 
   const Tree& value() const { return axis->values[digit]; }
 };
 
-/// In the order in which they are laid over the config, each key once.
+/// The values of a combination, in the order in which they are merged into the config. Each key occurs once.
 using Combination = std::vector<SweptValue>;
 
-/// The blocks of a sweep. They multiply with each other in the order in which they are written, the last running
-/// fastest:
+/// The blocks of a sweep. Blocks are multiplied in their order; the last one varies fastest:
 ///
-///     grid:  {a: [1, 2], b: [x, y]}               every value with every other, the last key fastest: 4 combinations
-///     zip:   {a: [1, 2], b: [x, y]}               side by side: 2 combinations
-///     list:  [{a: 1}, {a: 2, b: [x, y]}]          one after the other, each item a little grid: 3 combinations
-///     sobol: {samples: 64, keys: {a: "uniform(1 cm, 2 cm)"}}    points of continuous ranges: see sobol_axes()
-///     where: a > 1 and not b == x                 of all these, those for which this, or each of a list, holds
+///     grid:  {a: [1, 2], b: [x, y]}               all pairs, the last key varies fastest: 4 combinations
+///     zip:   {a: [1, 2], b: [x, y]}               values with the same index: 2 combinations
+///     list:  [{a: 1}, {a: 2, b: [x, y]}]          one item after the other, each a small grid: 3 combinations
+///     sobol: {samples: 64, keys: {a: "uniform(1 cm, 2 cm)"}}    points in continuous ranges: see sobol_axes()
+///     where: a > 1 and not b == x                 keeps the combinations that satisfy this condition or list of
+///     conditions
 ///
-/// Values are lists, `range` and `log`: see expand_values(). A key stands in one block only.
+/// Values are lists, `range` and `logspace`: see expand_values(). A key may occur in one block only.
 class SweepDescription {
  public:
-  /// `config` is the config's `sweep:`, or null. A block among the words takes the place of the config's block; a key
-  /// among them leaves zip, sobol and list and goes to the grid, where it takes the place of that key. Throws Error for
-  /// what is not understood, and for more than a million combinations.
+  /// `config`: the config's `sweep:`, or null. A block in `words` replaces the block of the config. A key in `words` is
+  /// removed from zip, sobol and list, and set in the grid. Throws Error for an invalid description, and for more than
+  /// a million combinations.
   SweepDescription(const Tree* config, const SweepWords& words);
-  SweepDescription(const SweepDescription&) = delete;  // combinations point at its axes
+  SweepDescription(const SweepDescription&) = delete;  // combinations point to the axes
   SweepDescription& operator=(const SweepDescription&) = delete;
 
-  /// All swept keys, in the order in which they are laid over a config.
+  /// Returns the swept keys, in the order in which they are merged into a config.
   const std::vector<std::string>& keys() const { return keys_; }
-  /// All of them, whatever `where` says. They live as long as the description.
+  /// Returns all combinations, also those that `where` excludes. They live as long as this object.
   const std::vector<Combination>& combinations() const { return combinations_; }
 
-  /// Whether `where` keeps a combination. `base` tells what the config says of names that the combination does not.
-  /// Throws Error for a name that nobody knows, or that depends on a swept choice: kernel.alpha where kernel is swept.
+  /// Returns whether `where` keeps a combination. `base` returns the values that the config has for names without a
+  /// value in the combination. Throws Error for an unknown name, and for a name that depends on a swept choice
+  /// (kernel.alpha if kernel is swept).
   bool wanted(const Combination& combination, const Condition::Values& base) const;
-  /// The place of the first `where`, or "".
+  /// Returns the place of the first condition; "" if there is none.
   std::string where_place() const;
 
-  /// What `palpate sweep` would read as the same description.
+  /// Returns the description as a `sweep:` block that gives the same combinations.
   const Tree& written() const { return written_; }
 
  private:
-  /// Axes side by side, or multiplied with each other.
+  /// Axes with combined indices (`together`) or all combinations of their values.
   struct Part {
     std::vector<Axis> axes;
     bool together = false;
   };
-  /// Parts one after the other.
+  /// Parts whose combinations follow each other.
   struct Block {
     std::string name;
     std::vector<Part> parts;
@@ -92,14 +93,14 @@ class SweepDescription {
   std::vector<Combination> combinations_;
 };
 
-/// What a combination lays over the config. A group or a type is laid on a higher layer than all options, so that
-/// options that it does not have are left out rather than refused.
+/// Returns a combination as overrides. Groups and types get a higher layer than options, so that an option that a type
+/// lacks is dropped instead of rejected.
 std::vector<Override> overrides_of(const Combination& combination);
 
-/// A value as a condition sees it: a group is its type.
+/// Returns a value as text for conditions. The text of a group is its type.
 std::string condition_text(const Tree& value);
 
-/// Whether `key` chooses a plugin or a type, and with it which options there are.
+/// Returns whether `key` chooses a plugin or a type, and so the available options.
 bool is_choice(const std::string& key);
 
 }  // namespace palpate

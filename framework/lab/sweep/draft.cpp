@@ -24,7 +24,7 @@ Error cannot(const fs::path& what, const std::string& why) {
 
 constexpr const char* kPrefix = ".sweep-";
 
-/// A draft is abandoned when nobody holds its lock. Young ones are left alone: theirs may not be taken yet.
+/// Removes drafts whose lock is free. Drafts of less than a minute are kept, because their lock may not be taken yet.
 void remove_abandoned(const fs::path& runs) {
   constexpr auto kYoung = std::chrono::minutes(1);
   std::error_code none;
@@ -47,7 +47,7 @@ SweepDraft::SweepDraft(fs::path runs) : runs_(std::move(runs)), made_runs_(!fs::
   if (::mkdtemp(name.data()) == nullptr) throw cannot(name, std::strerror(errno));
   folder_ = name;
   std::error_code none;
-  fs::permissions(folder_, fs::status(runs_).permissions(), none);  // mkdtemp keeps others out
+  fs::permissions(folder_, fs::status(runs_).permissions(), none);  // mkdtemp denies access to others
   make_folder(folder_ / "jobs");
   lock_ = FileLock(folder_ / "lock");
 }
@@ -55,13 +55,13 @@ SweepDraft::SweepDraft(fs::path runs) : runs_(std::move(runs)), made_runs_(!fs::
 SweepDraft::~SweepDraft() {
   std::error_code none;
   fs::remove_all(folder_, none);
-  if (made_runs_) fs::remove(runs_, none);  // only while it is empty
+  if (made_runs_) fs::remove(runs_, none);  // only if it is empty
 }
 
 void SweepDraft::add(const Job& job, const ResolvedConfig& config) {
   const fs::path directory = folder_ / "jobs" / job.id;
   make_folder(directory);
-  // In its place at once: nobody looks here before the whole folder gets its name.
+  // Written in place, because no other process reads the folder before it gets its final name.
   AppendFile file(directory / "config.yaml");
   file.append(to_yaml_with_places(config.tree), false);
   file.flush();
@@ -92,7 +92,7 @@ bool SweepDraft::publish(const SweepPlan& plan) {
     folder_.clear();
     return true;
   }
-  // Another process may have been faster; what is there is then equal.
+  // Another process has published the same sweep meanwhile.
   if (is_sweep(directory)) return false;
   throw cannot(directory, trouble.message());
 }

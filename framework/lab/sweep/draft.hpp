@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sweep's directory while its jobs are still being checked: it is made under another name and appears under its own
-// only when it is complete.
+// The directory of a sweep during planning. It has a temporary name until all jobs are checked and written.
 #pragma once
 
 #include "record/files.hpp"
@@ -14,9 +13,9 @@ namespace palpate {
 
 class SweepDraft {
  public:
-  /// Makes a hidden folder in `runs`, and removes those of processes that were killed over theirs. Throws Error.
+  /// Creates a hidden folder in `runs`, and removes those of killed processes. Throws Error.
   explicit SweepDraft(std::filesystem::path runs);
-  /// Removes what did not become a sweep.
+  /// Removes the folder, unless it was published.
   ~SweepDraft();
   SweepDraft(const SweepDraft&) = delete;
   SweepDraft& operator=(const SweepDraft&) = delete;
@@ -24,17 +23,17 @@ class SweepDraft {
   /// Writes the config of a job.
   void add(const Job& job, const ResolvedConfig& config);
 
-  /// Writes config.yaml and manifest.jsonl and gives all of it the name of the sweep. Returns false, and leaves
-  /// what is there alone, when that sweep exists already; but where the config of a job was deleted it is put back.
+  /// Writes config.yaml and manifest.jsonl, and renames the folder to that of the sweep. Returns false if that sweep
+  /// exists already. The existing sweep is not changed, except that deleted configs of its jobs are written again.
   /// Throws Error.
   bool publish(const SweepPlan& plan);
 
  private:
-  /// A job without its config would run, but could be neither carried on nor replayed.
+  /// Writes the configs of jobs that were deleted. A job without its config cannot be resumed or replayed.
   void replace_lost(const Sweep& sweep) const;
 
   std::filesystem::path runs_;
-  bool made_runs_;  ///< the folder of the runs was not there before
+  bool made_runs_;  ///< whether this object created the folder of the runs
   std::filesystem::path folder_;
   FileLock lock_;
 };

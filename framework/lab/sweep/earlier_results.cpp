@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-/// The row of a job, of which `rows` has one per tap, at an occasion.
+/// Returns the row of a job after the taps of `occasion`. `rows` has one row per tap.
 Row row_at(const Occasion& occasion, const std::vector<Row>& rows) {
   std::size_t taps = 1;
   while (taps < rows.size() && !occasion.has_come(static_cast<int>(taps), rows[taps - 1])) ++taps;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// results.csv as it would be, had the jobs of a sweep stopped earlier.
+// The results of a sweep after fewer taps.
 #pragma once
 
 #include "record/occasion.hpp"
@@ -11,13 +11,15 @@
 
 namespace palpate {
 
-/// What says of a row at a goal whether the job has got there.
+/// Column that tells whether a job reached the goal of --until.
 inline constexpr const char* kReached = "reached";
 
-/// Returns the rows at each of the occasions, which are also left as results_<key>.csv in the sweep's directory. A job
-/// for which an occasion has not come has its own row, and so has one that failed; where that cannot be seen, `reached`
-/// says so. `complete` has what is missing computed; where it returns false, so does this return none. Throws Error for
-/// a number of taps that no job reached, and for a damaged sweep.
+/// Returns the results after the taps of each occasion, and writes them as results_<key>.csv into the sweep's
+/// directory. A job that has not reached an occasion, or has failed, has its final row. With a goal, the column
+/// `reached` tells these jobs apart.
+///
+/// `complete` must compute the missing summaries; if it returns false, the result is nullopt. Throws Error for a number
+/// of taps that no job made, and for a damaged sweep.
 std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, const std::vector<Occasion>& occasions,
                                                         const std::function<bool(const TapSummaries&)>& complete);
 

@@ -22,24 +22,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What has become of a swept key in the jobs so far.
+/// The use of a swept key in the jobs so far.
 struct KeyUse {
-  const Axis* asker = nullptr;  ///< once a job sets it
+  const Axis* asker = nullptr;  ///< axis that sets the key; null: none yet
   bool takes_part = false;
-  std::set<std::string> siblings;  ///< options that stand where the key would
+  std::set<std::string> siblings;  ///< other options next to the key
 };
 
-/// Makes the jobs one by one.
+/// Makes the jobs of a sweep one by one.
 class Planner {
  public:
-  /// `shared` is what all jobs lay over `file` before their combination.
+  /// `shared`: overrides of all jobs, applied before those of their combination.
   Planner(Composer& composer, const PluginHost& host, const fs::path& file, const std::vector<std::string>& keys,
           const std::vector<Override>& shared)
       : composer_(composer), host_(host), file_(file), shared_(shared), keys_(keys), uses_(keys.size()) {
     for (std::size_t i = 0; i < keys_.size(); ++i) key_numbers_.emplace(keys_[i], i);
   }
 
-  /// `combination` must outlive this.
+  /// Adds the job of a combination, which must outlive this object.
   void add(const Combination& combination, const JobSink& sink) {
     std::vector<Override> overrides = shared_;
     for (Override& one : overrides_of(combination)) overrides.push_back(std::move(one));
@@ -63,7 +63,7 @@ class Planner {
     combinations_.push_back(&combination);
   }
 
-  /// Throws Error for a key that no job has.
+  /// Throws Error for a swept key that no job uses.
   void finish() {
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       const auto& [asker, takes_part, siblings] = uses_[i];
@@ -77,7 +77,7 @@ class Planner {
   std::vector<Job> take_jobs() { return std::move(jobs_); }
 
  private:
-  /// What each key came to in a job.
+  /// Returns the values of a job at all swept keys.
   std::vector<std::string> values_of(const Combination& combination, const Tree& composed,
                                      const ResolvedConfig& resolved) {
     std::vector<std::string> values(keys_.size());
@@ -93,14 +93,14 @@ class Planner {
       uses_[key].takes_part = true;
       values[key] = value_text(setting.value());
     }
-    // Where other combinations set a key and this one does not, the table says what this one has there.
+    // A key that only other combinations set has the value of the config.
     for (std::size_t key = 0; key < keys_.size(); ++key) {
       if (!said[key]) values[key] = unswept_text(keys_[key], composed, resolved.tree);
     }
     return values;
   }
 
-  /// Whether plugins chosen later do not have the option, neither where it stands nor where it is inherited.
+  /// Returns whether the plugins of a job lack the option, both at its own path and at all paths that inherit it.
   static bool is_left_out(const std::string& key, const Tree& composed, const ResolveNotes& notes) {
     const auto dropped = [&](const std::string& path) {
       return std::any_of(notes.dropped.begin(), notes.dropped.end(), [&](const ResolveNotes::Origin& one) {
@@ -128,7 +128,7 @@ class Planner {
     return condition_text(said != nullptr ? *said : *has);
   }
 
-  /// Whether two jobs that are the same run are so because of options that were left out, and for no other reason.
+  /// Returns whether two equal jobs differ only in options that their plugins lack.
   bool differs_by_what_is_left_out(std::size_t twin, const Job& job, const Combination& combination) const {
     if (jobs_[twin].values != job.values) return false;
     bool any = false;
@@ -139,7 +139,7 @@ class Planner {
             job.values[key_numbers_.at(setting.axis->key)].empty() && !value_text(setting.value()).empty();
         any = any || left_out;
         if (left_out || one == &other) continue;
-        // The same value of another place in one list is a value that stands twice.
+        // A value that occurs twice in one list is an error.
         for (const SweptValue& same : other) {
           if (same.axis == setting.axis && same.digit != setting.digit) return false;
         }
@@ -165,14 +165,14 @@ class Planner {
   const std::vector<Override>& shared_;
   const std::vector<std::string>& keys_;
   std::vector<Job> jobs_;
-  std::vector<std::string> identities_;           ///< of each job
-  std::vector<const Combination*> combinations_;  ///< of each job
+  std::vector<std::string> identities_;           ///< by job
+  std::vector<const Combination*> combinations_;  ///< by job
   std::unordered_map<std::string, std::size_t> key_numbers_;
-  std::unordered_map<std::string, std::size_t> seen_;  ///< the job of each id
-  std::vector<KeyUse> uses_;                           ///< of each key
+  std::unordered_map<std::string, std::size_t> seen_;  ///< job number by id
+  std::vector<KeyUse> uses_;                           ///< by key
 };
 
-/// Top-level keys, in the order in which a resolved config has them.
+/// Returns the top-level keys in the order of a resolved config.
 std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
   std::vector<std::string> out;
   for (const Tree* tree : {&resolved, &base}) {
@@ -184,7 +184,7 @@ std::vector<std::string> ordered_keys(const Tree& base, const Tree& resolved) {
   return out;
 }
 
-/// Whether what stands below the top-level key depends on what is chosen in a combination.
+/// Returns whether swept keys affect the options below a top-level key.
 bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
   return std::any_of(swept.begin(), swept.end(), [&](const std::string& key) {
     if (key == kStrategy) return true;
@@ -195,14 +195,16 @@ bool is_touched(const std::string& top, const std::vector<std::string>& swept) {
   });
 }
 
-/// A config from which `palpate sweep` makes the same jobs again. What the sweep leaves alone stands there in full,
-/// groups included; where it chooses groups or types, there stands what `file` itself says, because what a group brings
-/// must not outlive another choice. `base` is `file` composed without any combination, `alone` the same
-/// resolved, if it is a whole config; `first` the first job, whose order of keys is taken.
+/// Returns a config from which `palpate sweep` makes the same jobs again. Keys that the sweep does not affect are
+/// written in full, groups included. Keys that depend on swept groups or types are written as in `file`, because the
+/// options of one choice must not remain with another.
+///
+/// `base`: `file` composed without a combination. `alone`: `base` resolved, or nullopt if it is incomplete. `first`:
+/// the first job, which defines the order of the keys.
 Tree written_config(const std::filesystem::path& file, const Tree& base, const std::optional<ResolvedConfig>& alone,
                     const SweepDescription& description, const ResolvedConfig& first) {
   const Tree own = read_yaml(file);
-  // Without the options that its own plugins leave out.
+  // The options that the config's own plugins lack are removed.
   Tree settled = base;
   if (alone) {
     for (const ResolveNotes::Origin& one : alone->notes.dropped) settled.erase_path(one.path);
@@ -213,7 +215,7 @@ Tree written_config(const std::filesystem::path& file, const Tree& base, const s
   Tree out = Tree::map();
   const Tree* name = base.find("name");
   out.at("name") = Tree::scalar(name != nullptr ? name->text : first.options.name, true);
-  // What of the groups below is a strategy's cannot be told any more: where any of it is needed all of it is.
+  // The groups of a strategy cannot be told apart here, so that the whole strategy is kept if any of them is needed.
   const bool needs_strategy = !alone || std::any_of(description.keys().begin(), description.keys().end(), is_choice);
   Tree kept = Tree::list();
   if (const Tree* defaults = own.find("defaults")) {
@@ -248,13 +250,13 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   }
   std::vector<Override> shared = read.expectations;
   if (base.find_path("log.surface") == nullptr) {
-    // The sweep's own record decides whether surfaces are kept: not by default.
+    // By default, the jobs of a sweep do not record surfaces.
     shared.push_back({"log.surface", Tree::scalar("false")});
     shared.back().value.set_layer(kGroupLayer);
   }
 
-  // The config without any combination; none if it is no whole config, as when all that it lacks is swept. What is
-  // wrong with it beside that, its jobs say.
+  // The config without a combination; nullopt if it is incomplete, because the sweep sets the missing keys. Other
+  // errors in it are found with the jobs.
   std::optional<ResolvedConfig> alone;
   trouble_in([&] { alone = resolve_experiment(base, host); });
   const Condition::Values base_value = [&](const std::string& name) -> std::optional<Condition::Value> {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sweep before it begins: from the description in the config and on the command line to the jobs, every one of them
-// resolved and checked.
+// The planning of a sweep: from its description to its jobs, each resolved and checked.
 #pragma once
 
 #include "config/compose.hpp"
@@ -15,19 +14,18 @@
 
 namespace palpate {
 
-/// What a sweep will run.
+/// A planned sweep.
 struct SweepPlan {
-  Sweep sweep;  ///< its directory is where it would be
-  Tree config;  ///< what `palpate sweep` would make the same jobs of: whole where the sweep leaves it alone
+  Sweep sweep;  ///< with the directory that the sweep will have
+  Tree config;  ///< config from which `palpate sweep` makes the same jobs
 };
 
-/// Called for each job of a plan, in their order, once it is checked.
+/// Called with each job after its check, in the order of the jobs.
 using JobSink = std::function<void(const Job& job, const ResolvedConfig& config)>;
 
-/// Composes, resolves and checks every job of `file`, with `words` as typed behind `palpate sweep`: see
-/// SweepDescription. An option that the plugin of a job does not have is left out of that job, and jobs that become
-/// equal thereby are one; other jobs that resolve to the same run are refused, and so is an option that no job has.
-/// Throws Error; touches nothing.
+/// Composes, resolves and checks all jobs of `file` and `words`, the words after `palpate sweep CONFIG`: see
+/// SweepDescription. Options that the plugin of a job lacks are dropped, and jobs that become equal by this are merged.
+/// Throws Error for other equal jobs and for a swept option that no job has. Writes nothing.
 SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const std::filesystem::path& file,
                      const std::vector<std::string>& words, const std::filesystem::path& runs,
                      const JobSink& sink = nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads the directories of many jobs, several at once: a file system of a cluster answers late, and each answer would
-// be waited for.
+// Parallel reading of job directories. The file system of a cluster answers late, so that reading one after the other
+// would mostly wait.
 #pragma once
 
 #include "gp/workers.hpp"
@@ -15,14 +15,13 @@
 
 namespace palpate {
 
-/// For each of `jobs`, indices into Sweep::jobs, hands `use(job, read(directory))` what `read` returned, in their
-/// order and in the calling thread. `read` is called in several threads at once and gets the job's directory. What
-/// either throws first, in the order of the jobs, is thrown here.
+/// Calls `use(job, read(directory))` for each of `jobs` (indices into Sweep::jobs), in their order and in the calling
+/// thread. `read` runs in several threads. Rethrows the first exception of either, in the order of the jobs.
 template <class Read, class Use>
 void read_jobs(const Sweep& sweep, const std::vector<std::size_t>& jobs, const Read& read, const Use& use) {
   constexpr std::size_t kMostThreads = 8;
-  constexpr std::size_t kJobsPerThread = 32;  // below that a thread costs more than it saves
-  constexpr std::size_t kBlock = 256;         // what is read waits for its turn: not all of it at once
+  constexpr std::size_t kJobsPerThread = 32;  // for fewer jobs, a thread costs more than it saves
+  constexpr std::size_t kBlock = 256;         // limits the results that wait for their turn
   Workers workers(static_cast<int>(std::clamp<std::size_t>(jobs.size() / kJobsPerThread, 1, kMostThreads)));
   for (std::size_t begin = 0; begin < jobs.size(); begin += kBlock) {
     std::vector<std::invoke_result_t<Read, std::filesystem::path>> block(std::min(kBlock, jobs.size() - begin));
@@ -31,7 +30,7 @@ void read_jobs(const Sweep& sweep, const std::vector<std::size_t>& jobs, const R
       const auto at = static_cast<std::size_t>(piece);
       try {
         block[at] = read(job_directory(sweep, sweep.jobs[jobs[begin + at]]));
-      } catch (...) {  // thrown on when its turn comes
+      } catch (...) {  // rethrown below, in the order of the jobs
         thrown[at] = std::current_exception();
       }
     });

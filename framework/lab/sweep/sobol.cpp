@@ -23,11 +23,11 @@ ContinuousRange parse_range(const Tree::Entry& entry) {
   throw Error(entry.value.place.text(), entry.key + ": " + shown + " is not a continuous range", kContinuousHint);
 }
 
-/// Nine digits are more than any setting needs, and still tell points apart.
+/// Rounds to nine digits, which still distinguish all points.
 double shortened(double value) {
   const std::string text = fmt::format("{:.9g}", value);
   double out = value;
-  std::from_chars(text.data(), text.data() + text.size(), out);  // of every locale
+  std::from_chars(text.data(), text.data() + text.size(), out);  // independent of the locale
   return out;
 }
 
@@ -65,8 +65,8 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
   count.add(keys->entries.size() * static_cast<std::size_t>(samples), keys->place, "sweep.sobol");
   std::vector<Axis> axes;
   std::vector<ContinuousRange> ranges;
-  // As for the first taps: one random pattern of bits an axis, added without carry to every point, keeps the points
-  // as evenly spread and moves the first of them off the corner of all lower ends.
+  // A digital shift: one random bit pattern per axis is added without carry to all points, as for the initial taps. The
+  // points stay evenly spread, and the first one is no longer the corner of all lower ends.
   std::vector<std::uint64_t> shift;
   Random random(0, "sweep.sobol");
   for (const Tree::Entry& entry : keys->entries) {
@@ -75,7 +75,8 @@ std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count) {
     shift.push_back(random.bits());
   }
   boost::random::sobol sequence(axes.size());
-  std::vector<std::uint64_t> point(axes.size(), 0);  // Boost's sequence leaves out the origin, with which it begins
+  std::vector<std::uint64_t> point(axes.size(),
+                                   0);  // the origin, which is the first point of the sequence, and which Boost omits
   for (std::int64_t i = 0; i < samples; ++i) {
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const double share = static_cast<double>((point[k] ^ shift[k]) >> 11) * 0x1.0p-53;

@@ -24,13 +24,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kSweep = "sweep";  ///< the field with the id
+constexpr const char* kSweep = "sweep";  ///< field with the id of the sweep
 
 FieldList<JobLine> make_job_list() {
   FieldList<JobLine> list;
   list.add("job", "number of the job, from 0", [](const JobLine& line) { return line.job.index; });
   list.add("id", "id of the job's run", [](const JobLine& line) { return line.job.id; });
-  // A dot in a key would nest it: the keys of a manifest stand flat, in the order of the sweep.
+  // The keys are values here, because a dot in a field name would nest the field.
   list.add_family("key_N", "swept key number N, from 0", [](Row& row, const JobLine& line) {
     for (std::size_t i = 0; i < line.keys.size(); ++i) {
       row.add(fmt::format("key_{}", i), line.keys[i]);
@@ -43,7 +43,7 @@ FieldList<JobLine> make_job_list() {
   return list;
 }
 
-/// The texts at `name` 0, 1, ... for as long as there are any.
+/// Returns the texts of the fields NAME_0, NAME_1, ...
 std::vector<std::string> texts_at(const Row& row, const std::string& name) {
   std::vector<std::string> out;
   for (const auto& [field, value] : row.fields) {
@@ -53,7 +53,7 @@ std::vector<std::string> texts_at(const Row& row, const std::string& name) {
   return out;
 }
 
-/// Whether a top-level key is one of those whose values decide what the jobs compute.
+/// Returns whether a top-level key affects the results of the jobs.
 bool decides_jobs(const std::string& key) {
   return key != "name" && key != "log" && key != "expect" && key != "complete";
 }
@@ -75,7 +75,7 @@ std::string manifest_text(const Sweep& sweep, const std::string& id) {
 
 std::string sweep_id(const Tree& config, const Sweep& sweep) {
   Tree identity = Tree::map();
-  // As it reads back: what is compared later is the file.
+  // The config is parsed again, because later checks compare with the file.
   for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
     if (!decides_jobs(entry.key)) continue;
     if (entry.key == first_key(kThreads)) entry.value.erase(last_key(kThreads));
@@ -119,14 +119,14 @@ Sweep read_sweep(const fs::path& directory) {
       id = row.text(kSweep);
     }
     const Job job{static_cast<int>(sweep.jobs.size()), row.text("id"), texts_at(row, "value")};
-    // What is read must be all that the line says, and an id is the name of a folder: nothing of it is believed before.
+    // The line must be exactly the row of its job. The id must be valid, because it is the name of a folder.
     if (!is_id(job.id) || job.values.size() != sweep.keys.size() || id.empty() ||
         job_list().row({sweep.keys, job, id}).fields != row.fields)
       throw Error(fmt::format("{}:{}", file.string(), job.index + 1), "is not a job of this sweep",
                   "the file is damaged: put it back as it was");
     sweep.jobs.push_back(job);
   });
-  // Complete before the first job began: a line without its end is damage, not work under way.
+  // The manifest is complete before the first job begins, so that an incomplete line is damage.
   if (bytes != fs::file_size(file)) throw Error(file.string(), "ends in the middle of a line", "the file is damaged");
   if (sweep.jobs.empty()) throw Error(file.string(), "lists no jobs", "the file is damaged");
   if (sweep_id(read_run_config(directory), sweep) != id) {
@@ -178,7 +178,7 @@ std::string field_name(const std::string& column) {
 const Scalar* result_of(const Row& row, const std::string& name) {
   const std::string field = field_name(name);
   const Scalar* found = row.find(field);
-  // The values of keys are texts.
+  // The values of swept keys are texts.
   if (found == nullptr || !std::holds_alternative<std::string>(*found)) return found;
   const Scalar* of_run = row.find(kOfRun + field);
   return of_run != nullptr ? of_run : found;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSummariesFile = "summaries.jsonl";
 
-/// What names in a kept row the hash of the summary of the whole run.
+/// Field of a stored row: the hash of the final summary of its run.
 constexpr const char* kOfSummary = "of_summary";
 
 std::string summary_hash(const Row& summary) { return hash_of(to_json_line(summary)); }
@@ -52,7 +52,7 @@ std::optional<std::vector<Row>> TapSummaries::kept(std::size_t job) const {
   const fs::path file = job_directory(sweep_, sweep_.jobs[job]) / kSummariesFile;
   if (!is_there(file)) return std::nullopt;
   std::vector<Row> rows;
-  // What somebody has damaged is computed again, as what is not there.
+  // A damaged file is computed again, like a missing one.
   const auto trouble = trouble_in([&] { read_json_lines(file, [&](Row row) { rows.push_back(std::move(row)); }); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   if (trouble) return std::nullopt;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the jobs of a sweep had come to after each of their taps: the summaries that they would have, had their budgets
-// ended there. They are computed from the recorded taps when somebody asks, and kept in each job's directory as
-// summaries.jsonl, a line per tap but the last, each with the hash of the summary that they belong to: a job that ran
-// again since then is computed again.
+// The summaries of a sweep's jobs after each of their taps, as if the budget had ended there. They are computed from
+// the recorded taps on demand, and stored in the job's directory as summaries.jsonl: one line per tap except the last,
+// each with the hash of the final summary. If the hash differs, the job ran again, and its rows are computed again.
 #pragma once
 
 #include "record/session.hpp"
@@ -15,38 +14,38 @@
 
 namespace palpate {
 
-/// Returns the taps of a job by its summary, 0 where it has no number that can be one: who reads the record says what
-/// is wrong with it.
+/// Returns the number of taps of a job from its summary; 0 for an invalid number, which readers of the record report.
 std::size_t taps_made(const Row& summary);
 
 class TapSummaries {
  public:
-  /// Takes the rows of a job: its summary after 1, 2, ... taps; the last row is that of the whole run.
+  /// Receives the rows of a job: its summary after 1, 2, ... taps. The last row is the final summary.
   using Use = std::function<void(std::size_t job, const std::vector<Row>& rows)>;
 
-  /// Reads the summaries of all jobs, and hands `use` the rows of each job that ended well after more than `fewest`
-  /// taps and has all of them kept. Each file is read once, and no rows are held. Throws Error for a damaged sweep.
+  /// Reads the summaries of all jobs. Calls `use` for each job that is done after more than `fewest` taps and has valid
+  /// stored rows. Each file is read once, and the rows are not kept in memory. Throws Error for a damaged sweep.
   /// `sweep` must outlive the object.
   TapSummaries(const Sweep& sweep, Use use, std::size_t fewest = 0);
 
-  /// Returns whether some job of the sweep has something kept; much cheaper than an object.
+  /// Returns whether a job has stored rows, without reading them.
   static bool any_kept(const Sweep& sweep);
 
-  /// Returns the summary of each job; none of a job that has not ended.
+  /// Returns the summary of each job; nullopt for a job that has not ended.
   const std::vector<std::optional<Row>>& whole() const { return summaries_; }
 
-  /// Returns those of these jobs that have nothing kept that still holds.
+  /// Returns the jobs without valid stored rows.
   const std::vector<std::size_t>& missing() const { return missing_; }
 
-  /// Computes one of them and keeps it. Throws Error.
+  /// Computes and stores the rows of one of these jobs. Throws Error.
   void compute(const Workshop& workshop, std::size_t job) const;
 
-  /// Hands over the rows of missing(), which compute() has kept since, by whichever process. Throws Error.
+  /// Calls `use` for the jobs in missing(), whose rows any process has stored since. Throws Error if rows are still
+  /// missing.
   void read_missing() const;
 
  private:
   std::optional<std::vector<Row>> kept(std::size_t job) const;
-  /// Returns whether the rows of a job were there to hand over.
+  /// Returns whether the job had valid stored rows.
   bool hand_over(std::size_t job) const;
 
   const Sweep& sweep_;
