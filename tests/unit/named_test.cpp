@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whatever a plugin's functions throw, whichever of them it was, is told with its name.
-#include "plugin/named.hpp"
+#include "plugin/plugin_errors.hpp"
 
 #include "support/testing.hpp"
 
@@ -73,7 +73,7 @@ struct BrokenShape final : Shape {
 template <class Broken, class Interface>
 std::shared_ptr<Interface> broken() {
   return std::static_pointer_cast<Interface>(
-      named(Interface::kKind, "mine", std::shared_ptr<Interface>(std::make_shared<Broken>())));
+      wrap_plugin(Interface::kKind, "mine", std::shared_ptr<Interface>(std::make_shared<Broken>())));
 }
 
 TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {

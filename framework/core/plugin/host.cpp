@@ -4,7 +4,7 @@
 #include "config/describe.hpp"
 #include "config/tree.hpp"
 #include "plugin/loaded_hash.hpp"
-#include "plugin/named.hpp"
+#include "plugin/plugin_errors.hpp"
 #include "reading/reading.hpp"
 
 #include <palpate/acquisition.hpp>
@@ -315,7 +315,7 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
          [&](Fields& fields) { object = holder->manifest->create(fields, context); });
   });
   // The deleter holds the library, which so outlives the object.
-  return named(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest->destroy(gone); }});
+  return wrap_plugin(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest->destroy(gone); }});
 }
 
 std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, const Scene& scene) const {
@@ -327,8 +327,8 @@ std::shared_ptr<const Motions> PluginHost::motions(const PluginChoice& choice, c
   });
   if (made == nullptr) return nullptr;
   // The object is deleted before its library is closed, as above.
-  return named(choice.kind + "/" + choice.type,
-               std::shared_ptr<Motions>(made, [holder](const Motions* gone) { delete gone; }));
+  return wrap_plugin(choice.kind + "/" + choice.type,
+                     std::shared_ptr<Motions>(made, [holder](const Motions* gone) { delete gone; }));
 }
 
 std::string PluginHost::look(const std::string& kind, const std::string& name) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/named.hpp"
+#include "plugin/plugin_errors.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
@@ -81,9 +81,9 @@ bool are_finite(const std::vector<Value>& values) {
 
 /// An object of a plugin behind its interface. All calls go through this class.
 template <class Interface>
-class Named : public Interface {
+class Wrapper : public Interface {
  public:
-  Named(std::string name, std::shared_ptr<Interface> inner) : name_(std::move(name)), inner_(std::move(inner)) {}
+  Wrapper(std::string name, std::shared_ptr<Interface> inner) : name_(std::move(name)), inner_(std::move(inner)) {}
 
  protected:
   /// Calls the method of the plugin's object. Any exception becomes an Error with the name of the plugin.
@@ -126,9 +126,9 @@ class Named : public Interface {
   std::shared_ptr<Interface> inner_;
 };
 
-class NamedKernel final : public Named<Kernel> {
+class WrappedKernel final : public Wrapper<Kernel> {
  public:
-  using Named::Named;
+  using Wrapper::Wrapper;
   void covariance(const PointsView& a, const PointsView& b, MatrixOut out) const override {
     call(&Kernel::covariance, a, b, out);
     require("covariance()", out);
@@ -181,9 +181,9 @@ class NamedKernel final : public Named<Kernel> {
   bool reasonable_ = true;
 };
 
-class NamedAcquisition final : public Named<Acquisition> {
+class WrappedAcquisition final : public Wrapper<Acquisition> {
  public:
-  using Named::Named;
+  using Wrapper::Wrapper;
   Quantities reads() const override { return call(&Acquisition::reads); }
   void score(const Belief& belief, VectorOut out) const override { call(&Acquisition::score, declared(belief), out); }
   bool from_above() const override { return call(&Acquisition::from_above); }
@@ -195,9 +195,9 @@ class NamedAcquisition final : public Named<Acquisition> {
   double prior_scale() const override { return finite("prior_scale()", call(&Acquisition::prior_scale)); }
 };
 
-class NamedFitting final : public Named<Fitting> {
+class WrappedFitting final : public Wrapper<Fitting> {
  public:
-  using Named::Named;
+  using Wrapper::Wrapper;
   bool due(int taps) const override { return call(&Fitting::due, taps); }
   std::string objection(const Kernel& kernel) const override { return call(&Fitting::objection, kernel); }
   FitSummary fit(FitProblem& problem, Random& random) const override {
@@ -206,14 +206,14 @@ class NamedFitting final : public Named<Fitting> {
     require_finite("fit()", problem.noise_ratio);
     require_finite("fit()", problem.outputs);
     require_finite("fit()", problem.kernel.parameters());
-    if (auto* const kernel = dynamic_cast<NamedKernel*>(&problem.kernel)) kernel->settle();
+    if (auto* const kernel = dynamic_cast<WrappedKernel*>(&problem.kernel)) kernel->settle();
     return out;
   }
 };
 
-class NamedFootprint final : public Named<Footprint> {
+class WrappedFootprint final : public Wrapper<Footprint> {
  public:
-  using Named::Named;
+  using Wrapper::Wrapper;
   bool is_weight() const override { return call(&Footprint::is_weight); }
   void add(const Touch& touch) override { call(&Footprint::add, touch); }
   void probability(const PointsView& places, VectorOut out) override {
@@ -239,9 +239,9 @@ class NamedFootprint final : public Named<Footprint> {
   std::string remark() const override { return call(&Footprint::remark); }
 };
 
-class NamedBackend final : public Named<Backend> {
+class WrappedBackend final : public Wrapper<Backend> {
  public:
-  using Named::Named;
+  using Wrapper::Wrapper;
   Contact tap(const TapRequest& request) override { return call(&Backend::tap, request); }
   bool repeatable() const override { return call(&Backend::repeatable); }
   std::vector<std::string> describe(const TapRequest& request) override { return call(&Backend::describe, request); }
@@ -253,9 +253,9 @@ class NamedBackend final : public Named<Backend> {
   bool scene_is_truth() const override { return call(&Backend::scene_is_truth); }
 };
 
-class NamedShape final : public Named<Shape> {
+class WrappedShape final : public Wrapper<Shape> {
  public:
-  using Named::Named;
+  using Wrapper::Wrapper;
   // A line without intersection has its first intersection at infinity and its top at minus infinity.
   double first_intersection(const Line& line) const override {
     const double out = call(&Shape::first_intersection, line);
@@ -278,9 +278,9 @@ class NamedShape final : public Named<Shape> {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 };
 
-class NamedMotions final : public Named<Motions> {
+class WrappedMotions final : public Wrapper<Motions> {
  public:
-  using Named::Named;
+  using Wrapper::Wrapper;
   int count() const override { return call(&Motions::count); }
   double seconds(const TapRequest& request, double surface) const override {
     return finite("its motions' seconds()", call(&Motions::seconds, request, surface));
@@ -291,25 +291,26 @@ class NamedMotions final : public Named<Motions> {
 };
 
 /// Returns a pointer to the interface, because callers cast the result back to that type.
-template <class Wrapper, class Interface>
-std::shared_ptr<void> wrapped(const std::string& name, const std::shared_ptr<void>& object) {
-  return std::shared_ptr<Interface>(std::make_shared<Wrapper>(name, std::static_pointer_cast<Interface>(object)));
+template <class Concrete, class Interface>
+std::shared_ptr<void> wrap_as(const std::string& name, const std::shared_ptr<void>& object) {
+  return std::shared_ptr<Interface>(std::make_shared<Concrete>(name, std::static_pointer_cast<Interface>(object)));
 }
 
 }  // namespace
 
-std::shared_ptr<const Motions> named(const std::string& name, const std::shared_ptr<Motions>& motions) {
-  return std::make_shared<NamedMotions>(name, motions);
+std::shared_ptr<const Motions> wrap_plugin(const std::string& name, const std::shared_ptr<Motions>& motions) {
+  return std::make_shared<WrappedMotions>(name, motions);
 }
 
-std::shared_ptr<void> named(const std::string& kind, const std::string& type, const std::shared_ptr<void>& object) {
+std::shared_ptr<void> wrap_plugin(const std::string& kind, const std::string& type,
+                                  const std::shared_ptr<void>& object) {
   const std::string name = kind + "/" + type;
-  if (kind == Kernel::kKind) return wrapped<NamedKernel, Kernel>(name, object);
-  if (kind == Acquisition::kKind) return wrapped<NamedAcquisition, Acquisition>(name, object);
-  if (kind == Fitting::kKind) return wrapped<NamedFitting, Fitting>(name, object);
-  if (kind == Footprint::kKind) return wrapped<NamedFootprint, Footprint>(name, object);
-  if (kind == Backend::kKind) return wrapped<NamedBackend, Backend>(name, object);
-  return wrapped<NamedShape, Shape>(name, object);
+  if (kind == Kernel::kKind) return wrap_as<WrappedKernel, Kernel>(name, object);
+  if (kind == Acquisition::kKind) return wrap_as<WrappedAcquisition, Acquisition>(name, object);
+  if (kind == Fitting::kKind) return wrap_as<WrappedFitting, Fitting>(name, object);
+  if (kind == Footprint::kKind) return wrap_as<WrappedFootprint, Footprint>(name, object);
+  if (kind == Backend::kKind) return wrap_as<WrappedBackend, Backend>(name, object);
+  return wrap_as<WrappedShape, Shape>(name, object);
 }
 
 }  // namespace palpate

@@ -13,9 +13,10 @@ class Motions;
 /// becomes an Error with the place <kind>/<type>, whose texts are copies, because the code of the exception belongs to
 /// the library. A result that is not finite ends the run if the interface demands a finite one, except for scores and
 /// contacts, which their users check.
-std::shared_ptr<void> named(const std::string& kind, const std::string& type, const std::shared_ptr<void>& object);
+std::shared_ptr<void> wrap_plugin(const std::string& kind, const std::string& type,
+                                  const std::shared_ptr<void>& object);
 
 /// The same for the motions of a backend. `name` is <kind>/<type>.
-std::shared_ptr<const Motions> named(const std::string& name, const std::shared_ptr<Motions>& motions);
+std::shared_ptr<const Motions> wrap_plugin(const std::string& name, const std::shared_ptr<Motions>& motions);
 
 }  // namespace palpate
