@@ -2,7 +2,7 @@
 #include "cli/command_line.hpp"
 
 #include "cli/usage.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/build_info.hpp"
 
 #include <palpate/error.hpp>
@@ -104,7 +104,7 @@ Argument Command::flag(const char* name, bool& value, const std::string& help, R
 template <class Texts>
 void Command::record(const char* name, Texts& directories, Wanted wanted, const std::string& help) const {
   const auto find = [wanted, must_exist = finds_records_](std::string& words) -> std::string {
-    const auto trouble = trouble_in([&] { words = find_record(words, wanted).string(); });
+    const auto trouble = catch_error([&] { words = find_record(words, wanted).string(); });
     if (trouble && must_exist) throw *trouble;
     return {};
   };

@@ -5,7 +5,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/resolved.hpp"

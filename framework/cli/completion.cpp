@@ -3,7 +3,7 @@
 
 #include "cli/key_completion.hpp"
 #include "cli/usage.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "reading/reading.hpp"
 #include "record/fields.hpp"
 #include "record/run_directory.hpp"
@@ -73,7 +73,7 @@ std::vector<Completion> records(const std::string& of) {
         if (of != "RUN") out.push_back({id.string(), "a sweep"});
       } else if (of != "SWEEP" && fs::exists(id / "config.yaml", none)) {
         bool ended = false;
-        trouble_in([&] { ended = read_ending(id).end.has_value(); });  // a damaged record counts as not ended
+        catch_error([&] { ended = read_ending(id).end.has_value(); });  // a damaged record counts as not ended
         out.push_back({id.string(), ended ? "a run, ended" : "a run, not ended"});
       }
     }

@@ -7,7 +7,7 @@
 #include "cli/output.hpp"
 #include "cli/step.hpp"
 #include "cli/watcher.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/json.hpp"
 
 #include <memory>
@@ -26,7 +26,7 @@ int conduct_run(const Program& program, const ResolvedConfig& config, const RunO
   if (!output.watched.empty()) watcher.emplace(program, output.watched, display.get());
   const GateOutput gate{config.options.name, output.junit, output.table};
   RunReport report;
-  const std::optional<Error> trouble = trouble_in([&] {
+  const std::optional<Error> trouble = catch_error([&] {
     report = action(watcher ? &*watcher : display.get(), step.get());
     if (watcher) watcher->start();  // for a run without further taps, which calls neither announce() nor record()
   });

@@ -5,8 +5,8 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"
+#include "config/catch_error.hpp"
 #include "config/quantity.hpp"
-#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "report/figures/figures.hpp"
@@ -100,7 +100,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
     std::string title = sweep_name(sweep);
     if (arguments.where) title += ", where " + *arguments.where;
     std::string note;
-    const auto trouble = trouble_in([&] { note = write_curves_figure(made, title, width, file); });
+    const auto trouble = catch_error([&] { note = write_curves_figure(made, title, width, file); });
     const fs::path script = fs::path(file).replace_extension(".gnuplot");
     if (std::error_code none; fs::is_regular_file(script, none)) scripts.insert(script);
     // Without -o, the table remains a result, so that a missing picture is not an error.

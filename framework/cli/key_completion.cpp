@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/key_completion.hpp"
 
+#include "config/catch_error.hpp"
 #include "config/describe.hpp"
-#include "config/trouble.hpp"
 #include "experiment/experiment_options.hpp"
 #include "reading/reading.hpp"
 
@@ -23,11 +23,11 @@ using Descriptions = std::vector<FieldDescription>;
 Tree config_so_far(Composer& composer, const std::string& config, const std::vector<std::string>& before) {
   Tree out = Tree::map();
   std::vector<Override> overrides;
-  const auto trouble = trouble_in([&] {
+  const auto trouble = catch_error([&] {
     for (const std::string& text : before) overrides.push_back(parse_override(text));
     out = composer.compose(config, overrides);
   });
-  if (trouble) trouble_in([&] { out = composer.compose(config, {}); });
+  if (trouble) catch_error([&] { out = composer.compose(config, {}); });
   return out;
 }
 
@@ -84,7 +84,7 @@ class Keys {
 
   Descriptions options_of(const std::string& kind, const std::string& name) const {
     Descriptions out;
-    trouble_in([&] { out = describe_fields([&](Fields& fields) { host_.describe(kind, name, fields); }); });
+    catch_error([&] { out = describe_fields([&](Fields& fields) { host_.describe(kind, name, fields); }); });
     return out;
   }
 

@@ -4,7 +4,7 @@
 #include "analysis/runs_table.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "reading/reading.hpp"
 #include "record/catalogue.hpp"
 #include "record/files.hpp"
@@ -52,7 +52,7 @@ int list_runs(Program&, const ListArguments& arguments) {
   const Catalogue all = read_catalogue(folder);
   std::vector<ListedRecord> records;
   for (const fs::path& directory : all.records) {
-    const auto trouble = trouble_in([&] { records.push_back(list_record(directory)); });
+    const auto trouble = catch_error([&] { records.push_back(list_record(directory)); });
     // A damaged record does not keep the others from the list.
     if (trouble) mention(fmt::format("{}\n", trouble->what()));
   }

@@ -2,7 +2,7 @@
 #include "cli/needs.hpp"
 
 #include "cli/output.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/run_directory.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace palpate::cli {
 
 void Needs::config(const std::string& file, const std::vector<std::string>& overrides, bool sweeps) {
-  trouble_in([&] {
+  catch_error([&] {
     std::vector<Override> read;
     for (const std::string& text : overrides) read.push_back(parse_override(text));
     const Tree tree = program_.composer.compose(file, read);
@@ -21,7 +21,7 @@ void Needs::config(const std::string& file, const std::vector<std::string>& over
 
 void Needs::record(const std::string& directory) {
   if (is_sweep(directory)) return everything();
-  trouble_in([&] { resolve_experiment(read_run_config(directory), *this); });
+  catch_error([&] { resolve_experiment(read_run_config(directory), *this); });
 }
 
 void Needs::listing(const std::string& what) {

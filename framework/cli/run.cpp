@@ -4,8 +4,8 @@
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
 #include "cli/output.hpp"
+#include "config/catch_error.hpp"
 #include "config/expand.hpp"
-#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
@@ -77,7 +77,7 @@ Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector
 /// Prints the models for the choice of taps and their readers, as comments, because stdout is a config.
 void print_models(const Program& program, const ResolvedConfig& config) {
   std::map<std::string, std::string> models;
-  const std::optional<Error> trouble = trouble_in([&] {
+  const std::optional<Error> trouble = catch_error([&] {
     for (const ModelReader& one : readers_of(program, config)) {
       std::string& who = models[one.model];
       who += (who.empty() ? "" : ", ") + one.who;
@@ -111,7 +111,7 @@ int run(Program& program, const RunArguments& arguments) {
   for (const std::string& text : arguments.overrides) overrides.push_back(parse_override(text));
   Tree composed;
   ResolvedConfig config;
-  const std::optional<Error> trouble = trouble_in([&] {
+  const std::optional<Error> trouble = catch_error([&] {
     composed = program.composer.compose(arguments.config, overrides);
     config = resolve_experiment(composed, program.host);
   });

@@ -9,7 +9,7 @@
 #include "cli/resume.hpp"
 #include "cli/sweep_display.hpp"
 #include "cli/watcher.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "launch/children.hpp"
 #include "launch/job.hpp"
 #include "launch/mounts.hpp"
@@ -68,7 +68,7 @@ int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted, boo
 /// Returns the config of a job; nullopt if it is damaged. The job then fails by itself and reports the reason.
 std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::size_t job) {
   std::optional<ResolvedConfig> config;
-  trouble_in(
+  catch_error(
       [&] { config = load_run(campaign.program.host, job_directory(campaign.sweep, campaign.sweep.jobs[job])); });
   return config;
 }
@@ -183,7 +183,7 @@ void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
     if (!config) continue;
     campaign.one_at_a_time = campaign.one_at_a_time || campaign.program.host.one_at_a_time(config->notes.plugins);
     std::optional<Error> objection;
-    trouble_in([&] { objection = objection_to_build(campaign.program, *config, read_run_record(directory)); });
+    catch_error([&] { objection = objection_to_build(campaign.program, *config, read_run_record(directory)); });
     if (objection && !campaign.options.force) throw *objection;
   }
 }

@@ -3,7 +3,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "scene/sizes.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ int validate(Program& program, const ValidateArguments& arguments) {
   std::vector<std::pair<bool, std::string>> said;  // true: a valid config
   for (const std::string& file : arguments.configs) {
     // All files are checked, so that one command reports every invalid file.
-    const std::optional<Error> trouble = trouble_in([&] {
+    const std::optional<Error> trouble = catch_error([&] {
       const Tree tree = program.composer.compose(file, {});
       if (tree.find("sweep") != nullptr) {
         said.emplace_back(

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The ids of shipped configs, and the text of which each is the hash, as tests/data/ids.txt has them. PALPATE_KEEP=1
 // writes what comes out now: since 0.1.0 an id moves only where a default does.
+#include "config/catch_error.hpp"
 #include "config/describe.hpp"
 #include "config/keys.hpp"
-#include "config/trouble.hpp"
 #include "reading/reading.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
@@ -55,7 +55,7 @@ Lines identity_of(const ResolvedConfig& config) {
 
 std::optional<ResolvedConfig> resolved_config(const std::string& file, const std::vector<std::string>& overrides = {}) {
   std::optional<ResolvedConfig> out;
-  trouble_in([&] { out = shipped_config(file, overrides); });
+  catch_error([&] { out = shipped_config(file, overrides); });
   return out;
 }
 

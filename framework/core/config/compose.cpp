@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "config/compose.hpp"
 
+#include "config/catch_error.hpp"
 #include "config/quantity.hpp"
 #include "config/resolve.hpp"
-#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 
 #include <palpate/error.hpp>
@@ -84,7 +84,7 @@ void mark_complete(Tree& config) {
   const Tree* complete = config.find("complete");
   if (complete == nullptr) return;
   std::int64_t number = 0;
-  trouble_in([&] { number = read_integer(*complete, "complete"); });  // resolving reports other errors
+  catch_error([&] { number = read_integer(*complete, "complete"); });  // resolving reports other errors
   if (number > kRecordVersion) {
     throw Error(
         complete->place.text(),

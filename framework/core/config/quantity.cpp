@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "config/quantity.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 
 #include <palpate/error.hpp>
 
@@ -203,7 +203,7 @@ std::optional<AnyQuantity> any_quantity(const std::string& text) {
   }
   std::optional<AnyQuantity> out;
   // A value such as 1e999 m is not an error here, but a text.
-  trouble_in([&] { out = AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit}; });
+  catch_error([&] { out = AnyQuantity{read_quantity(Tree::scalar(text), "", unit), unit}; });
   return out;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/catalogue.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/distinctions.hpp"
 #include "record/files.hpp"
 #include "record/record_reader.hpp"
@@ -82,7 +82,7 @@ void add_values(const Tree& tree, const std::string& path, Row& out) {
 /// The same of who only compares: of a damaged config nothing is known.
 Row known_settings(const fs::path& directory) {
   Row out;
-  trouble_in([&] { out = read_settings(directory); });
+  catch_error([&] { out = read_settings(directory); });
   return out;
 }
 

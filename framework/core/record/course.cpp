@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/course.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "config/yaml.hpp"
 #include "math/instructions.hpp"
 #include "record/callers_run.hpp"
@@ -101,7 +101,7 @@ void check_worth_asking(const ResolvedConfig& config, const Experiment& experime
 RecordedRun recorded_run(const fs::path& directory) {
   RecordedRun out;
   // A damaged one is told of by who needs it.
-  trouble_in([&] {
+  catch_error([&] {
     const std::optional<Tree> manifest = read_manifest(directory);
     if (const Tree* name = manifest ? manifest->find("name") : nullptr) out.name = name->text;
     if (const Tree* identity = manifest ? manifest->find("identity") : nullptr) out.identity = identity->text;
@@ -188,7 +188,7 @@ Begun begin_run(const Workshop& workshop, const ResolvedConfig& config, const fs
                 bool supervised) {
   if (is_running(directory)) FileLock{directory / kRecordFile};  // throws: busy
   RunStatus status;
-  if (const auto trouble = trouble_in([&] { status = read_record(directory); })) {
+  if (const auto trouble = catch_error([&] { status = read_record(directory); })) {
     // What cannot be read can be moved aside.
     if (!force || trouble->kind() != Error::Kind::usage) throw Error(*trouble);
     status.state = RunStatus::State::unfinished;
@@ -257,7 +257,7 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
   if (!before.manifest) held.begin(manifest_of(workshop, config));
   held.begin_attempt(build_hash(workshop.host, config.notes.plugins), options.force);
   std::unique_ptr<Experiment> experiment;
-  const std::optional<Error> trouble = trouble_in([&] {
+  const std::optional<Error> trouble = catch_error([&] {
     experiment = build_experiment(workshop, config, directory);
     if (supervised) check_worth_asking(config, *experiment);
     sync_if_asked(config, *experiment, held);
@@ -265,7 +265,7 @@ std::unique_ptr<Experiment> go_on(const Workshop& workshop, const ResolvedConfig
     experiment->resume(held.recover());
   });
   if (!trouble) return experiment;
-  trouble_in([&] { take_back(held, end, *trouble); });  // the first one counts
+  catch_error([&] { take_back(held, end, *trouble); });  // the first one counts
   throw Error(*trouble);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/record_reader.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/files.hpp"
 
 #include <palpate/error.hpp>
@@ -117,7 +117,7 @@ RecordLine RecordReader::read(std::string_view line) {
     if (line.size() > kMostManifestBytes) refuse("is too long: a line has at most 64 MiB");
     const std::string text(line);
     // Its own words would name a line within this one.
-    const auto trouble = trouble_in([&] { out.tree = parse_json(text, file()); });
+    const auto trouble = catch_error([&] { out.tree = parse_json(text, file()); });
     if (trouble)
       throw Error(lines_.place(), trouble->where() == file().string() ? trouble->reason() : "is not a JSON object",
                   trouble->where() == file().string() ? kPutBack : "the file is damaged");
@@ -301,7 +301,7 @@ RecordEnd read_record_end(const fs::path& directory) {
 int attempts_in_row(const fs::path& directory) {
   std::string text;
   // Asking how often is no time to fail, unless the file system does: who adds an attempt tells what is wrong.
-  const auto trouble = trouble_in([&] { text = read_if_there(directory / kRecordFile).value_or(""); });
+  const auto trouble = catch_error([&] { text = read_if_there(directory / kRecordFile).value_or(""); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   int out = 0;
   bool ended = false;

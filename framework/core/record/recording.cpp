@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/recording.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/fields.hpp"
 #include "record/record_reader.hpp"
 #include "record/tap_row.hpp"
@@ -108,7 +108,7 @@ std::unique_ptr<Experiment> experiment_of(const Workshop& workshop, const Record
                                           const MakeBackend& backend) {
   std::unique_ptr<Experiment> out;
   const auto make = [&](bool truth) {
-    return trouble_in([&] { out = make_experiment(options, workshop.host, workshop.interrupted, backend(truth)); });
+    return catch_error([&] { out = make_experiment(options, workshop.host, workshop.interrupted, backend(truth)); });
   };
   const bool truth_known = recording.truth_known();
   const std::optional<Error> trouble = make(truth_known);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "record/run_directory.hpp"
 
+#include "config/catch_error.hpp"
 #include "config/hash.hpp"
-#include "config/trouble.hpp"
 #include "record/build_info.hpp"
 #include "record/json.hpp"
 #include "record/tap_row.hpp"
@@ -34,7 +34,7 @@ RunStatus status_of(std::optional<Ending> end, bool begun) {
 /// Of a damaged one, that of a run which failed by it.
 RecordEnd end_of(const fs::path& directory) {
   RecordEnd out;
-  if (const auto trouble = trouble_in([&] { out = read_record_end(directory); })) {
+  if (const auto trouble = catch_error([&] { out = read_record_end(directory); })) {
     if (trouble->kind() == Error::Kind::run) throw *trouble;  // a file system that fails tells nothing of the run
     out.begun = true;
     out.end.emplace();
@@ -191,7 +191,7 @@ void RunDirectory::end(const Ending& ending) {
 void RunDirectory::fail(const std::string& reason) {
   const std::string id = fs::absolute(path_).lexically_normal().filename().string();
   // A damaged record says how it ended all the same: its last line does.
-  const bool damaged = trouble_in([&] { before(); }).has_value();
+  const bool damaged = catch_error([&] { before(); }).has_value();
   if (!damaged && !record_.begun()) {
     begin(Tree::map({{"id", Tree::quote(id)}, {"at", Tree::quote(now_text())}, {"version", Tree::quote(kVersion)}}));
   }

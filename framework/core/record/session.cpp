@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "record/session.hpp"
 
+#include "config/catch_error.hpp"
 #include "config/compose.hpp"
 #include "config/hash.hpp"
-#include "config/trouble.hpp"
 #include "config/yaml.hpp"
 #include "reading/reading.hpp"
 #include "record/course.hpp"
@@ -76,7 +76,7 @@ std::map<std::string, std::string> recorded_origins(const fs::path& directory) {
   const Reading reading = read_bounded(file, kMostConfigBytes, Origin::record);
   if (!reading) return out;
   const std::vector<std::string> lines = places_of_lines(reading.text);
-  trouble_in([&] { add_origins(parse_yaml(reading.text, file.string()), "", lines, out); });  // then nothing is known
+  catch_error([&] { add_origins(parse_yaml(reading.text, file.string()), "", lines, out); });  // then nothing is known
   return out;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "view/view.hpp"
 
+#include "config/catch_error.hpp"
 #include "config/hash.hpp"
-#include "config/trouble.hpp"
 #include "reading/reading.hpp"
 #include "scene/rotation.hpp"
 
@@ -104,7 +104,7 @@ void PriorOptions::list(Fields& fields) {
       Field(
           "pose",
           "pose of the point cloud in the frame of the area; not given: the point cloud is in the frame of the area"));
-  const auto trouble = trouble_in([&] { checksum = depth.empty() ? "" : hash_of(bytes_of(depth)); });
+  const auto trouble = catch_error([&] { checksum = depth.empty() ? "" : hash_of(bytes_of(depth)); });
   fields.text(checksum, Field("checksum", "checksum of the file content; not given: computed from the file"));
   // A record has the checksum, so it needs no file. The error already has the file as its place.
   fields.require(!trouble || !checksum.empty(), "depth", trouble ? trouble->what() : "");
@@ -162,7 +162,7 @@ std::vector<ViewedSquare> viewed_squares(const PointCloud& points, const PriorOp
 std::vector<ViewedSquare> viewed_squares(const std::optional<PriorOptions>& options, const Scene& scene) {
   if (!options) return {};
   std::string bytes;
-  if (const auto trouble = trouble_in([&] { bytes = bytes_of(options->depth); }))
+  if (const auto trouble = catch_error([&] { bytes = bytes_of(options->depth); }))
     throw Error("prior.depth", trouble->what(), {}, trouble->kind());
   if (const std::string found = hash_of(bytes); !options->checksum.empty() && found != options->checksum)
     throw Error("prior.checksum", "does not match " + options->depth + ", whose checksum is " + found);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "watch/growing_log.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/files.hpp"
 
 #include <utility>
@@ -24,7 +24,7 @@ std::vector<RecordLine> GrowingLog::read(bool& anew) {
   for (std::size_t begin = anew ? 0 : known_.size(), end = 0; begin < text.size(); begin = end + 1) {
     end = text.find('\n', begin);
     const auto trouble =
-        trouble_in([&] { lines.push_back(reader_.read(std::string_view(text).substr(begin, end - begin))); });
+        catch_error([&] { lines.push_back(reader_.read(std::string_view(text).substr(begin, end - begin))); });
     if (trouble) {
       known_.clear();
       throw *trouble;

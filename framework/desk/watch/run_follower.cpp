@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "watch/run_follower.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/session.hpp"
@@ -57,7 +57,7 @@ void RunFollower::begin_anew() {
 
 bool RunFollower::look(double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  const std::optional<Error> trouble = trouble_in([&] {
+  const std::optional<Error> trouble = catch_error([&] {
     read_record();
     while (!pending_.empty() && trouble_.empty()) {
       take_in();
@@ -135,12 +135,12 @@ std::string RunFollower::why_waiting() const {
 std::string RunFollower::page() {
   std::string out;
   if (grower_) {
-    if (const auto trouble = trouble_in([&] { out = live_run_page(*recording_, grower_->since(0), at()); }))
+    if (const auto trouble = catch_error([&] { out = live_run_page(*recording_, grower_->since(0), at()); }))
       trouble_ = trouble->what();
   }
   if (!out.empty()) return out;
   std::string name = "run";
-  trouble_in([&] {
+  catch_error([&] {
     const Tree config = read_run_config(directory_);
     if (const Tree* said = config.find("name")) name = said->text;
   });
@@ -157,7 +157,7 @@ std::optional<std::string> RunFollower::news(const std::string& at) {
   if (!trouble_.empty() || !grower_) return line_of({{"at", now}, {"trouble", why_waiting()}});
   std::string out;
   const auto trouble =
-      trouble_in([&] { out = run_news(*recording_, grower_->since(page.moments), page.moments, now); });
+      catch_error([&] { out = run_news(*recording_, grower_->since(page.moments), page.moments, now); });
   return trouble ? line_of({{"at", now}, {"trouble", trouble->what()}}) : out;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "watch/sweep_follower.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/run_directory.hpp"
 #include "report/page/page.hpp"
 #include "report/page/sweep_page.hpp"
@@ -17,7 +17,7 @@ bool SweepFollower::look(double /*seconds*/) {
   const Clock::time_point begin = Clock::now();
   if (begin < next_) return false;
   Json data;
-  const auto trouble = trouble_in([&] { data = sweep_data(sweep_, [](int, int) {}); });
+  const auto trouble = catch_error([&] { data = sweep_data(sweep_, [](int, int) {}); });
   if (trouble) data = {{"trouble", trouble->what()}};
   if (data != data_) ++revision_;
   data_ = std::move(data);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/job.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "record/files.hpp"
 #include "record/record_reader.hpp"
 #include "record/run_directory.hpp"
@@ -22,7 +22,7 @@ namespace {
 /// Takes the lock of the job; nullopt if another process has it.
 std::optional<RunDirectory> hold(const fs::path& directory) {
   std::optional<RunDirectory> held;
-  const std::optional<Error> trouble = trouble_in([&] { held.emplace(directory); });
+  const std::optional<Error> trouble = catch_error([&] { held.emplace(directory); });
   if (trouble && trouble->kind() != Error::Kind::busy) throw *trouble;
   return held;
 }
@@ -36,7 +36,7 @@ void write_failure(RunDirectory& held, const std::string& reason) {
 JobEnd attempt_job(const Workshop& workshop, RunDirectory& held, const ResumeOptions& options) {
   const fs::path& directory = held.path();
   JobEnd end = JobEnd::failed;
-  const std::optional<Error> trouble = trouble_in([&] {
+  const std::optional<Error> trouble = catch_error([&] {
     const ResolvedConfig config = load_run(workshop.host, directory);
     end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
   });
@@ -69,7 +69,7 @@ JobEnd run_job(const Workshop& workshop, const fs::path& directory, const Resume
   if (now.state == RunStatus::State::done || (failed && !options.retry_failed)) {
     Restored restored;
     const auto trouble = lacks_files(directory, *now.end)
-                             ? trouble_in([&] { restored = restore_files(workshop, *held); })
+                             ? catch_error([&] { restored = restore_files(workshop, *held); })
                              : std::nullopt;
     for (const std::string& name : restored.lost) {
       std::fputs(

@@ -2,7 +2,7 @@
 #include "launch/slurm.hpp"
 
 #include "children/child_process.hpp"
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 
 #include <palpate/error.hpp>
 
@@ -104,7 +104,7 @@ Submission submit(const std::vector<std::string>& words) {
   std::vector<std::string> all{"sbatch", "--test-only"};
   all.insert(all.end(), words.begin(), words.end());
   const char* const hint = "no job of this array was submitted; 'sinfo' lists the partitions";
-  const auto doubt = trouble_in([&] { ask(all, hint); });
+  const auto doubt = catch_error([&] { ask(all, hint); });
   all[1] = "--parsable";
   // Without a time limit, because an interrupted command may or may not have submitted the array.
   const std::string said = ask(all, hint, std::numeric_limits<double>::infinity());

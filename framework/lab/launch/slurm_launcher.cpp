@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/slurm_launcher.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "launch/job.hpp"
 #include "launch/slurm.hpp"
 #include "record/files.hpp"
@@ -154,7 +154,7 @@ class SlurmLauncher final : public Launcher {
   /// Reads the queue, and appends returned jobs to `returned`.
   void look(std::vector<std::size_t>& returned) {
     const auto begun = Clock::now();
-    const std::optional<Error> trouble = trouble_in([&] {
+    const std::optional<Error> trouble = catch_error([&] {
       const std::vector<slurm::Task> tasks = slurm::queue();
       queued_.clear();
       running_ = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/plan.hpp"
 
-#include "config/trouble.hpp"
+#include "config/catch_error.hpp"
 #include "config/yaml.hpp"
 #include "sweep/description.hpp"
 
@@ -258,7 +258,7 @@ SweepPlan plan_sweep(Composer& composer, const PluginHost& host, const fs::path&
   // The config without a combination; nullopt if it is incomplete, because the sweep sets the missing keys. Other
   // errors in it are found with the jobs.
   std::optional<ResolvedConfig> alone;
-  trouble_in([&] { alone = resolve_experiment(base, host); });
+  catch_error([&] { alone = resolve_experiment(base, host); });
   const Condition::Values base_value = [&](const std::string& name) -> std::optional<Condition::Value> {
     if (first_key(name) == "sweep") return std::nullopt;
     const Tree* found = base.find_path(name);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/tap_summaries.hpp"
 
+#include "config/catch_error.hpp"
 #include "config/hash.hpp"
-#include "config/trouble.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/recording.hpp"
@@ -53,7 +53,7 @@ std::optional<std::vector<Row>> TapSummaries::kept(std::size_t job) const {
   if (!is_there(file)) return std::nullopt;
   std::vector<Row> rows;
   // A damaged file is computed again, like a missing one.
-  const auto trouble = trouble_in([&] { read_json_lines(file, [&](Row row) { rows.push_back(std::move(row)); }); });
+  const auto trouble = catch_error([&] { read_json_lines(file, [&](Row row) { rows.push_back(std::move(row)); }); });
   if (trouble && trouble->kind() == Error::Kind::run) throw *trouble;
   if (trouble) return std::nullopt;
   const Scalar hash(summary_hash(whole));

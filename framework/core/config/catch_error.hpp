@@ -10,7 +10,7 @@ namespace palpate {
 
 /// Calls `work` and returns the Error that it threw; nullopt if it returned.
 template <class Work>
-std::optional<Error> trouble_in(const Work& work) {
+std::optional<Error> catch_error(const Work& work) {
   try {
     work();
   } catch (const Error& trouble) {  // the caller decides what to do
