@@ -19,11 +19,11 @@ std::string refusal_at_path(const std::string& text, const std::string& path) {
   return error_of([&] { tree_of(text).at_path(path, {std::make_shared<const std::string>("command line"), 0, 0}); });
 }
 
-TEST(Place, IsWrittenAsFarAsItIsKnown) {
+TEST(SourceLocation, IsWrittenAsFarAsItIsKnown) {
   const auto file = std::make_shared<const std::string>("a.yaml");
-  EXPECT_EQ((Place{file, 3, 7}.text()), "a.yaml:3:7");
-  EXPECT_EQ((Place{file, 0, 0}.text()), "a.yaml");
-  EXPECT_EQ(Place{}.text(), "");
+  EXPECT_EQ((SourceLocation{file, 3, 7}.text()), "a.yaml:3:7");
+  EXPECT_EQ((SourceLocation{file, 0, 0}.text()), "a.yaml");
+  EXPECT_EQ(SourceLocation{}.text(), "");
 }
 
 TEST(Tree, FindsAValueAtADottedPathThroughMapsAndLists) {
@@ -41,7 +41,7 @@ TEST(Tree, FindsNothingWhereAPathLeadsNowhere) {
 
 TEST(Tree, MakesTheMapsOnTheWayToAPathWithThePlaceOfWhoAskedForThem) {
   Tree tree = tree_of("a: 1");
-  const Place asker{std::make_shared<const std::string>("command line"), 0, 0};
+  const SourceLocation asker{std::make_shared<const std::string>("command line"), 0, 0};
   tree.at_path("b.c.d", asker) = Tree::scalar("2");
   EXPECT_EQ(to_yaml(tree), "a: 1\nb:\n  c:\n    d: 2\n");
   EXPECT_EQ(tree.entries.back().place.text(), "command line");

@@ -23,14 +23,15 @@ namespace {
 /// Number of layers of a group: its own content is on the highest, the groups that it builds on are below.
 constexpr Layer kLayersOfGroup = 16;
 
-[[noreturn]] void refuse_depth(const Place& place) {
+[[noreturn]] void refuse_depth(const SourceLocation& place) {
   throw Error(place.text(), fmt::format("groups are nested more than {} levels deep", kLayersOfGroup),
               "merge them into fewer files");
 }
 
 /// Appends a group to `chain`, the files under way from the config to this one. Throws Error for an invalid name and
 /// for a file that is already in the chain.
-void add_link(const std::string& group, const std::string& name, const Place& place, std::vector<std::string>& chain) {
+void add_link(const std::string& group, const std::string& name, const SourceLocation& place,
+              std::vector<std::string>& chain) {
   if (!is_name(name))
     throw Error(place.text(), fmt::format("'{}' is not a valid name in the group {}", name, group), kNameHint);
   const std::string link = group + "/" + name;
@@ -42,7 +43,7 @@ void add_link(const std::string& group, const std::string& name, const Place& pl
 
 /// Throws Error if a group has more layers than kLayersOfGroup. The length of the chain does not show this, because a
 /// base may have been read before, in a shorter chain.
-void check_layers(const Tree& content, const Place& place) {
+void check_layers(const Tree& content, const SourceLocation& place) {
   Layer lowest = 0;
   for_all(content, [&](const Tree& one) { lowest = std::min(lowest, one.layer); });
   if (lowest <= -kLayersOfGroup) refuse_depth(place);
@@ -54,7 +55,7 @@ void drop(Container& from, const Holds& holds) {
 }
 
 /// Moves the types of a chosen group, and of the groups within it, to `layer`.
-void set_layer_of_type(Tree& content, Layer layer, const Place& place) {
+void set_layer_of_type(Tree& content, Layer layer, const SourceLocation& place) {
   for (Tree::Entry& entry : content.entries) {
     if (entry.value.is_map()) set_layer_of_type(entry.value, layer, place);
     if (entry.key != "type") continue;
@@ -118,7 +119,7 @@ std::vector<std::string> Composer::names_of(const std::string& group) const {
   return out;
 }
 
-Tree Composer::group_content(const std::string& group, const std::string& name, const Place& place,
+Tree Composer::group_content(const std::string& group, const std::string& name, const SourceLocation& place,
                              const fs::path& beside, std::vector<std::string>& chain) {
   add_link(group, name, place, chain);
   const fs::path file = group_files_.find(group, name, place, beside);

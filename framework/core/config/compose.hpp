@@ -96,7 +96,7 @@ class Composer {
   void choose_inner(Tree& tree, const Choice& choice, const std::filesystem::path& beside);
 
   /// Returns the content of a group: its file on layer 0, its bases on the layers below. `chain`: the files under way.
-  Tree group_content(const std::string& group, const std::string& name, const Place& place,
+  Tree group_content(const std::string& group, const std::string& name, const SourceLocation& place,
                      const std::filesystem::path& beside, std::vector<std::string>& chain);
   /// The same for a group as the base of another one.
   Tree base_content(const std::string& group, const Tree& name, const std::filesystem::path& beside,

@@ -141,7 +141,7 @@ Tree number(double value, const std::string& unit, const Tree& like) {
   return out;
 }
 
-void ValueCount::add(std::size_t values, const Place& place, const std::string& key) {
+void ValueCount::add(std::size_t values, const SourceLocation& place, const std::string& key) {
   all_ += values;
   if (all_ <= kMostValues) return;
   throw Error(place.text(), fmt::format("{}: the sweep names more than two million values", key), "use fewer values");

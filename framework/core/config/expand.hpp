@@ -62,7 +62,7 @@ Tree number(double value, const std::string& unit, const Tree& like);
 class ValueCount {
  public:
   /// Throws Error, with `place` and `key`, for more than two million values in total.
-  void add(std::size_t values, const Place& place, const std::string& key);
+  void add(std::size_t values, const SourceLocation& place, const std::string& key);
 
  private:
   std::size_t all_ = 0;

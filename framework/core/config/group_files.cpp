@@ -77,7 +77,7 @@ GroupFiles::Roots GroupFiles::roots(const fs::path& beside) const {
   return out;
 }
 
-fs::path GroupFiles::find(const std::string& group, const std::string& name, const Place& place,
+fs::path GroupFiles::find(const std::string& group, const std::string& name, const SourceLocation& place,
                           const fs::path& beside) const {
   const std::array<std::string, 3> key{group, name, beside.string()};
   if (const auto known = found_.find(key); known != found_.end()) return known->second;
@@ -106,7 +106,7 @@ std::map<std::string, fs::path> GroupFiles::list(const std::string& group, const
   return out;
 }
 
-Error GroupFiles::missing(const std::string& group, const std::string& name, const Place& place,
+Error GroupFiles::missing(const std::string& group, const std::string& name, const SourceLocation& place,
                           const fs::path& beside) const {
   std::vector<std::string> names;
   for (const auto& [known, file] : list(group, beside)) names.push_back(known);

@@ -27,7 +27,7 @@ class GroupFiles {
 
   /// Returns the file for a config in the folder `beside`, or "" if there is none. Throws Error, with `place`, if the
   /// only file is in a folder where others may write, or if a folder may not be searched.
-  std::filesystem::path find(const std::string& group, const std::string& name, const Place& place,
+  std::filesystem::path find(const std::string& group, const std::string& name, const SourceLocation& place,
                              const std::filesystem::path& beside) const;
 
   /// Returns all files of a group for a config in the folder `beside`, by their names.
@@ -35,7 +35,7 @@ class GroupFiles {
                                                     const std::filesystem::path& beside) const;
 
   /// Returns the error for a name that has no file, with the nearest name as the hint.
-  Error missing(const std::string& group, const std::string& name, const Place& place,
+  Error missing(const std::string& group, const std::string& name, const SourceLocation& place,
                 const std::filesystem::path& beside) const;
 
   /// Returns `file`, or the program's own config of that name if `file` is a relative name configs/... that does not

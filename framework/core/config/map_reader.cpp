@@ -91,7 +91,7 @@ void MapReader::retired(const Field& field, const FixedValue& last) {
 void MapReader::require(bool holds, const char* field, const std::string& reason) {
   if (holds) return;
   if (notes_.missing) throw Error(*notes_.missing);  // probably the cause
-  const Place place = input_.place_of(field);
+  const SourceLocation place = input_.place_of(field);
   const std::string_view path = field;
   const std::string key(path.substr(0, path.find('.')));
   throw Error(place.file ? place.text() : where(),

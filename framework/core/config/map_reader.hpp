@@ -17,7 +17,7 @@ namespace palpate {
 
 /// Properties that a nested map takes over from the map around it.
 struct Around {
-  Place place;
+  SourceLocation place;
   std::string id_path;    ///< the path, with former names of fields (Field::was())
   bool enters_id = true;  ///< see Field::not_identifying()
   bool complete = false;  ///< see Tree::complete

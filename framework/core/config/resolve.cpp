@@ -18,7 +18,7 @@ namespace {
 const Tree kNothing;
 
 /// Returns the path of a file that a config names at `place`: see Field::names_file().
-std::string found_from(const Place& place, const std::string& file) {
+std::string found_from(const SourceLocation& place, const std::string& file) {
   namespace fs = std::filesystem;
   constexpr int kMostLevels =
       6;  // levels from the config of a job up to the folder of the command that started the sweep

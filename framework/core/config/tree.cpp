@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-std::string Place::text() const {
+std::string SourceLocation::text() const {
   if (!file) return {};
   if (line == 0) return *file;
   return fmt::format("{}:{}:{}", *file, line, column);
@@ -130,7 +130,7 @@ const Tree* Tree::find_path(std::string_view path) const {
   return child == nullptr || rest.empty() ? child : child->find_path(rest);
 }
 
-Tree::Slot Tree::slot(std::string_view path, const Place& asker) {
+Tree::Slot Tree::slot(std::string_view path, const SourceLocation& asker) {
   Tree* holder = nullptr;
   Tree* tree = this;
   for (std::string_view rest = path; !rest.empty();) {
@@ -156,7 +156,7 @@ Tree::Slot Tree::slot(std::string_view path, const Place& asker) {
   return {holder, *tree};
 }
 
-Tree& Tree::at_path(std::string_view path, const Place& asker) { return slot(path, asker).value; }
+Tree& Tree::at_path(std::string_view path, const SourceLocation& asker) { return slot(path, asker).value; }
 
 void Tree::put(std::string_view path, Tree value) {
   const Slot found = slot(path, value.place);
@@ -168,8 +168,8 @@ void Tree::put(std::string_view path, Tree value) {
   found.value = std::move(value);
 }
 
-Place Tree::place_of(std::string_view path) const {
-  Place best;
+SourceLocation Tree::place_of(std::string_view path) const {
+  SourceLocation best;
   const Tree* tree = this;
   for (std::string_view rest = path; !rest.empty();) {
     const auto [head, tail] = split_path(rest);

@@ -13,7 +13,7 @@
 namespace palpate {
 
 /// Location of a value in a file. Lines and columns count from 1; 0 stands for the whole file.
-struct Place {
+struct SourceLocation {
   std::shared_ptr<const std::string> file;  ///< path as the user would name it, or "command line"; may be null
   int line = 0;
   int column = 0;
@@ -43,7 +43,7 @@ struct Tree {
   bool quoted = false;         ///< the scalar was in quotes, so that it is a text even if it looks like a number
   std::vector<Tree> items;     ///< of a list
   std::vector<Entry> entries;  ///< of a map, in the written order; keys are unique
-  Place place;
+  SourceLocation place;
   Layer layer = kFileLayer;
   bool complete = false;  ///< a map of a record, which has all options of the version that wrote it
 
@@ -71,12 +71,12 @@ struct Tree {
   const Tree* find_path(std::string_view path) const;
   /// Returns the value at a dotted path. Missing maps are created with the place of `asker`. Throws Error, with that
   /// place, if a scalar is in the way or a list is too short.
-  Tree& at_path(std::string_view path, const Place& asker);
+  Tree& at_path(std::string_view path, const SourceLocation& asker);
   /// Sets the value at a dotted path, as at_path() does. The key gets the place of the value.
   void put(std::string_view path, Tree value);
   /// Returns the place of the value at a dotted path, or of the nearest map around it that has a place; an empty place
   /// if there is no such value.
-  Place place_of(std::string_view path) const;
+  SourceLocation place_of(std::string_view path) const;
 
   /// Sets the layer of this tree and all values within it.
   void set_layer(Layer layer);
@@ -99,12 +99,12 @@ struct Tree {
     Tree& value;
   };
   /// Returns the value of at_path() and its container.
-  Slot slot(std::string_view path, const Place& asker);
+  Slot slot(std::string_view path, const SourceLocation& asker);
 };
 
 struct Tree::Entry {
   std::string key;
-  Place place;  ///< of the key
+  SourceLocation place;  ///< of the key
   Tree value;
 };
 

@@ -173,12 +173,12 @@ class Reader final : public YAML::EventHandler {
   }
 
   /// Keeps the first error. It is thrown only if the whole text is valid YAML.
-  void refuse(const Place& at, const std::string& reason, const std::string& hint = {}) {
+  void refuse(const SourceLocation& at, const std::string& reason, const std::string& hint = {}) {
     if (!refused_) refused_ = Error(at.text(), reason, hint);
   }
 
-  Place place(const YAML::Mark& mark) const {
-    return lines_ ? Place{file_, mark.line + 1, mark.column + 1} : Place{file_, 0, 0};
+  SourceLocation place(const YAML::Mark& mark) const {
+    return lines_ ? SourceLocation{file_, mark.line + 1, mark.column + 1} : SourceLocation{file_, 0, 0};
   }
 
   std::shared_ptr<const std::string> file_;

@@ -73,12 +73,12 @@ void append_in_line(std::string& out, const Tree& tree, bool in_brackets = false
 
 constexpr std::string_view kComment = "  # ";
 
-const Place kNowhere;
+const SourceLocation kNowhere;
 
 /// Appends the place of a value, or of the list around it if the value has none. A map has no place of its own here.
-void append_place(std::string& out, const Tree& value, const Place& around) {
+void append_place(std::string& out, const Tree& value, const SourceLocation& around) {
   if (value.is_map()) return;
-  const Place& known = value.place.file ? value.place : around;
+  const SourceLocation& known = value.place.file ? value.place : around;
   out += kComment;
   if (!known.file) {
     out += "default";
@@ -96,7 +96,7 @@ void append_place(std::string& out, const Tree& value, const Place& around) {
 }
 
 /// Appends a tree whose first line begins at `column`, the present end of `out`. Adds places if `around` is not null.
-void append_block(std::string& out, const Tree& tree, std::size_t column, const Place* around) {
+void append_block(std::string& out, const Tree& tree, std::size_t column, const SourceLocation* around) {
   if (is_in_line(tree)) {
     append_in_line(out, tree);
     if (around != nullptr) append_place(out, tree, *around);

@@ -33,7 +33,7 @@ constexpr std::array kStatistics{
 /// One key with its value, once nested maps are undone.
 struct Clause {
   std::string key;
-  Place place;
+  SourceLocation place;
   const Tree* value;
 };
 
@@ -43,8 +43,8 @@ std::string without_spaces(std::string text) {
 }
 
 /// The key's place is the better one, unless the value came from elsewhere, laid over it.
-Place place_of(const Tree::Entry& entry) {
-  const Place& value = entry.value.place;
+SourceLocation place_of(const Tree::Entry& entry) {
+  const SourceLocation& value = entry.value.place;
   return value.file && (!entry.place.file || *value.file != *entry.place.file) ? value : entry.place;
 }
 

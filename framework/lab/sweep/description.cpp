@@ -26,9 +26,9 @@ bool is_below(const std::string& key, const std::string& group) {
   return key == group || boost::starts_with(key, group + ".");
 }
 
-Place place_of(const Axis& axis) { return axis.values.front().place; }
+SourceLocation place_of(const Axis& axis) { return axis.values.front().place; }
 
-void check_block(const std::string& name, const Place& place) {
+void check_block(const std::string& name, const SourceLocation& place) {
   static const std::vector<std::string> names{"grid", "zip", "list", "sobol", "where"};
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
   throw Error(place.text(), fmt::format("unknown option '{}' of sweep", name), suggestion(name, names));

@@ -31,7 +31,7 @@ double shortened(double value) {
   return out;
 }
 
-std::int64_t read_samples(const Tree& described, const Place& place) {
+std::int64_t read_samples(const Tree& described, const SourceLocation& place) {
   const Tree* samples = described.find("samples");
   if (samples == nullptr) throw Error(place.text(), "sweep.sobol: 'samples' is missing", "write samples: 64");
   const std::int64_t count = read_integer(*samples, "sweep.sobol.samples");
