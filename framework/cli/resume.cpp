@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/resume.hpp"
 
-#include "cli/conduct_run.hpp"
+#include "cli/execute_run.hpp"
 #include "cli/sweep.hpp"
 #include "record/run_directory.hpp"
 
@@ -26,7 +26,7 @@ int resume(Program& program, const ResumeArguments& arguments) {
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
   if (arguments.launch.watch) output.watched = arguments.directory;
-  return conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
+  return execute_run(program, config, output, [&](Journal* display, Supervisor* step) {
     return resume_run(program, arguments.directory, arguments.options, display, step);
   });
 }

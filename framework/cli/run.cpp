@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command_line.hpp"
-#include "cli/conduct_run.hpp"
 #include "cli/display.hpp"
+#include "cli/execute_run.hpp"
 #include "cli/gate.hpp"
 #include "cli/output.hpp"
 #include "config/catch_error.hpp"
@@ -139,11 +139,11 @@ int run(Program& program, const RunArguments& arguments) {
   check_junit(arguments.junit);
   RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
   if (arguments.watch) output.watched = directory;
-  const int status = conduct_run(program, config, output, [&](Journal* display, Supervisor* step) {
+  const int status = execute_run(program, config, output, [&](Journal* display, Supervisor* step) {
     return start_run(program, config, directory, arguments.force, display, step);
   });
   if (arguments.quiet) return status;
-  for (const std::string& line : half_said_sizes(config.tree, config.notes)) mention(line + "\n");
+  for (const std::string& line : partly_given_sizes(config.tree, config.notes)) mention(line + "\n");
   offer_the_rest(program);
   return status;
 }

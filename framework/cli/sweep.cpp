@@ -55,7 +55,7 @@ std::vector<std::size_t> jobs_of(const Campaign& campaign) {
 
 /// Ends a part of a sweep, as in a task of a cluster. The process that submitted the tasks prints the results of the
 /// whole.
-int conclude_part(const Sweep& sweep, const Standing& end, bool interrupted, bool all_recorded) {
+int conclude_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool all_recorded) {
   const bool complete = std::all_of(sweep.jobs.begin(), sweep.jobs.end(),
                                     [&](const Job& job) { return has_ended(job_directory(sweep, job)); });
   if (complete) write_results(sweep);
@@ -84,7 +84,7 @@ std::optional<int> initial_taps_of(const ExperimentOptions& options) {
   return static_cast<int>(options.initial.searches() || options.space ? options.taps : options.initial.count);
 }
 
-int conclude_whole(const Campaign& campaign, const Standing& end, bool interrupted, Launched launched) {
+int conclude_whole(const Campaign& campaign, const JobStates& end, bool interrupted, Launched launched) {
   const Sweep& sweep = campaign.sweep;
   const auto initial_taps = [&](std::size_t job) {
     const auto config = readable_config(campaign, job);
@@ -136,7 +136,7 @@ void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
 }
 
 /// Runs the open jobs until all have ended. On a cluster without --wait, returns once they are submitted.
-Launched launch_open(const Campaign& campaign, const Standing& begun) {
+Launched launch_open(const Campaign& campaign, const JobStates& begun) {
   const auto print_array = [](const TaskArray& array) {
     print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
               array.logs.string());
@@ -160,7 +160,7 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
   SweepLine line(campaign.launch.quiet);
   bool blocked = false;
   const bool all_recorded =
-      conduct(*launcher, campaign.sweep, begun, program.interrupted, [&](const SweepProgress& progress) {
+      execute_jobs(*launcher, campaign.sweep, begun, program.interrupted, [&](const SweepProgress& progress) {
         blocked = progress.blocked;
         line.show(progress);
       });
@@ -168,7 +168,7 @@ Launched launch_open(const Campaign& campaign, const Standing& begun) {
 }
 
 /// Returns all jobs that are not done, ascending.
-std::vector<std::size_t> undone(const Standing& standing) {
+std::vector<std::size_t> undone(const JobStates& standing) {
   std::vector<std::size_t> out = standing.open;
   for (const SweepFailure& one : standing.failures) out.push_back(one.job);
   std::sort(out.begin(), out.end());
@@ -189,7 +189,7 @@ void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
 }
 
 /// Runs the open jobs, prints the result and checks the expectations. Returns the exit status.
-int run_campaign(const Campaign& campaign, Standing begun) {
+int run_campaign(const Campaign& campaign, JobStates begun) {
   const Sweep& sweep = campaign.sweep;
   check_locks(sweep.directory);
   const bool whole = campaign.only.empty();
@@ -199,15 +199,16 @@ int run_campaign(const Campaign& campaign, Standing begun) {
   outlive_reader();
   name_record("resume with: palpate resume " + sweep.directory.string());
   const std::vector<std::size_t> jobs = undone(begun);
-  if (campaign.options.retry_failed) try_again(begun);
+  if (campaign.options.retry_failed) reopen_failed(begun);
   if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {
     mention("jobs run one at a time, because the backend moves only one arm\n");
   }
   if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
   const Launched launched = launch_open(campaign, begun);
   if (launched == Launched::submitted) return kDone;
-  // Missing files do not count here: `conduct` has reported them, and a job of another build may never get them back.
-  const Standing end = standing_of(sweep, jobs, Also::nothing);
+  // Missing files do not count here: `execute_jobs` has reported them, and a job of another build may never get them
+  // back.
+  const JobStates end = read_job_states(sweep, jobs, JobCheck::nothing);
   const bool interrupted = campaign.program.interrupted->load();
   if (whole) return conclude_whole(campaign, end, interrupted, launched);
   return conclude_part(sweep, end, interrupted, launched != Launched::ended_unrecorded);
@@ -288,11 +289,12 @@ int sweep(Program& program, const SweepArguments& arguments) {
   Campaign campaign{program, planned, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
   if (!is_new) check_builds(campaign, jobs_of(campaign));
   if (!arguments.launch.quiet) {
-    for (const std::string& line : half_said_sizes(campaign.first->tree, campaign.first->notes)) mention(line + "\n");
+    for (const std::string& line : partly_given_sizes(campaign.first->tree, campaign.first->notes))
+      mention(line + "\n");
     mention(fmt::format("{} in {}{}\n", jobs, directory.string(),
                         is_new ? "" : ", which exists: only missing jobs are run"));
   }
-  return run_campaign(campaign, standing_of(planned, jobs_of(campaign)));
+  return run_campaign(campaign, read_job_states(planned, jobs_of(campaign)));
 }
 
 int resume_sweep(Program& program, const ResumeArguments& arguments) {
@@ -310,7 +312,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
     if (!arguments.launch.junit.empty())
       refuse("--jobs and --junit exclude each other: expectations are checked for the whole sweep", hint);
   }
-  Standing begun = standing_of(sweep, jobs_of(campaign));
+  JobStates begun = read_job_states(sweep, jobs_of(campaign));
   const std::vector<std::size_t> left = undone(begun);
   const std::optional<ResolvedConfig> next = left.empty() ? std::nullopt : readable_config(campaign, left.front());
   if (next) check_who_taps(*next, arguments.directory);
@@ -321,7 +323,7 @@ int resume_sweep(Program& program, const ResumeArguments& arguments) {
 /// Reads the directories of the jobs alone, and asks neither the scheduler nor another process.
 int status_of_sweep(Program&, const std::string& directory) {
   const Sweep sweep = read_sweep(directory);
-  Standing now = standing_of(sweep, all_jobs(sweep), Also::running);
+  JobStates now = read_job_states(sweep, all_jobs(sweep), JobCheck::running);
   print_out("{} jobs", sweep.jobs.size());
   for (const auto state : {RunStatus::State::done, RunStatus::State::running, RunStatus::State::failed,
                            RunStatus::State::unfinished, RunStatus::State::absent}) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cli/program.hpp"
-#include "launch/conduct.hpp"
+#include "launch/execute_jobs.hpp"
 #include "sweep/sweep.hpp"
 
 #include <chrono>

@@ -33,7 +33,7 @@ int validate(Program& program, const ValidateArguments& arguments) {
         const ResolvedConfig config = resolve_experiment(tree, program.host);
         // Only the construction of the scene finds a broken mesh, or objects that do not fit into the area.
         build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), program.host);
-        for (const std::string& line : half_said_sizes(config.tree, config.notes))
+        for (const std::string& line : partly_given_sizes(config.tree, config.notes))
           said.emplace_back(false, line + "\n");
         said.emplace_back(true, fmt::format("{}: valid, id {}\n", file, config.id));
       }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "launch/local_launcher.hpp"
 
-#include "launch/conduct.hpp"
+#include "launch/execute_jobs.hpp"
 #include "record/run_directory.hpp"
 #include "support/support.hpp"
 
@@ -55,14 +55,14 @@ TEST_F(TwoJobs, WithoutAFolderAreNotRecordedWhichIsSaidInPrintableText) {
   std::filesystem::remove_all(job(0));
   LocalLauncher local = launcher();
   testing::internal::CaptureStderr();
-  EXPECT_FALSE(conduct(local, sweep_, standing_of(sweep_, {0}), nullptr, [](const SweepProgress&) {}));
+  EXPECT_FALSE(execute_jobs(local, sweep_, read_job_states(sweep_, {0}), nullptr, [](const SweepProgress&) {}));
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
               testing::ContainsRegex("^job 0: .*a\\\\x9bb/jobs/000000000000: is missing, it has no config.yaml"));
 }
 
 TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
   Returning cluster;
-  const Standing begun = standing_of(sweep_, {0, 1});
+  const JobStates begun = read_job_states(sweep_, {0, 1});
   for (std::size_t index : {0, 1}) {
     RunDirectory held(job(index));
     held.begin(Tree::map({}));
@@ -70,11 +70,11 @@ TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
     std::filesystem::remove(job(index) / kSummaryFile);
   }
   SweepProgress last;
-  EXPECT_TRUE(conduct(cluster, sweep_, begun, nullptr, [&](const SweepProgress& now) { last = now; }));
+  EXPECT_TRUE(execute_jobs(cluster, sweep_, begun, nullptr, [&](const SweepProgress& now) { last = now; }));
   EXPECT_EQ(last.done, 2);
   EXPECT_EQ(last.failed, 0);
-  EXPECT_THAT(standing_of(sweep_, {0, 1}, Also::nothing).open, testing::IsEmpty());
-  EXPECT_THAT(standing_of(sweep_, {0, 1}).open, testing::ElementsAre(0, 1)) << "whoever resumes writes the files";
+  EXPECT_THAT(read_job_states(sweep_, {0, 1}, JobCheck::nothing).open, testing::IsEmpty());
+  EXPECT_THAT(read_job_states(sweep_, {0, 1}).open, testing::ElementsAre(0, 1)) << "whoever resumes writes the files";
 }
 
 TEST_F(TwoJobs, ThatAreKilledBeforeTheirAttemptIsNotedAreNotBegunForEver) {

@@ -20,7 +20,7 @@ std::string shown_length(const Tree& value) {
 
 }  // namespace
 
-std::vector<std::string> half_said_sizes(const Tree& resolved, const ResolveNotes& notes) {
+std::vector<std::string> partly_given_sizes(const Tree& resolved, const ResolveNotes& notes) {
   struct Object {
     std::string place;
     bool has_size = false;

@@ -3,7 +3,7 @@
 
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
-#include "launch/conduct.hpp"
+#include "launch/execute_jobs.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/files.hpp"
@@ -127,7 +127,7 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
                                              swept_at(sweep, "acquisition"), strategy_of(origins, job)})));
   row.add("scene", text_or_null(first_of({swept_at(sweep, "scene"), scene_of(origins, job)})));
   out.swept = swept_words(sweep);
-  Standing now = standing_of(sweep, all_jobs(sweep), Also::running);
+  JobStates now = read_job_states(sweep, all_jobs(sweep), JobCheck::running);
   row.add("jobs", static_cast<int>(sweep.jobs.size()));
   for (const State state : {State::done, State::failed, State::running})
     row.add(fmt::format("jobs_{}", state_name(state)), now.counts[state]);

@@ -62,7 +62,7 @@ JobEnd LocalLauncher::run(std::size_t job) const {
   } catch (const std::exception& trouble) {  // the error cannot be recorded, so that only the terminal gets it
     const auto* const error = dynamic_cast<const Error*>(&trouble);
     if (error != nullptr && error->kind() == Error::Kind::busy) end = JobEnd::blocked;
-    // conduct() reports a missing folder once for all jobs. fmt::print would throw if the terminal is closed.
+    // execute_jobs() reports a missing folder once for all jobs. fmt::print would throw if the terminal is closed.
     std::error_code unknown;
     if (std::filesystem::exists(order_.sweep.directory, unknown) || unknown) {
       std::fputs(fmt::format("job {}: {}\n", job, printable(trouble.what())).c_str(), stderr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/conduct_run.hpp"
+#include "cli/execute_run.hpp"
 
 #include "cli/display.hpp"
 #include "cli/gate.hpp"
@@ -15,7 +15,7 @@
 
 namespace palpate::cli {
 
-int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
+int execute_run(const Program& program, const ResolvedConfig& config, const RunOutput& output,
                 const RunAction& action) {
   listen_for_interrupts();
   outlive_reader();

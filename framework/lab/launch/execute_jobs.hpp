@@ -32,7 +32,7 @@ struct SweepFailure {
 };
 
 /// The states of some jobs, according to their directories.
-struct Standing {
+struct JobStates {
   std::map<RunStatus::State, int> counts;
   std::vector<std::size_t> open;       ///< jobs that are neither done nor failed, nor known to be running
   std::vector<SweepFailure> failures;  ///< in the order of the jobs, like `open`
@@ -40,14 +40,15 @@ struct Standing {
 
 /// What to look for besides the record: nothing; missing files of done jobs, which are then open, as after a power cut;
 /// or whether a process runs an unfinished job.
-enum class Also { nothing, missing_files, running };
+enum class JobCheck { nothing, missing_files, running };
 
 /// Reads the states of `jobs`. `missing_files` is reliable only if this node ran the jobs, or before any job runs,
 /// because NFS may hide files of other nodes for a minute.
-Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, Also also = Also::missing_files);
+JobStates read_job_states(const Sweep& sweep, const std::vector<std::size_t>& jobs,
+                          JobCheck also = JobCheck::missing_files);
 
 /// Makes failed jobs open again, whatever their number of attempts.
-void try_again(Standing& standing);
+void reopen_failed(JobStates& standing);
 
 /// Runs the open jobs with `launcher`, and waits until all have been returned. After `interrupted`, the jobs are
 /// cancelled. `progress` is called after each event and at least every half second.
@@ -55,7 +56,7 @@ void try_again(Standing& standing);
 /// Returns whether all ended jobs have a record of their end and, if they ran on this machine, all their files. On a
 /// full disk they may not. Throws Error if the sweep's directory is moved or removed meanwhile, after cancelling the
 /// jobs.
-bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
-             const std::function<void(const SweepProgress&)>& progress);
+bool execute_jobs(Launcher& launcher, const Sweep& sweep, JobStates begun, const std::atomic<bool>* interrupted,
+                  const std::function<void(const SweepProgress&)>& progress);
 
 }  // namespace palpate

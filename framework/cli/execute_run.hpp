@@ -22,6 +22,6 @@ struct RunOutput {
 /// Runs `action`, which starts or resumes the run with the given display and supervisor (either may be null). Prints
 /// the result and checks the expectations of the config. Returns the exit status. Throws Error.
 using RunAction = std::function<RunReport(Journal* display, Supervisor* step)>;
-int conduct_run(const Program& program, const ResolvedConfig& config, const RunOutput& output, const RunAction& action);
+int execute_run(const Program& program, const ResolvedConfig& config, const RunOutput& output, const RunAction& action);
 
 }  // namespace palpate::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "launch/conduct.hpp"
+#include "launch/execute_jobs.hpp"
 
 #include "launch/job.hpp"
 #include "sweep/read_jobs.hpp"
@@ -21,16 +21,16 @@ bool is_gone(const Sweep& sweep) {
 }
 
 /// The state of a job.
-struct JobStanding {
+struct JobState {
   RunStatus::State state = RunStatus::State::absent;
   int attempts = 0;  ///< only of a failed job
   std::string reason;
 };
 
-JobStanding look_at(const std::filesystem::path& directory, Also also) {
-  RunStatus status = also == Also::running ? read_standing(directory) : read_ending(directory);
+JobState look_at(const std::filesystem::path& directory, JobCheck also) {
+  RunStatus status = also == JobCheck::running ? read_standing(directory) : read_ending(directory);
   // A process that resumes the job finds it done and writes the missing files.
-  if (also == Also::missing_files && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
+  if (also == JobCheck::missing_files && status.state == RunStatus::State::done && lacks_files(directory, *status.end))
     status.state = RunStatus::State::unfinished;
   if (status.state != RunStatus::State::failed) return {status.state, 0, ""};
   return {status.state, attempts_of(directory), std::move(status.stop_reason)};
@@ -38,10 +38,10 @@ JobStanding look_at(const std::filesystem::path& directory, Also also) {
 
 }  // namespace
 
-Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, Also also) {
-  Standing out;
+JobStates read_job_states(const Sweep& sweep, const std::vector<std::size_t>& jobs, JobCheck also) {
+  JobStates out;
   const auto look = [also](const std::filesystem::path& directory) { return look_at(directory, also); };
-  read_jobs(sweep, jobs, look, [&](std::size_t job, JobStanding one) {
+  read_jobs(sweep, jobs, look, [&](std::size_t job, JobState one) {
     ++out.counts[one.state];
     if (one.state == RunStatus::State::failed) {
       out.failures.push_back({job, one.attempts, std::move(one.reason)});
@@ -52,14 +52,14 @@ Standing standing_of(const Sweep& sweep, const std::vector<std::size_t>& jobs, A
   return out;
 }
 
-void try_again(Standing& standing) {
+void reopen_failed(JobStates& standing) {
   for (const SweepFailure& one : standing.failures) standing.open.push_back(one.job);
   standing.failures.clear();
   std::sort(standing.open.begin(), standing.open.end());
 }
 
-bool conduct(Launcher& launcher, const Sweep& sweep, Standing begun, const std::atomic<bool>* interrupted,
-             const std::function<void(const SweepProgress&)>& progress) {
+bool execute_jobs(Launcher& launcher, const Sweep& sweep, JobStates begun, const std::atomic<bool>* interrupted,
+                  const std::function<void(const SweepProgress&)>& progress) {
   SweepProgress counts;
   counts.done = begun.counts[RunStatus::State::done];
   counts.failed = static_cast<int>(begun.failures.size());
