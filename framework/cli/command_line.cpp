@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kRecordForms =
     ". Give the directory, a folder that contains the directory, NAME in runs/, or NAME@latest";
 
-/// Returns the error for a word that is not a command, for several records where a command takes one (a shell expands a
-/// * to several), and else with the text of CLI11.
+/// Returns the error of a wrong command line. Unknown commands, and several records where a command takes one (a shell
+/// expands a *), have their own texts. All other errors have the text of CLI11.
 Error usage_error(const CLI::App& app, const CLI::Error& trouble, const std::string& first) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   if (chosen.empty() && !first.empty() && first.front() != '-') {

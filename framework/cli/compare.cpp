@@ -75,8 +75,7 @@ std::string rows_text(const std::vector<Comparison>& comparisons, const CompareA
 /// and no output.
 std::optional<std::vector<Comparison>> compare_all(const Program& program, const Sweep& sweep,
                                                    const CompareArguments& arguments) {
-  std::optional<Condition> where;
-  if (arguments.where) where = Condition::of_command_line(*arguments.where);
+  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
   std::vector<Comparison> comparisons;
   const auto add = [&](const std::vector<Row>& results, const std::optional<Occasion>& occasion) {
     for (const std::string& metric : arguments.metrics) {
@@ -129,7 +128,7 @@ int compare(Program& program, const CompareArguments& arguments) {
   for (const Comparison& one : *comparisons) {
     const fs::path file = table_file(sweep, one, condition);
     write_file(file, to_csv(compare_rows(one, condition)));
-    mention(fmt::format("table: {}\n", file.string()));
+    print_message(fmt::format("table: {}\n", file.string()));
   }
   return kDone;
 }

@@ -21,7 +21,7 @@ using boost::starts_with;
 
 /// Returns the argument of `command` to which the word `last` belongs, after the word `previous`, or null. `command`
 /// has parsed all earlier words.
-const CLI::Option* begun(const CLI::App& command, const std::string& previous, const std::string& last) {
+const CLI::Option* argument_of(const CLI::App& command, const std::string& previous, const std::string& last) {
   const auto with_value = [&](const std::string& word) {
     const CLI::Option* option = starts_with(word, "-") ? command.get_option_no_throw(word) : nullptr;
     return option == nullptr || value_of(*option).empty() ? nullptr : option;
@@ -94,7 +94,7 @@ std::vector<Completion> plugins_by_kind(const Program& program, bool names) {
 
 /// Completes the value after the last comma. `values` are completions of the part without commas; the results are whole
 /// words.
-std::vector<Completion> behind_comma(const std::string& typed, std::size_t from, std::vector<Completion> values) {
+std::vector<Completion> after_comma(const std::string& typed, std::size_t from, std::vector<Completion> values) {
   const auto comma = typed.rfind(',');
   if (comma == std::string::npos || comma < from) return values;
   for (Completion& one : values) one.word.replace(0, from, typed.substr(0, comma + 1));
@@ -108,7 +108,7 @@ std::vector<Completion> axis(Program& program, const std::string& config, const 
   const std::size_t bracket = typed.compare(equals + 1, 1, "[") == 0 ? 1 : 0;
   std::vector<Completion> out = complete_key(program, config, {}, typed.substr(0, equals + 1));
   for (Completion& one : out) one.word.insert(equals + 1, bracket, '[');
-  return behind_comma(typed, equals + 1 + bracket, std::move(out));
+  return after_comma(typed, equals + 1 + bracket, std::move(out));
 }
 
 /// Returns completions according to the name of the value in the help. Files and free texts have none.
@@ -125,7 +125,7 @@ std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& op
     for (const RecordField& field : summary_fields()) {
       out.push_back({field.name + (of == "COLUMN=VALUE" ? "=" : ""), field.meaning});
     }
-    return of == "COLUMNS" ? behind_comma(typed, 0, std::move(out)) : out;
+    return of == "COLUMNS" ? after_comma(typed, 0, std::move(out)) : out;
   }
   if (of != "KEY=VALUE" && of != "KEY=VALUES") return {};
   const std::vector<std::string> config = command.get_option("CONFIG")->results();
@@ -139,7 +139,7 @@ std::vector<Completion> values_of(const CLI::App& command, const CLI::Option& op
 std::vector<Completion> completions(CLI::App& app, Program& program, const std::vector<std::string>& words) {
   std::vector<Completion> out;
   std::string typed = words.back();
-  std::string kept;  // of the word before the value: "--launcher="
+  std::string kept;  // prefix of the word that stays, for example "--launcher="
   if (words.size() == 1) {
     for (const CLI::App* one : app.get_subcommands({})) out.push_back({one->get_name(), one->get_description()});
     for (Completion& one : options_of(app)) out.push_back(std::move(one));
@@ -150,7 +150,7 @@ std::vector<Completion> completions(CLI::App& app, Program& program, const std::
     }
     if (app.get_subcommands().empty()) return {};
     const CLI::App& command = *app.get_subcommands().front();
-    if (const CLI::Option* option = begun(command, words[words.size() - 2], typed)) {
+    if (const CLI::Option* option = argument_of(command, words[words.size() - 2], typed)) {
       if (starts_with(typed, "-")) {
         kept = typed.substr(0, typed.find('=') + 1);
         typed.erase(0, kept.size());

@@ -63,6 +63,33 @@ double width_of(const CurvesArguments& arguments) {
   return width;
 }
 
+/// Writes the table and the pictures, and prints their names.
+void write_curves(const Sweep& sweep, const GroupCurves& made, const CurvesArguments& arguments,
+                  const std::vector<fs::path>& files, double width) {
+  const std::string title = sweep_name(sweep) + (arguments.where ? ", where " + *arguments.where : "");
+  std::set<fs::path> scripts;
+  for (const fs::path& file : files) {
+    if (file.extension() == ".csv") {
+      write_file(file, to_csv(curves_rows(made)));
+      print_message(fmt::format("table: {}\n", file.string()));
+      continue;
+    }
+    std::string note;
+    const auto trouble = catch_error([&] { note = write_curves_figure(made, title, width, file); });
+    const fs::path script = fs::path(file).replace_extension(".gnuplot");
+    if (std::error_code none; fs::is_regular_file(script, none)) scripts.insert(script);
+    // Without -o, the table remains a result, so that a missing picture is not an error.
+    if (trouble && !arguments.outputs.empty()) throw *trouble;
+    if (trouble) {
+      print_message(fmt::format("no picture was drawn: {}\n", trouble->what()));
+      continue;
+    }
+    if (!note.empty()) print_message(note + "\n");
+    print_message(fmt::format("picture: {}\n", file.string()));
+  }
+  for (const fs::path& script : scripts) print_message(fmt::format("script: {}\n", script.string()));
+}
+
 }  // namespace
 
 int curves(Program& program, const CurvesArguments& arguments) {
@@ -75,8 +102,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
   if (asked.find(',') != std::string::npos)
     throw Error("command line", fmt::format("--metric: '{}' names several columns, but a figure shows one", asked),
                 "draw one figure per column");
-  std::optional<Condition> where;
-  if (arguments.where) where = Condition::of_command_line(*arguments.where);
+  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
   // Invalid keys and metrics are rejected before the computation.
   check_group_keys(sweep, by);
   if (!results.empty()) find_metric(sweep, asked, names_of(results));
@@ -90,29 +116,7 @@ int curves(Program& program, const CurvesArguments& arguments) {
   const GroupCurves made =
       make_group_curves(sweep, results, values, {by, metric, arguments.against, where ? &*where : nullptr});
   print_text(curves_table(made));
-  std::set<fs::path> scripts;
-  for (const fs::path& file : files) {
-    if (file.extension() == ".csv") {
-      write_file(file, to_csv(curves_rows(made)));
-      mention(fmt::format("table: {}\n", file.string()));
-      continue;
-    }
-    std::string title = sweep_name(sweep);
-    if (arguments.where) title += ", where " + *arguments.where;
-    std::string note;
-    const auto trouble = catch_error([&] { note = write_curves_figure(made, title, width, file); });
-    const fs::path script = fs::path(file).replace_extension(".gnuplot");
-    if (std::error_code none; fs::is_regular_file(script, none)) scripts.insert(script);
-    // Without -o, the table remains a result, so that a missing picture is not an error.
-    if (trouble && !arguments.outputs.empty()) throw *trouble;
-    if (trouble) {
-      mention(fmt::format("no picture was drawn: {}\n", trouble->what()));
-      continue;
-    }
-    if (!note.empty()) mention(note + "\n");
-    mention(fmt::format("picture: {}\n", file.string()));
-  }
-  for (const fs::path& script : scripts) mention(fmt::format("script: {}\n", script.string()));
+  write_curves(sweep, made, arguments, files, width);
   return kDone;
 }
 

@@ -110,7 +110,7 @@ std::string displayable(std::string_view text) {
   return std::string(clears ? kClearLine : "") + printable(text.substr(clears ? kClearLine.size() : 0));
 }
 
-void mention(const std::string& text) {
+void print_message(const std::string& text) {
   // Keeps the order of stdout and stderr if both go to the same file.
   flush_output();
   std::fputs(displayable(text).c_str(), stderr);

@@ -34,7 +34,7 @@ std::string displayable(std::string_view text);
 
 /// Writes a message about the work on stderr, as displayable() returns it. A closed terminal is not an error here,
 /// unlike in fmt::print.
-void mention(const std::string& text);
+void print_message(const std::string& text);
 
 /// Returns the path of the record, or the command that resumes the run.
 std::string record_line(const RunReport& report);

@@ -34,7 +34,7 @@ int execute_run(const Program& program, const ResolvedConfig& config, const RunO
   // A failed run is a result that continuous integration must see.
   if (trouble && trouble->kind() == Error::Kind::run) write_junit(judge(config.expectations, runs), runs, gate);
   if (trouble) throw *trouble;
-  name_record(record_line(report));
+  set_record_line(record_line(report));
   if (output.json) print_data(to_json(report.summary));
   if (output.table) print_summary(report);
   if (report.interrupted) return kInterrupted;

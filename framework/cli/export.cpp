@@ -17,13 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Warns on stderr if the run has not ended, so that the files hold only its first `taps` taps.
-void mention_state(const fs::path& directory, std::size_t taps) {
+void warn_state(const fs::path& directory, std::size_t taps) {
   const RunStatus status = read_status(directory);
   if (status.state == RunStatus::State::done) return;
   std::string how = "is unfinished";
   if (status.state == RunStatus::State::running) how = "is still running";
   if (status.state == RunStatus::State::failed) how = "failed: " + status.stop_reason;
-  mention(fmt::format("this run {}; the export uses its first {} taps\n", how, taps));
+  print_message(fmt::format("this run {}; the export uses its first {} taps\n", how, taps));
 }
 
 /// Creates the output folder and returns it. Throws Error for the directory of the run, because its files have the same
@@ -48,7 +48,7 @@ int export_tables(const fs::path& directory, const std::string& to) {
   if (!record.manifest)
     throw Error(directory.string(), "contains no record", "start the run first, or name another run", Error::Kind::run);
   const fs::path folder = folder_for(directory, to);
-  mention_state(directory, record.taps.size());
+  warn_state(directory, record.taps.size());
   write_into(folder, kTapsTable, to_csv(record.taps));
   write_into(folder, "timings.csv", to_csv(timing_rows(record.timings)));
   write_into(folder, "objects.csv", to_csv(record.objects));
@@ -69,9 +69,9 @@ int export_run(Program& program, const ExportArguments& arguments) {
   const std::string surface =
       any_side != nullptr ? surface_ply(*any_side, run) : surface_ply(reconstruct(playback.from_above()), run);
   if (playback.truth_lost())
-    mention(fmt::format("surface.ply has no true heights: {}\n", playback.truth_lost()->what()));
+    print_message(fmt::format("surface.ply has no true heights: {}\n", playback.truth_lost()->what()));
   const fs::path folder = folder_for(recording.directory, arguments.to);
-  mention_state(recording.directory, recording.taps.size());
+  warn_state(recording.directory, recording.taps.size());
   write_into(folder, "surface.ply", surface);
   write_into(folder, "taps.ply", taps_ply(recording, playback.experiment().counts(), run));
   return kDone;

@@ -36,7 +36,7 @@ bool conclude(const std::vector<Expectation>& expectations, const std::vector<Ru
   if (output.count_on_stdout && !verdicts.empty()) print_out("expected: {} of {}\n", held, verdicts.size());
   flush_output();
   for (const Verdict& verdict : verdicts) {
-    if (!verdict.holds) mention(verdict_line(verdict) + "\n");
+    if (!verdict.holds) print_message(verdict_line(verdict) + "\n");
   }
   write_junit(verdicts, runs, output);
   return held == static_cast<std::ptrdiff_t>(verdicts.size());

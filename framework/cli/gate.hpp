@@ -12,8 +12,8 @@ namespace palpate::cli {
 /// The destination of the verdicts.
 struct GateOutput {
   std::string suite;             ///< name of the experiment
-  std::string junit;             ///< file to write, "" for none
-  bool count_on_stdout = false;  ///< "expected: 3 of 3", if there are expectations
+  std::string junit;             ///< JUnit file; "": none
+  bool count_on_stdout = false;  ///< prints for example "expected: 3 of 3", if there are expectations
 };
 
 /// Throws Error (usage) if the folder of `junit` is not writable. Called before a long sweep rather than after it.

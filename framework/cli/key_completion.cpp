@@ -132,7 +132,7 @@ class Keys {
 };
 
 /// Returns whether there are keys within the field.
-bool goes_on(const FieldDescription& field, const Tree& config, const std::string& path) {
+bool has_keys_within(const FieldDescription& field, const Tree& config, const std::string& path) {
   if (field.type == Type::section || (field.type == Type::plugin && !field.adopted)) return true;
   if (field.type != Type::sections && field.type != Type::plugins) return false;
   const Tree* list = config.find_path(path);
@@ -150,7 +150,8 @@ std::vector<Completion> values(const Program& program, const std::filesystem::pa
   if (field.type == Type::plugin && field.adopted) return plugin_names(program, field.kind);
   std::map<std::string, std::string> names;
   if (config_keys().is_group(path)) {
-    for (const auto& [name, file] : program.composer.files_of(last_key(path), beside)) names[name] = purpose_of(file);
+    for (const auto& [name, file] : program.composer.group_files().list(last_key(path), beside))
+      names[name] = purpose_of(file);
   }
   if (field.type == Type::plugin) {
     for (const Completion& one : plugin_names(program, field.kind)) names.emplace(one.word, one.meaning);
@@ -215,7 +216,7 @@ std::vector<Completion> complete_key(Program& program, const std::string& config
   }
   for (const FieldDescription& field : level) {
     const std::string key = prefix + field.name;
-    const bool inner = goes_on(field, tree, key);
+    const bool inner = has_keys_within(field, tree, key);
     if (!inner || config_keys().is_group(key)) out.push_back({key + "=", meaning_of(field)});
     if (inner) out.push_back({key + ".", meaning_of(field)});
   }

@@ -31,11 +31,11 @@ void print_json(const std::vector<Row>& rows) {
 }
 
 /// Prints the numbers of folders that are not listed.
-void mention_others(const Catalogue& all, const fs::path& folder) {
+void warn_others(const Catalogue& all, const fs::path& folder) {
   std::vector<std::string> others;
   if (all.strangers > 0) others.push_back(counted(all.strangers, "folder") + " without a run");
   if (all.moved_aside > 0) others.push_back(counted(all.moved_aside, "run") + " that --force moved aside");
-  if (!others.empty()) mention(fmt::format("{}: not listed: {}\n", folder.string(), fmt::join(others, ", ")));
+  if (!others.empty()) print_message(fmt::format("{}: not listed: {}\n", folder.string(), fmt::join(others, ", ")));
 }
 
 }  // namespace
@@ -47,14 +47,13 @@ int list_runs(Program&, const ListArguments& arguments) {
   std::error_code trouble_there;
   list_folder(folder, trouble_there);
   if (trouble_there) throw Error(folder.string(), trouble_there.message(), "name a folder with runs");
-  std::optional<Condition> where;
-  if (arguments.where) where = Condition::of_command_line(*arguments.where);
+  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
   const Catalogue all = read_catalogue(folder);
   std::vector<ListedRecord> records;
   for (const fs::path& directory : all.records) {
     const auto trouble = catch_error([&] { records.push_back(list_record(directory)); });
     // A damaged record does not keep the others from the list.
-    if (trouble) mention(fmt::format("{}\n", trouble->what()));
+    if (trouble) print_message(fmt::format("{}\n", trouble->what()));
   }
   tell_apart(records);
   std::vector<Row> rows;
@@ -64,16 +63,16 @@ int list_runs(Program&, const ListArguments& arguments) {
     for (ListedRecord& one : records) rows.push_back(std::move(one.row));
   }
   arguments.json ? print_json(rows) : print_text(runs_table(rows));
-  if (all.records.empty()) mention(fmt::format("{}: contains no runs and no sweeps\n", folder.string()));
+  if (all.records.empty()) print_message(fmt::format("{}: contains no runs and no sweeps\n", folder.string()));
   if (where && rows.empty() && !records.empty()) {
     const auto sweep = std::find_if(all.records.begin(), all.records.end(), is_sweep);
-    mention(fmt::format("command line: --where: matches none of {}{}\n", records.size(),
-                        sweep == all.records.end()
-                            ? ""
-                            : fmt::format("; to filter the jobs of a sweep, use 'palpate list {} --where ...'",
-                                          (*sweep / "jobs").string())));
+    print_message(fmt::format("command line: --where: matches none of {}{}\n", records.size(),
+                              sweep == all.records.end()
+                                  ? ""
+                                  : fmt::format("; to filter the jobs of a sweep, use 'palpate list {} --where ...'",
+                                                (*sweep / "jobs").string())));
   }
-  mention_others(all, folder);
+  warn_others(all, folder);
   return kDone;
 }
 

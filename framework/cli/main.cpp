@@ -38,7 +38,7 @@ int run_main(int argc, char** argv) {
   add_commands(line, first);
   if (first == "--manual" && argc == 3) return write_manual(line.app(), argv[2]), kDone;
   if (argc == 1 && !needs_only) {
-    mention(help_text(line.app()));
+    print_message(help_text(line.app()));
     return kUsage;
   }
   PluginHost host(PluginHost::search_path(installation.plugins));
@@ -74,10 +74,10 @@ int main(int argc, char** argv) {
   try {
     status = palpate::cli::run_main(argc, argv);
   } catch (const palpate::Error& error) {
-    palpate::cli::mention(std::string(error.what()) + "\n");
+    palpate::cli::print_message(std::string(error.what()) + "\n");
     status = palpate::cli::exit_status(error.kind());
   } catch (const std::exception& error) {
-    palpate::cli::mention(fmt::format("palpate: {}\n", error.what()));
+    palpate::cli::print_message(fmt::format("palpate: {}\n", error.what()));
   }
   return palpate::cli::finish_output(status);
 }

@@ -41,7 +41,8 @@ struct NewArguments {
   bool python = false;
 };
 
-int new_plugin(Program& program, const NewArguments& arguments) {
+/// Throws Error unless the plugin can be created.
+void check_new(const Program& program, const NewArguments& arguments) {
   const auto& [kind, name, python] = arguments;
   const std::vector<std::string> kinds = PluginHost::kinds();
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
@@ -59,39 +60,49 @@ int new_plugin(Program& program, const NewArguments& arguments) {
   if (python && (name.find('-') != std::string::npos || std::isdigit(static_cast<unsigned char>(name.front())) != 0))
     throw Error("", fmt::format("'{}' is not a valid name of a Python module", name),
                 "use letters, digits and _, starting with a letter");
+}
+
+/// Copies the starter file `from` to the file `to` in the folder of the plugin, with the names of plugin and kind.
+void copy_starter(const NewArguments& arguments, const fs::path& from, const std::string& to) {
+  std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;
+  if (text.empty()) throw Error(from.string(), "cannot be read", "install palpate again");
+  boost::replace_all(text, "KIND", arguments.kind);
+  boost::replace_all(text, "starter", arguments.name);
+  std::ofstream out(fs::path(arguments.name) / to);
+  if (!(out << text).flush()) throw Error(arguments.name + "/" + to, "cannot be written", "check the free disk space");
+}
+
+void create_python(const Installation& installation, const NewArguments& arguments, const fs::path& starters) {
+  for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {
+    copy_starter(arguments, starters / "python" / file,
+                 boost::replace_all_copy(std::string(file), "starter", arguments.name));
+  }
+  // The test imports this module, because `palpate` does not start the test.
+  const std::string module = "palpate_acquisition.py";
+  copy_starter(arguments, installation.plugins / "python" / module, module);
+  const fs::path script = installation.configs.parent_path() / "palpate";
+  std::error_code none;
+  const std::string called = fs::equivalent("palpate", script, none) ? "./palpate"
+                             : fs::is_regular_file(script, none)     ? script.string()
+                                                                     : "palpate";
+  print_out(
+      "{0}/{0}.py is the acquisition, {0}/test_{0}.py its test, and {0}/{0}.yaml an experiment with it. Test and run "
+      "it from this folder:\n  python3 {0}/test_{0}.py\n  {1} run {0}/{0}.yaml\n",
+      arguments.name, called);
+}
+
+int new_plugin(Program& program, const NewArguments& arguments) {
+  check_new(program, arguments);
+  const auto& [kind, name, python] = arguments;
   const fs::path starters = program.installation.configs.parent_path() / "plugins" / "starters";
   std::error_code trouble;
   if (!fs::create_directory(name, trouble)) {
     throw Error(name, trouble ? "cannot be made: " + trouble.message() : "exists already", "choose another name");
   }
-  const auto write = [&](const fs::path& from, const std::string& to) {
-    std::string text = read_bounded(from, kMostConfigBytes, Origin::user).text;
-    if (text.empty()) throw Error(from.string(), "cannot be read", "install palpate again");
-    boost::replace_all(text, "KIND", kind);
-    boost::replace_all(text, "starter", name);
-    std::ofstream out(fs::path(name) / to);
-    if (!(out << text).flush()) throw Error(name + "/" + to, "cannot be written", "check the free disk space");
-  };
-  if (python) {
-    for (const char* const file : {"starter.py", "test_starter.py", "starter.yaml"}) {
-      write(starters / "python" / file, boost::replace_all_copy(std::string(file), "starter", name));
-    }
-    const std::string module =
-        "palpate_acquisition.py";  // the test imports this module, and `palpate` does not start the test
-    write(program.installation.plugins / "python" / module, module);
-    const fs::path script = program.installation.configs.parent_path() / "palpate";
-    const std::string called = fs::equivalent("palpate", script, trouble) ? "./palpate"
-                               : fs::is_regular_file(script, trouble)     ? script.string()
-                                                                          : "palpate";
-    print_out(
-        "{0}/{0}.py is the acquisition, {0}/test_{0}.py its test, and {0}/{0}.yaml an experiment with it. Test and run "
-        "it from this folder:\n  python3 {0}/test_{0}.py\n  {1} run {0}/{0}.yaml\n",
-        name, called);
-    return kDone;
-  }
-  write(starters / "CMakeLists.txt", "CMakeLists.txt");
-  write(starters / kind / "starter.cpp", name + ".cpp");
-  write(starters / kind / "starter.yaml", name + ".yaml");
+  if (python) return create_python(program.installation, arguments, starters), kDone;
+  copy_starter(arguments, starters / "CMakeLists.txt", "CMakeLists.txt");
+  copy_starter(arguments, starters / kind / "starter.cpp", name + ".cpp");
+  copy_starter(arguments, starters / kind / "starter.yaml", name + ".yaml");
   print_out("{0}/{0}.cpp is the plugin {1}/{0}, and {0}/{0}.yaml an experiment with it. {2}", name, kind,
             next_steps(program.installation, name));
   return kDone;

@@ -52,7 +52,7 @@ void outlive_reader() {
   outlives = true;
 }
 
-void name_record(std::string line) { record = std::move(line); }
+void set_record_line(std::string line) { record = std::move(line); }
 
 int finish_output(int status) {
   flush_output();
@@ -64,11 +64,11 @@ int finish_output(int status) {
   if (copy >= 0 && ::close(copy) != 0) note_failure();
   if (failure == 0) return status;
   if (failure == EPIPE && outlives) {
-    if (!record.empty()) mention(record + "\n");
+    if (!record.empty()) print_message(record + "\n");
     return status;
   }
-  mention(fmt::format("standard output: cannot be written{}{}{}{}\n", failure == kUnknown ? "" : ": ",
-                      failure == kUnknown ? "" : std::strerror(failure), record.empty() ? "" : "; ", record));
+  print_message(fmt::format("standard output: cannot be written{}{}{}{}\n", failure == kUnknown ? "" : ": ",
+                            failure == kUnknown ? "" : std::strerror(failure), record.empty() ? "" : "; ", record));
   return status == kDone ? kFailed : status;
 }
 

@@ -31,7 +31,7 @@ void flush_output();
 void outlive_reader();
 
 /// Sets a line about the record of the command. finish_output() prints it on stderr if stdout has failed.
-void name_record(std::string line);
+void set_record_line(std::string line);
 
 /// Flushes stdout and checks that all output was written. Returns `status`, or 1 if `status` is 0 and output was lost.
 /// A reader that has ended is not a loss: after outlive_reader(), stderr gets the line about the record. Without

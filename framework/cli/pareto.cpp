@@ -39,9 +39,9 @@ void write_files(const Sweep& sweep, const Pareto& pareto, const std::string& na
                                     : draw_picture(pareto_script(pareto, title_of(name, pareto), bound, chosen),
                                                    kParetoWidth, kParetoHeight, stem.string() + ".png");
   if (trouble.empty()) {
-    mention(fmt::format("picture: {0}.png, table: {0}.csv\n", stem.string()));
+    print_message(fmt::format("picture: {0}.png, table: {0}.csv\n", stem.string()));
   } else {
-    mention(fmt::format("no picture was drawn: {}; table: {}.csv\n", trouble, stem.string()));
+    print_message(fmt::format("no picture was drawn: {}; table: {}.csv\n", trouble, stem.string()));
   }
 }
 
@@ -66,18 +66,17 @@ void print_config(const Sweep& sweep, const Pareto& pareto, const Setting& chose
 
 int pareto(Program&, const ParetoArguments& arguments) {
   const Sweep sweep = read_records(arguments.records, {});
-  std::optional<Condition> where;
-  if (arguments.where) where = Condition::of_command_line(*arguments.where);
+  const std::optional<Condition> where = Condition::of_command_line(arguments.where);
   const Pareto pareto =
       make_pareto(sweep, sweep_results(sweep), arguments.cost, arguments.error, where ? &*where : nullptr);
   const bool asked = arguments.within.has_value();
   const std::optional<double> bound = asked ? std::optional(read_bound(pareto, *arguments.within)) : std::nullopt;
   const Setting* chosen = bound ? cheapest_within(pareto, *bound) : nullptr;
   if (pareto.unfinished > 0) {
-    mention(
+    print_message(
         fmt::format("{} of {} jobs have not ended, run them with 'palpate resume'\n", pareto.unfinished, pareto.jobs));
   }
-  asked ? mention(pareto_table(pareto)) : print_text(pareto_table(pareto));
+  asked ? print_message(pareto_table(pareto)) : print_text(pareto_table(pareto));
   // The config comes first, because writing the files may fail.
   if (chosen != nullptr) print_config(sweep, pareto, *chosen, *bound);
   write_files(sweep, pareto, sweep_name(sweep), arguments.where.value_or(""), bound, chosen);

@@ -75,7 +75,7 @@ int plugins(Program& program, const PluginsArguments& arguments) {
     }
   }
   for (const PluginListing& row : rows) {
-    if (!row.trouble.empty()) mention(row.trouble + "\n");
+    if (!row.trouble.empty()) print_message(row.trouble + "\n");
   }
   return broken ? kFailed : kDone;
 }

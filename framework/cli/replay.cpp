@@ -25,7 +25,7 @@ int replay(Program& program, const ReplayArguments& arguments) {
   check_one_run(directory);
   const ReplayReport report = replay_run(program, directory);
   if (report.truth_lost)
-    mention(fmt::format("numbers that need the truth are not compared: {}\n", report.truth_lost->what()));
+    print_message(fmt::format("numbers that need the truth are not compared: {}\n", report.truth_lost->what()));
   if (report.differences.empty()) {
     print_out("{} taps, {} numbers, all equal\n", report.taps, report.numbers);
     return kDone;

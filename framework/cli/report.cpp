@@ -29,15 +29,15 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Prints the progress on stderr, at most once per second.
-class Patience {
+class ProgressMessages {
  public:
-  explicit Patience(const char* what) : what_(what) {}
+  explicit ProgressMessages(const char* what) : what_(what) {}
 
   void operator()(int done, int all) {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < std::chrono::seconds(1)) return;
     last_ = now;
-    mention(fmt::format("report: {} of {} {}\n", done, all, what_));
+    print_message(fmt::format("report: {} of {} {}\n", done, all, what_));
   }
 
  private:
@@ -51,7 +51,7 @@ void write_page(const fs::path& file, const std::string& page) {
 }
 
 void show(const Figures& figures) {
-  for (const std::string& note : figures.notes) mention(note + "\n");
+  for (const std::string& note : figures.notes) print_message(note + "\n");
   for (const fs::path& picture : figures.pictures) print_out("{}\n", picture.string());
 }
 
@@ -63,25 +63,25 @@ void check_from_above(const Recording& recording, const std::string& what) {
 }
 
 /// Warns on stderr if the truth of the scene is lost, so that errors come from the record.
-void mention_lost(const History& history) {
-  if (history.truth_lost) mention(truth_lost_words(*history.truth_lost) + "\n");
+void warn_lost(const History& history) {
+  if (history.truth_lost) print_message(truth_lost_words(*history.truth_lost) + "\n");
 }
 
 void report_run(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
   const Recording recording = read_recording(workshop, arguments.directories.front());
   if (arguments.figures || arguments.paper)
     check_from_above(recording, "--figures and --paper are only for runs from above");
-  Patience patience("taps");
-  const History history = make_history(workshop, recording, std::ref(patience));
-  mention_lost(history);
-  write_page(to / "report.html", run_page(recording, history, std::ref(patience)));
+  ProgressMessages progress("taps");
+  const History history = make_history(workshop, recording, std::ref(progress));
+  warn_lost(history);
+  write_page(to / "report.html", run_page(recording, history, std::ref(progress)));
   if (arguments.figures) show(write_run_figures(workshop, recording, history, to / "figures"));
   if (arguments.paper) show(write_paper_figures(workshop, recording, to / "figures"));
 }
 
 void report_sweep(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
   const Sweep sweep = read_sweep(arguments.directories.front());
-  write_page(to / "report.html", sweep_page(sweep, Patience("jobs")));
+  write_page(to / "report.html", sweep_page(sweep, ProgressMessages("jobs")));
   if (arguments.figures) show(write_sweep_figures(sweep, to / "figures"));
   if (arguments.paper) show(write_paper_figures(workshop, sweep, to / "figures"));
 }
@@ -103,14 +103,14 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
       refuse(directory + " is a sweep, but a page of several runs needs single runs", "name its jobs: SWEEP/jobs/ID");
     Recording recording = read_recording(workshop, directory);
     check_from_above(recording, "pages of several runs are only for runs from above");
-    History history = make_history(workshop, recording, Patience("taps"));
-    mention_lost(history);
+    History history = make_history(workshop, recording, ProgressMessages("taps"));
+    warn_lost(history);
     name += "_" + recording.config.id;
     runs.push_back({std::move(recording), std::move(history)});
   }
   const fs::path to =
       arguments.to.empty() ? common_folder({directories.begin(), directories.end()}) : fs::path(arguments.to);
-  write_page(to / (name + ".html"), runs_page(runs, Patience("taps")));
+  write_page(to / (name + ".html"), runs_page(runs, ProgressMessages("taps")));
 }
 
 }  // namespace

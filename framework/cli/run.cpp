@@ -57,8 +57,7 @@ void print_origins(const std::vector<Composer::Group>& groups, const ResolvedCon
 
 /// Returns a clearer error if `trouble` is about an override with several values of a key, as for `palpate sweep`;
 /// otherwise returns `trouble`.
-Error in_words_of_axes(const std::vector<Override>& overrides, const std::vector<std::string>& texts,
-                       const Error& trouble) {
+Error axis_error(const std::vector<Override>& overrides, const std::vector<std::string>& texts, const Error& trouble) {
   const auto mentions = [&](const std::string& text) { return trouble.reason().find(text) != std::string::npos; };
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const Override& one = overrides[i];
@@ -98,9 +97,9 @@ void print_plan(const ResolvedConfig& config, const std::filesystem::path& direc
 }
 
 /// Names the command that builds the rest, if the first run was made from a terminal.
-void offer_the_rest(const Program& program) {
+void offer_full_build(const Program& program) {
   if (::isatty(STDERR_FILENO) == 0 || is_there(program.installation.whole)) return;
-  mention(
+  print_message(
       "sweeps, pages and the other plugins are built when a command first needs them; './palpate build' builds them "
       "now\n");
 }
@@ -115,10 +114,10 @@ int run(Program& program, const RunArguments& arguments) {
     composed = program.composer.compose(arguments.config, overrides);
     config = resolve_experiment(composed, program.host);
   });
-  if (trouble) throw in_words_of_axes(overrides, arguments.overrides, *trouble);
+  if (trouble) throw axis_error(overrides, arguments.overrides, *trouble);
   if (const Tree* sweep = composed.find("sweep"); sweep != nullptr && !arguments.quiet) {
-    mention(fmt::format("{}: sweep: is ignored by 'palpate run'; 'palpate sweep' runs all its jobs\n",
-                        sweep->place.text()));
+    print_message(fmt::format("{}: sweep: is ignored by 'palpate run'; 'palpate sweep' runs all its jobs\n",
+                              sweep->place.text()));
   }
   if (arguments.print_config) {
     if (arguments.identity) {
@@ -143,8 +142,8 @@ int run(Program& program, const RunArguments& arguments) {
     return start_run(program, config, directory, arguments.force, display, step);
   });
   if (arguments.quiet) return status;
-  for (const std::string& line : partly_given_sizes(config.tree, config.notes)) mention(line + "\n");
-  offer_the_rest(program);
+  for (const std::string& line : partly_given_sizes(config.tree, config.notes)) print_message(line + "\n");
+  offer_full_build(program);
   return status;
 }
 

@@ -32,9 +32,10 @@ int status(Program& program, const StatusArguments& arguments) {
               status.state == RunStatus::State::done ? "" : ", before the last tap");
   }
   if (status.cut) {
-    mention((std::filesystem::path(directory) / kRecordFile).string() +
-            ": was cut short, because summary.json says that the run had ended; 'palpate resume' repeats the missing "
-            "part\n");
+    print_message(
+        (std::filesystem::path(directory) / kRecordFile).string() +
+        ": was cut short, because summary.json says that the run had ended; 'palpate resume' repeats the missing "
+        "part\n");
   }
   return kDone;
 }

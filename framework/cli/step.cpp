@@ -20,7 +20,7 @@ namespace palpate::cli {
 namespace {
 
 /// Longest delay of an interrupt: if another thread handles the signal, poll() does not return early.
-constexpr int kGlance = 100;  // ms
+constexpr int kPollMilliseconds = 100;
 
 std::string who_chose(const TapRecord& tap) {
   if (tap.source == Source::fallback) return "a fallback: " + tap.why;
@@ -54,11 +54,11 @@ bool Step::permits(const TapRecord& tap, const Preview& preview) {
   for (const std::string& line : preview.motion) text += "\n      " + line;
   flush_output();
   ::tcflush(STDIN_FILENO, TCIFLUSH);
-  mention(text + "\n");
+  print_message(text + "\n");
   for (;;) {
-    mention("      Enter taps, q ends: ");
+    print_message("      Enter taps, q ends: ");
     const std::optional<std::string> answer = read_line();
-    if (!answer) mention("\n");
+    if (!answer) print_message("\n");
     if (!answer || *answer == "q") return false;
     if (answer->empty()) return true;
   }
@@ -69,7 +69,7 @@ std::optional<std::string> Step::read_line() const {
   std::string line;
   while (line.empty() || line.back() != '\n') {
     pollfd input{STDIN_FILENO, POLLIN, 0};
-    const int ready = ::poll(&input, 1, kGlance);
+    const int ready = ::poll(&input, 1, kPollMilliseconds);
     if (interrupted_ != nullptr && interrupted_->load()) return std::nullopt;
     if (ready <= 0) continue;
     char piece[256];

@@ -36,7 +36,7 @@ namespace palpate::cli {
 namespace {
 
 /// A sweep that starts or resumes.
-struct Campaign {
+struct SweepExecution {
   const Program& program;
   const Sweep& sweep;
   ResumeOptions options;
@@ -49,13 +49,13 @@ struct Campaign {
 };
 
 /// Returns the jobs that this process is responsible for, done or not.
-std::vector<std::size_t> jobs_of(const Campaign& campaign) {
-  return campaign.only.empty() ? all_jobs(campaign.sweep) : campaign.only;
+std::vector<std::size_t> jobs_of(const SweepExecution& execution) {
+  return execution.only.empty() ? all_jobs(execution.sweep) : execution.only;
 }
 
 /// Ends a part of a sweep, as in a task of a cluster. The process that submitted the tasks prints the results of the
 /// whole.
-int conclude_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool all_recorded) {
+int finish_part(const Sweep& sweep, const JobStates& end, bool interrupted, bool all_recorded) {
   const bool complete = std::all_of(sweep.jobs.begin(), sweep.jobs.end(),
                                     [&](const Job& job) { return has_ended(job_directory(sweep, job)); });
   if (complete) write_results(sweep);
@@ -66,10 +66,10 @@ int conclude_part(const Sweep& sweep, const JobStates& end, bool interrupted, bo
 }
 
 /// Returns the config of a job; nullopt if it is damaged. The job then fails by itself and reports the reason.
-std::optional<ResolvedConfig> readable_config(const Campaign& campaign, std::size_t job) {
+std::optional<ResolvedConfig> readable_config(const SweepExecution& execution, std::size_t job) {
   std::optional<ResolvedConfig> config;
   catch_error(
-      [&] { config = load_run(campaign.program.host, job_directory(campaign.sweep, campaign.sweep.jobs[job])); });
+      [&] { config = load_run(execution.program.host, job_directory(execution.sweep, execution.sweep.jobs[job])); });
   return config;
 }
 
@@ -84,10 +84,10 @@ std::optional<int> initial_taps_of(const ExperimentOptions& options) {
   return static_cast<int>(options.initial.searches() || options.space ? options.taps : options.initial.count);
 }
 
-int conclude_whole(const Campaign& campaign, const JobStates& end, bool interrupted, Launched launched) {
-  const Sweep& sweep = campaign.sweep;
+int finish_whole(const SweepExecution& execution, const JobStates& end, bool interrupted, Launched launched) {
+  const Sweep& sweep = execution.sweep;
   const auto initial_taps = [&](std::size_t job) {
-    const auto config = readable_config(campaign, job);
+    const auto config = readable_config(execution, job);
     return config ? initial_taps_of(config->options) : std::nullopt;
   };
   print_text(sweep_table(sweep, write_results(sweep), initial_taps));
@@ -95,7 +95,7 @@ int conclude_whole(const Campaign& campaign, const JobStates& end, bool interrup
   const std::string directory = sweep.directory.string();
   if (!end.failures.empty()) print_out("try them again: palpate resume --retry-failed {}\n", directory);
   const bool open = interrupted || !end.open.empty() || launched == Launched::ended_unrecorded;
-  if (!open) name_record("record: " + directory);
+  if (!open) set_record_line("record: " + directory);
   const bool blocked = launched == Launched::blocked && !interrupted;
   print_out("{} {}\n",
             !open     ? "record:"
@@ -104,63 +104,64 @@ int conclude_whole(const Campaign& campaign, const JobStates& end, bool interrup
             directory);
   if (interrupted) return kInterrupted;
   // The expectations are the same in the configs of all jobs, so the first readable config is enough.
-  std::optional<ResolvedConfig> config = campaign.first;
-  for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(campaign, job);
+  std::optional<ResolvedConfig> config = execution.first;
+  for (std::size_t job = 0; job < sweep.jobs.size() && !config; ++job) config = readable_config(execution, job);
   if (!config) throw Error(sweep.directory.string(), "no job has a readable config.yaml", "restore these files");
-  const bool is_judged = !config->expectations.empty() || !campaign.launch.junit.empty();
+  const bool is_judged = !config->expectations.empty() || !execution.launch.junit.empty();
   const bool all_hold = !is_judged || conclude(config->expectations, outcomes_of(sweep),
-                                               {config->options.name, campaign.launch.junit, true});
+                                               {config->options.name, execution.launch.junit, true});
   return open ? kFailed : sweep_status(config->expectations, all_hold, !end.failures.empty());
 }
 
-bool is_on_cluster(const Campaign& campaign) { return campaign.launch.launcher != kLocal; }
+bool is_on_cluster(const SweepExecution& execution) { return execution.launch.launcher != kLocal; }
 
-LaunchOptions launch_options(const Campaign& campaign) {
-  const LaunchArguments& launch = campaign.launch;
-  const int workers = launch.workers.value_or(is_on_cluster(campaign) ? 1 : cores());
-  return {campaign.one_at_a_time ? 1 : workers,
-          campaign.options,
+LaunchOptions launch_options(const SweepExecution& execution) {
+  const LaunchArguments& launch = execution.launch;
+  const int workers = launch.workers.value_or(is_on_cluster(execution) ? 1 : cores());
+  return {execution.one_at_a_time ? 1 : workers,
+          execution.options,
           launch.attempts,
-          campaign.only.empty(),
-          campaign.one_at_a_time,
+          execution.only.empty(),
+          execution.one_at_a_time,
           launch.cluster,
           launch.jobs_per_task.value_or(1)};
 }
 
 /// Prints the commands that follow, continue and stop the jobs on a cluster.
-void print_ways_on(const Campaign& campaign, const Launcher& launcher) {
-  const std::string directory = shell_word(std::filesystem::absolute(campaign.sweep.directory).string());
+void print_next_commands(const SweepExecution& execution, const Launcher& launcher) {
+  const std::string directory = shell_word(std::filesystem::absolute(execution.sweep.directory).string());
   print_out("watch progress with: palpate status {}\n", directory);
-  print_out("run missing jobs afterwards with: palpate resume {} --launcher {}\n", directory, campaign.launch.launcher);
+  print_out("run missing jobs afterwards with: palpate resume {} --launcher {}\n", directory,
+            execution.launch.launcher);
   print_out("stop: {}\n", launcher.stop_command());
 }
 
 /// Runs the open jobs until all have ended. On a cluster without --wait, returns once they are submitted.
-Launched launch_open(const Campaign& campaign, const JobStates& begun) {
+Launched launch_open(const SweepExecution& execution, const JobStates& begun) {
   const auto print_array = [](const TaskArray& array) {
     print_out("array {}: {}, {}, logs in {}\n", array.id, counted(array.tasks, "task"), counted(array.jobs, "job"),
               array.logs.string());
     if (!array.doubt.empty())
-      mention(fmt::format("no node can run array {} now: {}; 'sinfo' shows the nodes\n", array.id, array.doubt));
+      print_message(fmt::format("no node can run array {} now: {}; 'sinfo' shows the nodes\n", array.id, array.doubt));
     flush_output();
   };
-  const Program& program = campaign.program;
+  const Program& program = execution.program;
   const std::unique_ptr<Launcher> launcher =
-      launcher_type(campaign.launch.launcher).make({program, campaign.sweep, launch_options(campaign), print_array});
-  if (is_on_cluster(campaign)) {
+      launcher_type(execution.launch.launcher).make({program, execution.sweep, launch_options(execution), print_array});
+  if (is_on_cluster(execution)) {
     if (begun.open.empty() || program.interrupted->load()) return Launched::ended;  // nothing to submit
-    if (!campaign.launch.wait) {
+    if (!execution.launch.wait) {
       launcher->submit(begun.open);
-      print_ways_on(campaign, *launcher);
+      print_next_commands(execution, *launcher);
       return Launched::submitted;
     }
     // A closed terminal ends the waiting, but not the jobs. Under nohup, the waiting goes on.
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   }
-  SweepLine line(campaign.launch.quiet);
+  SweepLine line(execution.launch.quiet);
   bool blocked = false;
   const bool all_recorded =
-      execute_jobs(*launcher, campaign.sweep, begun, program.interrupted, [&](const SweepProgress& progress) {
+      execute_jobs(*launcher, execution.sweep, begun, program.interrupted, [&](const SweepProgress& progress) {
         blocked = progress.blocked;
         line.show(progress);
       });
@@ -168,7 +169,7 @@ Launched launch_open(const Campaign& campaign, const JobStates& begun) {
 }
 
 /// Returns all jobs that are not done, ascending.
-std::vector<std::size_t> undone(const JobStates& standing) {
+std::vector<std::size_t> jobs_not_done(const JobStates& standing) {
   std::vector<std::size_t> out = standing.open;
   for (const SweepFailure& one : standing.failures) out.push_back(one.job);
   std::sort(out.begin(), out.end());
@@ -176,42 +177,42 @@ std::vector<std::size_t> undone(const JobStates& standing) {
 }
 
 /// Sets one_at_a_time. Throws Error if another build started one of these jobs, unless --force is given.
-void check_builds(Campaign& campaign, const std::vector<std::size_t>& jobs) {
+void check_builds(SweepExecution& execution, const std::vector<std::size_t>& jobs) {
   for (const std::size_t job : jobs) {
-    const std::filesystem::path directory = job_directory(campaign.sweep, campaign.sweep.jobs[job]);
-    const std::optional<ResolvedConfig> config = readable_config(campaign, job);
+    const std::filesystem::path directory = job_directory(execution.sweep, execution.sweep.jobs[job]);
+    const std::optional<ResolvedConfig> config = readable_config(execution, job);
     if (!config) continue;
-    campaign.one_at_a_time = campaign.one_at_a_time || campaign.program.host.one_at_a_time(config->notes.plugins);
+    execution.one_at_a_time = execution.one_at_a_time || execution.program.host.one_at_a_time(config->notes.plugins);
     std::optional<Error> objection;
-    catch_error([&] { objection = objection_to_build(campaign.program, *config, read_run_record(directory)); });
-    if (objection && !campaign.options.force) throw *objection;
+    catch_error([&] { objection = objection_to_build(execution.program, *config, read_run_record(directory)); });
+    if (objection && !execution.options.force) throw *objection;
   }
 }
 
 /// Runs the open jobs, prints the result and checks the expectations. Returns the exit status.
-int run_campaign(const Campaign& campaign, JobStates begun) {
-  const Sweep& sweep = campaign.sweep;
+int execute_sweep(const SweepExecution& execution, JobStates begun) {
+  const Sweep& sweep = execution.sweep;
   check_locks(sweep.directory);
-  const bool whole = campaign.only.empty();
+  const bool whole = execution.only.empty();
   // The node that runs a part of the jobs may mount the folder in another way than the node that submitted them.
-  if (is_on_cluster(campaign) || !whole) check_shared_locks(sweep.directory);
+  if (is_on_cluster(execution) || !whole) check_shared_locks(sweep.directory);
   listen_for_interrupts();
   outlive_reader();
-  name_record("resume with: palpate resume " + sweep.directory.string());
-  const std::vector<std::size_t> jobs = undone(begun);
-  if (campaign.options.retry_failed) reopen_failed(begun);
-  if (campaign.one_at_a_time && begun.open.size() > 1 && !campaign.launch.quiet) {
-    mention("jobs run one at a time, because the backend moves only one arm\n");
+  set_record_line("resume with: palpate resume " + sweep.directory.string());
+  const std::vector<std::size_t> jobs = jobs_not_done(begun);
+  if (execution.options.retry_failed) reopen_failed(begun);
+  if (execution.one_at_a_time && begun.open.size() > 1 && !execution.launch.quiet) {
+    print_message("jobs run one at a time, because the backend moves only one arm\n");
   }
-  if (campaign.launch.watch) start_watcher(campaign.program, sweep.directory);
-  const Launched launched = launch_open(campaign, begun);
+  if (execution.launch.watch) start_watcher(execution.program, sweep.directory);
+  const Launched launched = launch_open(execution, begun);
   if (launched == Launched::submitted) return kDone;
   // Missing files do not count here: `execute_jobs` has reported them, and a job of another build may never get them
   // back.
   const JobStates end = read_job_states(sweep, jobs, JobCheck::nothing);
-  const bool interrupted = campaign.program.interrupted->load();
-  if (whole) return conclude_whole(campaign, end, interrupted, launched);
-  return conclude_part(sweep, end, interrupted, launched != Launched::ended_unrecorded);
+  const bool interrupted = execution.program.interrupted->load();
+  if (whole) return finish_whole(execution, end, interrupted, launched);
+  return finish_part(sweep, end, interrupted, launched != Launched::ended_unrecorded);
 }
 
 /// Returns the job numbers in a text such as "0-7,12", ascending, each once. Throws Error for a number that is not
@@ -240,8 +241,15 @@ std::vector<std::size_t> parse_jobs(const std::string& text, std::size_t count) 
   return {jobs.begin(), jobs.end()};
 }
 
+/// Returns the entry of the launcher. Throws Error for options that the launcher rejects.
+const LauncherType& checked_launcher(const LaunchArguments& launch) {
+  const LauncherType& out = launcher_type(launch.launcher);
+  if (out.check_options != nullptr) out.check_options(launch.cluster);
+  return out;
+}
+
 /// Throws Error for a sweep whose taps are made by a Python program.
-void check_who_taps(const ResolvedConfig& config, const std::string& place) {
+void check_taps_are_own(const ResolvedConfig& config, const std::string& place) {
   if (config.options.backend.type != kCaller) return;
   throw Error(place, "the taps of this sweep are made by the caller's own program, not by palpate",
               "create it with palpate.begin_sweep() in Python, and run its jobs with experiments()");
@@ -255,8 +263,7 @@ std::size_t jobs_of_sweep(Program& program, const std::string& config) {
 
 int sweep(Program& program, const SweepArguments& arguments) {
   check_launch(arguments.launch);
-  const LauncherType& launcher = launcher_type(arguments.launch.launcher);
-  if (launcher.check_options != nullptr) launcher.check_options(arguments.launch.cluster);
+  const LauncherType& launcher = checked_launcher(arguments.launch);
   // A missing scheduler must not leave a sweep behind that nothing can run.
   if (launcher.check_installed != nullptr && !arguments.list) launcher.check_installed();
   bool one_at_a_time = false;
@@ -266,7 +273,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
   std::optional<SweepPlan> plan = plan_sweep(program.composer, program.host, arguments.config, arguments.axes,
                                              arguments.runs, [&](const Job& job, const ResolvedConfig& config) {
                                                if (draft) {
-                                                 check_who_taps(config, "backend");
+                                                 check_taps_are_own(config, "backend");
                                                  draft->add(job, config);
                                                }
                                                if (job.index == 0) first = config;
@@ -278,7 +285,7 @@ int sweep(Program& program, const SweepArguments& arguments) {
     for (const Job& job : plan->sweep.jobs) {
       print_out("{}  {}{}\n", job.index, job.id, values_text(plan->sweep, job, "  "));
     }
-    if (!arguments.launch.quiet) mention(jobs + "\n");
+    if (!arguments.launch.quiet) print_message(jobs + "\n");
     return kDone;
   }
   const bool is_new = draft->publish(*plan);
@@ -286,38 +293,37 @@ int sweep(Program& program, const SweepArguments& arguments) {
   draft.reset();
   plan.reset();  // each child process would copy the memory of the planning
   const Sweep planned = read_sweep(directory);
-  Campaign campaign{program, planned, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
-  if (!is_new) check_builds(campaign, jobs_of(campaign));
+  SweepExecution execution{program, planned, {}, arguments.launch, {}, one_at_a_time, std::move(first)};
+  if (!is_new) check_builds(execution, jobs_of(execution));
   if (!arguments.launch.quiet) {
-    for (const std::string& line : partly_given_sizes(campaign.first->tree, campaign.first->notes))
-      mention(line + "\n");
-    mention(fmt::format("{} in {}{}\n", jobs, directory.string(),
-                        is_new ? "" : ", which exists: only missing jobs are run"));
+    for (const std::string& line : partly_given_sizes(execution.first->tree, execution.first->notes))
+      print_message(line + "\n");
+    print_message(fmt::format("{} in {}{}\n", jobs, directory.string(),
+                              is_new ? "" : ", which exists: only missing jobs are run"));
   }
-  return run_campaign(campaign, read_job_states(planned, jobs_of(campaign)));
+  return execute_sweep(execution, read_job_states(planned, jobs_of(execution)));
 }
 
 int resume_sweep(Program& program, const ResumeArguments& arguments) {
-  const LauncherType& launcher = launcher_type(arguments.launch.launcher);
-  if (launcher.check_options != nullptr) launcher.check_options(arguments.launch.cluster);
+  checked_launcher(arguments.launch);
   const auto refuse = [](const std::string& reason, const char* hint) { throw Error("command line", reason, hint); };
   if (arguments.step) refuse("--step: " + arguments.directory + " is a sweep of many runs", "leave it out");
   const Sweep sweep = read_sweep(arguments.directory);
-  Campaign campaign{program, sweep, arguments.options, arguments.launch, {}, false};
+  SweepExecution execution{program, sweep, arguments.options, arguments.launch, {}, false};
   if (!arguments.jobs.empty()) {
-    campaign.only = parse_jobs(arguments.jobs, sweep.jobs.size());
+    execution.only = parse_jobs(arguments.jobs, sweep.jobs.size());
     const char* const hint = "leave one of them out";
     if (arguments.launch.jobs_per_task.value_or(1) > 1)
       refuse("--jobs and --jobs-per-task exclude each other: a task runs all of its jobs", hint);
     if (!arguments.launch.junit.empty())
       refuse("--jobs and --junit exclude each other: expectations are checked for the whole sweep", hint);
   }
-  JobStates begun = read_job_states(sweep, jobs_of(campaign));
-  const std::vector<std::size_t> left = undone(begun);
-  const std::optional<ResolvedConfig> next = left.empty() ? std::nullopt : readable_config(campaign, left.front());
-  if (next) check_who_taps(*next, arguments.directory);
-  check_builds(campaign, left);
-  return run_campaign(campaign, std::move(begun));
+  JobStates begun = read_job_states(sweep, jobs_of(execution));
+  const std::vector<std::size_t> left = jobs_not_done(begun);
+  const std::optional<ResolvedConfig> next = left.empty() ? std::nullopt : readable_config(execution, left.front());
+  if (next) check_taps_are_own(*next, arguments.directory);
+  check_builds(execution, left);
+  return execute_sweep(execution, std::move(begun));
 }
 
 /// Reads the directories of the jobs alone, and asks neither the scheduler nor another process.

@@ -63,7 +63,7 @@ void SweepLine::show(const SweepProgress& progress) {
     line += fmt::format(", {}", rate_words(rate));
     if (ended < progress.jobs) line += fmt::format(", {} left", duration_words((progress.jobs - ended) / rate));
   }
-  mention(std::string(terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
+  print_message(std::string(terminal_ ? kClearLine : "") + line + (terminal_ && !progress.last ? "" : "\n"));
 }
 
 bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, std::optional<int> workers,
@@ -85,7 +85,7 @@ bool compute_jobs(const Program& program, const std::vector<std::size_t>& jobs, 
 
 Sweep read_records(const std::vector<std::string>& words, const std::vector<std::string>& by) {
   PooledSweep pooled = read_pooled(find_records(words), by);
-  for (const std::string& note : pooled.notes) mention("note: " + note + "\n");
+  for (const std::string& note : pooled.notes) print_message("note: " + note + "\n");
   return std::move(pooled.sweep);
 }
 

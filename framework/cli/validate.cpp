@@ -42,7 +42,7 @@ int validate(Program& program, const ValidateArguments& arguments) {
     said.emplace_back(false, std::string(trouble->what()) + "\n");
     ++bad;
   }
-  for (const auto& [valid, line] : said) valid ? print_text(line) : mention(line);
+  for (const auto& [valid, line] : said) valid ? print_text(line) : print_message(line);
   return bad == 0 ? kDone : kUsage;
 }
 

@@ -13,14 +13,14 @@
 namespace palpate::cli {
 
 int watch(Program& program, const WatchArguments& arguments) {
-  constexpr int kPatience = 120;
+  constexpr int kIdleSeconds = 120;
   // The watched run has priority over this process, which computes the run a second time. The page of a sweep needs
   // little time and gets a higher priority, because the jobs occupy all cores.
   ::setpriority(PRIO_PROCESS, 0, is_sweep(arguments.directory) ? 10 : 19);
   Site site(program, arguments.directory);
-  Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kPatience : 0});
+  Server server(site, {arguments.bind, arguments.port, arguments.until_left ? kIdleSeconds : 0});
   if (server.is_open_to_others()) {
-    mention(fmt::format(
+    print_message(fmt::format(
         "watch: anyone who can reach {} and has this address can see the run; the connection is not encrypted\n",
         arguments.bind));
   }

@@ -49,7 +49,7 @@ void start_watcher(const palpate::cli::Program& program, const std::filesystem::
     pipe->to_write.close();
     said = first_line(pipe->to_read);
   }
-  mention(fmt::format("watch: {}\n", said.empty() ? "the page is not ready yet" : said));
+  print_message(fmt::format("watch: {}\n", said.empty() ? "the page is not ready yet" : said));
 }
 
 void Watcher::start() {

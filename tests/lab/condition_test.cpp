@@ -48,7 +48,7 @@ void none_holds(const Texts& texts) {
 }
 
 TEST(Condition, ComparesNumbersAsNumbers) {
-  // As text, 9 comes after 17.
+  // As texts, 9 would be greater than 17.
   all_hold({"taps == 17", "taps == 17.0", "taps == 1.7e1", "taps > 9", "taps >= 17", "taps <= 17", "taps > -17"});
   none_holds({"taps != 17.0", "taps < 9", "taps > 17", "taps < 17"});
 }
@@ -73,7 +73,7 @@ TEST(Condition, TakesWhatIsInQuotesForAText) {
 }
 
 TEST(Condition, AgreesWithATruthTable) {
-  // seed == 3 is true, seed == 4 is false: every way to join three of them, against C++'s own operators.
+  // seed == 3 is true and seed == 4 is false. All combinations of three comparisons are compared with C++'s operators.
   for (int bits = 0; bits < 8; ++bits) {
     const auto word = [&](int bit) { return (bits >> bit & 1) != 0 ? std::string("seed == 3") : "seed == 4"; };
     const bool a = (bits & 1) != 0, b = (bits & 2) != 0, c = (bits & 4) != 0;
@@ -99,7 +99,7 @@ TEST(Condition, DoesNotHoldOfAResultThatIsMissingNorDoesItsNegation) {
     const std::string comparison = std::string("rmse_m ") + sign + " 2 mm";
     none_holds({comparison, "not " + comparison, "not not " + comparison, "not (" + comparison + " and taps == 17)",
                 "nlpd == 4.5 and not (" + comparison + " or taps == 3)"});
-    // What it says does not matter there.
+    // The invalid comparison is not evaluated.
     all_hold({comparison + " or taps == 17", "not (" + comparison + " and taps == 3)",
               "not (taps == 3 and " + comparison + ")"});
   }
@@ -108,7 +108,7 @@ TEST(Condition, DoesNotHoldOfAResultThatIsMissingNorDoesItsNegation) {
 }
 
 TEST(Condition, JoinsWhatIsUndecidedByKleenesTruthTables) {
-  // -1 for undecided, against the textbook's definition by all completions: a formula is decided where both agree.
+  // -1 stands for undecided. The reference evaluates all completions: a formula is decided if they agree.
   const auto comparison = [](int truth) {
     return std::string(truth < 0 ? "rmse_m > 0 m" : truth == 1 ? "seed == 3" : "seed == 4");
   };

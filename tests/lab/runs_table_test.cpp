@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `palpate list` shows of a run: folders written by hand, of which every cell is known.
+// The columns of `palpate list`, for folders written by hand.
 #include "analysis/runs_table.hpp"
 
 #include "config/yaml.hpp"
@@ -28,7 +28,7 @@ class RunsTable : public InFolder {
     ::tzset();
   }
 
-  /// Writes a run that was begun on 1 March 2026, and so many hours later.
+  /// Writes a run that began `hours` hours after midnight of 1 March 2026.
   fs::path run(const std::string& name, int hours, const std::string& summary = "") const {
     const fs::path config =
         folder_.write(name + "/config.yaml", "name: " + name + "\nseed: " + std::to_string(hours) +
@@ -39,7 +39,7 @@ class RunsTable : public InFolder {
     if (!summary.empty()) folder_.write(name + "/record.jsonl", ended(summary));
     return config.parent_path();
   }
-  /// A record that ends so; "{" is no end.
+  /// Returns a record with this end; "{" is not an end.
   static std::string ended(const std::string& summary, const std::string& manifest = R"({"manifest": 1})") {
     const std::string how = summary.find("failed") == std::string::npos ? "done" : "failed";
     return manifest + "\n{\"end\": \"" + how + "\", \"summary\": " + summary + "}\n";
@@ -62,7 +62,7 @@ class RunsTable : public InFolder {
   }
   static std::vector<std::string> names_where(const std::vector<ListedRecord>& records, const std::string& where) {
     std::vector<std::string> names;
-    for (const Row& row : rows_where(records, Condition::of_command_line(where))) names.push_back(row.text("name"));
+    for (const Row& row : rows_where(records, *Condition::of_command_line(where))) names.push_back(row.text("name"));
     return names;
   }
 };

@@ -12,7 +12,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 namespace palpate {
 
@@ -115,7 +114,7 @@ const Tree& Composer::load(const fs::path& file) {
 
 std::vector<std::string> Composer::names_of(const std::string& group) const {
   std::vector<std::string> out;
-  for (const auto& [name, file] : files_of(group, beside_)) out.push_back(name);
+  for (const auto& [name, file] : group_files_.list(group, beside_)) out.push_back(name);
   return out;
 }
 
@@ -245,7 +244,7 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
-  // A group may bring options for the key beside it, as a backend brings its motion. These options count unless that
+  // A group may bring options for the key next to it, as a backend brings its motion. These options count unless that
   // key is chosen by an override, or anywhere in the config that chooses the group.
   const auto is_chosen = [&](const std::string& key, Layer since) {
     return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) {
@@ -353,11 +352,11 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   return tree;
 }
 
-void Composer::lay_override(Tree& tree, const Override& override) {
-  const auto& [path, value] = override;
+void Composer::lay_override(Tree& tree, const Override& one) {
+  const auto& [path, value] = one;
   const bool is_group = keys_.is_group(path);
   if (is_group && value.is_scalar()) {
-    if (is_inner(path)) choose_inner(tree, override, beside_);
+    if (is_inner(path)) choose_inner(tree, one, beside_);
     return;
   }
   Tree& slot = tree.at_path(path, value.place);

@@ -37,8 +37,8 @@ void mark_complete(Tree& config);
 /// top-level key that it has.
 ///
 /// Keys of the run itself (Field::of_run()) are ignored in the file of a strategy, with one exception: a motion that is
-/// written out (`motion: {...}`, not a name) counts as a whole if neither a group nor the config sets any part of it.
-/// So no strategy makes an arm faster than its own config does.
+/// written out (`motion: {...}`, not a name). It counts as a whole if neither a group nor the config sets any part of
+/// the motion. So no strategy makes an arm faster than its own config does.
 class Composer {
  public:
   /// `shipped`: the configs of the program. `keys` must outlive the object.
@@ -64,11 +64,7 @@ class Composer {
   /// Returns the groups of the last composition, from the lowest layer to the highest.
   const std::vector<Group>& groups() const { return groups_; }
 
-  /// See GroupFiles::list().
-  std::map<std::string, std::filesystem::path> files_of(const std::string& group,
-                                                        const std::filesystem::path& beside) const {
-    return group_files_.list(group, beside);
-  }
+  const GroupFiles& group_files() const { return group_files_; }
   /// Returns the sorted names that the config of the last composition may choose at a group.
   std::vector<std::string> names_of(const std::string& group) const;
 
@@ -91,7 +87,7 @@ class Composer {
   /// Removes the strategy from `choices`, if there is one, and merges it into `tree`. Returns the layer of its name.
   Layer lay_strategy(Tree& tree, std::vector<Choice>& choices, const std::filesystem::path& beside, Layer& layer,
                      std::vector<std::string>& chain);
-  void lay_override(Tree& tree, const Override& override);
+  void lay_override(Tree& tree, const Override& one);
   /// Merges a plugin within another plugin, for example an item of a list, into the otherwise complete tree.
   void choose_inner(Tree& tree, const Choice& choice, const std::filesystem::path& beside);
 
@@ -103,7 +99,7 @@ class Composer {
                     std::vector<std::string>& chain);
   void lay_bases(Tree& content, const std::string& group, const std::vector<Choice>& bases,
                  const std::filesystem::path& beside, std::vector<std::string>& chain);
-  /// Merges the file of a group into its content. Throws Error for keys other than the group and the one beside it.
+  /// Merges the file of a group into its content. Throws Error for keys other than the group and the key next to it.
   void lay_group_file(Tree& content, const std::string& group, const Tree& own) const;
 
   /// Returns whether a path leads into a group, to a plugin within another one: kernel.kernels.0.kernel.

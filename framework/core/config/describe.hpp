@@ -20,8 +20,8 @@ struct FieldDescription {
   std::string name;
   Type type = Type::real;
   Unit unit = Unit::none;
-  std::string range;          ///< "> 0 m", "0 .. 1", or ""
-  std::string default_value;  ///< as it would be written; "" for none
+  std::string range;          ///< for example "> 0 m" or "0 .. 1"; "": no limits
+  std::string default_value;  ///< as in a config; "": none
   std::string meaning;
   std::string source;
   bool required = false;
@@ -29,13 +29,13 @@ struct FieldDescription {
   bool group = false;     ///< see Field::group()
   bool adopted = false;   ///< see Fields::adopt(): the options of the plugin, which are unknown here, follow the field
   bool drawable = false;  ///< see Field::drawable()
-  std::string heir_of;    ///< see Field::inherits(); "" for none
+  std::string heir_of;    ///< see Field::inherits(); "": none
   Owner owner = Owner::unsaid;
-  std::string beside;                  ///< see Field::with_beside(); "" for none
-  std::string neutral;                 ///< see Field::neutral(): as in a config, "none" where it is absent; "" for none
-  std::size_t count = 0;               ///< number of values of `reals`, or of a row of `table`
-  std::string kind;                    ///< of a `plugin`
-  std::vector<CaseDescription> cases;  ///< of a `choice`
+  std::string beside;                    ///< see Field::with_beside(); "": none
+  std::string neutral;                   ///< see Field::neutral(); as in a config, "none": absent, "": no neutral value
+  std::size_t count = 0;                 ///< number of values of `reals`, or of a row of `table`
+  std::string kind;                      ///< of a `plugin`
+  std::vector<CaseDescription> cases;    ///< of a `choice`
   std::vector<FieldDescription> fields;  ///< of `section` and `sections`
 
   /// Returns for example "length", "whole number" or "one of a, b".

@@ -22,7 +22,7 @@ struct Axis {
 /// A number of a range, with its unit as written.
 struct Bound {
   double value;
-  std::string unit;  ///< "" for none
+  std::string unit;  ///< "": none
 };
 
 /// The parts of a text such as `range(1cm, 5cm)`.
@@ -41,7 +41,7 @@ struct ContinuousRange {
   bool logarithmic = false;
   double first = 0.0;  ///< in `unit`; below `last`, and positive if logarithmic
   double last = 1.0;
-  std::string unit;  ///< "" for none
+  std::string unit;  ///< "": none
 
   /// Returns the number at `share` (0 to 1) of the range.
   double at(double share) const;
@@ -68,9 +68,9 @@ class ValueCount {
   std::size_t all_ = 0;
 };
 
-/// Returns the values of a list, of `range(first, end)` or `range(first, end, step)` (end excluded), or of
-/// `logspace(first, last, count)` (both ends included, same unit, evenly spaced in the logarithm). Any other value is a
-/// single value. Throws Error.
+/// Returns the values of a list, of `range(first, end)` or `range(first, end, step)`, or of `logspace(first, last,
+/// count)`. The end of a range is excluded. The values of logspace include both ends and are evenly spaced in the
+/// logarithm. Any other value is a single value. Throws Error.
 std::vector<Tree> expand_values(const Tree& value, const std::string& key, ValueCount& count);
 
 /// Parses KEY=VALUES of `palpate sweep`: `KEY=V1,V2`, `KEY=[V1, V2]`, `KEY=range(0,10)`, `KEY=logspace(1cm,5cm,8)`. A

@@ -14,11 +14,11 @@
 
 namespace palpate {
 
-/// Finds the file <folder>/<group>/<name>.yaml of a group, in the first folder that has one: the folder of the config,
-/// the nearest folder named `configs` above it, ./configs, and the configs of the program.
+/// Finds the file <folder>/<group>/<name>.yaml of a group. It searches the folder of the config, the nearest folder
+/// named `configs` above it, ./configs, and the configs of the program. The first file counts.
 ///
 /// A group may name a program that a run starts, so the file must be the user's own. A file is rejected if all users
-/// may put files into its folder (a folder with the sticky bit, such as /tmp) or, for ./configs, if others may write
+/// may put files into its folder, as into /tmp (sticky bit). In ./configs, a file is also rejected if others may write
 /// there.
 class GroupFiles {
  public:

@@ -93,12 +93,12 @@ class MapReader : public Fields {
 
   const Tree& input_;
   std::string path_;
-  std::string plugin_;    ///< whose options these are; "" for none
-  std::string beside_;    ///< the option of the plugin that stands beside it: Field::with_beside(); "" for none
+  std::string plugin_;    ///< plugin that has these options; "": none
+  std::string beside_;    ///< option next to the plugin: Field::with_beside(); "": none
   std::string above_;     ///< path of the map around such a plugin
   std::string id_above_;  ///< the same with former names of fields
   bool silent_ = false;   ///< the options of a plugin are unknown, so that any key may be valid
-  std::string adopted_;   ///< whose options stand among them; "" for none
+  std::string adopted_;   ///< adopted plugin (Fields::adopt()), whose options are among these; "": none
   ResolveNotes& notes_;
   Tree output_;
   std::string id_path_;

@@ -259,7 +259,7 @@ class Resolver final : public MapReader {
     if (fields.silent_) return;
     try {
       plugins_.describe(choice.kind, choice.type, fields);
-    } catch (const Error& trouble) {  // the plugin source does not know the place
+    } catch (const Error& trouble) {  // the plugin source has no place
       if (!trouble.where().empty()) throw;
       throw Error(place, trouble.reason(), trouble.hint(), trouble.kind());
     }

@@ -49,7 +49,7 @@ struct ResolveNotes {
 void check_beside(const Tree& group, const std::string& plugin, const std::string& option);
 
 /// Reads `input` into `options` and returns the resolved config. Throws Error, with its place, for the first unknown
-/// key, wrong type, missing unit or value out of range, and only then for a missing option, because an unknown key may
+/// key, wrong type, missing unit or value out of range. A missing option is reported last, because an unknown key may
 /// be its misspelt name.
 ///
 /// `elsewhere`: keys at the top that other code reads; hints may name them. In a map with Tree::complete, a missing

@@ -23,10 +23,10 @@ enum class LengthKind { error, place };
 
 /// Unit and decimals of the numbers of a column, axis or sentence.
 struct Scale {
-  std::string unit;     ///< "" for none
+  std::string unit;     ///< "": none
   double factor = 1.0;  ///< SI units per `unit`
   int decimals = 0;
-  bool scientific = false;  ///< "1.23e-09": numbers without a unit that are too small or too large for decimals
+  bool scientific = false;  ///< for numbers without a unit that are too small or too large for decimals
   bool open = false;        ///< the values are not known yet; each gets at least two significant digits
 
   /// Returns for example "3.21" for `value` in SI, without its unit; "nan" or "inf" for values that are not finite.
@@ -52,7 +52,7 @@ struct Scale {
 Scale readable_scale(Unit unit, const std::vector<double>& values, int digits = 3, LengthKind kind = LengthKind::error);
 
 /// Returns the scale of a table whose later values are unknown: the usual unit, with two decimals for positions and one
-/// for other quantities, and more for small lengths.
+/// for other quantities. Small lengths get more decimals.
 Scale usual_scale(Unit unit, LengthKind kind = LengthKind::error);
 
 /// Returns for example "1.57 cm": a single value in SI with `digits` significant digits and without trailing zeros.

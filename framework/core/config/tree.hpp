@@ -14,7 +14,7 @@ namespace palpate {
 
 /// Location of a value in a file. Lines and columns count from 1; 0 stands for the whole file.
 struct SourceLocation {
-  std::shared_ptr<const std::string> file;  ///< path as the user would name it, or "command line"; may be null
+  std::shared_ptr<const std::string> file;  ///< path for messages, or "command line"; may be null
   int line = 0;
   int column = 0;
 
@@ -74,8 +74,8 @@ struct Tree {
   Tree& at_path(std::string_view path, const SourceLocation& asker);
   /// Sets the value at a dotted path, as at_path() does. The key gets the place of the value.
   void put(std::string_view path, Tree value);
-  /// Returns the place of the value at a dotted path, or of the nearest map around it that has a place; an empty place
-  /// if there is no such value.
+  /// Returns the place of the value at a dotted path, or of the nearest map around it that has a place. The place is
+  /// empty if there is no such value.
   SourceLocation place_of(std::string_view path) const;
 
   /// Sets the layer of this tree and all values within it.
@@ -123,8 +123,8 @@ inline constexpr const char* kNameHint = "a name has letters, digits, '_' and '-
 /// Returns the known name that is most similar to `name`; "" if none is similar.
 std::string nearest(std::string_view name, const std::vector<std::string>& known);
 
-/// Returns a hint: "did you mean 'x'?" with the most similar name, or else the shortest name that contains `name`;
-/// otherwise "known: a, b, c"; "" if nothing is known.
+/// Returns a hint: "did you mean 'x'?" with the most similar name, or else with the shortest name that contains `name`.
+/// Without such a name, the hint is "known: a, b, c", or "" if nothing is known.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace palpate

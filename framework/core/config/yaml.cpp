@@ -30,7 +30,7 @@ constexpr std::size_t kMaxTextBytes = 4 << 20;
 constexpr std::size_t kMaxKeys = 1000;
 
 /// Returns whether the quoted scalar at the beginning of `text` has a closing quote. yaml-cpp also accepts the end of
-/// the text, and so would read the rest of a config as a name.
+/// the text instead, and so would read the rest of a config as a name.
 bool is_closed(std::string_view text) {
   const char quote = text.front();
   for (std::size_t i = 1; i < text.size(); ++i) {

@@ -6,7 +6,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 
 namespace palpate {

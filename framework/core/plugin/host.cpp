@@ -73,8 +73,8 @@ std::string read_library(const fs::path& file) {
   return std::move(reading.text);
 }
 
-/// Throws Error for an incomplete library. dlopen maps the segments that the headers of the file name, and a shorter
-/// file then kills the process (SIGBUS). dlopen itself reports other faults of the headers.
+/// Throws Error for an incomplete library. dlopen maps the segments that the headers of a file name, and a file that
+/// ends earlier would kill the process (SIGBUS). dlopen itself reports other faults of the headers.
 void check_complete(const fs::path& file, const std::string& bytes) {
   const auto size = std::uint64_t{bytes.size()};
   const auto holds = [size](std::uint64_t offset, std::uint64_t count) {

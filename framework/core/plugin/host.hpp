@@ -57,7 +57,7 @@ class PluginHost final : public PluginSource, public PluginFactory {
   static std::vector<std::filesystem::path> search_path(const std::filesystem::path& shipped);
 
   /// Loads <kind>/<name>.so if necessary, and no other file. Throws Error, without a place, if the library is missing
-  /// (with the nearest name), if two folders have it, or if a check fails (with file, step and reason).
+  /// (with the nearest name) or if two folders have it. A failed check is an error with file, step and reason.
   void describe(const std::string& kind, const std::string& name, Fields& fields) const override;
 
   /// Throws Error for any exception of the plugin's constructor. Its place is the choice in the config, unless the

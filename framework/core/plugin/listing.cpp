@@ -20,14 +20,14 @@
 namespace palpate {
 namespace {
 
-constexpr double kPatience = 5.0;  ///< s
+constexpr double kLoadSeconds = 5.0;  ///< s
 
 // Exit statuses of the child process, unless the library ends it.
 constexpr int kSound = 100;
 constexpr int kBroken = 101;
 
 /// Silences the child process and its crashes.
-void be_quiet() {
+void silence_child() {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -44,9 +44,9 @@ std::string trouble_of(int status) {
 }
 
 /// Sets the summary or the error of a library in `row`. `look` runs in a child process.
-void look_apart(const std::function<std::string()>& look, PluginListing& row) {
+void load_in_child(const std::function<std::string()>& look, PluginListing& row) {
   const std::unique_ptr<ChildProcess> child = ChildProcess::fork([&](const ChildProcess::Say& say) {
-    be_quiet();
+    silence_child();
     try {
       say(look());
     } catch (const Error& trouble) {  // the parent reports it
@@ -56,8 +56,8 @@ void look_apart(const std::function<std::string()>& look, PluginListing& row) {
     return kSound;
   });
   const std::string trouble = !child ? fmt::format("cannot start a child process to load it: {}", std::strerror(errno))
-                              : !child->wait(kPatience) ? fmt::format("did not finish within {:.0f} s", kPatience)
-                                                        : trouble_of(child->status());
+                              : !child->wait(kLoadSeconds) ? fmt::format("did not finish within {:.0f} s", kLoadSeconds)
+                                                           : trouble_of(child->status());
   if (!trouble.empty()) {
     row.trouble = fmt::format("{}: loading: {}, build or copy it again", row.file.string(), trouble);
   } else {
@@ -76,7 +76,7 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
       // The files are sorted, so that the same name in a second folder follows at once. The first row reports both.
       if (!out.empty() && out.back().kind == one && out.back().name == stem) continue;
       out.push_back({one, stem, file, {}, {}});
-      look_apart([this, &row = out.back()] { return look(row.kind, row.name); }, out.back());
+      load_in_child([this, &row = out.back()] { return look(row.kind, row.name); }, out.back());
     }
   }
   return out;

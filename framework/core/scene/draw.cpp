@@ -45,27 +45,27 @@ struct DrawnObjects : Options {
   }
 };
 
-/// Replaces each range of an object, in their order, by a number: range number i by the number at share(i) of it, from
-/// 0 at the lower end to 1 at the upper end. Returns the number of ranges so far.
-int settle(Tree& tree, const std::string& path, const std::function<double(int)>& share, int count = 0) {
+/// Replaces each range of an object by a number. Range i becomes the number at share(i) of the range, where 0 is its
+/// lower end and 1 its upper end. Returns the number of ranges so far.
+int replace_ranges(Tree& tree, const std::string& path, const std::function<double(int)>& share, int count = 0) {
   if (const auto range = parse_continuous(tree, path)) {
     tree = number(range->at(share(count)), range->unit, tree);
     return count + 1;
   }
   for (std::size_t i = 0; i < tree.items.size(); ++i)
-    count = settle(tree.items[i], fmt::format("{}.{}", path, i), share, count);
-  for (Tree::Entry& entry : tree.entries) count = settle(entry.value, path + "." + entry.key, share, count);
+    count = replace_ranges(tree.items[i], fmt::format("{}.{}", path, i), share, count);
+  for (Tree::Entry& entry : tree.entries) count = replace_ranges(entry.value, path + "." + entry.key, share, count);
   return count;
 }
 
-/// Reads `described`, the value of scene.objects, with each range replaced as in settle(). Returns the largest number
-/// of ranges of an object.
+/// Reads `described`, the value of scene.objects, with each range replaced as in replace_ranges(). Returns the largest
+/// number of ranges of an object.
 int read_drawn(DrawnObjects& options, Tree described, const std::function<double(int)>& share,
                const PluginSource& plugins) {
   int most = 0;
   if (Tree* of = const_cast<Tree*>(described.find_path("draw.of"))) {
     for (std::size_t i = 0; i < of->items.size(); ++i)
-      most = std::max(most, settle(of->items[i], fmt::format("{}.draw.of.{}", kObjects, i), share));
+      most = std::max(most, replace_ranges(of->items[i], fmt::format("{}.draw.of.{}", kObjects, i), share));
   }
   Tree scene = Tree::map();
   scene.place = described.place;
@@ -108,7 +108,8 @@ void draw_objects(Tree& config, std::uint64_t seed, const PluginSource& plugins)
     Random random(seed, "scene/objects", i + 1);
     const std::size_t which = random.index(of.items.size());
     drawn.items.push_back(of.items[which]);
-    settle(drawn.items.back(), fmt::format("{}.draw.of.{}", kObjects, which), [&](int) { return random.uniform(); });
+    replace_ranges(drawn.items.back(), fmt::format("{}.draw.of.{}", kObjects, which),
+                   [&](int) { return random.uniform(); });
   }
   slot = std::move(drawn);
 }

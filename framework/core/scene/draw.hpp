@@ -17,7 +17,7 @@ bool draws_objects(const Tree& config);
 /// one of `of`, with equal probabilities, and each `uniform(a, b)` or `log_uniform(a, b)` in it becomes a number in
 /// that range. Each object has its own random stream, so that more objects begin with the same ones.
 ///
-/// Throws Error for invalid objects, also if they are not drawn: each item of `of` is read with all ranges at their
+/// Throws Error for invalid objects, also if they are not drawn. Each item of `of` is read with all ranges at their
 /// lower ends, with all at their upper ends, and with each single range at the opposite end.
 void draw_objects(Tree& config, std::uint64_t seed, const PluginSource& plugins);
 

@@ -38,8 +38,8 @@ struct JobStates {
   std::vector<SweepFailure> failures;  ///< in the order of the jobs, like `open`
 };
 
-/// What to look for besides the record: nothing; missing files of done jobs, which are then open, as after a power cut;
-/// or whether a process runs an unfinished job.
+/// The further checks of read_job_states(). `missing_files`: a done job without all its files, as after a power cut,
+/// counts as open. `running`: an unfinished job that a process runs counts as running.
 enum class JobCheck { nothing, missing_files, running };
 
 /// Reads the states of `jobs`. `missing_files` is reliable only if this node ran the jobs, or before any job runs,

@@ -3,11 +3,10 @@
 // cooperation of launchers:
 //
 // 1. The process takes the lock of the job's record, or the job is busy.
-// 2. The last line of the record tells whether anything is left to do.
+// 2. The last line of the record shows whether anything is left to do.
 // 3. The process appends the attempt, and starts the run or resumes it after its last recorded tap.
-// 4. The line `end` is the result, and summary.json is its copy. A process that dies earlier leaves an unfinished run
-// that
-//    can be resumed.
+// 4. The line `end` is the result, and summary.json is its copy. A process that dies earlier leaves an unfinished run,
+//    which can be resumed.
 #pragma once
 
 #include "record/session.hpp"

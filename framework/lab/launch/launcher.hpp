@@ -71,7 +71,7 @@ struct TaskArray {
   int tasks = 0;
   int jobs = 0;  ///< of all tasks
   std::filesystem::path logs;
-  std::string doubt;  ///< why no node can run the array now, in the words of the scheduler; "": a node can
+  std::string doubt;  ///< message of the scheduler if no node can run the array now; else ""
 };
 
 /// What a launcher is made from. `workshop` and `sweep` must outlive the launcher.

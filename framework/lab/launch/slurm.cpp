@@ -22,8 +22,8 @@
 namespace palpate::slurm {
 namespace {
 
-constexpr double kPatience = 30.0;  ///< s
-constexpr const char* kAskedElsewhere = "run this on the login node of a cluster, or leave out '--launcher slurm'";
+constexpr double kAnswerSeconds = 30.0;  ///< s
+constexpr const char* kNoClusterHint = "run this on the login node of a cluster, or leave out '--launcher slurm'";
 
 /// Returns the last number in the first group of `pattern`; nullopt if there is no match.
 std::optional<int> last_number(const std::string& text, const std::string& pattern) {
@@ -39,8 +39,8 @@ std::optional<int> setting(const std::string& text, const std::string& name) {
 }
 
 /// Runs a program to its end, for at most `patience` seconds, and returns its output.
-std::string ask(const std::vector<std::string>& words, const std::string& hint = kAskedElsewhere,
-                double patience = kPatience) {
+std::string ask(const std::vector<std::string>& words, const std::string& hint = kNoClusterHint,
+                double patience = kAnswerSeconds) {
   Program program{words};
   // Users set these variables to change the output or the duration of Slurm's commands.
   static const std::regex users("^(SQUEUE_|SBATCH_WAIT=)");
@@ -48,8 +48,8 @@ std::string ask(const std::vector<std::string>& words, const std::string& hint =
   auto& sees = program.environment;
   sees.erase(std::remove_if(sees.begin(), sees.end(), is_users), sees.end());
   const std::unique_ptr<ChildProcess> command = ChildProcess::start(program);
-  if (!command && errno == ENOENT) throw Error(words.front(), "is not installed, or not on PATH", kAskedElsewhere);
-  if (!command) throw Error(words.front(), fmt::format("cannot be started: {}", std::strerror(errno)), kAskedElsewhere);
+  if (!command && errno == ENOENT) throw Error(words.front(), "is not installed, or not on PATH", kNoClusterHint);
+  if (!command) throw Error(words.front(), fmt::format("cannot be started: {}", std::strerror(errno)), kNoClusterHint);
   if (!command->wait(patience))
     throw Error(words.front(), fmt::format("has not answered for {:.0f} s", patience), hint);
   if (command->status() != 0) throw Error(words.front(), words_of(command->said()), hint);

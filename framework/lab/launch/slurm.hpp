@@ -36,7 +36,7 @@ int most_tasks();
 
 struct Submission {
   int array = 0;
-  std::string doubt;  ///< why no node can run it now, in sbatch's words; "" if one can
+  std::string doubt;  ///< message of sbatch if no node can run the array now; else ""
 };
 /// Submits an array: `sbatch` with `words`. Throws Error with the message of sbatch. An array that can never run, and
 /// an array that waits for drained nodes, look the same, so that both are submitted with a doubt.

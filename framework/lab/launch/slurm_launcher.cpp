@@ -34,7 +34,7 @@ constexpr std::chrono::minutes kMostSilence{10};
 constexpr std::chrono::seconds kPause{1};  ///< shortest time between two looks at the queue
 constexpr std::chrono::seconds kMostPause{60};
 
-/// An option of sbatch that palpate sets, and what the user can do instead.
+/// An option of sbatch that palpate sets, and the hint for users who set it.
 struct OwnWord {
   const char* name;
   const char* letter;

@@ -20,9 +20,9 @@ std::string shell_word(const std::string& text);
 /// Throws Error for words that are not options of sbatch, and for options that palpate itself sets.
 void check_sbatch_words(const std::vector<std::string>& words);
 
-/// Returns the script of the tasks. Task t (array index plus first argument of the script) resumes the jobs in line t,
-/// counted from 0, of the file `jobs`, with the working directory, the plugins and the instruction set of this process.
-/// All paths are absolute.
+/// Returns the script of the tasks. The number of a task is its array index plus the first argument of the script. Task
+/// t resumes the jobs in line t, counted from 0, of the file `jobs`. The tasks have the working directory, the plugins
+/// and the instruction set of this process. All paths are absolute.
 std::string task_script(const std::filesystem::path& program, const std::filesystem::path& directory,
                         const std::filesystem::path& jobs, const LaunchOptions& options);
 

@@ -203,8 +203,9 @@ Condition::Condition(const Tree& text) : place_(text.place.text()), text_(text.t
   Reader(text_, place_).read();
 }
 
-Condition Condition::of_command_line(const std::string& text) {
-  Tree tree = Tree::scalar(text, true);
+std::optional<Condition> Condition::of_command_line(const std::optional<std::string>& text) {
+  if (!text) return std::nullopt;
+  Tree tree = Tree::scalar(*text, true);
   tree.place.file = std::make_shared<const std::string>("command line: --where");
   return Condition(tree);
 }

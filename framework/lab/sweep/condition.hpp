@@ -22,7 +22,7 @@ class Condition {
  public:
   /// The value of a name.
   struct Value {
-    std::string text;        ///< "2 cm", "rbf"; "" where there is none
+    std::string text;        ///< for example "2 cm" or "rbf"; "": no value
     bool is_result = false;  ///< whether the value is the result of a run, not a setting
   };
   /// Returns the value of a name; nullopt if there is no such name.
@@ -30,8 +30,8 @@ class Condition {
 
   /// Throws Error, with the place of `text`, for an invalid condition.
   explicit Condition(const Tree& text);
-  /// Reads the option --where of a command.
-  static Condition of_command_line(const std::string& text);
+  /// Reads the option --where of a command, if it is given.
+  static std::optional<Condition> of_command_line(const std::optional<std::string>& text);
 
   /// Returns whether the condition holds.
   ///
@@ -40,8 +40,8 @@ class Condition {
   /// `not rmse_m <= 3 mm` both exclude the job (Kleene's three-valued logic). `and` and `or` stop as soon as the result
   /// is certain, so that `spacing != none and spacing > 2 mm` is valid.
   ///
-  /// Throws Error, with the place of the condition, for an unknown name on the left (the hint is from `known`), for an
-  /// order of texts, and for units of different dimensions.
+  /// Throws Error, with the place of the condition, for an unknown name on the left; its hint comes from `known`. Texts
+  /// without an order and units of different dimensions are errors, too.
   bool holds(const Values& value_of, const std::vector<std::string>& known) const;
 
   const std::string& place() const { return place_; }

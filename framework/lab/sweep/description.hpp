@@ -41,8 +41,7 @@ using Combination = std::vector<SweptValue>;
 ///     zip:   {a: [1, 2], b: [x, y]}               values with the same index: 2 combinations
 ///     list:  [{a: 1}, {a: 2, b: [x, y]}]          one item after the other, each a small grid: 3 combinations
 ///     sobol: {samples: 64, keys: {a: "uniform(1 cm, 2 cm)"}}    points in continuous ranges: see sobol_axes()
-///     where: a > 1 and not b == x                 keeps the combinations that satisfy this condition or list of
-///     conditions
+///     where: a > 1 and not b == x                 keeps combinations that satisfy this condition, or all of a list
 ///
 /// Values are lists, `range` and `logspace`: see expand_values(). A key may occur in one block only.
 class SweepDescription {

@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Column that tells whether a job reached the goal of --until.
+/// Column that shows whether a job reached the goal of --until.
 inline constexpr const char* kReached = "reached";
 
 /// Returns the results after the taps of each occasion, and writes them as results_<key>.csv into the sweep's

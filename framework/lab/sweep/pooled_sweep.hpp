@@ -20,9 +20,9 @@ struct PooledSweep {
 ///
 /// The keys are all swept keys, `by`, the seed, and each further option in which the recorded configs differ. If the
 /// types of a plugin differ, the key is the plugin's block (`acquisition`), else the option (`kernel.length_scale`).
-/// Options that have one value per strategy are part of the swept strategy, and options that have one value per name
-/// are part of the name if `by` has `name`; scenes are never part of a name. Such options are keys only if `by` has
-/// them. Options that do not affect results, such as `log`, are no keys.
+/// Some options are keys only if `by` has them: options with one value per strategy, if the strategy is swept; and
+/// options with one value per name, except for scenes, if `by` has `name`. Options that do not affect results, such as
+/// `log`, are no keys.
 ///
 /// The value of a key that a record does not sweep comes from the configs of its jobs. Values are equal if the configs
 /// are equal: `2 cm` and `0.02 m`, or `scene=ring` and a config with the same objects. The text of a value is that of
@@ -31,7 +31,7 @@ struct PooledSweep {
 ///
 /// A run in several records is one job, the first one that has ended. If `by` has `name`, it is one job per record. The
 /// directory of the sweep is the common folder of the records. Throws Error for an empty list, for a directory without
-/// a run or sweep, for a damaged record, and for runs with the same id but different taps.
+/// a run or sweep, and for a damaged record. Runs with the same id but different taps are an error, too.
 PooledSweep read_pooled(const std::vector<std::filesystem::path>& records, const std::vector<std::string>& by);
 
 /// Returns the innermost folder that contains all of these directories.

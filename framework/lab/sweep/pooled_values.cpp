@@ -40,8 +40,8 @@ std::string identity_at(const Tree& config, const std::string& key, const std::v
   return part.canonical();
 }
 
-/// Returns a text for a value without a text in a sweep: the name of its group, the type of a plugin, or the types of
-/// the objects of a scene.
+/// Returns a text for a value that no sweep has as text: the name of its group or the type of a plugin. The text of a
+/// scene is the types of its objects.
 std::string words_at(const PooledSetting& setting, const std::string& key) {
   const Tree* found = setting.config.find_path(key);
   if (found == nullptr) return {};

@@ -9,9 +9,9 @@
 namespace palpate {
 
 /// Reads `{samples: 64, keys: {kernel.length_scale: "log_uniform(1 cm, 10 cm)", height.noise: "uniform(0.1 mm, 1
-/// mm)"}}`. Returns one axis per key with `samples` values (1 to 100000); the i-th values of all axes are the i-th
-/// point. The points are those of a Sobol sequence with a fixed digital shift, so that they are the same every time,
-/// and fewer samples are the first of more. Throws Error.
+/// mm)"}}`. Returns one axis per key with `samples` values (1 to 100000). The i-th values of all axes are the i-th
+/// point of a Sobol sequence. Its digital shift is fixed, so that the points are the same every time, and a smaller
+/// sample is the beginning of a larger one. Throws Error.
 std::vector<Axis> sobol_axes(const Tree& described, ValueCount& count);
 
 }  // namespace palpate

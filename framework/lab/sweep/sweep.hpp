@@ -18,7 +18,7 @@ namespace palpate {
 struct Job {
   int index = 0;
   std::string id;
-  std::vector<std::string> values;       ///< one for each swept key; "" where the job's plugins have no such option
+  std::vector<std::string> values;       ///< by swept key; "": the plugins of the job lack the option
   std::filesystem::path directory = {};  ///< only in a PooledSweep: see job_directory()
 };
 
@@ -26,7 +26,7 @@ struct Job {
 struct JobLine {
   const std::vector<std::string>& keys;
   const Job& job;
-  std::string sweep;  ///< its id; "" in what that is a hash of
+  std::string sweep;  ///< id of the sweep; "" in the lines that are hashed to make the id
 };
 const FieldList<JobLine>& job_list();
 

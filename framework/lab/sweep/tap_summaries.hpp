@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The summaries of a sweep's jobs after each of their taps, as if the budget had ended there. They are computed from
-// the recorded taps on demand, and stored in the job's directory as summaries.jsonl: one line per tap except the last,
-// each with the hash of the final summary. If the hash differs, the job ran again, and its rows are computed again.
+// the recorded taps on demand, and stored in the job's directory as summaries.jsonl. The file has one line per tap
+// except the last, each with the hash of the final summary. If the hash differs, the job ran again, and its rows are
+// computed again.
 #pragma once
 
 #include "record/session.hpp"
