@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Intervals of the bootstrap against scipy's, against Student's where that is right, and against what they promise.
+// Bootstrap intervals, compared with scipy, with Student's t where it applies, and with their nominal coverage.
 #include "analysis/bootstrap.hpp"
 
 #include "support/clusters.hpp"
@@ -16,7 +16,8 @@ using test::each_alone;
 
 double width(const MeanInterval& interval) { return interval.high - interval.low; }
 
-/// Ends scatter by about 1 % of the width from stream to stream; three times that, and a little for scipy's.
+/// The ends differ between random streams by about 1 % of the width. The tolerance is three times that, plus the
+/// scatter of scipy's own result.
 constexpr double kScatter = 0.035;
 
 void expect_near(const std::optional<MeanInterval>& found, const MeanInterval& oracle) {
@@ -97,8 +98,8 @@ TEST(BootstrapMean, OfOneValueThatDiffersStaysWithinTheValues) {
   EXPECT_LT(interval.high, 0.01);
 }
 
-// Of pairs: the ratio of the means. Both ends come from Python's own random.choices() on 300000 samples of
-// these pairs, the acceleration by leaving out one pair at a time (seed 1, z = 2.200985 sqrt(12 / 11)).
+// Ratios of means of pairs. The reference ends come from Python's random.choices() on 300000 samples of these pairs,
+// and the acceleration from leaving out one pair at a time (seed 1, z = 2.200985 sqrt(12 / 11)).
 const std::vector<double> kAbove{0.9, 1.2, 0.4, 2.2, 0.7, 3.1, 0.8, 1.9, 0.3, 1.4, 5.2, 0.6};
 const std::vector<double> kBelow{1.1, 1.0, 0.9, 2.9, 1.6, 3.0, 1.2, 2.8, 0.2, 2.3, 4.1, 1.5};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Calibrating: what is found of contacts that were drawn by known numbers, and that a simulator errs by the file as
-// the arm did that it was made from.
+// Calibration: the estimates for contacts drawn with known parameters, and a simulator with the resulting file, which
+// must err like the original arm.
 #include "calibrate/calibrate.hpp"
 
 #include "calibrate/contacts.hpp"
@@ -25,7 +25,7 @@ using test::shared_host;
 using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
-/// What contacts are drawn by.
+/// The parameters of drawn contacts.
 struct Arm {
   double offset = 0.004, drift = 1e-3 / 60.0, noise = 0.0015, lateral = 0.003, lies = 0.05;
 };
@@ -68,7 +68,7 @@ TEST(Contacts, TellOffsetDriftNoisePlaceAndLiesWithinTheirIntervalsAsOftenAsThes
     lateral += fit.lateral ? holds(*fit.lateral, arm.lateral) : 1;
     lies += holds(fit.false_share, arm.lies);
   }
-  // Of 60 intervals of 95 %, fewer than 51 hold the truth once in ten thousand.
+  // Of 60 intervals of 95 %, fewer than 51 contain the true value once in ten thousand.
   for (const int count : {offset, drift, noise, lateral, lies}) EXPECT_GE(count, 51);
 }
 
@@ -90,7 +90,7 @@ TEST(Contacts, ShareOfNoneAndOfAllKeepsToWhatASharesCanBe) {
   EXPECT_GT(share_of(0, 40).high, 0.05);
   EXPECT_LT(share_of(40, 40).low, 0.95);
   EXPECT_EQ(share_of(40, 40).high, 1.0);
-  EXPECT_NEAR(share_of(20, 40).low, 0.352, 0.001);  // Wilson's own, by hand
+  EXPECT_NEAR(share_of(20, 40).low, 0.352, 0.001);  // Wilson's interval, computed by hand
 }
 
 class Calibrate : public testing::Test {
@@ -101,7 +101,7 @@ class Calibrate : public testing::Test {
     return read_recording(workshop, directory);
   }
 
-  /// What contacts are off the scene, the middle half of them on average.
+  /// Returns the mean height error of the middle half of the contacts.
   static double mean_error(const Recording& run) {
     const auto scene =
         build_scene(run.config.options.scene, static_cast<std::uint64_t>(run.config.options.seed), shared_host());
@@ -149,7 +149,7 @@ TEST_F(Calibrate, HasTheSimulatorErrAsTheArmDidThatTheTapsAreOf) {
 }
 
 TEST(Contacts, AreBesideTheSceneByHowFarTheyAreOffAllHeightsWithinOneCentimetre) {
-  const auto scene = block();  // 5 cm high, over x from 0 to 14 cm and y from 0 to 8 cm about its middle
+  const auto scene = block();  // 5 cm high, x from 0 to 14 cm, y from 0 to 8 cm about its centre
   const double edge = 0.115 + 0.07;
   const auto beyond = [&](double x, double height) {
     return beyond_surface({scene.get(), {x, 0.115}, 0.0, height + 0.004}, 0.004);

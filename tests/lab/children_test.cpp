@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Work shared among processes: all of it is done once, and what goes wrong is told.
+// Work distributed among child processes: each item is done once, and errors are reported.
 #include "launch/children.hpp"
 #include "record/files.hpp"
 #include "support/support.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Seeds are the units of a comparison: their jobs are drawn together, copies count once, and what is missing satisfies
-// no condition.
+// Seeds as the units of a comparison: jobs of a seed are resampled together, copies count once, and missing values
+// satisfy no condition.
 #include "support/clusters.hpp"
 #include "support/made_sweep.hpp"
 
@@ -16,7 +16,7 @@ using test::MadeSweep;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A sweep over strategy, kernel and seed in which each seed has its own level, and kernels add little to it.
+/// Returns a sweep over strategy, kernel and seed. Each seed has its own level, and kernels add little to it.
 std::vector<MadeJob> seeds_that_matter(int seeds, const std::vector<std::string>& kernels) {
   std::vector<MadeJob> jobs;
   for (std::size_t kernel = 0; kernel < kernels.size(); ++kernel) {
@@ -31,7 +31,7 @@ std::vector<MadeJob> seeds_that_matter(int seeds, const std::vector<std::string>
 }
 
 TEST(CompareSeeds, ResamplesSeedsWithAllOfTheirJobs) {
-  // The oracle: the same numbers, averaged over the kernels before anything is compared.
+  // The reference averages the same numbers over the kernels first.
   const Comparison four = MadeSweep(seeds_that_matter(20, {"k0", "k1", "k2", "k3"})).by({"acquisition"});
   std::vector<double> means(20, 0.0);
   std::vector<double> differences(20, 0.0);
@@ -110,7 +110,7 @@ TEST(CompareSeeds, EqualValuesHaveNoIntervalAndItSaysWhy) {
   for (int seed = 0; seed < 12; ++seed) {
     jobs.push_back({"a", "k", seed, 0.2});
     jobs.push_back({"b", "k", seed, 0.1 * (1 + seed)});
-    jobs.push_back({"c", "k", seed, 0.1 * (1 + seed) + 0.3});  // rounded, so that the differences are not all equal
+    jobs.push_back({"c", "k", seed, 0.1 * (1 + seed) + 0.3});  // rounded, so that not all differences are equal
   }
   const Comparison made = MadeSweep(jobs).by({"acquisition"});
   EXPECT_FALSE(made.groups[0].mean.interval);

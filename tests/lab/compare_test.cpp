@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which jobs make groups and pairs, what is counted, and how a comparison reads.
+// The groups and pairs of a comparison, its counts, and its text.
 #include "support/made_sweep.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,8 @@ using test::MadeSweep;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Two strategies with two kernels and `seeds` seeds; b is higher by 0.1 and seed / 1000 with rbf, by 0.2 with matern.
+/// Returns jobs of two strategies with two kernels and `seeds` seeds. Strategy b is higher by 0.1 + seed / 1000 with
+/// rbf, and by 0.2 with matern.
 std::vector<MadeJob> two_by_two(int seeds) {
   std::vector<MadeJob> jobs;
   for (const char* kernel : {"rbf", "matern"}) {
@@ -37,7 +38,7 @@ TEST(Compare, PairsJobsThatAreEqualInAllButTheKeyThatMakesTheGroups) {
   EXPECT_EQ(made.groups[made.pairs[0].first].name, "b");
   EXPECT_EQ(made.groups[made.pairs[0].second].name, "a");
   EXPECT_EQ(made.pairs[0].difference.count, 8U);
-  // 0.1 + (0 + 1 + 2 + 3) / 4000 of rbf, 0.2 of matern.
+  // 0.1 + (0 + 1 + 2 + 3) / 4000 with rbf, 0.2 with matern.
   EXPECT_NEAR(made.pairs[0].difference.mean, (0.1015 + 0.2) / 2.0, 1e-12);
   EXPECT_EQ(made.pairs[0].difference.clusters, 4U);
   EXPECT_EQ(made.pairs[0].test.higher, 4U) << "of the means per seed";
@@ -96,7 +97,7 @@ TEST(Compare, CountsFailedUnfinishedAndValuelessJobsAndLeavesThemOutOfTheMean) {
 TEST(Compare, NeitherOrderOfJobsNorOfGroupsChangesWhatIsFound) {
   std::vector<MadeJob> jobs = two_by_two(20);
   const Comparison before = MadeSweep(jobs).by({"acquisition"});
-  // Now b comes first.
+  // Strategy b is now the first.
   std::reverse(jobs.begin(), jobs.end());
   const Comparison after = MadeSweep(jobs).by({"acquisition"});
   ASSERT_EQ(after.groups[0].name, "b");
@@ -167,7 +168,7 @@ TEST(Compare, OneGroupOrManyAreNotAllComparedWithEachOtherAndItSaysSo) {
 }
 
 TEST(Compare, SaysWhichKeyLeavesGroupsWithoutPairsAndWhatPairsThem) {
-  // a has no such option, and c shares one value of it with b.
+  // Strategy a lacks the option, and c shares one of its values with b.
   const MadeSweep made({{"a", "", 1, 0.1}, {"b", "3", 1, 0.2}, {"b", "4", 1, 0.3}, {"c", "4", 1, 0.4}});
   const Comparison apart = made.by({"acquisition"});
   EXPECT_EQ(apart.apart, std::vector<std::string>{"kernel"});

@@ -15,8 +15,8 @@
 namespace palpate {
 namespace {
 
-/// Of a sweep that has no other values.
-ValueCount& fresh() {
+/// A count for a sweep without other values.
+ValueCount& new_value_count() {
   static ValueCount count;
   return count = {};
 }
@@ -26,7 +26,7 @@ SweepDescription described(const std::string& sweep, const std::vector<std::stri
   return SweepDescription(tree.find("sweep"), parse_sweep_words(words));
 }
 
-/// "a=1 b=x; a=1 b=y; ", of the combinations that are wanted.
+/// Returns the wanted combinations, for example "a=1 b=x; a=1 b=y; ".
 std::string shown(const SweepDescription& description, const std::map<std::string, std::string>& base = {}) {
   std::string out;
   const auto value_of = [&](const std::string& name) -> std::optional<Condition::Value> {
@@ -115,9 +115,9 @@ TEST(Where, RefusesWhatItCannotKnowYet) {
 }
 
 TEST(Sobol, FillsEveryBinaryBoxAlike) {
-  // A (t, m, s)-net in base 2: of the first 2^m points each half, quarter, ... of an axis holds the same number.
-  const auto axes =
-      sobol_axes(parse_yaml("{samples: 64, keys: {a: 'uniform(0, 1)', b: 'uniform(0, 1)'}}", "c.yaml"), fresh());
+  // A (t, m, s)-net in base 2: each half, quarter, ... of an axis contains the same number of the first 2^m points.
+  const auto axes = sobol_axes(parse_yaml("{samples: 64, keys: {a: 'uniform(0, 1)', b: 'uniform(0, 1)'}}", "c.yaml"),
+                               new_value_count());
   ASSERT_EQ(axes.size(), 2U);
   for (const Axis& axis : axes) {
     std::map<int, int> cells;
@@ -133,8 +133,9 @@ TEST(Sobol, FillsEveryBinaryBoxAlike) {
 }
 
 TEST(Sobol, SpreadsALogarithmicRangeInTheLogarithmAndKeepsToItsEnds) {
-  const auto axes = sobol_axes(
-      parse_yaml("{samples: 32, keys: {a: 'log_uniform(1 cm, 10 cm)', b: 'uniform(-2 mm, 3 mm)'}}", "c"), fresh());
+  const auto axes =
+      sobol_axes(parse_yaml("{samples: 32, keys: {a: 'log_uniform(1 cm, 10 cm)', b: 'uniform(-2 mm, 3 mm)'}}", "c"),
+                 new_value_count());
   int below = 0;
   for (std::size_t i = 0; i < 32; ++i) {
     const double a = std::atof(axes[0].values[i].text.c_str());

@@ -40,7 +40,7 @@ class Draft : public testing::Test {
                       });
   }
 
-  std::vector<std::string> texts_;  ///< of the configs of all jobs that were planned
+  std::vector<std::string> texts_;  ///< configs of all planned jobs
   TemporaryFolder folder_;
   fs::path runs_ = folder_.path() / "runs";
   Composer composer_{source_folder() / "configs", config_keys()};
@@ -63,13 +63,13 @@ TEST_F(Draft, AppearsUnderItsNameAtOnceAndWhole) {
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(sweep.jobs[i].id, planned.sweep.jobs[i].id);
     EXPECT_EQ(sweep.jobs[i].values, planned.sweep.jobs[i].values);
-    // With the origin of each value, before any of them has run.
+    // The config has the origin of each value before a job runs.
     EXPECT_EQ(text_of(job_directory(sweep, sweep.jobs[i]) / "config.yaml"), texts_[i]);
     EXPECT_THAT(texts_[i], testing::HasSubstr("configs/scene/object_i.yaml:"));
   }
 }
 
-/// Why a sweep is not read; "accepted" if it is.
+/// Returns the error of reading a sweep; "accepted" if there is none.
 std::string refusal(const fs::path& directory) {
   return test::error_of([&] { read_sweep(directory); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PLY as other programs read it.
+// Exported PLY files, as other programs read them.
 #include "report/exchange/exchange.hpp"
 #include "support/support.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Curves of groups of made-up jobs, against means that are worked out here by hand.
+// Curves of groups of made-up jobs, compared with means computed by hand.
 #include "analysis/group_curves_report.hpp"
 #include "support/testing.hpp"
 
@@ -12,13 +12,14 @@ using Values = std::vector<double>;
 
 const double kNone = std::nan("");
 
-/// A sweep of strategies, scenes and seeds whose jobs have these errors after each tap, and took a second for each.
+/// A sweep over strategies, scenes and seeds. The jobs have these errors after each tap, and a tap takes one second
+/// unless given.
 struct TappedSweep {
   struct TappedJob {
     std::string strategy;
     std::string scene;
     int seed;
-    Values errors;  ///< none: it failed
+    Values errors;  ///< empty: the job failed
     double seconds = 1.0;
   };
 
@@ -96,7 +97,7 @@ TEST(GroupCurves, TakeSeedsAsUnitsOfTheirIntervals) {
   const MeanEstimate mean = TappedSweep(jobs).curves({}).curves[0].points[0].mean;
   EXPECT_EQ(mean.count, 10U);
   EXPECT_EQ(mean.clusters, 5U);
-  // Student's t of four degrees of freedom times the standard error of 0.1, 0.2, ... 0.5.
+  // Student's t with four degrees of freedom times the standard error of 0.1, 0.2, ... 0.5.
   const double half = 2.7764451 * std::sqrt(0.025 / 5.0);
   ASSERT_TRUE(mean.interval);
   EXPECT_NEAR(mean.interval->low, 0.3 - half, 1e-7);
@@ -104,7 +105,7 @@ TEST(GroupCurves, TakeSeedsAsUnitsOfTheirIntervals) {
 }
 
 TEST(GroupCurves, AgainstTimeHaveEachJobAsItWasAfterItsLastTapByThen) {
-  // Taps of one second and of two: from 2 s, when both have tapped, to 6 s.
+  // Taps of one and of two seconds: the curve begins at 2 s, when both jobs have a tap, and ends at 6 s.
   const TappedSweep made({{"a", "cube", 1, {0.8, 0.4, 0.2}, 1.0}, {"a", "cube", 2, {0.6, 0.4, 0.0}, 2.0}});
   const std::vector<CurvePoint> points = made.curves({"acquisition"}, "robot_seconds").curves[0].points;
   EXPECT_EQ(points.front().at, 2.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run lived through again says at every tap what the run said then, and at its end what its summary says.
+// The replay of a run has the values of the run at each tap, and those of its summary at the end.
 #include "report/history.hpp"
 #include "record/fields.hpp"
 #include "record/session.hpp"
@@ -26,7 +26,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A run that was made in this process.
+/// A run made in this process.
 class Recorded {
  public:
   Recorded(const std::string& base, const std::vector<std::string>& words) {
@@ -53,7 +53,7 @@ std::string cell(const Row& row, const char* name) {
   return value != nullptr ? csv_cell(*value) : "absent";
 }
 
-/// A shipped config, and words behind it.
+/// A shipped config and overrides.
 class RunHistory : public ::testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
@@ -74,7 +74,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
     for (const auto& [name, value] : row.fields) {
       const bool of_footprint = name == "p" || name == "footprint_iou" || name.compare(0, 10, "footprint.") == 0;
       if (!of_footprint || csv_cell(value).empty()) continue;
-      // Errors are of the state that the tap was chosen from, whatever the next choice would build beyond it.
+      // Errors belong to the state from which the tap was chosen, whatever models the next choice needs.
       const std::string now =
           name == "footprint_iou" ? csv_cell(*moment.result.errors.footprint_iou) : cell(next, name.c_str());
       EXPECT_EQ(now, csv_cell(value)) << name << " of tap " << made + 1;
@@ -90,7 +90,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   const bool reads_surface =
       (options.acquisition.type != "random" && options.surface == ExperimentOptions::Surface::single) ||
       (recording.taps.front().predicted &&
-       !options.height.outlier_probability);  // else a height is predicted without its map
+       !options.height.outlier_probability);  // otherwise heights are predicted without the map
   EXPECT_EQ(compared > 0, reads_surface);
   EXPECT_EQ(compared_footprint > 10, options.footprint.type != "gp_regression");
   RunResult last = history.moments.back().result;
@@ -145,7 +145,7 @@ TEST(History, HasTheProbabilityOfTheFootprintInPlaceOfTheWeight) {
 }
 
 TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {
-  // Before an object is touched its level is free, and so a thousand signals uncertain.
+  // Before the first contact with an object, its level is free, so that its uncertainty is a thousand times the signal.
   const Recorded run("paper/object_i.yaml", {"surface=two_part", "taps=12"});
   const History history = run.history();
   for (const Eigen::VectorXf& frame : history.maps.at(1).frames) EXPECT_LE(frame.maxCoeff(), 1.0F);
@@ -187,7 +187,7 @@ TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
   }
   EXPECT_EQ(history.moments.back().result.errors.surface_distance, recording.summary->number("surface_distance_m"));
 
-  // A page that has all moments is told of the end without any surface, and keeps its plots.
+  // A page with all taps gets the end of the run without surfaces, and keeps its plots.
   HistoryGrower grower(run.workshop, recording);
   while (grower.taps() < 9) grower.advance();
   const auto titles = [&](const History& of) {
@@ -205,7 +205,7 @@ TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
     const Recorded run("paper/object_i.yaml", words);
     const std::string page = run_page(run.recording(), run.history(), [](int, int) {});
     EXPECT_LE(page.size(), kMostPageBytes);
-    EXPECT_GT(page.size(), 1'900'000U);  // plotly is in it
+    EXPECT_GT(page.size(), 1'900'000U);  // the page contains plotly
   }
 }
 
@@ -222,7 +222,7 @@ TEST(RunPage, SaysOneThingOfARunThatEndsOrGoesOnWhileItIsMade) {
   const std::string begun = test::record_until(whole, 6);
   ASSERT_LT(begun.size(), whole.size());
   const auto write = [&](const std::string& text) { std::ofstream(file, std::ios::binary) << text; };
-  // The record is read in one state, and stands in the other when the page is made.
+  // The run ends between the reading of the record and the making of the page.
   const Recording ended = run.recording();
   write(begun);
   const Recording going_on = run.recording();
@@ -278,14 +278,15 @@ TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {
 TEST(Warnings, TellOfTheFirstTapThatThisBuildWouldHaveMadeElsewhere) {
   const Recorded run("paper/object_i.yaml", {});
   Recording recording = run.recording();
-  for (const std::size_t tap : {11U, 14U}) recording.taps[tap].target.x = 0.5 * 0.23 / 47;  // the first of its row
+  for (const std::size_t tap : {11U, 14U})
+    recording.taps[tap].target.x = 0.5 * 0.23 / 47;  // the first candidate of its row
   const History history = make_history(run.workshop, recording, [](int, int) {});
   EXPECT_THAT(warnings_of(recording, history),
               Contains(HasSubstr("this build would choose another position for tap 12")));
 }
 
 TEST(Warnings, AreNoneOfARunWithoutTrouble) {
-  // One tap, on the object: w is 1 there and falls to 0 around it.
+  // After one tap on the object, w is 1 at the tap and falls to 0 around it.
   const Recorded run("paper/object_i.yaml", {"taps=1", "initial.count=1", "initial.design=grid"});
   ASSERT_EQ(run.history().moments.back().result.object_taps, 1);
   EXPECT_THAT(warnings_of(run.recording(), run.history()), ::testing::IsEmpty());

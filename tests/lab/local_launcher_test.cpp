@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-/// A sweep of two jobs, neither of which has begun.
+/// A sweep of two jobs that have not begun.
 class TwoJobs : public testing::Test {
  protected:
   TwoJobs() {
@@ -31,7 +31,7 @@ class TwoJobs : public testing::Test {
   inline static const std::string kFolder =
       "a\xc2\x9b"
       "b";
-  /// It cannot be read: there is no such plugin.
+  /// An invalid config, with a plugin that does not exist.
   static constexpr const char* kConfig = "kernel: {type: nowhere}\n";
 
   const test::TemporaryFolder folder_;
@@ -41,7 +41,7 @@ class TwoJobs : public testing::Test {
   const Workshop workshop_{host_, installation_, {}, nullptr};
 };
 
-/// Returns at once whatever it is given.
+/// A launcher that returns all jobs at once.
 class Returning : public Launcher {
  public:
   void submit(const std::vector<std::size_t>& jobs) override { state_.returned = jobs; }
@@ -78,7 +78,7 @@ TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
 }
 
 TEST_F(TwoJobs, ThatAreKilledBeforeTheirAttemptIsNotedAreNotBegunForEver) {
-  // While the config is read, where the error is to suggest another name.
+  // The callback runs while the config is read, when the error needs a similar name.
   host_.set_group_names([](const std::string&) {
     std::raise(SIGKILL);
     return std::vector<std::string>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Means of several metrics and numbers of taps, as Markdown.
+// Means of several metrics and numbers of taps as a Markdown table.
 #include "analysis/compare_report.hpp"
 
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 namespace palpate::test {
 namespace {
 
-// Lines as Linux 6 writes them for a root on ext4, four exports of one server, and a disk below one of them.
+// Lines of Linux 6 for a root on ext4, four exports of one server, and a disk below one of them.
 constexpr const char* kMounts =
     R"(22 1 8:1 / / rw,relatime shared:1 - ext4 /dev/sda1 rw
 90 22 0:52 / /home rw,relatime shared:40 - nfs4 server:/home rw,vers=4.2,proto=tcp,local_lock=none,addr=10.0.0.1

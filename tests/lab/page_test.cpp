@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pieces of a page: what is packed comes out again by other hands, and text stays data.
+// The parts of a page: packed data can be unpacked by an independent reader, and text stays data.
 #include "report/page/page.hpp"
 #include "report/page/run_page.hpp"
 #include "support/support.hpp"
@@ -43,7 +43,7 @@ TEST(Deflated, IsUnpackedByPythonAndTheSameEveryTime) {
   }
 }
 
-/// As web/run.js unpacks it.
+/// Unpacks a frame as web/run.js does.
 std::vector<double> unpack_frame(const std::string& bytes, std::size_t at, std::size_t cells, double least,
                                  double most) {
   std::vector<double> out;

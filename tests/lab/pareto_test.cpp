@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The front against its definition, and what counts as a setting.
+// The Pareto front, compared with its definition, and the grouping of jobs into settings.
 #include "analysis/pareto.hpp"
 
 #include "analysis/gnuplot.hpp"
@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A job of a made-up sweep over strategy, taps and seed: cost and error, or how it failed.
+/// A job of a made-up sweep over strategy, taps and seed: cost and error, or the reason of its failure.
 struct MadeUpJob {
   std::string strategy;
   std::string seed;
@@ -75,7 +75,7 @@ TEST(Pareto, HasOnItsFrontWhatTheDefinitionSaysInThousandsOfRandomCases) {
   };
   for (int i = 0; i < 3000; ++i) {
     const int count = std::uniform_int_distribution<int>(1, 12)(random);
-    // Few different values: most cases have ties in one coordinate or in both.
+    // Few different values, so that most cases have ties in one or both coordinates.
     std::uniform_int_distribution<int> value(0, i % 2 == 0 ? 4 : 1000);
     std::vector<MadeUpJob> outcomes;
     for (int k = 0; k < count; ++k)
@@ -166,7 +166,7 @@ TEST(Pareto, SaysHowManySeedsItsMeansAreOver) {
 }
 
 TEST(Within, AsksForTheUpperEndOfTheInterval) {
-  // Of 10 and 12 mm: mean 11 mm, half width 12.706 * 1 mm.
+  // 10 and 12 mm have the mean 11 mm and the half width 12.706 * 1 mm.
   const Pareto pareto = MadeUp({{"a", "1", 5, 0.010}, {"a", "2", 5, 0.012}}).pareto();
   EXPECT_EQ(cheapest_within(pareto, 0.0237), nullptr);
   EXPECT_NE(cheapest_within(pareto, 0.0238), nullptr);
@@ -276,7 +276,8 @@ TEST(ParetoScript, QuotesEveryNameSoThatNothingInItIsACommand) {
   EXPECT_THAT(script, HasSubstr("x''; system("));
 }
 
-/// A sweep of two strategies on an easy scene and on a hard one, where each is worse than any on the easy one.
+/// Returns the front of two strategies on an easy scene and on a hard one, where each is worse than both on the easy
+/// one.
 Pareto on_two_scenes(const char* where = nullptr) {
   static Sweep sweep{"runs/x/0123456789ab", {"acquisition", "scene", "seed"}, {}};
   static std::vector<Row> results;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plans of the shipped configs: every job is what a single run would be, however it was arrived at.
+// Plans of the shipped configs: each job equals a single run with the same options.
 #include "sweep/plan.hpp"
 
 #include "config/yaml.hpp"
@@ -22,7 +22,7 @@ const fs::path kPaper = kConfigs / "paper/object_i.yaml";
 
 struct Planned {
   SweepPlan plan;
-  std::vector<ResolvedConfig> configs;  ///< of each job, as the sink had it
+  std::vector<ResolvedConfig> configs;  ///< by job, as passed to the sink
 };
 
 Planned planned(const fs::path& file, const Texts& words) {
@@ -47,7 +47,7 @@ std::string refused(const Texts& words) {
   return test::error_of([&] { plan_of(words); });
 }
 
-/// A table of the swept values, a job a line.
+/// Returns the swept values, one line per job.
 Texts rows(const SweepPlan& plan) {
   Texts out;
   for (const Job& job : plan.sweep.jobs) {
@@ -178,8 +178,8 @@ struct RoundTrip {
   Texts words;
 };
 
-/// What `palpate sweep` makes of the config that a plan leaves is that plan.
-void is_made_again(const RoundTrip& one) {
+/// Checks that planning the config of a plan gives the same plan.
+void expect_same_plan(const RoundTrip& one) {
   const test::TemporaryFolder elsewhere;
   const SweepPlan first = planned(one.file, one.words).plan;
   const SweepPlan again = planned(elsewhere.write("config.yaml", to_yaml(first.config)), {}).plan;
@@ -220,7 +220,7 @@ TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
        {"scene=clutter", "sweep.zip={scene.objects.draw.least: [1, 4], scene.objects.draw.most: [1, 4]}", "seed=1,2"}},
       {"paper/object_i.yaml", {"strategy=weighted_two_part,default", "scene.effects=none,standard"}},
   };
-  for (const RoundTrip& one : cases) is_made_again({kConfigs / one.file, one.words});
+  for (const RoundTrip& one : cases) expect_same_plan({kConfigs / one.file, one.words});
 }
 
 TEST(Plan, WritesAConfigThatNeedsNoGroupThatItDoesNotSweep) {
@@ -229,7 +229,7 @@ TEST(Plan, WritesAConfigThatNeedsNoGroupThatItDoesNotSweep) {
   const fs::path file = folder.write(
       "there/c.yaml",
       "defaults: [kernel: mine, acquisition: weighted, fitting: fixed, backend: simulator, scene: object_i]\n");
-  is_made_again({file, {"seed=1,2", "acquisition=weighted,random"}});
+  expect_same_plan({file, {"seed=1,2", "acquisition=weighted,random"}});
 }
 
 TEST(Plan, WritesAConfigWhoseSweptBackendsBringTheMotionThatTheBaseLeavesToThem) {
@@ -272,7 +272,7 @@ TEST(Plan, WritesAConfigOfABaseThatIsNoneWithoutItsSweepOrLeavesOptionsOut) {
        {"defaults: [kernel: rbf]\n" + rest + "sweep: {grid: {acquisition: [random, grid], seed: [1, 2]}}\n",
         "defaults: [kernel: rational_quadratic]\nkernel: {type: rbf}\nacquisition: weighted\n" + rest +
             "sweep: {grid: {kernel.length_scale: [1 cm, 2 cm]}}\n"}) {
-    is_made_again({folder.write("c.yaml", text), {}});
+    expect_same_plan({folder.write("c.yaml", text), {}});
   }
 }
 
@@ -283,7 +283,7 @@ TEST(Plan, WritesAConfigThatKeepsTheStrategyBelowWhatIsSwept) {
                            "defaults: [strategy: weighted, backend: simulator, scene: object_i]\n"}) {
     const RoundTrip one{folder.write("c.yaml", text), {"kernel=rbf,matern52", "scene=ring,rod"}};
     EXPECT_EQ(ids(planned(one.file, one.words).plan).size(), 4U);
-    is_made_again(one);
+    expect_same_plan(one);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many jobs are read at once, and handed over as if they had been read one after the other.
+// Parallel reading of jobs, with results in the order of the jobs.
 #include "sweep/read_jobs.hpp"
 #include "support/support.hpp"
 #include "support/testing.hpp"
@@ -33,7 +33,7 @@ TEST(ReadJobs, HandsThemOverInTheirOrderAndEachWithWhatWasRead) {
     }
     const auto read = [](const std::filesystem::path& directory) {
       const int number = number_of_job(directory);
-      if (number % 7 == 0) std::this_thread::yield();  // whoever comes later may be done earlier
+      if (number % 7 == 0) std::this_thread::yield();  // lets later jobs finish earlier
       return 3 * number;
     };
     std::vector<std::size_t> order;
@@ -55,7 +55,7 @@ TEST(ReadJobs, ReadsOneWhileAnotherIsWaitedFor) {
     std::unique_lock<std::mutex> lock(mutex);
     together = together || ++inside > 1;
     second_came.notify_all();
-    // Only where they come one by one it lasts as long.
+    // The wait ends at once, unless the jobs are read one after the other.
     const bool came = second_came.wait_for(lock, std::chrono::minutes(1), [&] { return together; });
     --inside;
     if (!came) throw std::runtime_error("the jobs are read one by one");

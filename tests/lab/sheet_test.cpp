@@ -28,7 +28,7 @@ std::vector<std::vector<double>> numbers_in(const std::string& text) {
 
 TEST(MatrixTest, HasEveryCellOnceWithTheLowestRowFirst) {
   const Area area{0.3, 0.2};
-  const Ground ground{grid_by_spacing(area, 0.1), area};  // 3 x 2
+  const Ground ground{grid_by_spacing(area, 0.1), area};  // 3 x 2 cells
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(6, 1, 6);
   EXPECT_EQ(matrix_of(ground, values), "1 2 3\n4 5 6\n");
   EXPECT_EQ(surface_of(ground, values / 100, values / 1000),
@@ -91,7 +91,7 @@ TEST(InSightTest, LeavesOutWhatTheSurfaceHidesFromTheSide) {
   const Ground ground{grid_by_count(area, 20), area};
   Snapshot snapshot;
   snapshot.surface = Eigen::VectorXd::Zero(ground.candidates.size());
-  // A wall across the middle, 10 cm high: seen from 30 degrees above, it hides what lies up to 17 cm behind it.
+  // A wall across the middle, 10 cm high. Seen from 30 degrees above, it hides points up to 17 cm behind it.
   for (int i = 0; i < ground.candidates.size(); ++i) {
     if (std::abs(ground.candidates.points(i, 1) - 0.1) < 0.01) snapshot.surface(i) = 0.1;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The signed-rank test against printed tables, scipy, and the count of all patterns of signs.
+// The signed-rank test, compared with printed tables, with scipy, and with an enumeration of all sign patterns.
 #include "analysis/signed_rank.hpp"
 
 #include <palpate/random.hpp>
@@ -18,7 +18,7 @@ SignedRank against_zero(const std::vector<double>& differences) {
 }
 
 TEST(SignedRank, OfTheDepressionScalesIsThatOfTheTextbook) {
-  // Hollander and Wolfe 1973, page 29: T+ = 40, one-sided p = 0.020, here doubled: 20 of the 512 patterns.
+  // Hollander and Wolfe 1973, page 29: T+ = 40, one-sided p = 0.020, doubled here: 20 of the 512 patterns.
   const SignedRank test = signed_rank_test({1.83, 0.50, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.30},
                                            {0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29});
   EXPECT_EQ(test.rank_sum_higher, 40.0);
@@ -45,7 +45,7 @@ TEST(SignedRank, OfManyPairsIsScipysNormalApproximationWithTiesAndWithout) {
   EXPECT_NEAR(*against_zero(untied).p, 0.0779310714344527, 1e-12);
 }
 
-/// The same by going through all 2^n patterns of signs, with ranks counted from their definition.
+/// Returns p by enumeration of all 2^n sign patterns, with ranks from their definition.
 double p_by_enumeration(const std::vector<double>& differences) {
   std::vector<double> sizes;
   for (const double difference : differences) {
@@ -98,7 +98,7 @@ TEST(SignedRank, DoesNotChangeWithShiftScaleAndOrder) {
   EXPECT_EQ(before.equal, 1U);
   std::vector<double> far_a(a.rbegin(), a.rend());
   std::vector<double> far_b(b.rbegin(), b.rend());
-  // 0.3 - 0.2 and 0.9 - 0.8 are not the same double, nor are they after a shift: rounding must decide no tie.
+  // 0.3 - 0.2 and 0.9 - 0.8 are different doubles, also after a shift, but rounding must not decide ties.
   for (auto* values : {&far_a, &far_b}) {
     for (double& value : *values) value = 7.0 + 0.01 * value;
   }
@@ -125,7 +125,7 @@ TEST(SignedRank, OfPairsThatAllPointOneWayIsTwoOfAllPatterns) {
 }
 
 TEST(Holm, IsWhatOneComputesByHand) {
-  // Sorted: 0.005, 0.01, 0.03, 0.04 times 4, 3, 2, 1, none below its forerunner.
+  // Sorted: 0.005, 0.01, 0.03, 0.04 times 4, 3, 2, 1; no result is below the one before.
   const std::vector<double> adjusted = holm_adjusted({0.01, 0.04, 0.03, 0.005});
   const double expected[] = {0.03, 0.06, 0.06, 0.02};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(adjusted[i], expected[i], 1e-15) << i;

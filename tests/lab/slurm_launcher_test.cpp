@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the launcher of clusters says to Slurm and makes of its answers, without Slurm.
+// The launcher for Slurm: its calls of Slurm's commands and its reading of their output, without Slurm.
 #include "launch/slurm_launcher.hpp"
 
 #include "launch/slurm.hpp"
@@ -88,7 +88,7 @@ TEST(SlurmSbatchWords, AreOptionsThatPalpateDoesNotSayItself) {
             "command line: --sbatch: --time cannot be set with --sbatch, use palpate's own option of this name");
 }
 
-/// Runs the script as Slurm would and returns the words that its program was called with.
+/// Runs the script as Slurm does and returns the words that its program received.
 class Script : public ::testing::Test {
  protected:
   test::Ended run(const std::vector<std::string>& words, const LaunchOptions& options = {}) {
@@ -104,7 +104,7 @@ class Script : public ::testing::Test {
   const fs::path program_ = make_program();
 
  private:
-  /// Prints what of its environment counts and then its words, a line each.
+  /// Returns a program that prints the relevant part of its environment and its words, one per line.
   fs::path make_program() {
     const fs::path file =
         folder_.write("bin of 'me'/palpate",
@@ -137,7 +137,7 @@ TEST_F(Script, RunsNothingWithoutALineOfItsOwn) {
   EXPECT_THAT(ended.err, HasSubstr("there is no such task"));
 }
 
-/// Programs by the names of Slurm's, which note how they were called and answer what the test says.
+/// Fake commands of Slurm. They record their calls and give the answers of the test.
 class FakeSlurm : public ::testing::Test {
  protected:
   FakeSlurm() {
@@ -165,7 +165,7 @@ class FakeSlurm : public ::testing::Test {
     return slurm_launcher.make(
         {workshop_, sweep_, options, [this](const TaskArray& array) { heard_.push_back(array); }});
   }
-  /// Asks until jobs return, which they must.
+  /// Polls until jobs return.
   static std::vector<std::size_t> returned(Launcher& launcher) {
     for (;;) {
       const Launcher::State state = launcher.poll(0.1);
@@ -277,7 +277,7 @@ TEST_F(FakeSlurm, CountsAndReturnsJobsByQueueAndDirectory) {
   const std::string ended = "{\"manifest\": 1}\n{\"end\": \"failed\"}\n";
   folder_.write("runs/name/id/jobs/job1/record.jsonl", ended);
   folder_.write("runs/name/id/jobs/job4/record.jsonl", ended);
-  folder_.write("queue", "100 R\n100 PD\n55 R\n");  // the last is somebody else's
+  folder_.write("queue", "100 R\n100 PD\n55 R\n");  // 55 belongs to another user
   Launcher::State state;
   while (state.returned.empty()) state = one->poll(0.1);
   EXPECT_THAT(state.returned, ElementsAre(1, 4));

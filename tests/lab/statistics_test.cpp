@@ -17,7 +17,7 @@ using test::each_alone;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(StudentFactor, IsThatOfThePrintedTables) {
-  // Two-sided 95 %, three decimals, as in every textbook's appendix.
+  // Two-sided 95 %, three decimals, from textbook tables.
   const std::pair<std::size_t, double> table[] = {{1, 12.706},   {2, 4.303},      {3, 3.182},  {4, 2.776},
                                                   {9, 2.262},    {19, 2.093},     {29, 2.045}, {120, 1.980},
                                                   {1000, 1.962}, {1000000, 1.960}};
@@ -25,7 +25,7 @@ TEST(StudentFactor, IsThatOfThePrintedTables) {
 }
 
 TEST(MeanEstimate, OfFourNumbersIsWhatOneComputesByHand) {
-  // The squares of the differences from 3 add up to 4 + 1 + 0 + 9 = 14; the standard error is sqrt(14 / 3 / 4).
+  // The squared differences from 3 add up to 4 + 1 + 0 + 9 = 14; the standard error is sqrt(14 / 3 / 4).
   const MeanEstimate estimate = estimate_mean(each_alone({1.0, 2.0, 3.0, 6.0}));
   EXPECT_EQ(estimate.count, 4U);
   EXPECT_DOUBLE_EQ(estimate.mean, 3.0);
@@ -45,7 +45,7 @@ TEST(MeanEstimate, OfEqualValuesHasNoIntervalHoweverMany) {
 TEST(MeanEstimate, OfValuesThatAreEqualButForRoundingHasNoInterval) {
   EXPECT_FALSE(estimate_mean(each_alone({0.3, 0.1 + 0.2, 0.3})).interval);
   EXPECT_TRUE(estimate_mean(each_alone({0.3, 0.3 + 1e-11, 0.3})).interval);
-  // Differences of numbers near 1000, which are equal but for the rounding of these.
+  // Differences of numbers near 1000, equal except for rounding.
   const Clusters differences = each_alone({1000.1 - 1000.0, 1000.2 - 1000.1, 1000.3 - 1000.2});
   EXPECT_TRUE(estimate_mean(differences).interval);
   EXPECT_FALSE(estimate_mean(differences, 1000.3).interval);

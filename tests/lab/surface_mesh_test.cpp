@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Heights over a grid as triangles: normals, orientation, and what hangs together.
+// Heights over a grid as a triangle mesh: normals, orientation, connectivity.
 #include "report/exchange/exchange.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRounding = 1e-13;
 
-/// A grid whose sides, numbers and distances all differ.
+/// A grid whose sides, numbers of cells and distances all differ.
 Candidates oblong() {
   return product_grid(Eigen::VectorXd::LinSpaced(7, 0.01, 0.13), Eigen::Vector4d(0.1, 0.15, 0.2, 0.25));
 }
@@ -26,7 +26,7 @@ Eigen::VectorXd heights(const Candidates& candidates, const Height& height) {
   return out;
 }
 
-/// Over oblong().
+/// Returns the mesh of `height` over oblong().
 template <class Height>
 SurfaceMesh mesh_of(const Height& height) {
   const Candidates candidates = oblong();
@@ -35,7 +35,7 @@ SurfaceMesh mesh_of(const Height& height) {
 
 Eigen::Vector3d corner(const SurfaceMesh& mesh, int vertex) { return mesh.points.row(vertex).transpose(); }
 
-/// Twice the area of a triangle, along its normal by the order of its corners.
+/// Returns twice the area of a triangle along its normal, given by the order of its corners.
 Eigen::Vector3d area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& t) {
   return (corner(mesh, t[1]) - corner(mesh, t[0])).cross(corner(mesh, t[2]) - corner(mesh, t[0]));
 }
@@ -58,7 +58,7 @@ TEST(SurfaceMesh, OfALevelSurfaceLooksStraightUpWithoutAMinusBeforeAnyZero) {
 }
 
 TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
-  // Of a parabola along x the central difference is the slope itself; at an edge it is that half a step inside.
+  // For a parabola, the central difference equals the slope. At an edge, it equals the slope half a step inside.
   const double bend = 3.0;
   const Candidates candidates = oblong();
   const SurfaceMesh mesh = mesh_of([&](double x, double) { return bend * x * x; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a sweep of very many jobs has some of them, evenly, and says what became of all.
+// The page of a large sweep has an even selection of its jobs and the results of all.
 #include "report/page/sweep_page.hpp"
 #include "support/large_sweep.hpp"
 #include "support/support.hpp"
@@ -22,7 +22,7 @@ using test::TemporaryFolder;
 
 constexpr int kSeeds = 1000;
 
-/// Written once: on a slow disk that takes longer than all that is asked of it.
+/// The sweep is written once, because on a slow disk this takes longer than the tests.
 class LargeSweep : public ::testing::Test {
  protected:
   struct Written {
@@ -66,7 +66,7 @@ TEST_F(LargeSweep, HasOnItsPageEveryFifthOfEachSettingWithItsNumbers) {
     const Json& number = error->at("numbers").at(place);
     EXPECT_EQ(number, FakedJob::failed(index) ? Json() : Json(FakedJob::error(index)));
   }
-  // Units are seeds: two jobs of a seed have the same number, those of others have another one.
+  // Seeds are the units: two jobs of a seed have the same number, and other seeds have other numbers.
   std::map<std::string, std::set<std::size_t>> units;
   std::set<std::size_t> all_units;
   for (std::size_t place = 0; place < page.at("jobs").size(); ++place) {

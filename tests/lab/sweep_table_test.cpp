@@ -17,7 +17,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// The table of a job for each of `groups`, with three initial taps; each first hits at tap 2, and has one of `errors`.
+/// Returns the table of one job per group, with three initial taps. Each job hits first at tap 2 and has one of
+/// `errors`.
 std::string table_of(const std::vector<std::string>& keys, const std::vector<std::vector<std::string>>& groups,
                      const std::vector<double>& errors = {}) {
   Sweep sweep{"runs/x/0123456789ab", keys, {}};
@@ -83,7 +84,7 @@ TEST(SweepTable, KeepsItsNumbersToTheWidthOfAScreenThoughGroupsHaveLongNames) {
   EXPECT_EQ(table.find(name), table.find('\n') + 1 + at) << "under its header";
 }
 
-/// The table of one job of each of two seeds, with these fields beside its status.
+/// Returns the table of two jobs with different seeds, with `fields` in addition to their status.
 std::string table_of_seeds(const std::string& status, const std::optional<int>& initial_taps, const Row& fields = {}) {
   const Sweep sweep{"runs/x/0123456789ab", {"seed"}, {{0, "id", {"0"}}, {1, "id", {"1"}}}};
   std::vector<Row> results;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is watched, without a browser and without another process: the log as it grows, a history that is looked at in
-// between, and a server that is left alone.
+// `palpate watch` without a browser and without another process: a growing log, a history that is read in between, and
+// a server without visitors.
 #include "record/json.hpp"
 #include "record/session.hpp"
 #include "report/history.hpp"
@@ -33,7 +33,7 @@ class AGrowingLog : public ::testing::Test {
   void append(const std::string& text) const {
     std::ofstream(file_, std::ios::app | std::ios::binary) << text << std::flush;
   }
-  /// The numbers of the taps that are new.
+  /// Returns the numbers of the new taps.
   std::vector<int> read() {
     anew_ = false;
     std::vector<int> out;
@@ -89,10 +89,10 @@ TEST_F(AGrowingLog, LosesNothingWhenHalfALineIsCutOffAndMadeAnew) {
 TEST_F(AGrowingLog, BeginsAnewWhereItIsAnotherOne) {
   append(kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");
   EXPECT_THAT(read(), ElementsAre(1, 2));
-  folder_.write("record.jsonl", kBegun + "{\"tap\": 1, \"x\": 7}\n{\"tap\": 2}\n{\"tap\": 3}\n");  // in the same file
+  folder_.write("record.jsonl", kBegun + "{\"tap\": 1, \"x\": 7}\n{\"tap\": 2}\n{\"tap\": 3}\n");  // same file
   EXPECT_THAT(read(), ElementsAre(1, 2, 3));
   EXPECT_TRUE(anew_);
-  folder_.write("record.jsonl", kBegun + "{\"tap\": 1, \"x\": 7}\n");  // shorter
+  folder_.write("record.jsonl", kBegun + "{\"tap\": 1, \"x\": 7}\n");  // shorter file
   EXPECT_THAT(read(), ElementsAre(1));
   EXPECT_TRUE(anew_);
   fs::remove(file_);
@@ -103,7 +103,7 @@ TEST_F(AGrowingLog, BeginsAnewWhereItIsAnotherOne) {
 TEST_F(AGrowingLog, GoesOnWhereACopyWithMoreTakesItsPlace) {
   append(kBegun + "{\"tap\": 1}\n");
   EXPECT_THAT(read(), ElementsAre(1));
-  folder_.write("copy", kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");  // as rsync brings it
+  folder_.write("copy", kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");  // the file is replaced, as by rsync
   fs::rename(folder_.path() / "copy", file_);
   EXPECT_THAT(read(), ElementsAre(2));
   EXPECT_FALSE(anew_);
@@ -126,7 +126,7 @@ TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceThatIsPutRight) {
   EXPECT_THAT(read(), ElementsAre(1, 2));
 }
 
-/// A run that was made in this process.
+/// A run made in this process.
 class Watching : public ::testing::Test {
  protected:
   fs::path made(const std::string& base, const std::vector<std::string>& words = {}) const {

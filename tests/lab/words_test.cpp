@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers read like words.
+// Numbers within sentences.
 #include "report/words/words.hpp"
 
 #include <gtest/gtest.h>
