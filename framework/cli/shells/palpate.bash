@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-# Completion for bash: asks the program. Installed where bash looks; for ./palpate, source it.
+# Completion for bash by `palpate --complete`. Installed in the folder that bash reads; for ./palpate, source this file.
 # shellcheck shell=bash
 _palpate() {
   local piece open='' kept='' words=()
-  # Bash takes a word apart at each = and :, and leaves quotes where they are.
+  # Bash splits words at = and :, and keeps quotes. The loop joins the parts again.
   for piece in "${COMP_WORDS[@]:1:COMP_CWORD}"; do
     if [[ -n $piece && ${#words[@]} -gt 0 && ($piece == [=:] || -n $open) ]]; then
       words[-1]+=$piece
@@ -13,13 +13,13 @@ _palpate() {
     open=''
     if [[ $piece == [=:] ]]; then open=yes; fi
   done
-  # What it takes for a word before the one that it completes.
+  # The part of the last word that Bash counts as a word of its own, and does not replace.
   if [[ ${words[-1]} != [\"\']* ]]; then kept=${words[-1]%"${words[-1]##*[=:]}"}; fi
   mapfile -t COMPREPLY < <("${COMP_WORDS[0]/#\~/$HOME}" --complete "${words[@]#[\"\']}" 2>/dev/null)
   COMPREPLY=("${COMPREPLY[@]%%$'\t'*}")
   COMPREPLY=("${COMPREPLY[@]#"$kept"}")
   if [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *[=./,] ]]; then
-    compopt -o nospace # the word goes on
+    compopt -o nospace # more characters may follow
   fi
 }
 complete -o nosort -o default -F _palpate palpate

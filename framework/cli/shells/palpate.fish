@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Completion for fish: asks the program. Installed where fish looks; for ./palpate, source it.
+# Completion for fish by `palpate --complete`. Installed in the folder that fish reads; for ./palpate, source this file.
 function __palpate_complete
     set -l words (commandline -opc)
     set -l word (commandline -ct)
