@@ -15,12 +15,12 @@ ceilings='
 .ci 0 131
 . 0 199
 framework 0 58
-framework/cli 3376 32
+framework/cli 3540 60 # one file per command, with its arguments
 framework/cmake 0 220 # packages of a cross build
 framework/core 18080 49 # parts of the GP and of the outlier model in files of their own
 framework/desk 9609 126
 framework/include 807 0
-framework/lab 2690 16
+framework/lab 2740 20 # a table of launchers; pooled records in files of their own
 framework/python 695 609
 framework/shared 1376 0
 plugins 33 78

@@ -7,8 +7,6 @@
 #include "record/recording.hpp"
 #include "record/run_directory.hpp"
 
-#include <palpate/error.hpp>
-
 #include <fmt/format.h>
 
 namespace palpate::cli {

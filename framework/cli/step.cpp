@@ -10,8 +10,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>

@@ -7,7 +7,6 @@ namespace palpate {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 using Values = std::vector<double>;
 
 const double kNone = std::nan("");

@@ -5,7 +5,6 @@
 #include <palpate/math.hpp>
 #include <palpate/shape.hpp>
 
-#include <cmath>
 #include <memory>
 #include <vector>
 

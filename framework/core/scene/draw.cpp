@@ -4,7 +4,6 @@
 #include "config/expand.hpp"
 #include "scene/scene_options.hpp"
 
-#include <palpate/error.hpp>
 #include <palpate/random.hpp>
 
 #include <fmt/format.h>

@@ -7,7 +7,6 @@
 #include "sweep/plan.hpp"
 
 #include <filesystem>
-#include <string>
 
 namespace palpate {
 
