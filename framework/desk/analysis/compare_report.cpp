@@ -3,19 +3,21 @@
 
 #include "analysis/bootstrap.hpp"
 #include "analysis/readable.hpp"
+#include "analysis/table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 namespace palpate {
 namespace {
 
 using Better = RecordField::Better;
-using Lines = std::vector<std::vector<std::string>>;
+using Kind = Table::Kind;
 
 std::string keys_text(const std::vector<std::string>& keys) {
   return one_line(fmt::format("{}", fmt::join(keys, ", ")));
@@ -60,29 +62,54 @@ std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
   return fmt::format("{} - {}", comparison.groups[pair.first].name, comparison.groups[pair.second].name);
 }
 
-std::string group_table(const Comparison& comparison, const Scale& scale) {
-  const bool numbers = numbered(comparison);
-  // A column of zeros would say nothing.
-  const auto shown = [&](Fate fate) {
-    return std::any_of(comparison.groups.begin(), comparison.groups.end(),
-                       [&](const ComparedGroup& one) { return one.counts.of(fate) > 0; });
-  };
-  const auto head = [&](Fate fate, const char* name) { return shown(fate) ? name : ""; };
-  Lines lines{{numbers ? "#" : "", keys_text(comparison.by), "jobs", head(Fate::left_out, "left out"),
-               head(Fate::failed, "failed"), head(Fate::unfinished, "unfinished"),
-               head(Fate::without_value, "no value"), "n", units_title(comparison), "mean [95 % interval]", "median",
-               "10 % to 90 %"}};
+/// Begins the row of a group or of a pair with the fields that both have.
+void begin_row(Table& table, const Comparison& comparison, const std::string& where, const char* kind) {
+  table.add_row();
+  table.store("kind", kind);
+  table.store("by", fmt::format("{}", fmt::join(comparison.by, ",")));
+  table.store("metric", comparison.metric.name);
+  table.store("where", where.empty() ? std::nullopt : std::optional(where));
+  if (const auto& occasion = comparison.occasion)
+    occasion->taps() ? table.store("at", *occasion->taps()) : table.store("until", occasion->words());
+}
+
+void store_estimate(Table& table, const Comparison& comparison, const MeanEstimate& mean) {
+  const auto units = static_cast<std::int64_t>(mean.clusters);
+  table.store("n", static_cast<std::int64_t>(mean.count));
+  table.store("seeds", comparison.by_seed ? std::optional(units) : std::nullopt);
+  table.store("units", units);
+  add_mean(table.last_row(), "", mean);
+}
+
+Table group_table(const Comparison& comparison, const Scale& scale, const std::string& where) {
+  Table table;
   for (std::size_t i = 0; i < comparison.groups.size(); ++i) {
     const ComparedGroup& one = comparison.groups[i];
     const bool any = one.mean.count > 0;
-    const auto count = [&](Fate fate) { return shown(fate) ? std::to_string(one.counts.of(fate)) : ""; };
-    lines.push_back(
-        {numbers ? std::to_string(i + 1) : "", one.name, std::to_string(one.counts.all()), count(Fate::left_out),
-         count(Fate::failed), count(Fate::unfinished), count(Fate::without_value), std::to_string(one.mean.count),
-         units_cell(comparison, one.mean), scale.estimate(one.mean), any ? short_number(scale, one.median) : "-",
-         any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-"});
+    begin_row(table, comparison, where, "group");
+    if (numbered(comparison)) table.show("#", std::to_string(i + 1));
+    table.show(keys_text(comparison.by), one.name, Kind::text);
+    table.store("group", one.name);
+    table.show("jobs", std::to_string(one.counts.all()));
+    for (const auto& [title, fate] :
+         {std::pair("left out", Fate::left_out), std::pair("failed", Fate::failed),
+          std::pair("unfinished", Fate::unfinished), std::pair("no value", Fate::without_value)})
+      table.show(title, std::to_string(one.counts.of(fate)), Kind::count);
+    add_counts(table.last_row(), one.counts, true);
+    table.show("n", std::to_string(one.mean.count));
+    table.show(units_title(comparison), units_cell(comparison, one.mean), Kind::count);
+    table.show("mean [95 % interval]", scale.estimate(one.mean));
+    store_estimate(table, comparison, one.mean);
+    if (comparison.occasion && !comparison.occasion->taps()) table.store("never", one.never);
+    const auto known = [&](double value) { return any ? std::optional(value) : std::nullopt; };
+    table.show("median", any ? short_number(scale, one.median) : "-");
+    table.store("median", known(one.median));
+    table.show("10 % to 90 %",
+               any ? fmt::format("{} to {}", short_number(scale, one.low_10), short_number(scale, one.high_90)) : "-");
+    table.store("p10", known(one.low_10));
+    table.store("p90", known(one.high_90));
   }
-  return aligned(lines, "rlrrrrrrrrrr");
+  return table;
 }
 
 std::string p_text(const std::optional<double>& p) {
@@ -113,24 +140,56 @@ std::string ratio_text(const ComparedPair& pair) {
   return with_interval(pair.ratio->ratio, pair.ratio->interval, [](double one) { return fmt::format("{:.3f}", one); });
 }
 
-std::string pair_table(const Comparison& comparison, const Scale& scale) {
-  const bool many = comparison.pairs.size() > 1;
+void store_ratio(Table& table, const std::optional<RatioEstimate>& ratio) {
+  table.store("ratio", ratio ? std::optional(ratio->ratio) : std::nullopt);
+  add_interval(table.last_row(), "ratio_", ratio ? ratio->interval : std::nullopt);
+}
+
+void store_test(Table& table, const ComparedPair& pair) {
+  const SignedRank& test = pair.test;
+  for (const auto& [name, fate] :
+       {std::pair("left_out", Fate::left_out), std::pair("without_partner", Fate::without_partner),
+        std::pair("unfinished", Fate::unfinished), std::pair("failed", Fate::failed),
+        std::pair("without_value", Fate::without_value)})
+    table.store(fmt::format("lost_{}", name), pair.lost.of(fate));
+  table.store("higher", static_cast<std::int64_t>(test.higher));
+  table.store("equal", static_cast<std::int64_t>(test.equal));
+  table.store("lower", static_cast<std::int64_t>(test.lower));
+  table.store("rank_sum_higher", test.rank_sum_higher);
+  table.store("rank_sum_lower", test.rank_sum_lower);
+  table.store("p", test.p);
+  table.store("p_exact", test.p ? std::optional(test.exact) : std::nullopt);
+  table.store("p_holm", pair.p_holm);
+  table.store("rank_biserial", test.effect);
+}
+
+Table pair_table(const Comparison& comparison, const Scale& scale, const std::string& where) {
   const Words words = words_of(comparison.metric);
-  Lines lines{{"difference", "pairs", "lost", units_title(comparison), "mean [95 % interval]",
-               comparison.ratios ? "ratio [95 % interval]" : "", fmt::format("{}/equal/{}", words.up, words.down), "p",
-               many ? "p (Holm)" : "", "effect"}};
+  Table table;
   for (const ComparedPair& pair : comparison.pairs) {
-    const auto [up, down] = sides(comparison, pair.test);
+    begin_row(table, comparison, where, "pair");
+    table.show("difference", pair_name(comparison, pair), Kind::text);
+    table.store("group", comparison.groups[pair.first].name);
+    table.store("minus", comparison.groups[pair.second].name);
+    table.show("pairs", std::to_string(pair.difference.count));
+    table.show("lost", std::to_string(pair.lost.all()));
+    table.show(units_title(comparison), units_cell(comparison, pair.difference), Kind::count);
     const std::string mean = with_interval(pair.difference.mean, pair.difference.interval,
                                            [&](double value) { return scale.difference(value); });
-    lines.push_back({pair_name(comparison, pair), std::to_string(pair.difference.count),
-                     std::to_string(pair.lost.all()), units_cell(comparison, pair.difference),
-                     pair.difference.count > 0 ? mean : "-", comparison.ratios ? ratio_text(pair) : "",
-                     fmt::format("{}/{}/{}", up, pair.test.equal, down), p_text(pair.test.p),
-                     many ? p_text(pair.p_holm) : "",
-                     pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-"});
+    table.show("mean [95 % interval]", pair.difference.count > 0 ? mean : "-");
+    store_estimate(table, comparison, pair.difference);
+    if (comparison.ratios) {
+      table.show("ratio [95 % interval]", ratio_text(pair));
+      store_ratio(table, pair.ratio);
+    }
+    const auto [up, down] = sides(comparison, pair.test);
+    table.show(fmt::format("{}/equal/{}", words.up, words.down), fmt::format("{}/{}/{}", up, pair.test.equal, down));
+    table.show("p", p_text(pair.test.p));
+    if (comparison.pairs.size() > 1) table.show("p (Holm)", p_text(pair.p_holm));
+    table.show("effect", pair.test.effect ? fmt::format("{:+.2f}", *pair.test.effect) : "-");
+    store_test(table, pair);
   }
-  return aligned(lines, "lrrrrrrrrr");
+  return table;
 }
 
 /// Where the mean and the majority of the units point in different directions, neither is the answer.
@@ -240,8 +299,8 @@ std::string compare_tables(const Comparison& comparison) {
   std::string out =
       fmt::format("{} by {}{}{}\n", scale.title(comparison.metric.name), keys_text(comparison.by),
                   comparison.occasion ? " " + comparison.occasion->words() : "", better.empty() ? "" : "; " + better);
-  out += group_table(comparison, scale);
-  if (!comparison.pairs.empty()) out += "\n" + pair_table(comparison, difference_scale(comparison, scale));
+  out += group_table(comparison, scale, "").text();
+  if (!comparison.pairs.empty()) out += "\n" + pair_table(comparison, difference_scale(comparison, scale), "").text();
   const std::string notes = remarks(comparison);
   return out + (notes.empty() ? "" : "\n" + notes);
 }
@@ -282,59 +341,10 @@ std::string compare_legend(const std::vector<Comparison>& comparisons) {
 }
 
 std::vector<Row> compare_rows(const Comparison& comparison, const std::string& where) {
-  std::vector<Row> rows;
-  const auto begin = [&](const char* kind) -> Row& {
-    Row row;
-    row.add("kind", kind);
-    row.add("by", fmt::format("{}", fmt::join(comparison.by, ",")));
-    row.add("metric", comparison.metric.name);
-    row.add("where", where.empty() ? std::nullopt : std::optional(where));
-    if (const auto& occasion = comparison.occasion)
-      occasion->taps() ? row.add("at", *occasion->taps()) : row.add("until", occasion->words());
-    rows.push_back(std::move(row));
-    return rows.back();
-  };
-  const auto add_estimate = [&](Row& row, const MeanEstimate& mean) {
-    row.add("n", static_cast<std::int64_t>(mean.count));
-    row.add("seeds", comparison.by_seed ? std::optional(static_cast<std::int64_t>(mean.clusters)) : std::nullopt);
-    row.add("units", static_cast<std::int64_t>(mean.clusters));
-    add_mean(row, "", mean);
-  };
-  for (const ComparedGroup& one : comparison.groups) {
-    Row& row = begin("group");
-    const auto known = [&](double value) { return one.mean.count > 0 ? std::optional(value) : std::nullopt; };
-    row.add("group", one.name);
-    add_counts(row, one.counts, true);
-    add_estimate(row, one.mean);
-    if (comparison.occasion && !comparison.occasion->taps()) row.add("never", one.never);
-    row.add("median", known(one.median));
-    row.add("p10", known(one.low_10));
-    row.add("p90", known(one.high_90));
-  }
-  for (const ComparedPair& one : comparison.pairs) {
-    Row& row = begin("pair");
-    row.add("group", comparison.groups[one.first].name);
-    row.add("minus", comparison.groups[one.second].name);
-    add_estimate(row, one.difference);
-    if (comparison.ratios) {
-      row.add("ratio", one.ratio ? std::optional(one.ratio->ratio) : std::nullopt);
-      add_interval(row, "ratio_", one.ratio ? one.ratio->interval : std::nullopt);
-    }
-    row.add("lost_left_out", one.lost.of(Fate::left_out));
-    row.add("lost_without_partner", one.lost.of(Fate::without_partner));
-    row.add("lost_unfinished", one.lost.of(Fate::unfinished));
-    row.add("lost_failed", one.lost.of(Fate::failed));
-    row.add("lost_without_value", one.lost.of(Fate::without_value));
-    row.add("higher", static_cast<std::int64_t>(one.test.higher));
-    row.add("equal", static_cast<std::int64_t>(one.test.equal));
-    row.add("lower", static_cast<std::int64_t>(one.test.lower));
-    row.add("rank_sum_higher", one.test.rank_sum_higher);
-    row.add("rank_sum_lower", one.test.rank_sum_lower);
-    row.add("p", one.test.p);
-    row.add("p_exact", one.test.p ? std::optional(one.test.exact) : std::nullopt);
-    row.add("p_holm", one.p_holm);
-    row.add("rank_biserial", one.test.effect);
-  }
+  const Scale any_scale;
+  std::vector<Row> rows = group_table(comparison, any_scale, where).rows();
+  std::vector<Row> pairs = pair_table(comparison, any_scale, where).rows();
+  std::move(pairs.begin(), pairs.end(), std::back_inserter(rows));
   return rows;
 }
 

@@ -2,6 +2,7 @@
 #include "analysis/group_curves_report.hpp"
 
 #include "analysis/bootstrap.hpp"
+#include "analysis/table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -98,20 +99,22 @@ std::string curves_table(const GroupCurves& curves) {
   const std::string better = curves.metric.better_words();
   std::string out = fmt::format("{} against {}{}\n", scale.title(curves.metric.name), axis.title(curves.against.name),
                                 better.empty() ? "" : "; " + better);
-  std::vector<std::string> head{many_scenes ? fmt::format("{}", fmt::join(curves.scenes, ", ")) : "",
-                                curves.by.empty() ? "group" : fmt::format("{}", fmt::join(curves.by, ", ")), "jobs"};
   const bool taps = curves.against.name == kAgainstTaps;
-  for (const double at : places)
-    head.push_back(taps ? fmt::format("{:.0f} taps", at) : axis.with_unit(axis.number(at)));
-  std::vector<std::vector<std::string>> lines{std::move(head)};
+  Table table;
   for (const GroupCurve& curve : curves.curves) {
-    lines.push_back({many_scenes ? curve.scene_name() : "", curve.name(), std::to_string(curve.counts.all())});
+    table.add_row();
+    if (many_scenes)
+      table.show(fmt::format("{}", fmt::join(curves.scenes, ", ")), curve.scene_name(), Table::Kind::text);
+    table.show(curves.by.empty() ? "group" : fmt::format("{}", fmt::join(curves.by, ", ")), curve.name(),
+               Table::Kind::text);
+    table.show("jobs", std::to_string(curve.counts.all()));
     for (const double at : places) {
       const CurvePoint* const point = point_at(curve, at);
-      lines.back().push_back(point != nullptr ? scale.estimate(point->mean) : "-");
+      table.show(taps ? fmt::format("{:.0f} taps", at) : axis.with_unit(axis.number(at)),
+                 point != nullptr ? scale.estimate(point->mean) : "-");
     }
   }
-  out += aligned(lines, "llr" + std::string(places.size(), 'r'));
+  out += table.text();
   out += fmt::format(
       "mean [95 % interval] over {}, as in 'palpate compare'; a job that has ended counts with its final value\n",
       curve_units_words(curves));

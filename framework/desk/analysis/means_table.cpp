@@ -2,16 +2,13 @@
 #include "analysis/compare_report.hpp"
 
 #include "analysis/readable.hpp"
+#include "analysis/table.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
-#include <string_view>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -31,35 +28,6 @@ Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, st
     means.insert(means.end(), more.begin(), more.end());
   }
   return readable_scale(comparisons[first].metric.unit, means, digits);
-}
-
-/// A '|' in a name would end its cell.
-std::string markdown_cell(std::string text) {
-  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) text.insert(at, 1, '\\');
-  return text;
-}
-
-std::string markdown_line(const std::vector<std::string>& cells) {
-  return fmt::format("| {} |\n", fmt::join(cells, " | "));
-}
-
-/// Text in which LaTeX sees no command. What begins with '[' would be taken for an argument of the line before it.
-std::string latex_cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (std::string_view("&%$#_{}").find(c) != std::string_view::npos) {
-      out += std::string("\\") + c;
-    } else if (c == '\\' || c == '~' || c == '^') {
-      out += c == '\\' ? "\\textbackslash{}" : c == '~' ? "\\textasciitilde{}" : "\\textasciicircum{}";
-    } else {
-      out += c;
-    }
-  }
-  return !out.empty() && out.front() == '[' ? "{" + out + "}" : out;
-}
-
-std::string latex_line(const std::vector<std::string>& cells) {
-  return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
 }
 
 /// The decimals by which half the width of an interval has two significant digits, 0 to 9.
@@ -88,6 +56,10 @@ bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps
 struct MeansLayout {
   std::size_t metrics = 0;
   std::vector<Scale> scales;  ///< of each metric
+
+  std::string title(const std::vector<Comparison>& comparisons, std::size_t metric) const {
+    return scales[metric].title(comparisons[metric].metric.name);
+  }
 };
 
 MeansLayout layout_of(const std::vector<Comparison>& comparisons, int digits) {
@@ -101,28 +73,24 @@ MeansLayout layout_of(const std::vector<Comparison>& comparisons, int digits) {
   return out;
 }
 
-/// Calls `write` for each row: its names, and the group of each metric.
-void for_each_row(
-    const std::vector<Comparison>& comparisons, const MeansLayout& layout,
-    const std::function<void(std::vector<std::string> names, const std::vector<const ComparedGroup*>& groups)>& write) {
+/// Adds a row per group and occasion, first its names, then what `show` adds for the group of each metric.
+template <class ShowMeans>
+Table table_of(const std::vector<Comparison>& comparisons, const MeansLayout& layout, const ShowMeans& show) {
+  Table out;
   for (std::size_t block = 0; block < comparisons.size(); block += layout.metrics) {
     const Comparison& first = comparisons[block];
     for (std::size_t i = 0; i < first.groups.size(); ++i) {
       if (first.groups[i].counts.all_are(Fate::left_out)) continue;
-      std::vector<std::string> names = first.groups[i].values;
-      if (has_taps(first)) names.push_back(std::to_string(*first.occasion->taps()));
-      std::vector<const ComparedGroup*> groups;
+      out.add_row();
+      for (std::size_t key = 0; key < first.by.size(); ++key)
+        out.show(first.by[key], first.groups[i].values[key], Table::Kind::text);
+      if (has_taps(first)) out.show("taps", std::to_string(*first.occasion->taps()));
+      std::vector<const MeanEstimate*> means;
       for (std::size_t metric = 0; metric < layout.metrics; ++metric)
-        groups.push_back(&comparisons[block + metric].groups[i]);
-      write(std::move(names), groups);
+        means.push_back(&comparisons[block + metric].groups[i].mean);
+      show(out, means);
     }
   }
-}
-
-/// The titles of the columns that name a row.
-std::vector<std::string> name_titles(const Comparison& first) {
-  std::vector<std::string> out = first.by;
-  if (has_taps(first)) out.emplace_back("taps");
   return out;
 }
 
@@ -160,65 +128,41 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
 
 std::string means_table(const std::vector<Comparison>& comparisons) {
   const MeansLayout layout = layout_of(comparisons, kDigits);
-  std::vector<std::string> titles = name_titles(comparisons.front());
-  std::vector<std::string> sides(comparisons.front().by.size(), "---");
-  for (std::size_t i = 0; i < layout.metrics; ++i) titles.push_back(layout.scales[i].title(comparisons[i].metric.name));
-  sides.resize(titles.size(), "---:");
-  for (std::string& title : titles) title = markdown_cell(title);
-  std::string out = markdown_line(titles) + fmt::format("|{}|\n", fmt::join(sides, "|"));
-  for_each_row(comparisons, layout, [&](std::vector<std::string> cells, const auto& groups) {
-    for (std::string& cell : cells) cell = markdown_cell(cell);
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      const MeanEstimate& mean = groups[i]->mean;
-      cells.push_back(mean.count > 0 ? layout.scales[i].number(mean.mean) : "-");
-    }
-    out += markdown_line(cells);
+  const Table table = table_of(comparisons, layout, [&](Table& out, const auto& means) {
+    for (std::size_t i = 0; i < means.size(); ++i)
+      out.show(layout.title(comparisons, i), means[i]->count > 0 ? layout.scales[i].number(means[i]->mean) : "-");
   });
   const std::string notes = remarks(comparisons, layout.metrics);
-  return out + (notes.empty() ? "" : "\n" + notes);
+  return table.markdown() + (notes.empty() ? "" : "\n" + notes);
 }
 
 std::string latex_table(const std::vector<Comparison>& comparisons) {
-  const Comparison& first = comparisons.front();
   const MeansLayout layout = layout_of(comparisons, kDigitsBesideIntervals);
   // One column with n where it is the same for all metrics.
   bool same = true;
   std::size_t least = SIZE_MAX;
   std::size_t most = 0;
-  std::string lines;
-  for_each_row(comparisons, layout, [&](const auto&, const auto& groups) {
-    for (const ComparedGroup* group : groups) {
-      same = same && group->mean.count == groups.front()->mean.count;
-      least = std::min(least, group->mean.clusters);
-      most = std::max(most, group->mean.clusters);
+  table_of(comparisons, layout, [&](Table& /*out*/, const auto& means) {
+    for (const MeanEstimate* mean : means) {
+      same = same && mean->count == means.front()->count;
+      least = std::min(least, mean->clusters);
+      most = std::max(most, mean->clusters);
     }
   });
-  std::vector<std::string> titles = name_titles(first);
-  for (std::string& title : titles) title = latex_cell(title);
-  std::string sides = std::string(first.by.size(), 'l') + std::string(titles.size() - first.by.size(), 'r');
-  for (std::size_t i = 0; i < layout.metrics; ++i) {
-    titles.push_back(latex_cell(layout.scales[i].title(comparisons[i].metric.name)));
-    sides += 'r';
-    if (same && i + 1 < layout.metrics) continue;
-    titles.emplace_back("$n$");
-    sides += 'r';
-  }
-  for_each_row(comparisons, layout, [&](std::vector<std::string> cells, const auto& groups) {
-    for (std::string& cell : cells) cell = latex_cell(cell);
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      cells.push_back(latex_estimate(layout.scales[i], groups[i]->mean));
-      if (!same || i + 1 == groups.size()) cells.push_back(std::to_string(groups[i]->mean.count));
+  const Table table = table_of(comparisons, layout, [&](Table& out, const auto& means) {
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      out.show(latex_text(layout.title(comparisons, i)), latex_estimate(layout.scales[i], *means[i]),
+               Table::Kind::latex);
+      if (!same || i + 1 == means.size()) out.show("$n$", std::to_string(means[i]->count), Table::Kind::latex);
     }
-    lines += latex_line(cells);
   });
   std::string out = "% \\usepackage{booktabs}\n";
   out += fmt::format("% mean [95 % interval of the mean] and number of jobs; units of the intervals: {}\n",
-                     units_words(least, most, first.by_seed));
+                     units_words(least, most, comparisons.front().by_seed));
   std::string notes = remarks(comparisons, layout.metrics);
   for (std::size_t begin = 0, end; (end = notes.find('\n', begin)) != std::string::npos; begin = end + 1)
     out += "% " + notes.substr(begin, end - begin) + "\n";
-  return out + fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n{}\\bottomrule\n\\end{{tabular}}\n",
-                           sides, latex_line(titles), lines);
+  return out + table.latex();
 }
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 
 #include "analysis/gnuplot.hpp"
 #include "analysis/readable.hpp"
+#include "analysis/table.hpp"
 
 #include <fmt/format.h>
 
@@ -133,18 +134,32 @@ std::string seeds_words(const Pareto& pareto) {
   return units_words(fewest, most, pareto.by_seed);
 }
 
-std::string pareto_table(const Pareto& pareto) {
+static Table settings_table(const Pareto& pareto) {
   const Scale cost = scale_of(pareto, pareto.cost, &Setting::cost);
   const Scale error = scale_of(pareto, pareto.error, &Setting::error);
-  std::vector<std::vector<std::string>> lines{
-      {"front", "setting", "jobs", cost.title(pareto.cost.name), error.title(pareto.error.name), ""}};
+  Table table;
   for (const Setting& one : pareto.settings) {
     const std::string jobs = std::to_string(one.counts.all());
-    lines.push_back({one.front > 0 ? std::to_string(one.front) : "", one.name, jobs, cost_text(one, cost),
-                     error.estimate(one.error),
-                     one.counts.words({Fate::failed, Fate::unfinished, Fate::without_value}, " of " + jobs)});
+    table.add_row();
+    table.show("front", one.front > 0 ? std::to_string(one.front) : "");
+    table.store("front", one.front > 0 ? std::optional(one.front) : std::nullopt);
+    table.show("setting", one.name, Table::Kind::text);
+    for (std::size_t i = 0; i < pareto.keys.size(); ++i) table.store(pareto.keys[i], one.values[i]);
+    table.show("jobs", jobs);
+    add_counts(table.last_row(), one.counts);
+    table.store("seeds", pareto.by_seed ? std::optional(static_cast<std::int64_t>(one.error.clusters)) : std::nullopt);
+    table.show(cost.title(pareto.cost.name), cost_text(one, cost));
+    add_mean(table.last_row(), pareto.cost.name + ".", one.cost);
+    table.show(error.title(pareto.error.name), error.estimate(one.error));
+    add_mean(table.last_row(), pareto.error.name + ".", one.error);
+    table.show("", one.counts.words({Fate::failed, Fate::unfinished, Fate::without_value}, " of " + jobs),
+               Table::Kind::text);
   }
-  std::string out = aligned(lines, "rlrrrl");
+  return table;
+}
+
+std::string pareto_table(const Pareto& pareto) {
+  std::string out = settings_table(pareto).text();
   out += fmt::format(
       "{}, with its 95 % interval (Student's t); {} of {} is better\nnumbered settings form the front: no other "
       "setting is at least as good in both values and better in one\n",
@@ -168,20 +183,7 @@ std::string pareto_table(const Pareto& pareto) {
   return out;
 }
 
-std::vector<Row> pareto_rows(const Pareto& pareto) {
-  std::vector<Row> rows;
-  for (const Setting& one : pareto.settings) {
-    Row row;
-    row.add("front", one.front > 0 ? std::optional(one.front) : std::nullopt);
-    for (std::size_t i = 0; i < pareto.keys.size(); ++i) row.add(pareto.keys[i], one.values[i]);
-    add_counts(row, one.counts);
-    row.add("seeds", pareto.by_seed ? std::optional(static_cast<std::int64_t>(one.error.clusters)) : std::nullopt);
-    add_mean(row, pareto.cost.name + ".", one.cost);
-    add_mean(row, pareto.error.name + ".", one.error);
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
+std::vector<Row> pareto_rows(const Pareto& pareto) { return settings_table(pareto).rows(); }
 
 std::string error_words(const Pareto& pareto, const Setting& setting) {
   const Scale scale = scale_of(pareto, pareto.error, &Setting::error);

@@ -3,7 +3,8 @@
 
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
-#include "launch/execute_jobs.hpp"
+#include "analysis/table.hpp"
+#include "launch/conduct.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/files.hpp"
@@ -218,17 +219,23 @@ std::string runs_table(const std::vector<Row>& rows) {
   }
   const std::string title = metrics.size() > 1 ? "RMS error" : main_error(rows);
   const Scale scale = readable_scale(unit_of_column(main_error(rows)), errors);
-  std::vector<std::vector<std::string>> lines{
-      {"name", "begun", "strategy", "scene", "taps", scale.title(title), "IoU", "state", "set apart by", "directory"}};
+  Table table;
   for (const Row& row : rows) {
-    const auto text = [&](const char* name) { return one_line(row.text(name)); };
+    const auto show_text = [&](const char* heading, const char* field) {
+      table.show(heading, one_line(row.text(field)), Table::Kind::text);
+    };
     const std::optional<double> error = row.number(main_error({row}));
     const std::optional<double> outline = row.number(kOutline);
-    lines.push_back({text("name"), text("begun"), text("strategy"), text("scene"), row.cell("taps"),
-                     error ? scale.number(*error) : "", outline ? fmt::format("{:.2f}", *outline) : "",
-                     state_words(row), text("apart"), text("directory")});
+    table.add_row();
+    for (const char* const field : {"name", "begun", "strategy", "scene"}) show_text(field, field);
+    table.show("taps", row.cell("taps"));
+    table.show(scale.title(title), error ? scale.number(*error) : "");
+    table.show("IoU", outline ? fmt::format("{:.2f}", *outline) : "");
+    table.show("state", state_words(row), Table::Kind::text);
+    show_text("set apart by", "apart");
+    show_text("directory", "directory");
   }
-  return aligned(lines, "llllrrrlll");
+  return table.text();
 }
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include "analysis/groups.hpp"
 #include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
+#include "analysis/table.hpp"
 #include "record/fields.hpp"
 
 #include <fmt/format.h>
@@ -98,33 +99,34 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
     return a.scene != b.scene ? a.scene < b.scene : a.median_rmse() < b.median_rmse();
   });
   std::vector<double> medians;
-  bool any_failed = false;
   bool any_iou = false;
   for (const SweepTableRow& row : rows) {
     if (!row.rmse.empty()) medians.push_back(row.median_rmse());
-    any_failed = any_failed || row.failed > 0;
     any_iou = any_iou || !row.iou.empty();
   }
+  if (rows.empty()) return {};
   const Scale error = readable_scale(unit_of_column(metric), medians, 2);
   const Scale share{"", 1.0, 2};
   const Scale count{"", 1.0, 0};
-  std::vector<std::vector<std::string>> lines{
-      {"group", "runs", "no contact", "found", any_failed ? "failed" : "", "object taps, rest", "object taps, all",
-       medians.empty() ? "" : error.title(metric), any_iou ? "footprint_iou" : ""}};
+  // Long names stand at the end of their lines, so that the numbers keep to the width of a screen.
+  constexpr std::size_t kLongest = 32;
+  Table table;
   for (const SweepTableRow& row : rows) {
     const int done = row.runs - row.failed;
     const auto part = [&](int jobs) { return done > 0 ? fmt::format("{:.1f}%", 100.0 * jobs / done) : "-"; };
-    lines.push_back({row.name, std::to_string(row.runs), row.is_initial_known ? part(row.without_contact) : "-",
-                     part(row.found), any_failed ? std::to_string(row.failed) : "", spread(row.object_taps_rest, count),
-                     spread(row.object_taps_all, count), medians.empty() ? "" : spread(row.rmse, error),
-                     any_iou ? spread(row.iou, share) : ""});
+    table.add_row();
+    if (longest <= kLongest) table.show("group", row.name, Table::Kind::text);
+    table.show("runs", std::to_string(row.runs));
+    table.show("no contact", row.is_initial_known ? part(row.without_contact) : "-");
+    table.show("found", part(row.found));
+    table.show("failed", std::to_string(row.failed), Table::Kind::count);
+    table.show("object taps, rest", spread(row.object_taps_rest, count));
+    table.show("object taps, all", spread(row.object_taps_all, count));
+    if (!medians.empty()) table.show(error.title(metric), spread(row.rmse, error));
+    if (any_iou) table.show("footprint_iou", spread(row.iou, share));
+    if (longest > kLongest) table.show("group", row.name, Table::Kind::text);
   }
-  // Long names stand at the end of their lines, so that the numbers keep to the width of a screen.
-  constexpr std::size_t kLongest = 32;
-  for (std::vector<std::string>& line : lines) {
-    if (longest > kLongest) std::rotate(line.begin(), line.begin() + 1, line.end());
-  }
-  std::string out = aligned(lines, longest > kLongest ? "rrrrrrrrl" : "lrrrrrrrr");
+  std::string out = table.text();
   out += "no contact: runs without an initial tap on the object; rest: the other runs. Median (10 %-90 %).\n";
   if (rows.size() < 2 || medians.empty()) return out;
   return out +
