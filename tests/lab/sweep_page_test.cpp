@@ -72,8 +72,8 @@ TEST_F(LargeSweep, HasOnItsPageEveryFifthOfEachSettingWithItsNumbers) {
   for (std::size_t place = 0; place < page.at("jobs").size(); ++place) {
     const int index = page.at("jobs")[place].at("index");
     units[sweep_.jobs.at(static_cast<std::size_t>(index)).values[0]].insert(
-        page.at("units").at(place).get<std::size_t>());
-    all_units.insert(page.at("units").at(place).get<std::size_t>());
+        page.at("units_of_jobs").at(place).get<std::size_t>());
+    all_units.insert(page.at("units_of_jobs").at(place).get<std::size_t>());
   }
   for (const auto& [seed, numbers] : units) EXPECT_EQ(numbers.size(), 1U) << seed;
   EXPECT_EQ(all_units.size(), units.size());
@@ -88,7 +88,7 @@ TEST_F(LargeSweep, SaysOnItsPageWhatBecameOfAllJobs) {
   std::filesystem::rename(gone, gone.string() + ".aside");
   const Json page = data(sweep_, 400);
   std::filesystem::rename(gone.string() + ".aside", gone);
-  EXPECT_EQ(page.at("sampled"), (Json{{"jobs", 2000},
+  EXPECT_EQ(page.at("tally"), (Json{{"jobs", 2000},
                                       {"step", 5},
                                       {"counts", {{"done", 1979}, {"failed", 20}, {"missing", 1}}},
                                       {"reasons", 1},
@@ -101,7 +101,7 @@ TEST_F(LargeSweep, SaysOnItsPageWhatBecameOfAllJobs) {
 TEST_F(LargeSweep, HasAllJobsOnItsPageWhereThereIsRoom) {
   const Json page = data(sweep_, 2000);
   EXPECT_EQ(page.at("jobs").size(), 2000U);
-  EXPECT_EQ(page.count("sampled"), 0U);
+  EXPECT_EQ(page.at("tally").at("step"), 1);
   EXPECT_EQ(data(sweep_, 1999).at("jobs").size(), 1000U) << "one more than there is room for";
 }
 

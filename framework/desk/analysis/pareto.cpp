@@ -11,13 +11,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace palpate {
 namespace {
 
 Column make_key(const std::string& name, const std::vector<std::string>& columns, const char* option) {
   Column column = find_column(name, columns, option);
-  if (name == "coverage_95" || name == "surface_coverage_95") {
+  if (!can_be_error(column)) {
     throw Error("command line", fmt::format("{}: {} is best at 0.95, not at its least or greatest value", option, name),
                 "use nlpd, which rates heights and intervals together");
   }
@@ -55,22 +56,17 @@ double cautious_loss(const Pareto& pareto, const Setting& setting) {
   return loss(pareto, pareto.more_is_better() ? setting.error.interval->low : setting.error.interval->high);
 }
 
-/// Of the settings of a scene in the order of cost, and of loss where costs are equal: such a one is beaten if one
-/// before it is at most as large in loss, but for its twins.
+/// Numbers the front of each scene from 1. The settings stand in the order of scene and cost.
 void number_front(Pareto& pareto) {
-  const Setting* last = nullptr;  // the best so far
-  int number = 0;
-  std::size_t scene = 0;
-  for (Setting& one : pareto.settings) {
-    if (one.scene != scene) {
-      scene = one.scene;
-      last = nullptr;
-      number = 0;
-    }
-    if (!one.complete()) continue;
-    const bool twin = last != nullptr && one.cost.mean == last->cost.mean && one.error.mean == last->error.mean;
-    if (last != nullptr && !twin && loss(pareto, one.error.mean) >= loss(pareto, last->error.mean)) continue;
-    one.front = ++number;
+  std::vector<FrontPoint> points;
+  for (std::size_t i = 0; i < pareto.settings.size(); ++i) {
+    const Setting& one = pareto.settings[i];
+    if (one.complete()) points.push_back({i, one.scene, one.cost.mean, loss(pareto, one.error.mean)});
+  }
+  const Setting* last = nullptr;
+  for (const std::size_t i : front_of(points)) {
+    Setting& one = pareto.settings[i];
+    one.front = last != nullptr && last->scene == one.scene ? last->front + 1 : 1;
     last = &one;
   }
 }
@@ -86,7 +82,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
   const std::vector<std::string> columns = names_of(results);
   pareto.cost = make_key(cost, columns, "--cost");
   pareto.error = make_key(error, columns, "--error");
-  if (pareto.cost.better == RecordField::Better::more) {
+  if (!can_be_cost(pareto.cost)) {
     throw Error("command line", fmt::format("--cost: more of {} is better, so it is not a cost", cost),
                 "use it with --error");
   }
@@ -123,6 +119,28 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
   number_front(pareto);
   return pareto;
 }
+
+std::vector<std::size_t> front_of(const std::vector<FrontPoint>& points) {
+  std::vector<std::size_t> out;
+  const FrontPoint* last = nullptr;  // on the front
+  for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
+    end = std::find_if(begin, points.end(), [&](const FrontPoint& one) {
+      return std::tie(one.scene, one.cost) != std::tie(begin->scene, begin->cost);
+    });
+    const auto less = [](const FrontPoint& a, const FrontPoint& b) { return a.loss < b.loss; };
+    const FrontPoint& best = *std::min_element(begin, end, less);
+    if (last != nullptr && last->scene == best.scene && last->loss <= best.loss) continue;
+    for (auto one = begin; one != end; ++one) {
+      if (one->loss == best.loss) out.push_back(one->index);
+    }
+    last = &best;
+  }
+  return out;
+}
+
+bool can_be_error(const Column& column) { return column.name != "coverage_95" && column.name != "surface_coverage_95"; }
+
+bool can_be_cost(const Column& column) { return can_be_error(column) && column.better != RecordField::Better::more; }
 
 double read_bound(const Pareto& pareto, const std::string& within) {
   if (pareto.scenes.size() > 1) {

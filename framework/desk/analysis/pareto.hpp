@@ -51,6 +51,25 @@ struct Pareto {
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
                    const std::string& error, const Condition* where = nullptr);
 
+/// One of the points among which front_of() finds those that are not dominated.
+struct FrontPoint {
+  std::size_t index = 0;
+  std::size_t scene = 0;
+  double cost = 0.0;
+  double loss = 0.0;  ///< the error, or its negative if more is better
+};
+
+/// Returns the indices of the points that no other point of their scene dominates. A point dominates another if it is
+/// at least as good in cost and loss and better in one; equal points are all on the front or all off it. The points are
+/// sorted by scene, then cost; the result keeps their order.
+std::vector<std::size_t> front_of(const std::vector<FrontPoint>& points);
+
+/// Returns whether a column can be the error of a front: its best value is the least or the greatest one, which for a
+/// coverage of 95 % intervals is 0.95.
+bool can_be_error(const Column& column);
+/// Returns whether a column can be the cost of a front: less of it is better, or neither.
+bool can_be_cost(const Column& column);
+
 /// Reads what `--within` says, in the unit of the error. Throws Error, also where there are several scenes: what is
 /// best on one is not what is best on another.
 double read_bound(const Pareto& pareto, const std::string& within);

@@ -2,6 +2,7 @@
 #include "report/curves.hpp"
 
 #include "record/fields.hpp"
+#include "report/words/titles.hpp"
 
 #include <fmt/format.h>
 
@@ -158,7 +159,7 @@ Curves curves_of(const Recording& recording, const History& history) {
     const std::optional<double>& rmse = moment.result.expected_rmse;
     return rmse ? std::optional(kMillimetres * *rmse) : std::nullopt;
   }));
-  add(any_side ? "Error of the surface" : "Error of the surface (rms)", "mm", CurveAxis::from_zero, std::move(lengths));
+  add(surface_error_title(recording.config.options), "mm", CurveAxis::from_zero, std::move(lengths));
   std::move(shares.begin(), shares.end(), std::back_inserter(panels));
   add(any_side ? "Largest standard deviation of the surface" : "Largest standard deviation of a height", "cm",
       CurveAxis::from_zero, one([&](const Moment& moment) {

@@ -45,15 +45,14 @@ struct LineStyle {
 };
 
 LineStyle line_style(std::size_t curve) {
-  constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                "#56b4e9", "#e69f00", "#000000", "#8c6d46"};
   constexpr std::array<const char*, 4> kDashes{"solid", "(7,2.5)", "(2,2)", "(8,2,2,2)"};
   constexpr std::array<int, 8> kMarks{7, 9, 5, 13, 6, 8, 4, 12};  // disc, triangle, square, diamond; then open ones
-  const std::string colour = kColours[curve % kColours.size()];
+  const std::string colour = kLineColours[curve % kLineColours.size()];
   // From the ninth group on a colour returns with another dash.
-  return {colour,
-          fmt::format("lw 1 dt {} lc rgb '{}'", kDashes[(curve + curve / kColours.size()) % kDashes.size()], colour),
-          fmt::format("pt {} ps mark_size", kMarks[curve % kMarks.size()])};
+  return {
+      colour,
+      fmt::format("lw 1 dt {} lc rgb '{}'", kDashes[(curve + curve / kLineColours.size()) % kDashes.size()], colour),
+      fmt::format("pt {} ps mark_size", kMarks[curve % kMarks.size()])};
 }
 
 /// The names of the groups, in the order of the sweep: a group has one style in all panels.

@@ -14,7 +14,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 namespace palpate {
 namespace {
@@ -87,10 +86,6 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
   return {"maps", std::move(sheet)};
 }
 
-/// Told apart by people who see two colours alike (Okabe and Ito).
-constexpr std::array<const char*, 8> kLines{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                            "#56b4e9", "#e69f00", "#000000", "#8c6d31"};
-
 constexpr double kNameHeight = 17;
 
 /// Names of curves side by side.
@@ -127,8 +122,8 @@ void draw_curves(Sheet& sheet, const Box& box, double top, const CurvePanel& pan
     const std::string name = fmt::format("curve_{}_{}", number, i + 1);
     sheet.data(name, lines);
     clauses += fmt::format("{}${} using 1:2 with linespoints lw 2 pt 7 ps 0.6 dt {} lc rgb '{}' title {}",
-                           i > 0 ? ", \\\n  " : "", name, 1 + i / kLines.size(), kLines[i % kLines.size()],
-                           gnuplot_text(panel.curves[i].name));
+                           i > 0 ? ", \\\n  " : "", name, 1 + i / kLineColours.size(),
+                           kLineColours[i % kLineColours.size()], gnuplot_text(panel.curves[i].name));
   }
   sheet.text(panel.full_title(), box.left, top, 12);
   sheet.plot(box, settings, clauses);

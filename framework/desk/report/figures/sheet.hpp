@@ -4,6 +4,7 @@
 #pragma once
 
 #include "experiment/from_above.hpp"
+#include "report/colours.hpp"
 #include "report/history.hpp"
 
 #include <filesystem>
@@ -29,32 +30,8 @@ struct Box {
   double height = 0.0;
 };
 
-/// The colours of maps: even steps in lightness, so that equal differences look equal, also in grey and to people who
-/// see two colours alike.
-enum class Palette {
-  viridis,  ///< dark blue over green to yellow: where to tap
-  cividis,  ///< dark blue over grey to yellow: what is not known
-};
-
-/// Evenly spaced stops from the lowest value to the highest, each "#rrggbb".
-const std::vector<std::string>& palette_stops(Palette palette);
-
 /// gnuplot's `set palette`, one line.
 std::string gnuplot_palette(Palette palette);
-
-/// What the colours of some panels mean.
-struct Colours {
-  Palette palette = Palette::viridis;
-  double low = 0.0;
-  double high = 1.0;
-  std::string label;  ///< with its unit
-  bool logarithmic = false;
-};
-
-/// For standard deviations of the height from `least` to `most`, metres. What was never touched is known a hundred
-/// times worse than what was, and then equal ratios have equal steps in colour: else all that is known would look
-/// alike.
-Colours deviation_colours(double least, double most);
 
 /// The snapshot without the marks that the surface hides when it is seen from the side.
 Snapshot in_sight(const Snapshot& snapshot, const Ground& ground);

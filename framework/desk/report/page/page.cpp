@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/page.hpp"
 
+#include "config/scale.hpp"
+#include "record/fields.hpp"
+#include "report/colours.hpp"
+
 #include <palpate/error.hpp>
 
 #include <fmt/format.h>
 #include <zlib.h>
+#include <boost/algorithm/string/predicate.hpp>
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
@@ -20,7 +25,30 @@ std::string packed(const char* name, const char* format, std::string_view bytes)
   return fmt::format("<script type=\"application/{}\" id=\"{}\">{}</script>\n", format, name, base64(bytes));
 }
 
+/// The colours of colours.hpp, for scripts.
+Json json_of_colours() {
+  const auto stops = [](Palette palette) {
+    const std::vector<std::string>& all = palette_stops(palette);
+    Json out;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      out.push_back({static_cast<double>(i) / static_cast<double>(all.size() - 1), all[i]});
+    return out;
+  };
+  return {{"viridis", stops(Palette::viridis)},
+          {"cividis", stops(Palette::cividis)},
+          {"lines", {{"light", kLineColours}, {"dark", kLineColoursOnDark}}}};
+}
+
 }  // namespace
+
+Json display_units(const std::vector<std::string>& columns) {
+  Json out = Json::object();
+  for (const std::string& name : columns) {
+    const Scale scale = boost::ends_with(name, "_bytes") ? Scale{"MB", 1e6} : usual_scale(unit_of_column(name));
+    if (!scale.unit.empty()) out[name] = {{"unit", scale.unit}, {"factor", 1.0 / scale.factor}};
+  }
+  return out;
+}
 
 std::string deflated(std::string_view bytes) {
   uLongf size = ::compressBound(bytes.size());
@@ -60,7 +88,8 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
   out += plotly;
   out += packed("data", "deflate", deflated(line_of(data)));
   out += packed("maps", "deflate", deflated(maps));
-  out += fmt::format("<script>\n\"use strict\";\n{}{}</script>\n</body>\n</html>\n", palpate_asset_common, script);
+  out += fmt::format("<script>\n\"use strict\";\nconst kColours = {};\n{}{}</script>\n</body>\n</html>\n",
+                     json_of_colours().dump(), palpate_asset_common, script);
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// The scripts of web/, embedded in the program by assets.S, so that a report needs neither an installation nor a
 /// network.
@@ -22,6 +23,11 @@ enum class PageOf { file, server };
 
 /// A page that runs `script` (behind the common one) on the data and on maps as bytes.
 std::string make_page(std::string_view script, const Json& data, const std::string& maps, PageOf of = PageOf::file);
+
+/// Returns for each of some columns of a record the unit in which pages show it, {unit, factor}: a value in SI times
+/// `factor` is in `unit`, the usual unit of config/scale.hpp; megabytes for sizes in bytes. Columns that are shown in
+/// SI without a unit are left out.
+Json display_units(const std::vector<std::string>& columns);
 
 /// Data on one line.
 std::string line_of(const Json& data);

@@ -9,6 +9,7 @@
 #include "record/run_directory.hpp"
 #include "record/session.hpp"
 #include "record/tap_row.hpp"
+#include "report/colours.hpp"
 #include "report/curves.hpp"
 #include "report/page/json.hpp"
 #include "report/page/page.hpp"
@@ -128,14 +129,20 @@ static void to_json(Json& out, const CurvePanel& panel) {
          {"curves", panel.curves}};
 }
 
-/// How a page calls an error, and in what unit it has it.
-static void to_json(Json& out, const RecordField& error) { out = {error.name, error.label, unit_symbol(error.unit)}; }
+static void to_json(Json& out, const RecordField& error) { out = {error.name, error_title(error)}; }
 
 /// The errors that pages show: those against the truth, and the one that is expected, which needs none.
 static std::vector<RecordField> page_errors() {
   std::vector<RecordField> out = error_fields();
   out.insert(out.begin() + 1, *find_summary_field(kExpectedError));
   return out;
+}
+
+/// Returns the units in which the page shows errors and robot time.
+static Json units_of_page() {
+  std::vector<std::string> names{"robot_seconds"};
+  for (const RecordField& error : page_errors()) names.push_back(error.name);
+  return display_units(names);
 }
 
 PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
@@ -220,6 +227,17 @@ static Json json_of_standing(const Recording& recording, const History& history)
           {"constants", curves.constants},     {"warnings", warnings_of(recording, history)}};
 }
 
+/// Returns the colour scale of each frame of standard deviations.
+static Json json_of_deviation_colours(const std::vector<Eigen::VectorXf>& frames) {
+  Json out = Json::array();
+  for (const Eigen::VectorXf& frame : frames) {
+    const Colours colours = deviation_colours(frame.minCoeff(), frame.maxCoeff());
+    out.push_back(
+        {{"low", colours.low}, {"high", colours.high}, {"logarithmic", colours.logarithmic}, {"label", colours.label}});
+  }
+  return out;
+}
+
 Json run_data(const Recording& recording, const History& history) {
   const Tree manifest = recording.manifest.value_or(Tree::map());
   Json data = json_of_run(recording, history);
@@ -228,6 +246,7 @@ Json run_data(const Recording& recording, const History& history) {
                {"taps", recording.rows},
                {"moments", history.moments},
                {"errors", page_errors()},
+               {"units", units_of_page()},
                {"titles", map_titles(recording.config.options)},
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
@@ -255,6 +274,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
     const PackedMaps packed = pack_maps(frames);
     described.push_back(
         {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
+    if (one.name == "deviation") described.back()["colours"] = json_of_deviation_colours(frames);
     bytes += packed.bytes;
   }
   data["surfaces"] = std::move(surfaces);

@@ -41,6 +41,7 @@ std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& prog
             {"name", fmt::format("{} runs", runs.size())},
             {"id", "side by side"},
             {"errors", described.front()["errors"]},
+            {"units", described.front()["units"]},
             {"differences", json_of_differences(runs)}};
   for (std::size_t stride = 1;; stride += 1 + stride / 4) {
     progress(most_taps, most_taps);

@@ -3,6 +3,7 @@
 
 #include "analysis/group_curves_report.hpp"
 #include "record/fields.hpp"
+#include "report/colours.hpp"
 #include "report/page/sweep_page.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostGroupsOfAScene = 14;  ///< on the page: twice as many as it has colours
+constexpr std::size_t kMostGroupsOfAScene = 2 * kLineColours.size();  ///< drawn solid, then dashed
 
 /// The keys that a reader may group by: all at once, then each alone, as far as they make few enough groups.
 std::vector<std::vector<std::string>> choices_of_keys(const Sweep& sweep) {

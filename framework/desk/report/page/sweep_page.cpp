@@ -3,7 +3,7 @@
 
 #include "analysis/column.hpp"
 #include "analysis/groups.hpp"
-#include "analysis/statistics.hpp"
+#include "analysis/pareto.hpp"
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
 #include "record/build_info.hpp"
@@ -13,8 +13,11 @@
 #include "sweep/read_jobs.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace palpate {
@@ -55,39 +58,130 @@ Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const s
   return {{"name", key}, {"values", values}, {"of_job", of_job}};
 }
 
-/// The columns of the results that hold numbers and nothing else: one for each job, null where a job has none. One with
-/// the name of a key holds what came out.
-Json json_of_columns(const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
-  Json columns = Json::array();
+/// A column of results.csv as numbers, one per job of the page.
+struct NumberColumn {
+  Column column;
+  std::vector<std::optional<double>> numbers;
+};
+
+/// Returns the columns of the results that hold numbers and nothing else. A column with the name of a key holds the
+/// result, not the key's value.
+std::vector<NumberColumn> number_columns(const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
+  std::vector<NumberColumn> columns;
   const std::vector<std::string> names = names_of(results);
   for (const std::string& name : names) {
     if (name == "job" || name == "id" || name == "seed" || name != field_name(name)) continue;
     const bool hidden = std::find(names.begin(), names.end(), kOfRun + name) != names.end();
-    std::vector<CellNumber> cells;
+    NumberColumn column{find_column(name, {name}, ""), {}};
+    bool any = false;
+    bool is_text = false;
     std::size_t near = 0;
     for (const JobResult& job : jobs) {
       const Scalar* const cell = job.row == nullptr ? nullptr
                                  : hidden           ? result_of(*job.row, name)
                                                     : job.row->find(name, near);
-      cells.push_back(number_of(cell));
+      const CellNumber number = number_of(cell);
+      any = any || number.value;
+      is_text = is_text || number.is_text;
+      column.numbers.push_back(number.value);
     }
-    if (std::any_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.is_text; })) continue;
-    if (std::none_of(cells.begin(), cells.end(), [](const CellNumber& cell) { return cell.value; })) continue;
-    Json numbers;
-    for (const CellNumber& cell : cells) numbers.push_back(cell.value);
-    const std::string better = find_column(name, {name}, "").better_words();
-    columns.push_back({{"name", name}, {"better", better}, {"numbers", numbers}});
+    if (any && !is_text) columns.push_back(std::move(column));
   }
   return columns;
 }
 
-/// For each of `jobs` the number of its unit of statistics.
-Json json_of_units(const Sweep& sweep, const std::vector<Row>& results, const std::vector<JobResult>& jobs) {
+Json json_of_column(const NumberColumn& one) {
+  return {{"name", one.column.name},
+          {"better", one.column.better_words()},
+          {"numbers", one.numbers},
+          {"is_cost", can_be_cost(one.column)},
+          {"is_error", can_be_error(one.column)}};
+}
+
+/// Returns for each of `jobs` the number of its unit of statistics.
+std::vector<std::size_t> unit_numbers(const Sweep& sweep, const std::vector<Row>& results,
+                                      const std::vector<JobResult>& jobs) {
   const JobUnits units(sweep, results);
   std::map<std::string, std::size_t> numbers;
   std::vector<std::size_t> of_job;
   for (const JobResult& one : jobs) of_job.push_back(numbers.emplace(units.of(one), numbers.size()).first->second);
   return of_job;
+}
+
+/// The jobs of a page that differ in the seed alone.
+struct PageSetting {
+  std::vector<std::size_t> jobs;  ///< indices
+  std::size_t scene = 0;
+};
+
+std::vector<PageSetting> settings_of(const Sweep& sweep, const std::vector<JobResult>& jobs) {
+  const std::vector<std::string> scenes = scene_keys(sweep);
+  std::map<int, std::size_t> places;  // of the jobs on the page, by their index in the sweep
+  for (std::size_t i = 0; i < jobs.size(); ++i) places[jobs[i].job->index] = i;
+  std::map<std::string, std::size_t> known;
+  std::vector<PageSetting> out;
+  for (const JobGroup& group : group_jobs(sweep, {}, setting_keys(sweep))) {
+    const std::string scene = key_words(sweep, *group.jobs.front().job, scenes, true);
+    PageSetting setting{{}, known.emplace(scene, known.size()).first->second};
+    for (const JobResult& one : group.jobs) {
+      if (const auto found = places.find(one.job->index); found != places.end()) setting.jobs.push_back(found->second);
+    }
+    if (!setting.jobs.empty()) out.push_back(std::move(setting));
+  }
+  return out;
+}
+
+/// Means of a column over the done jobs of each setting.
+using Estimates = std::vector<MeanEstimate>;
+
+Estimates estimate_settings(const std::vector<PageSetting>& settings, const std::vector<JobResult>& jobs,
+                            const NumberColumn& column, const std::vector<std::size_t>& units) {
+  Estimates out;
+  for (const PageSetting& setting : settings) {
+    UnitClusters clusters;
+    for (const std::size_t job : setting.jobs) {
+      if (jobs[job].row != nullptr && is_done(*jobs[job].row) && column.numbers[job])
+        clusters.add(std::to_string(units[job]), *column.numbers[job]);
+    }
+    out.push_back(estimate_mean(clusters.clusters()));
+  }
+  return out;
+}
+
+/// Returns for each setting the mean, half the width of its 95 % interval, and the numbers of values and of clusters.
+Json json_of_estimates(const Estimates& estimates) {
+  Json out = Json::array();
+  for (const auto& [count, clusters, mean, ends] : estimates) {
+    out.push_back(
+        {count > 0 ? Json(mean) : Json(), ends ? Json((ends->high - ends->low) / 2.0) : Json(), count, clusters});
+  }
+  return out;
+}
+
+/// Returns the settings on the fronts of each cost and error, sorted by scene and cost: {cost: {error: [settings]}}.
+Json json_of_fronts(const std::vector<PageSetting>& settings, const std::vector<NumberColumn>& columns,
+                    const std::vector<Estimates>& estimates) {
+  Json out = Json::object();
+  std::vector<std::size_t> by_cost(settings.size());
+  std::iota(by_cost.begin(), by_cost.end(), std::size_t{0});
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (!can_be_cost(columns[c].column)) continue;
+    const Estimates& cost = estimates[c];
+    std::sort(by_cost.begin(), by_cost.end(), [&](std::size_t a, std::size_t b) {
+      return std::tuple(settings[a].scene, cost[a].mean, a) < std::tuple(settings[b].scene, cost[b].mean, b);
+    });
+    for (std::size_t e = 0; e < columns.size(); ++e) {
+      if (!can_be_error(columns[e].column)) continue;
+      const double sign = columns[e].column.better == RecordField::Better::more ? -1.0 : 1.0;
+      std::vector<FrontPoint> complete;
+      for (const std::size_t i : by_cost) {
+        if (std::min(cost[i].count, estimates[e][i].count) == settings[i].jobs.size())
+          complete.push_back({i, settings[i].scene, cost[i].mean, sign * estimates[e][i].mean});
+      }
+      out[columns[c].column.name][columns[e].column.name] = front_of(complete);
+    }
+  }
+  return out;
 }
 
 /// Which jobs are on the page: every one of so many, along the settings one after the other, so that each has its share
@@ -102,7 +196,7 @@ std::vector<bool> drawn_jobs(const Sweep& sweep, std::size_t step) {
   return drawn;
 }
 
-/// What became of all jobs, where not all are on the page.
+/// Counts all jobs by their state, and failures by their reason.
 class Tally {
  public:
   void add(const Job& job, const RunStatus& standing) {
@@ -151,15 +245,6 @@ Json json_of_job(const Job& job, const RunStatus& standing, const fs::path& dire
           {"reported", fs::exists(directory / "report.html", none)}};
 }
 
-/// The factors of the 95 % intervals of means over 2, 3, ... jobs, as many as a setting may have.
-std::vector<double> interval_factors(std::size_t jobs) {
-  constexpr std::size_t kMostJobs = 2000;  // from here on it changes by less than 1 in 1000
-  std::vector<double> factors;
-  for (std::size_t degrees = 1; degrees < std::min(jobs, kMostJobs); ++degrees)
-    factors.push_back(student_factor(degrees));
-  return factors;
-}
-
 /// The fields that are worth a first look: the main error, and the others in the order of the summary.
 std::vector<std::string> first_looks(const std::vector<Row>& results) {
   std::vector<std::string> names{main_error(results)};
@@ -199,19 +284,35 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
   const fs::path directory = fs::absolute(sweep.directory / "").lexically_normal().parent_path();
   Json keys = Json::array();
   for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, shown, key));
+  const std::vector<NumberColumn> columns = number_columns(results, shown);
+  const std::vector<std::size_t> units = unit_numbers(sweep, results, shown);
+  const std::vector<PageSetting> settings = settings_of(sweep, shown);
+  Json json_of_settings = Json::array();
+  for (const PageSetting& one : settings) json_of_settings.push_back(one.jobs);
+  // Where each setting has one job, the job's number is the mean.
+  const bool has_means = settings.size() < shown.size();
+  std::vector<Estimates> estimates;
+  Json json_of_columns = Json::array();
+  for (const NumberColumn& one : columns) {
+    estimates.push_back(estimate_settings(settings, shown, one, units));
+    json_of_columns.push_back(json_of_column(one));
+    if (has_means) json_of_columns.back()["estimates"] = json_of_estimates(estimates.back());
+  }
   Json out{{"version", kVersion},
            {"name", sweep_name(sweep)},
            {"id", directory.filename().string()},
            {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
            {"keys", keys},
            {"jobs", jobs},
-           {"units", json_of_units(sweep, results, shown)},
-           {"columns", json_of_columns(results, shown)},
+           {"units_of_jobs", units},
+           {"columns", json_of_columns},
+           {"setting_jobs", json_of_settings},
+           {"fronts", json_of_fronts(settings, columns, estimates)},
+           {"units", display_units(names_of(results))},
            {"first_looks", first_looks(results)},
-           {"factors", interval_factors(sweep.jobs.size())},
            {"scene_keys", scene_keys(sweep)},
+           {"tally", tally.json(sweep, step)},
            {"config", to_yaml(read_run_config(sweep.directory))}};
-  if (step > 1) out["sampled"] = tally.json(sweep, step);
   return out;
 }
 

@@ -55,7 +55,7 @@ class FromAboveExplained final : public Explanation {
     page_.heading("Effect of the tap");
     // The errors after the tap are recorded with the next one, or at the end of the run.
     const bool last = number_ == static_cast<int>(recording_.rows.size());
-    explain_errors("Error of the surface (rms)", row_,
+    explain_errors(row_,
                    !last ? recording_.rows[static_cast<std::size_t>(number_)] : recording_.summary.value_or(Row{}));
     explain_doubt();
   }

@@ -63,7 +63,7 @@ class ApproachExplained final : public Explanation {
     playback_.advance_to(number_);
     Row after;
     add_errors(after, experiment_.errors());
-    explain_errors("Error of the surface", before, after);
+    explain_errors(before, after);
   }
 
   void explain_choice() {

@@ -2,6 +2,7 @@
 #include "report/words/explanation.hpp"
 
 #include "record/fields.hpp"
+#include "report/words/titles.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -53,7 +54,7 @@ void Explanation::explain_failure() {
   page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
 }
 
-void Explanation::explain_errors(const std::string& what, const Row& before, const Row& after) {
+void Explanation::explain_errors(const Row& before, const Row& after) {
   if (!recording_.truth_known()) return page_.say("The truth is not known, so neither is the error of the surface.");
   std::vector<std::string> lengths;
   std::vector<std::string> others;
@@ -68,7 +69,7 @@ void Explanation::explain_errors(const std::string& what, const Row& before, con
     if (length) lengths.push_back(fmt::format("{} {}{}", error.label, same ? "still " : "", change));
     if (!length) others.push_back(fmt::format("The {} {} {}.", error.label, same ? "stays" : "goes", change));
   }
-  if (!lengths.empty()) page_.say(fmt::format("{}: {}.", what, fmt::join(lengths, ", ")));
+  if (!lengths.empty()) page_.say(fmt::format("{}: {}.", surface_error_title(options_), fmt::join(lengths, ", ")));
   for (const std::string& one : others) page_.say(one);
   if (lengths.empty() && others.empty())
     page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");

@@ -32,9 +32,8 @@ class Explanation {
   void explain_label();
   /// If the run failed at this tap.
   void explain_failure();
-  /// How the tap changed the errors that rows from before and after it have. `what`: what those that are lengths are
-  /// of.
-  void explain_errors(const std::string& what, const Row& before, const Row& after);
+  /// Describes how the tap changed the errors, from the rows before and after it.
+  void explain_errors(const Row& before, const Row& after);
 
   const Workshop& workshop_;
   const Recording& recording_;

@@ -102,18 +102,18 @@ function many(count, what) {
 /// The least and the most of very many numbers.
 const extent = (values) => [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
 
-/// The rule of config/scale.hpp: places, heights and their deviations in centimetres, errors in millimetres, times in
-/// seconds. How many of the unit are one SI unit.
+// Pages show positions, heights and their standard deviations in centimetres (config/scale.hpp).
 const kCentimetres = 100;
-const kMillimetres = 1000;
 
-/// In which unit a column of a record is shown, and how many of it are one SI unit; told by the end of its name.
-function unitOf(name) {
-  if (name.endsWith("_m")) return { unit: "mm", factor: kMillimetres };
-  if (name.endsWith("_seconds") || name.startsWith("compute.")) return { unit: "s", factor: 1 };
-  if (name.endsWith("_bytes")) return { unit: "MB", factor: 1e-6 };
-  return { unit: "", factor: 1 };
-}
+// The colour scales of uncertainties, and of values that say where to tap.
+const kUnknown = kColours.cividis;
+const kWhere = kColours.viridis;
+
+/// The units of data.units, by column.
+let units = {};
+
+/// The unit in which a column of a record is shown; a value in SI times `factor` is in that unit.
+const unitOf = (name) => units[name] ?? { unit: "", factor: 1 };
 
 /// A value of such a column with its unit: "2.61 mm".
 function quantity(name, value, digits = 3) {
@@ -199,6 +199,7 @@ function tellDrawn(what) {
 async function openPage(draw) {
   try {
     const [data, maps] = await Promise.all([unpack("data").json(), unpack("maps").arrayBuffer(), loadPlotly()]);
+    units = data.units ?? {};
     document.title = `${data.name} ${data.id} – palpate`;
     const head = element("div", { class: "head" }, element("h1", {}, foreign(data.name)));
     document.body.append(head);

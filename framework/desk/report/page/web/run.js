@@ -28,7 +28,7 @@ function drawCurves(id, panel, taps) {
 
 function facts(data) {
   const last = data.moments[data.moments.length - 1];
-  const errors = data.errors.map(([name, label, unit]) => [quantity(name, last[name]), "", unit === "m" ? `error ${label}` : label]);
+  const errors = data.errors.map(([name, title]) => [quantity(name, last[name]), "", title]);
   const items = [
     [last.taps, ` of ${data.budget}`, "taps"],
     [last.object_taps, "", "on the object"],

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What the page of a run draws of one moment: the surface, and the maps over the plane with the taps on them.
 
-// Even in lightness, as in the figures: one for what is not known, one for what there is and where to tap.
-const kUnknown = "Cividis";
-const kWhere = "Viridis";
-
 /// The maps of the page by name, each a list of frames, each a list of rows.
 function unpackMaps(bytes, described, columns, rows) {
   const out = {};
   const cells = columns * rows;
   let at = 0;
-  for (const { name, least, most, frames } of described) {
+  for (const { name, least, most, frames, colours } of described) {
+    if (colours) out[`${name}_colours`] = colours;
     out[name] = Array.from({ length: frames }, (_, frame) => {
       const begin = at + 2 * cells * frame;
       let level = 0;
@@ -106,19 +103,15 @@ function mapPanels(data, maps) {
   return [panels.filter(varied), constant];
 }
 
-/// Colours for standard deviations of the height, centimetres, as in the figures: by ratios if the largest is more than
-/// five times the least, or all that was touched would look alike beside what was not.
-function deviationColours(lines) {
-  const floor = 1e-4;
-  const [low, high] = extent(lines.flat()).map((end) => Math.max(end, floor));
-  const title = "standard deviation [cm]";
-  const below = { title: { text: title, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
-  const bar = colourBar(title, kNarrow.matches ? below : { len: 0.8 });
-  if (high <= 5 * low) return { surfacecolor: lines, cmin: 0, cmax: high, colorbar: bar };
+/// The colours of standard deviations of the height, centimetres, by their scale in the page's data.
+function deviationColours(lines, { low, high, logarithmic, label }) {
+  const below = { title: { text: label, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
+  const bar = colourBar(label, kNarrow.matches ? below : { len: 0.8 });
+  if (!logarithmic) return { surfacecolor: lines, cmin: low, cmax: high, colorbar: bar };
   const powers = [-4, -3, -2, -1, 0, 1, 2, 3, 4, 5].map((power) => 10 ** power);
   const ticks = powers.flatMap((power) => [power, 2 * power, 5 * power]).filter((value) => value >= low && value <= high);
   return {
-    surfacecolor: lines.map((line) => line.map((value) => Math.log10(Math.max(value, floor)))),
+    surfacecolor: lines.map((line) => line.map((value) => Math.log10(Math.max(value, low)))),
     cmin: Math.log10(low),
     cmax: Math.log10(high),
     colorbar: { ...bar, tickvals: ticks.map(Math.log10), ticktext: ticks.map((value) => shown(value, 1)) },
@@ -162,6 +155,7 @@ class SurfaceView {
     this.spatial = hasWebGL() && !this.flat;
     this.heights = [];
     this.deviations = [];
+    this.colours = [];
     this.grow(maps);
     this.withTruth = false;
     this.x = data.x.map((value) => value * kCentimetres);
@@ -172,6 +166,7 @@ class SurfaceView {
   grow(maps) {
     this.heights.push(...maps.height.map((lines) => scaled(lines, kCentimetres)));
     this.deviations.push(...maps.deviation.map((lines) => scaled(lines, kCentimetres)));
+    this.colours.push(...maps.deviation_colours);
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent([...this.heights, this.truth ?? []].flat(2));
     // How far above their places the marks of taps are, or half of every mark would be inside of the surface.
@@ -195,7 +190,7 @@ class SurfaceView {
       x: this.x,
       y: this.y,
       z: this.heights[frame],
-      ...deviationColours(this.deviations[frame]),  // of this frame: a fit may change them a hundredfold
+      ...deviationColours(this.deviations[frame], this.colours[frame]),  // of this frame: a fit may change them a hundredfold
       colorscale: kUnknown,
       customdata: this.deviations[frame],
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.4r} cm<br>standard deviation %{customdata:.3r} cm<extra></extra>",

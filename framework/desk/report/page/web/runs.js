@@ -7,7 +7,7 @@ const letterOf = (index) => String.fromCharCode("A".charCodeAt(0) + index);
 const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
 
 /// The name of an error with its unit.
-const errorTitle = ([name, label, unit]) => (unit === "m" ? `error ${label} [${unitOf(name).unit}]` : label);
+const errorTitle = ([name, title]) => (unitOf(name).unit ? `${title} [${unitOf(name).unit}]` : title);
 
 /// The latest moment of a run with at most so many taps.
 const momentAt = (run, taps) => run.moments[Math.min(taps, run.moments.length - 1)];

@@ -229,31 +229,22 @@ class JobTable {
   }
 }
 
-/// The reasons of failed jobs: how many jobs each has, which is the first, and what its keys are.
-function failuresOf(sweep) {
-  if (sweep.sampled) return sweep.sampled.failures;
-  const reasons = new Map(sweep.failed.map((job) => [job.reason, []]));
-  for (const job of sweep.failed) reasons.get(job.reason).push(job);
-  return [...reasons].map(([reason, jobs]) => ({ reason, jobs: jobs.length, first: jobs[0].index, words: sweep.words(jobs[0], sweep.all) }));
-}
-
 /// What went wrong, in words: failures by their reason, and what has not ended.
 function troubles(sweep) {
-  const kMostReasons = 12;
-  const failures = failuresOf(sweep);
-  const out = failures.slice(0, kMostReasons).map(({ reason, jobs, first, words }) => [
+  const { failures, reasons, jobs: all } = sweep.tally;
+  const out = failures.map(({ reason, jobs, first, words }) => [
     jobs === 1 ? `Job ${first} failed (` : `${jobs} jobs failed, the first is job ${first} (`,
-    foreign(words),
+    foreign(words || "the only setting"),
     "): ",
     foreign(reason),
   ]);
-  const more = (sweep.sampled?.reasons ?? failures.length) - out.length;
+  const more = reasons - out.length;
   if (more > 0) out.push([`${more} more reasons are in ${sweep.sampled ? "results.csv" : "the table of jobs"}.`]);
   const some = sweep.counts().filter(([, state]) => state !== "done" && state !== "failed");
   const open = some.reduce((sum, [count]) => sum + count, 0);
   if (open > 0) {
     const states = some.map((count) => count.join(" ")).join(", ");
-    out.push([`${open} of ${sweep.sampled?.jobs ?? sweep.jobs.length} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows an earlier state" : ""}; 'palpate resume' runs the jobs that no process is running.`]);
+    out.push([`${open} of ${all} jobs ${open === 1 ? "has" : "have"} not ended (${states})${sweep.live === undefined ? ": this page shows an earlier state" : ""}; 'palpate resume' runs the jobs that no process is running.`]);
   }
   return out;
 }
@@ -269,7 +260,7 @@ function sampleNote({ sampled, jobs }) {
 function standingOfSweep(sweep) {
   const counts = sweep.counts();
   if (!counts.some(([, state]) => state === "done")) counts.unshift([0, "done"]);
-  return [factList([[sweep.sampled?.jobs ?? sweep.jobs.length, "jobs"], ...counts]), ...sampleNote(sweep), ...warningList(troubles(sweep))];
+  return [factList([[sweep.tally.jobs, "jobs"], ...counts]), ...sampleNote(sweep), ...warningList(troubles(sweep))];
 }
 
 /// The swept keys and their values, which stand in the place of those of the config.
@@ -305,8 +296,7 @@ function noPanels(sweep) {
 function drawPanels(sweep) {
   const columns = [...sweep.columns.keys()];
   const keys = sweep.keys.map((key) => key.name);
-  const errors = columns.filter((name) => !name.endsWith("coverage_95")); // best at 0.95, neither small nor large
-  const costs = errors.filter((name) => !sweep.moreIsBetter(name));
+  const [errors, costs] = ["is_error", "is_cost"].map((role) => columns.filter((name) => sweep.columns.get(name)[role]));
   const choice = firstChoices(sweep);
   const jobs = new JobTable(sweep);
   let drawn = 0;

@@ -47,7 +47,7 @@ function curveTraces(curve, place, metric, against) {
     return `${plain(brief(curve.name, 80))}: ${shown(curve.mean[i] === null ? null : curve.mean[i] * y, 3)}${low === null ? "" : ` [${low}, ${high}]`}, ${many(curve.jobs[i], "job")}`;
   });
   const line = { type: "scatter", mode: "lines", name: plain(brief(curve.name, 60)), x: at, y: scaled(curve.mean), text, hovertemplate: "%{text}<extra></extra>", legendgroup: curve.name };
-  return [edge(curve.low), { ...edge(curve.high), fill: "tonexty", fillcolor: fill }, { ...line, line: { color: colour, width: 2, dash: place < kLineColours.light.length ? "solid" : "dash" } }];
+  return [edge(curve.low), { ...edge(curve.high), fill: "tonexty", fillcolor: fill }, { ...line, line: { color: colour, width: 2, dash: place < kColours.lines.light.length ? "solid" : "dash" } }];
 }
 
 function drawCurves(sweep, { curve_of: metric, against, curves_by: by }) {

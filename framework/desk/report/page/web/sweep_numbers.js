@@ -26,7 +26,8 @@ const kStates = ["done", "failed", "running", "unfinished", "missing"];
 /// The sweep as the panels ask for it.
 class SweepData {
   constructor(data) {
-    Object.assign(this, data);  // jobs, keys, first_looks, factors; of very many jobs `sampled`, what became of all
+    Object.assign(this, data);  // jobs, keys, first_looks, tally
+    this.sampled = this.tally.step > 1 ? this.tally : null;
     this.jobs.forEach((job, place) => Object.assign(job, { place }));
     [this.done, this.failed] = ["done", "failed"].map((state) => this.jobs.filter((job) => job.state === state));
     this.columns = new Map(data.columns.map((column) => [column.name, column]));
@@ -41,9 +42,7 @@ class SweepData {
 
   /// The states that jobs are in and their number, [[19, "done"], [1, "failed"]].
   counts() {
-    const count = (state) => (this.sampled ? this.sampled.counts[state] ?? 0 : this.jobs.filter((job) => job.state === state).length);
-    const counts = kStates.map((state) => [count(state), state]);
-    return counts.filter(([count]) => count > 0);
+    return kStates.map((state) => [this.tally.counts[state] ?? 0, state]).filter(([count]) => count > 0);
   }
 
   moreIsBetter(column) {
@@ -67,7 +66,7 @@ class SweepData {
 
   /// The number of the unit that a job is, or belongs to, in statistics (JobUnits in analysis/groups.hpp).
   unit(job) {
-    return this.units[job.place];
+    return this.units_of_jobs[job.place];
   }
 
   /// "20 seeds"; where the seed is not swept "12 units, copies count once" of 24 jobs with copies, "" without any.
@@ -124,67 +123,44 @@ const meanOf = (values) => {
   return least === most ? least : values.reduce((sum, one) => sum + one / values.length, 0);
 };
 
-/// As in analysis/statistics.hpp.
-const kRounding = 1e-12;
-
-/// Mean, standard deviation (null of one value) and half the width of the mean's 95 % interval, as the program
-/// computes them, times `unit`. `units` has the unit of each value (SweepData.unit): those of one unit are one cluster, and
-/// `clusters` counts them. `half` is null of one cluster and of clusters with equal means, as in estimate_mean().
-function estimate(values, units, factors, unit = 1) {
+/// Mean and standard deviation (null for fewer than two values) of values, and the number of their units.
+function spread(values, units) {
   const count = values.length;
-  if (count === 0) return { count, clusters: 0, mean: null, deviation: null, half: null };
-  const found = new Map();
-  values.forEach((value, i) => (found.has(units[i]) ? found.get(units[i]).push(value) : found.set(units[i], [value])));
-  const lists = [...found.values()];
-  const clusters = lists.length;
-  const even = lists.every((one) => one.length === lists[0].length);
-  const mean = even ? meanOf(lists.map(meanOf)) : meanOf(values);
-  if (count < 2) return { count, clusters, mean: mean * unit, deviation: null, half: null };
-  const square = (value) => value * value;
-  const deviation = Math.sqrt(values.reduce((sum, one) => sum + square(one - mean), 0) / (count - 1)) * unit;
-  const [least, most] = extent(lists.map(meanOf));
-  const largest = Math.max(...extent(values).map(Math.abs));
-  if (clusters < 2 || most - least <= kRounding * largest) return { count, clusters, mean: mean * unit, deviation, half: null };
-  const pulls = lists.map((one) => (meanOf(one) - mean) * (one.length / (count / clusters)));
-  const variance = pulls.reduce((sum, one) => sum + square(one), 0) / (clusters - 1);
-  const factor = factors[Math.min(clusters - 2, factors.length - 1)];
-  return { count, clusters, mean: mean * unit, deviation, half: factor * Math.sqrt(variance / clusters) * unit };
+  const mean = count > 0 ? meanOf(values) : null;
+  const squares = values.reduce((sum, one) => sum + (one - mean) ** 2, 0);
+  return { count, clusters: new Set(units).size, mean, deviation: count > 1 ? Math.sqrt(squares / (count - 1)) : null };
 }
 
-/// The settings, all keys but the seed, with their means of cost and error over the jobs that are done and have both:
-/// {words, jobs, cost, error, complete, front}, in the order of cost. As `palpate pareto` has it, only settings all of
-/// whose jobs have both are compared; `front` counts from 1. They are those of one scene, by its name in sweep.scenes().
-function settingsOf(sweep, { cost, error, scene }) {
-  const sign = sweep.moreIsBetter(error) ? -1 : 1;
-  const ofScene = sweep.groups(sweep.settings).filter(({ jobs }) => sweep.sceneOf(jobs[0]) === scene);
-  const settings = ofScene.map(({ jobs }) => {
-    const valued = jobs.filter((job) => job.state === "done" && sweep.raw(cost, job) !== null && sweep.raw(error, job) !== null);
-    const units = valued.map((job) => sweep.unit(job));
-    const over = (column) => [valued.map((job) => sweep.raw(column, job)), units, sweep.factors];
-    return {
-      words: sweep.words(jobs[0], sweep.varying.filter((key) => !sweep.scene_keys.includes(key.name))),
-      jobs,
-      cost: estimate(...over(cost), unitOf(cost).factor),
-      error: estimate(...over(error), unitOf(error).factor),
-      // In SI units, so that rounding decides of twins as in the program.
-      paid: estimate(...over(cost)).mean,
-      lost: sign * estimate(...over(error)).mean,
-      complete: valued.length === jobs.length,
-      front: 0,
-    };
-  });
-  const valued = settings.filter((one) => one.cost.count > 0);
-  valued.sort((a, b) => a.paid - b.paid || a.lost - b.lost);
-  // One is beaten if one before it is at most as large in loss, but for its twins.
-  let last = { lost: Infinity };
-  let number = 0;
-  for (const one of valued.filter(({ complete }) => complete)) {
-    const twin = one.paid === last.paid && one.lost === last.lost;
-    if (!twin && one.lost >= last.lost) continue;
-    one.front = ++number;
-    last = one;
+/// The mean of a column over the jobs of a setting, and half the width of its 95 % interval (null for none), as the
+/// program computed them. A setting with one job has its number.
+function estimate(sweep, name, setting) {
+  const { numbers, estimates } = sweep.columns.get(name);
+  const { factor } = unitOf(name);
+  const inUnit = (value) => (value === null ? null : value * factor);
+  if (estimates) {
+    const [mean, half, count, clusters] = estimates[setting];
+    return { count, clusters, mean: inUnit(mean), half: inUnit(half) };
   }
-  return valued;
+  const job = sweep.jobs[sweep.setting_jobs[setting][0]];
+  const mean = job.state === "done" ? numbers[job.place] : null;
+  const count = mean === null ? 0 : 1;
+  return { count, clusters: count, mean: inUnit(mean), half: null };
+}
+
+/// The settings of a scene (a name of sweep.scenes()) that have a cost and an error: {words, jobs, cost, error, complete,
+/// front}. Those on the front come first, in its order; `front` counts from 1 and is 0 for the others.
+function settingsOf(sweep, { cost, error, scene }) {
+  const keys = sweep.varying.filter((key) => !sweep.scene_keys.includes(key.name));
+  const all = sweep.setting_jobs.map((places, i) => {
+    const jobs = places.map((place) => sweep.jobs[place]);
+    const [paid, lost] = [cost, error].map((name) => estimate(sweep, name, i));
+    const complete = Math.min(paid.count, lost.count) === jobs.length;
+    return { words: sweep.words(jobs[0], keys), jobs, cost: paid, error: lost, complete, front: 0 };
+  });
+  const ofScene = ({ jobs }) => sweep.sceneOf(jobs[0]) === scene;
+  const front = sweep.fronts[cost][error].map((i) => all[i]).filter(ofScene);
+  front.forEach((one, i) => Object.assign(one, { front: i + 1 }));
+  return [...front, ...all.filter((one) => ofScene(one) && one.front === 0 && one.cost.count > 0 && one.error.count > 0)];
 }
 
 /// Columns that are worth a first look, the best first, as far as they are there.

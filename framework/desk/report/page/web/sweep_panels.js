@@ -68,7 +68,7 @@ function drawCells(sweep, { across, up, metric }) {
   };
   const cells = sweep.groups(keys).map(({ places, jobs }) => {
     const valued = jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
-    const found = estimate(sweep.numbers(metric, valued), valued.map((job) => sweep.unit(job)), sweep.factors);
+    const found = spread(sweep.numbers(metric, valued), valued.map((job) => sweep.unit(job)));
     return { ...found, column: places[0], row: places[1], hover: hover(jobs, found) };
   });
   // All other keys are taken together.
@@ -124,11 +124,11 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
   const height = Math.min(sparse ? 520 : 900, Math.max(340, 130 + 24 * up.values.length));
   say("cells_mean", "Mean ", over, ". Grey: no value.");
   say("cells_spread", "Spread: standard deviation of the same jobs. Grey: fewer than two values.");
-  const means = plotOfHeight("cells_mean", height, [trace((one) => one.mean, judged(sweep, metric), "Viridis")], more);
+  const means = plotOfHeight("cells_mean", height, [trace((one) => one.mean, judged(sweep, metric), kWhere)], more);
   if (!hasSpread(cells)) return means;
   return Promise.all([
     means,
-    plotOfHeight("cells_spread", height, [trace((one) => one.deviation, `standard deviation of ${titleOf(metric)}`, "Cividis")], more),
+    plotOfHeight("cells_spread", height, [trace((one) => one.deviation, `standard deviation of ${titleOf(metric)}`, kUnknown)], more),
   ]);
 }
 
@@ -220,7 +220,7 @@ function drawParallel(sweep, { metric }) {
   if (jobs.length === 0) return plotNothing("parallel");
   if (axes.every((one) => one.least === one.most)) return plotNothing("parallel", "All finished jobs have equal values.");
   const { least, most, title } = axes[axes.length - 1];
-  const scale = { colorscale: "Viridis", cmin: least, cmax: most, showscale: true, colorbar: colourBar(plain(brief(title))) };
+  const scale = { colorscale: kWhere, cmin: least, cmax: most, showscale: true, colorbar: colourBar(plain(brief(title))) };
   const trace = {
     type: "parcoords",
     line: { ...scale, color: axes[axes.length - 1].values },

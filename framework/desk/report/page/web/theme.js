@@ -40,12 +40,7 @@ function themed(name) {
   return getComputedStyle(themed.probe).color;
 }
 
-/// Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008), those first that stand out.
-const kLineColours = {
-  light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"],
-  dark: ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#d55e00", "#ffffff"],
-};
-const lineColour = (i) => kLineColours[theme()][i % kLineColours.light.length];
+const lineColour = (i) => kColours.lines[theme()][i % kColours.lines.light.length];
 
 /// The switch; `redraw` is called whenever the colours have changed, by it or by the system.
 function themeSwitch(redraw) {
