@@ -252,6 +252,22 @@ void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t
   }
 }
 
+/// Adds the pairs of each block: all, or with many groups those with the baseline.
+void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<Collected>& groups,
+               const CompareQuery& query, Comparison& out) {
+  for (const ComparedBlock& block : blocks) {
+    const bool one_baseline = query.baseline || block.groups.size() > kMostGroupsInPairs;
+    out.one_baseline = out.one_baseline || one_baseline;
+    for (auto second = block.groups.begin(); second != block.groups.end(); ++second) {
+      if (one_baseline && *second != block.baseline) continue;
+      for (auto first = one_baseline ? block.groups.begin() : second + 1; first != block.groups.end(); ++first) {
+        if (first != second) out.pairs.push_back(compare_pair(groups, *first, *second, query.ratios));
+      }
+    }
+  }
+  adjust(out.pairs);
+}
+
 /// Throws Error if nothing is left to compare, with the reason.
 void check_values(const Comparison& made, const Sweep& sweep) {
   int without_value = 0;
@@ -315,17 +331,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   out.compared = kept.size();
   out.ratios = query.ratios;
   if (query.extent != CompareExtent::pairs) return out;
-  for (const ComparedBlock& block : blocks) {
-    const bool one_baseline = query.baseline || block.groups.size() > kMostGroupsInPairs;
-    out.one_baseline = out.one_baseline || one_baseline;
-    for (auto second = block.groups.begin(); second != block.groups.end(); ++second) {
-      if (one_baseline && *second != block.baseline) continue;
-      for (auto first = one_baseline ? block.groups.begin() : second + 1; first != block.groups.end(); ++first) {
-        if (first != second) out.pairs.push_back(compare_pair(groups, *first, *second, query.ratios));
-      }
-    }
-  }
-  adjust(out.pairs);
+  add_pairs(blocks, groups, query, out);
   std::set<std::size_t> apart;
   for (const ComparedPair& pair : out.pairs) {
     if (pair.lost.of(Fate::without_partner) > 0)

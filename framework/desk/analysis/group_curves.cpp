@@ -72,6 +72,39 @@ bool has_value(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double one) { return std::isfinite(one); });
 }
 
+/// Returns what becomes of a job in the curves of its group; `metric` has its values after each tap, null for none.
+Fate fate_of(const JobResult& job, const std::vector<double>* metric, const JobCondition& where,
+             const CurvesQuery& query) {
+  const Fate fate = value_of_job(job.row, query.metric, "--metric").fate;
+  if (!where.keeps(job)) return Fate::left_out;
+  if (fate != Fate::counted && fate != Fate::without_value) return fate;
+  return metric != nullptr && has_value(*metric) ? Fate::counted : Fate::without_value;
+}
+
+/// Makes the curve of a group, whose first `scenes` values are those of the scene.
+GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vector<TapValues>& values,
+                      const JobUnits& units, const JobCondition& where, const CurvesQuery& query) {
+  const auto split = group.values.begin() + static_cast<std::ptrdiff_t>(scenes);
+  GroupCurve curve;
+  curve.scene.assign(group.values.begin(), split);
+  curve.values.assign(split, group.values.end());
+  std::vector<JobCurve> jobs;
+  for (const JobResult& one : group.jobs) {
+    const TapValues& of_job = values[static_cast<std::size_t>(one.job->index)];
+    const auto found = of_job.find(query.metric);
+    const std::vector<double>* const metric = found != of_job.end() ? &found->second : nullptr;
+    const Fate fate = fate_of(one, metric, where, query);
+    curve.counts.add(fate);
+    if (fate != Fate::counted) continue;
+    jobs.push_back({metric, query.against == kAgainstTaps ? nullptr : &of_job.at(query.against), units.of(one)});
+  }
+  std::size_t most = 0;
+  for (const JobCurve& job : jobs) most = std::max(most, job.metric->size());
+  for (const JobCurve& job : jobs) curve.ended += job.metric->size() < most ? 1 : 0;
+  for (const double at : points_of(jobs)) curve.points.push_back({at, estimate_at(jobs, at, query.students)});
+  return curve;
+}
+
 /// Throws Error if there is nothing to draw, with the reason.
 void check_points(const GroupCurves& made, const Sweep& sweep) {
   if (made.curves.empty())
@@ -100,8 +133,7 @@ void check_points(const GroupCurves& made, const Sweep& sweep) {
 bool any_has(const std::vector<TapValues>& jobs, const std::string& column) {
   return std::any_of(jobs.begin(), jobs.end(), [&](const TapValues& job) {
     const auto found = job.find(column);
-    return found != job.end() &&
-           std::any_of(found->second.begin(), found->second.end(), [](double one) { return std::isfinite(one); });
+    return found != job.end() && has_value(found->second);
   });
 }
 
@@ -163,27 +195,7 @@ GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& result
   std::vector<std::string> keys = out.scenes;
   keys.insert(keys.end(), query.by.begin(), query.by.end());
   for (const JobGroup& group : group_jobs(sweep, results, keys)) {
-    const auto split = group.values.begin() + static_cast<std::ptrdiff_t>(out.scenes.size());
-    GroupCurve curve;
-    curve.scene.assign(group.values.begin(), split);
-    curve.values.assign(split, group.values.end());
-    std::vector<JobCurve> jobs;
-    for (const JobResult& one : group.jobs) {
-      Fate fate = value_of_job(one.row, query.metric, "--metric").fate;
-      const TapValues& of_job = values[static_cast<std::size_t>(one.job->index)];
-      const auto metric = of_job.find(query.metric);
-      if (fate == Fate::counted || fate == Fate::without_value)
-        fate = metric != of_job.end() && has_value(metric->second) ? Fate::counted : Fate::without_value;
-      if (!where.keeps(one)) fate = Fate::left_out;
-      curve.counts.add(fate);
-      if (fate != Fate::counted) continue;
-      const bool taps = query.against == kAgainstTaps;
-      jobs.push_back({&metric->second, taps ? nullptr : &of_job.at(query.against), units.of(one)});
-    }
-    std::size_t most = 0;
-    for (const JobCurve& job : jobs) most = std::max(most, job.metric->size());
-    for (const JobCurve& job : jobs) curve.ended += job.metric->size() < most ? 1 : 0;
-    for (const double at : points_of(jobs)) curve.points.push_back({at, estimate_at(jobs, at, query.students)});
+    GroupCurve curve = make_curve(group, out.scenes.size(), values, units, where, query);
     if (!curve.counts.all_are(Fate::left_out)) out.curves.push_back(std::move(curve));
   }
   std::stable_sort(out.curves.begin(), out.curves.end(), [names = out.scene_names()](const auto& a, const auto& b) {

@@ -56,6 +56,18 @@ double cautious_loss(const Pareto& pareto, const Setting& setting) {
   return loss(pareto, pareto.more_is_better() ? setting.error.interval->low : setting.error.interval->high);
 }
 
+/// Sorts the settings by scene, cost and loss; settings without a value come last.
+void sort_settings(Pareto& pareto) {
+  std::stable_sort(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& a, const Setting& b) {
+    if (a.scene != b.scene) return a.scene < b.scene;
+    const bool has_a = a.cost.count > 0;
+    const bool has_b = b.cost.count > 0;
+    if (!has_a || !has_b) return has_a && !has_b;
+    if (a.cost.mean != b.cost.mean) return a.cost.mean < b.cost.mean;
+    return loss(pareto, a.error.mean) < loss(pareto, b.error.mean);
+  });
+}
+
 /// Numbers the front of each scene from 1. The settings stand in the order of scene and cost.
 void number_front(Pareto& pareto) {
   std::vector<FrontPoint> points;
@@ -108,14 +120,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
   if (pareto.settings.empty())
     throw Error("command line", fmt::format("--where: matches none of the {} jobs", sweep.jobs.size()),
                 "check the values in results.csv");
-  std::stable_sort(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& a, const Setting& b) {
-    if (a.scene != b.scene) return a.scene < b.scene;
-    const bool has_a = a.cost.count > 0;
-    const bool has_b = b.cost.count > 0;
-    if (!has_a || !has_b) return has_a && !has_b;
-    if (a.cost.mean != b.cost.mean) return a.cost.mean < b.cost.mean;
-    return loss(pareto, a.error.mean) < loss(pareto, b.error.mean);
-  });
+  sort_settings(pareto);
   number_front(pareto);
   return pareto;
 }

@@ -200,6 +200,50 @@ std::string bound_words(const Pareto& pareto, double bound) {
   return scale.with_unit(fmt::format("{:.6g}", bound / scale.factor));
 }
 
+namespace {
+
+/// A gnuplot script under construction: its data blocks, and the clauses of its one plot command.
+struct PlotScript {
+  std::string text;
+  std::string clauses;
+
+  void plot(const std::string& clause) { clauses += (clauses.empty() ? "plot " : ", \\\n  ") + clause; }
+  /// Adds a block and the clauses that use it; nothing without lines.
+  void draw(const std::string& name, const std::string& lines, const std::vector<std::string>& uses) {
+    if (lines.empty()) return;
+    text += fmt::format("${} << END\n{}END\n", name, lines);
+    for (const std::string& use : uses) plot(fmt::format("${} using {}", name, use));
+  }
+};
+
+/// Returns title, axes, margins and key.
+std::string frame_settings(const Pareto& pareto, const std::string& title, const PlotAxis& x, const PlotAxis& y) {
+  std::string out = fmt::format("set title {} font ',14'\n", gnuplot_text(title));
+  out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
+                     gnuplot_text(fmt::format("mean {}{}", y.scale.title(pareto.error.name),
+                                              pareto.more_is_better() ? " (more is better)" : "")));
+  if (x.logarithmic) out += "set logscale x\n";
+  if (y.logarithmic) out += "set logscale y\n";
+  out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
+  out += fmt::format("set lmargin at screen 0.075\nset rmargin at screen {}\n", kKeyLeft - 0.02);
+  out += "set border 3 lc rgb '#555555'\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1\n";
+  return out + fmt::format("set key at screen {}, screen 0.93 left top Left reverse samplen 1 spacing 1.3 font ',11'\n",
+                           kKeyLeft);
+}
+
+void draw_fronts(PlotScript& script, const Pareto& pareto, const std::vector<std::string>& fronts) {
+  for (std::size_t scene = 0; scene < fronts.size(); ++scene) {
+    const char* const colour = kFrontColours[scene % kFrontColours.size()];
+    const std::string name = pareto.scenes[scene].empty() ? "front: not dominated" : "front: " + pareto.scenes[scene];
+    script.draw(fmt::format("front_{}", scene + 1), fronts[scene],
+                {fmt::format("1:4 with steps lw 2 lc rgb '{}' title {}", colour, gnuplot_text(name)),
+                 fmt::format("1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '{}' notitle", colour),
+                 fmt::format("1:4 with points pt 7 ps 2.4 lc rgb '{}' notitle", colour)});
+  }
+}
+
+}  // namespace
+
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen) {
   const PlotAxis x = plot_axis(pareto, pareto.cost, &Setting::cost, {});
@@ -214,51 +258,28 @@ std::string pareto_script(const Pareto& pareto, const std::string& title, const 
     (one.front > 0 ? fronts[one.scene] : one.complete() ? others : incomplete) += line;
     if (&one == chosen) choice = line;
   }
-
-  std::string out;
-  std::string plots;
-  const auto plot = [&](const std::string& clause) { plots += (plots.empty() ? "plot " : ", \\\n  ") + clause; };
-  const auto draw = [&](const std::string& name, const std::string& lines, const std::vector<std::string>& clauses) {
-    if (lines.empty()) return;
-    out += fmt::format("${} << END\n{}END\n", name, lines);
-    for (const std::string& clause : clauses) plot(fmt::format("${} using {}", name, clause));
-  };
-  out += fmt::format("set title {} font ',14'\n", gnuplot_text(title));
-  out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
-                     gnuplot_text(fmt::format("mean {}{}", y.scale.title(pareto.error.name),
-                                              pareto.more_is_better() ? " (more is better)" : "")));
-  if (x.logarithmic) out += "set logscale x\n";
-  if (y.logarithmic) out += "set logscale y\n";
-  out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
-  out += fmt::format("set lmargin at screen 0.075\nset rmargin at screen {}\n", kKeyLeft - 0.02);
-  out += "set border 3 lc rgb '#555555'\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1\n";
-  out += fmt::format("set key at screen {}, screen 0.93 left top Left reverse samplen 1 spacing 1.3 font ',11'\n",
-                     kKeyLeft);
-  draw("incomplete", incomplete,
-       {"1:4:2:3:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' title 'not compared: jobs failed or missing'"});
-  draw("others", others, {"1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'"});
+  PlotScript script{frame_settings(pareto, title, x, y), {}};
+  script.draw(
+      "incomplete", incomplete,
+      {"1:4:2:3:5:6 with xyerrorbars pt 2 ps 1.3 lc rgb '#b0b0b0' title 'not compared: jobs failed or missing'"});
+  script.draw("others", others, {"1:4:2:3:5:6 with xyerrorbars pt 7 ps 1.1 lc rgb '#8fb0cc' title 'dominated'"});
   if (bound) {
-    plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '#c1440e' title {}", *bound / y.scale.factor,
-                     gnuplot_text((pareto.more_is_better() ? "limit: at least " : "limit: at most ") +
-                                  bound_words(pareto, *bound))));
+    script.plot(fmt::format("{} with lines dt 2 lw 2 lc rgb '{}' title {}", *bound / y.scale.factor, kChosenColour,
+                            gnuplot_text((pareto.more_is_better() ? "limit: at least " : "limit: at most ") +
+                                         bound_words(pareto, *bound))));
   }
-  for (std::size_t scene = 0; scene < fronts.size(); ++scene) {
-    const char* const colour = kFrontColours[scene % kFrontColours.size()];
-    const std::string name = pareto.scenes[scene].empty() ? "front: not dominated" : "front: " + pareto.scenes[scene];
-    draw(fmt::format("front_{}", scene + 1), fronts[scene],
-         {fmt::format("1:4 with steps lw 2 lc rgb '{}' title {}", colour, gnuplot_text(name)),
-          fmt::format("1:4:2:3:5:6 with xyerrorbars pt 7 ps 0.1 lw 1.5 lc rgb '{}' notitle", colour),
-          fmt::format("1:4 with points pt 7 ps 2.4 lc rgb '{}' notitle", colour)});
-  }
-  draw("choice", choice,
-       {"1:4 with points pt 7 ps 2.4 lc rgb '#c1440e' title 'cheapest setting whose 95 % bound is within the limit'"});
+  draw_fronts(script, pareto, fronts);
+  script.draw("choice", choice,
+              {fmt::format("1:4 with points pt 7 ps 2.4 lc rgb '{}' title 'cheapest setting whose 95 % bound is within "
+                           "the limit'",
+                           kChosenColour)});
   for (std::size_t scene = 0; scene < fronts.size(); ++scene) {
     if (fronts[scene].empty()) continue;
-    plot(fmt::format("$front_{} using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle",
-                     scene + 1));
+    script.plot(fmt::format(
+        "$front_{} using 1:4:(sprintf('%d', column(7))) with labels font ',10' tc rgb 'white' notitle", scene + 1));
   }
-  for (const std::string& clause : named_settings(pareto, chosen)) plot(clause);
-  return out + plots + "\n";
+  for (const std::string& clause : named_settings(pareto, chosen)) script.plot(clause);
+  return script.text + script.clauses + "\n";
 }
 
 }  // namespace palpate

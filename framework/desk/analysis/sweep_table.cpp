@@ -74,37 +74,15 @@ SweepTableRow row_of(const JobGroup& group, const std::string& error,
   return out;
 }
 
-}  // namespace
-
-std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
-                        const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
-  const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
-  const std::vector<std::string> scenes = scene_keys(sweep);
-  std::map<std::string, std::size_t> places;
-  std::vector<SweepTableRow> rows;
-  std::size_t longest = 0;
-  const std::string metric = main_error(results);
-  for (const JobGroup& group : group_jobs(sweep, results, keys)) {
-    SweepTableRow row = row_of(group, metric, initial_taps);
-    if (row.runs == 0) continue;
-    const Job& first = *group.jobs.front().job;
-    row.scene = places.emplace(key_words(sweep, first, scenes, true), places.size()).first->second;
-    row.name = key_words(sweep, first, keys, keys.size() > 1);
-    // Where no key but the seed has several values there is but one group.
-    if (row.name.empty()) row.name = keys.empty() ? "all jobs" : "(none)";
-    longest = std::max(longest, row.name.size());
-    rows.push_back(std::move(row));
-  }
-  std::stable_sort(rows.begin(), rows.end(), [](const SweepTableRow& a, const SweepTableRow& b) {
-    return a.scene != b.scene ? a.scene < b.scene : a.median_rmse() < b.median_rmse();
-  });
+Table table_of(const std::vector<SweepTableRow>& rows, const std::string& metric) {
   std::vector<double> medians;
+  std::size_t longest = 0;
   bool any_iou = false;
   for (const SweepTableRow& row : rows) {
     if (!row.rmse.empty()) medians.push_back(row.median_rmse());
+    longest = std::max(longest, row.name.size());
     any_iou = any_iou || !row.iou.empty();
   }
-  if (rows.empty()) return {};
   const Scale error = readable_scale(unit_of_column(metric), medians, 2);
   const Scale share{"", 1.0, 2};
   const Scale count{"", 1.0, 0};
@@ -126,9 +104,36 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
     if (any_iou) table.show("footprint_iou", spread(row.iou, share));
     if (longest > kLongest) table.show("group", row.name, Table::Kind::text);
   }
-  std::string out = table.text();
+  return table;
+}
+
+}  // namespace
+
+std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
+                        const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
+  const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
+  const std::vector<std::string> scenes = scene_keys(sweep);
+  std::map<std::string, std::size_t> places;
+  std::vector<SweepTableRow> rows;
+  const std::string metric = main_error(results);
+  for (const JobGroup& group : group_jobs(sweep, results, keys)) {
+    SweepTableRow row = row_of(group, metric, initial_taps);
+    if (row.runs == 0) continue;
+    const Job& first = *group.jobs.front().job;
+    row.scene = places.emplace(key_words(sweep, first, scenes, true), places.size()).first->second;
+    row.name = key_words(sweep, first, keys, keys.size() > 1);
+    // Where no key but the seed has several values there is but one group.
+    if (row.name.empty()) row.name = keys.empty() ? "all jobs" : "(none)";
+    rows.push_back(std::move(row));
+  }
+  if (rows.empty()) return {};
+  std::stable_sort(rows.begin(), rows.end(), [](const SweepTableRow& a, const SweepTableRow& b) {
+    return a.scene != b.scene ? a.scene < b.scene : a.median_rmse() < b.median_rmse();
+  });
+  std::string out = table_of(rows, metric).text();
   out += "no contact: runs without an initial tap on the object; rest: the other runs. Median (10 %-90 %).\n";
-  if (rows.size() < 2 || medians.empty()) return out;
+  const bool has_error = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row.rmse.empty(); });
+  if (rows.size() < 2 || !has_error) return out;
   return out +
          fmt::format("Groups with the least {} come first{}.\n", metric, places.size() > 1 ? ", scene by scene" : "");
 }

@@ -23,6 +23,32 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// All taps over all draws of the effects.
+struct Drawn {
+  std::vector<std::vector<double>> errors;  ///< of the heights of each tap, metres, over the draws with a contact
+  double failed = 0.0;                      ///< number of taps without a contact
+};
+
+Drawn draw_taps(const Workshop& workshop, const Scene& scene, const PluginChoice& choice,
+                const std::vector<TapRequest>& requests) {
+  Drawn out;
+  out.errors.resize(requests.size());
+  for (std::uint64_t draw = 1; draw <= kDraws; ++draw) {
+    const Context context{workshop.host, scene, draw, nullptr};
+    const auto backend = context.create<Backend>(choice);
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      const Contact contact = backend->tap(requests[i]);
+      const Target& place = requests[i].target;
+      if (contact.outcome == Outcome::contact) {
+        out.errors[i].push_back(contact.height - scene.height(place.x, place.y));
+      } else if (contact.outcome != Outcome::unreachable) {
+        ++out.failed;
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<TapRequest> requests_of(const Recording& recording) {
@@ -57,35 +83,19 @@ Twin::Made Twin::make(const Tree& effects, const std::vector<double>& expected) 
   const ResolvedConfig resolved = resolve_experiment(config, workshop_.host);
   const auto seed = static_cast<std::uint64_t>(resolved.options.seed);
   const std::unique_ptr<const Scene> scene = build_scene(resolved.options.scene, seed, workshop_.host);
-  const std::vector<TapRequest> requests = requests_of(recording_);
-  const std::size_t taps = requests.size();
-  std::vector<std::vector<double>> errors(taps);
-  double failed = 0.0;
-  for (std::uint64_t draw = 1; draw <= kDraws; ++draw) {
-    const Context context{workshop_.host, *scene, draw, nullptr};
-    const auto backend = context.create<Backend>(resolved.options.backend);
-    for (std::size_t i = 0; i < taps; ++i) {
-      const Contact contact = backend->tap(requests[i]);
-      const Target& place = requests[i].target;
-      if (contact.outcome == Outcome::contact) {
-        errors[i].push_back(contact.height - scene->height(place.x, place.y));
-      } else if (contact.outcome != Outcome::unreachable) {
-        ++failed;
-      }
-    }
-  }
+  const Drawn drawn = draw_taps(workshop_, *scene, resolved.options.backend, requests_of(recording_));
   Made out;
-  out.failed = failed / static_cast<double>(taps * kDraws);
+  out.failed = drawn.failed / static_cast<double>(drawn.errors.size() * kDraws);
   double all = 0.0;
   double near = 0.0;
-  for (std::size_t i = 0; i < taps; ++i) {
-    const double middle = median(errors[i]);
+  for (std::size_t i = 0; i < drawn.errors.size(); ++i) {
+    const double middle = median(drawn.errors[i]);
     out.error.push_back(middle);
     std::vector<double> deviations;
-    for (const double error : errors[i]) deviations.push_back(std::abs(error - middle));
+    for (const double error : drawn.errors[i]) deviations.push_back(std::abs(error - middle));
     const double deviation = kOfNormal * median(deviations);
     out.variance.push_back(deviation * deviation);
-    for (const double error : errors[i]) {
+    for (const double error : drawn.errors[i]) {
       ++all;
       if (std::abs(error - (expected.empty() ? middle : expected[i])) > kFarOff) continue;
       ++near;

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 namespace palpate {
@@ -128,39 +127,58 @@ std::string constant_words(const CurvePanel& panel) {
   return out + (panel.unit.empty() ? "" : " " + panel.unit);
 }
 
-}  // namespace
-
-Curves curves_of(const Recording& recording, const History& history) {
-  const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
-  std::vector<CurvePanel> panels;
-  const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
-    panels.push_back({std::move(title), unit, axis, std::move(curves)});
-  };
-  const auto one = [&](const auto& get) { return std::vector<Curve>{curve_of(history, "", get)}; };
+/// Returns a panel with the errors that are lengths, in millimetres, then a panel per other error.
+std::vector<CurvePanel> error_panels(const ExperimentOptions& options, const History& history) {
+  std::vector<CurvePanel> out(1);
   std::vector<Curve> lengths;
-  std::vector<CurvePanel> shares;
+  const auto in_millimetres = [](const std::optional<double>& metres) {
+    return metres ? std::optional(kMillimetres * *metres) : std::nullopt;
+  };
   for (const RecordField& error : error_fields()) {
     const bool is_length = error.unit == Unit::metre;
     Curve curve = curve_of(history, is_length ? error.label : "", [&](const Moment& moment) {
       Row row;
       add_errors(row, moment.result.errors);
-      std::optional<double> value = row.number(error.name);
-      if (value && is_length) *value *= kMillimetres;
-      return value;
+      return is_length ? in_millimetres(row.number(error.name)) : row.number(error.name);
     });
     if (is_length) {
       lengths.push_back(std::move(curve));
     } else {
-      shares.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
+      out.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
     }
   }
-  const RecordField& expected = *find_summary_field(kExpectedError);
-  lengths.push_back(curve_of(history, expected.label, [](const Moment& moment) {
-    const std::optional<double>& rmse = moment.result.expected_rmse;
-    return rmse ? std::optional(kMillimetres * *rmse) : std::nullopt;
-  }));
-  add(surface_error_title(recording.config.options), "mm", CurveAxis::from_zero, std::move(lengths));
-  std::move(shares.begin(), shares.end(), std::back_inserter(panels));
+  lengths.push_back(curve_of(history, find_summary_field(kExpectedError)->label,
+                             [&](const Moment& moment) { return in_millimetres(moment.result.expected_rmse); }));
+  out.front() = {surface_error_title(options), "mm", CurveAxis::from_zero, std::move(lengths)};
+  return out;
+}
+
+/// Turns panels whose curves never change into words, and drops panels without a value.
+Curves without_constants(std::vector<CurvePanel> panels) {
+  Curves out;
+  for (CurvePanel& panel : panels) {
+    fit_axis(panel);
+    if (panel.curves.empty()) continue;
+    std::string words = constant_words(panel);
+    if (words.empty()) {
+      out.panels.push_back(std::move(panel));
+    } else {
+      out.constants.push_back(std::move(words));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Curves curves_of(const Recording& recording, const History& history) {
+  const ExperimentOptions& options = recording.config.options;
+  const bool any_side = options.scene.touch == SceneOptions::Touch::any;
+  std::vector<CurvePanel> panels = error_panels(options, history);
+  const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
+    panels.push_back({std::move(title), unit, axis, std::move(curves)});
+  };
+  const auto one = [&](const auto& get) { return std::vector<Curve>{curve_of(history, "", get)}; };
   add(any_side ? "Largest standard deviation of the surface" : "Largest standard deviation of a height", "cm",
       CurveAxis::from_zero, one([&](const Moment& moment) {
         const bool drawn = !any_side || moment.largest_deviation > 0.0;
@@ -175,24 +193,13 @@ Curves curves_of(const Recording& recording, const History& history) {
     add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
         named_curves(history, [&](const Moment& moment) { return parameters_of(moment.result.*state.state); }));
   }
-  add(fmt::format("Numbers of footprint/{}", recording.config.options.footprint.type), "", CurveAxis::free,
+  add(fmt::format("Numbers of footprint/{}", options.footprint.type), "", CurveAxis::free,
       named_curves(history, [](const Moment& moment) { return numbers_of(moment.result.footprint); }));
   add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
   if (history.moments.back().result.robot_seconds > 0.0)
     add("Robot time so far", "s", CurveAxis::from_zero,
         one([](const Moment& moment) { return moment.result.robot_seconds; }));
-  Curves out;
-  for (CurvePanel& panel : panels) {
-    fit_axis(panel);
-    if (panel.curves.empty()) continue;
-    std::string words = constant_words(panel);
-    if (words.empty()) {
-      out.panels.push_back(std::move(panel));
-    } else {
-      out.constants.push_back(std::move(words));
-    }
-  }
-  return out;
+  return without_constants(std::move(panels));
 }
 
 }  // namespace palpate

@@ -3,8 +3,8 @@
 #include "analysis/gnuplot.hpp"
 #include "analysis/group_curves_report.hpp"
 #include "record/files.hpp"
+#include "report/figures/curves_legend.hpp"
 #include "report/figures/figures.hpp"
-#include "report/figures/sheet.hpp"
 
 #include <palpate/error.hpp>
 
@@ -12,11 +12,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 namespace palpate {
@@ -28,32 +26,10 @@ constexpr std::size_t kMostScenes = 12;
 constexpr std::size_t kMostCurves = 16;  ///< of a panel
 
 // Lengths are points in print.
-constexpr double kLineHeight = 11;
-constexpr double kAxisRoom = 40;  ///< of the first panel: numbers and title of its axis
-constexpr double kPanelGap = 14;  ///< between panels, of which only the first has numbers
-constexpr double kEndRoom = 9;
+constexpr double kAxisRoom = 40;         ///< of the first panel: numbers and title of its axis
+constexpr double kPanelGap = 14;         ///< between panels, of which only the first has numbers
 constexpr double kNumbersRoom = 14;      ///< numbers below a panel
 constexpr double kLeastPanelWidth = 85;  ///< else panels go into one more row
-constexpr double kSampleLength = 22;     ///< length of the line before a name
-
-/// How a group is drawn. Colours: people who see two colours alike tell them apart (Okabe and Ito 2008, Color universal
-/// design); dashes and marks tell groups apart in grey.
-struct LineStyle {
-  std::string colour;
-  std::string line;   ///< with its colour
-  std::string point;  ///< its mark
-};
-
-LineStyle line_style(std::size_t curve) {
-  constexpr std::array<const char*, 4> kDashes{"solid", "(7,2.5)", "(2,2)", "(8,2,2,2)"};
-  constexpr std::array<int, 8> kMarks{7, 9, 5, 13, 6, 8, 4, 12};  // disc, triangle, square, diamond; then open ones
-  const std::string colour = kLineColours[curve % kLineColours.size()];
-  // From the ninth group on a colour returns with another dash.
-  return {
-      colour,
-      fmt::format("lw 1 dt {} lc rgb '{}'", kDashes[(curve + curve / kLineColours.size()) % kDashes.size()], colour),
-      fmt::format("pt {} ps mark_size", kMarks[curve % kMarks.size()])};
-}
 
 /// The names of the groups, in the order of the sweep: a group has one style in all panels.
 std::vector<std::string> group_names(const GroupCurves& curves) {
@@ -126,97 +102,6 @@ std::string block_of(const GroupCurve& curve, double axis, double factor) {
                        ends ? number(ends->low) : "NaN", ends ? number(ends->high) : "NaN");
   }
   return out;
-}
-
-// Advances of DejaVu Sans, of each class of letters the widest, in parts of the font's size: no line is wider.
-constexpr double kFont = 8;
-struct LetterClass {
-  const char* letters;
-  double width;
-};
-constexpr std::array<LetterClass, 3> kLetterClasses{
-    {{"fijlrtI .,:;'|!()[]/-", 0.42}, {"mMWO@%", 1.0}, {"wGQ+=<>~ABCDHKNPRSTUVXYZ", 0.84}}};
-constexpr double kOtherLetters = 0.65;
-
-/// The width of a line, in points.
-double width_of_line(const std::string& text) {
-  double out = 0.0;
-  for (const char c : text) {
-    const auto* const one = std::find_if(kLetterClasses.begin(), kLetterClasses.end(), [c](const LetterClass& letters) {
-      return std::string_view(letters.letters).find(c) != std::string_view::npos;
-    });
-    out += kFont * (one != kLetterClasses.end() ? one->width : kOtherLetters);
-  }
-  return out;
-}
-
-/// The text in lines of at most this width, broken behind blanks where that can be.
-std::vector<std::string> lines_within(const std::string& text, double width) {
-  std::vector<std::string> out;
-  for (std::size_t begin = 0; begin < text.size();) {
-    std::size_t end = begin + 1;
-    while (end < text.size() && width_of_line(text.substr(begin, end + 1 - begin)) <= width) ++end;
-    const std::size_t blank = text.rfind(' ', end);
-    if (end < text.size() && blank != std::string::npos && blank > begin) end = blank + 1;
-    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) ++end;  // within a letter
-    out.push_back(text.substr(begin, end - begin));
-    begin = end;
-  }
-  return out;
-}
-
-/// The name of a group in the legend, in as many lines as it takes.
-struct LegendEntry {
-  double x = 0.0;
-  std::size_t row = 0;
-  std::vector<std::string> lines;
-};
-
-constexpr double kNameGap = 5;  ///< between a sample and its name
-constexpr double kBetweenNames = 16;
-
-/// Names side by side; one that is longer than the figure is wide has rows of its own.
-std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width) {
-  std::vector<LegendEntry> out;
-  double x = left;
-  std::size_t row = 0;
-  for (const std::string& name : names) {
-    std::vector<std::string> lines = lines_within(name, width - left - kSampleLength - kNameGap - kEndRoom);
-    const double length = kSampleLength + kNameGap + width_of_line(lines.front());
-    if (x > left && (lines.size() > 1 || x + length > width - kEndRoom)) {
-      x = left;
-      ++row;
-    }
-    out.push_back({x, row, lines});
-    x += length + kBetweenNames;
-    if (lines.size() > 1) {
-      x = left;
-      row += lines.size();
-    }
-  }
-  return out;
-}
-
-/// Bands, lines, marks and names of the groups.
-void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
-  std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const LegendEntry& entry = entries[i];
-    const LineStyle style = line_style(i);
-    const double right = entry.x + kSampleLength;
-    double y = 4 + kLineHeight * (static_cast<double>(entry.row) + 0.5);
-    settings += fmt::format("set object rectangle from {} to {} fc rgb '{}' fs transparent solid 0.18 noborder\n",
-                            sheet.at(entry.x, y - 3.5), sheet.at(right, y + 3.5), style.colour);
-    settings +=
-        fmt::format("set arrow from {} to {} nohead {}\n", sheet.at(entry.x, y), sheet.at(right, y), style.line);
-    settings += sheet.label("", 0.5 * (entry.x + right), y,
-                            fmt::format("point {} lc rgb '{}' front", style.point, style.colour));
-    for (const std::string& line : entry.lines) {
-      settings += sheet.label(line, right + kNameGap, y, "left");
-      y += kLineHeight;
-    }
-  }
-  sheet.plot({0, 0, 10, 10}, settings, "plot NaN");
 }
 
 /// The panel's name: "scene: ring", without the keys where there is no room for them, in as many lines as it takes.
@@ -331,17 +216,20 @@ struct CurveClauses {
   }
 };
 
-}  // namespace
+/// The curves of a figure with their units and axes, which all panels share.
+struct DrawnCurves {
+  std::vector<const GroupCurve*> curves;
+  Scale axis;
+  Scale value;
+  AxisRange x;
+  AxisRange y;
+};
 
-std::string write_curves_figure(const GroupCurves& curves, const std::string& title, double width,
-                                const fs::path& file) {
-  constexpr double kPointsPerMetre = 72.0 / 0.0254;
-  const Scale scale = metric_scale(curves);
-  const CurvesLayout layout =
-      layout_of(curves, scale.title(curves.metric.words()), std::floor(width * kPointsPerMetre));
-  const auto place_in = [](const std::vector<std::string>& all, const std::string& one) {
-    return static_cast<std::size_t>(std::find(all.begin(), all.end(), one) - all.begin());
-  };
+std::size_t place_in(const std::vector<std::string>& all, const std::string& one) {
+  return static_cast<std::size_t>(std::find(all.begin(), all.end(), one) - all.begin());
+}
+
+DrawnCurves drawn_curves(const GroupCurves& curves, const CurvesLayout& layout) {
   std::vector<const GroupCurve*> drawn;
   std::vector<double> places;
   for (const GroupCurve& curve : curves.curves) {
@@ -352,42 +240,62 @@ std::string write_curves_figure(const GroupCurves& curves, const std::string& ti
     for (const CurvePoint& point : curve.points) places.push_back(point.at);
   }
   const Scale axis = readable_scale(curves.against.unit, places);
+  const Scale value = metric_scale(curves);
   const auto [first, last] = std::minmax_element(places.begin(), places.end());
-  const AxisRange x_range(*first / axis.factor, *last / axis.factor);
-  const AxisRange y_range = value_range(drawn, scale.factor);
+  return {drawn, axis, value, AxisRange(*first / axis.factor, *last / axis.factor), value_range(drawn, value.factor)};
+}
 
+/// Returns the labels of a panel: its scene, and on the panels at the edges the titles of the axes.
+std::string panel_labels(const Sheet& sheet, const GroupCurves& curves, const DrawnCurves& drawn,
+                         const CurvesLayout& layout, std::size_t panel) {
+  const Box box = layout.box(panel);
+  std::string out;
+  double y = box.top - layout.head + 0.5 * kLineHeight;
+  for (const std::string& line : panel_title(curves, layout.scenes[panel], box.width)) {
+    out += sheet.label(line, box.left, y, "left");
+    y += kLineHeight;
+  }
+  if (panel + layout.across >= layout.scenes.size())
+    out += sheet.label(drawn.axis.title(curves.against.words()), box.left + 0.5 * box.width,
+                       box.top + box.height + kNumbersRoom + 0.6 * kLineHeight, "center");
+  if (panel > 0) return out;
+  const Box below = layout.box(layout.scenes.size() - 1);
+  for (std::size_t line = 0; line < layout.y_title.size(); ++line)
+    out += sheet.label(layout.y_title[line], 7 + kLineHeight * static_cast<double>(line),
+                       0.5 * (box.top + below.top + below.height), "center rotate by 90");
+  return out;
+}
+
+void draw_panel(Sheet& sheet, const GroupCurves& curves, const DrawnCurves& drawn, const CurvesLayout& layout,
+                std::size_t panel) {
+  const Box box = layout.box(panel);
+  CurveClauses clauses;
+  for (const GroupCurve* curve : drawn.curves) {
+    if (curve->scene_name() != layout.scenes[panel] || curve->points.empty()) continue;
+    const std::size_t group = place_in(layout.names, curve->name());
+    const std::string block = fmt::format("curve_{}_{}", panel + 1, group + 1);
+    sheet.data(block, block_of(*curve, drawn.axis.factor, drawn.value.factor));
+    clauses.add(block, line_style(group), curve->points.size());
+  }
+  std::string settings = "set border 3 lc rgb '#555555' lw 0.5\nset grid y lc rgb '#e4e4e4' lt 1 lw 0.5\n";
+  settings += panel_labels(sheet, curves, drawn, layout, panel);
+  settings += drawn.x.settings('x', box.width, curves.against.name == kAgainstTaps);
+  settings += drawn.y.settings('y', box.height, false);
+  if (panel % layout.across > 0) settings += "set ytics format ''\n";
+  sheet.plot(box, settings, clauses.plot());
+}
+
+}  // namespace
+
+std::string write_curves_figure(const GroupCurves& curves, const std::string& title, double width,
+                                const fs::path& file) {
+  constexpr double kPointsPerMetre = 72.0 / 0.0254;
+  const CurvesLayout layout =
+      layout_of(curves, metric_scale(curves).title(curves.metric.words()), std::floor(width * kPointsPerMetre));
+  const DrawnCurves drawn = drawn_curves(curves, layout);
   Sheet sheet(static_cast<int>(layout.width), static_cast<int>(layout.height));
   draw_legend(sheet, layout.legend);
-  for (std::size_t s = 0; s < layout.scenes.size(); ++s) {
-    const Box box = layout.box(s);
-    CurveClauses clauses;
-    for (const GroupCurve* curve : drawn) {
-      if (curve->scene_name() != layout.scenes[s] || curve->points.empty()) continue;
-      const std::size_t group = place_in(layout.names, curve->name());
-      const std::string block = fmt::format("curve_{}_{}", s + 1, group + 1);
-      sheet.data(block, block_of(*curve, axis.factor, scale.factor));
-      clauses.add(block, line_style(group), curve->points.size());
-    }
-    std::string settings = "set border 3 lc rgb '#555555' lw 0.5\nset grid y lc rgb '#e4e4e4' lt 1 lw 0.5\n";
-    double y = box.top - layout.head + 0.5 * kLineHeight;
-    for (const std::string& line : panel_title(curves, layout.scenes[s], box.width)) {
-      settings += sheet.label(line, box.left, y, "left");
-      y += kLineHeight;
-    }
-    settings += x_range.settings('x', box.width, curves.against.name == kAgainstTaps);
-    settings += y_range.settings('y', box.height, false);
-    if (s % layout.across > 0) settings += "set ytics format ''\n";
-    if (s + layout.across >= layout.scenes.size())
-      settings += sheet.label(axis.title(curves.against.words()), box.left + 0.5 * box.width,
-                              box.top + box.height + kNumbersRoom + 0.6 * kLineHeight, "center");
-    if (s == 0) {
-      const Box below = layout.box(layout.scenes.size() - 1);
-      for (std::size_t line = 0; line < layout.y_title.size(); ++line)
-        settings += sheet.label(layout.y_title[line], 7 + kLineHeight * static_cast<double>(line),
-                                0.5 * (box.top + below.top + below.height), "center rotate by 90");
-    }
-    sheet.plot(box, settings, clauses.plot());
-  }
+  for (std::size_t panel = 0; panel < layout.scenes.size(); ++panel) draw_panel(sheet, curves, drawn, layout, panel);
   const std::string script = sheet.script();
   write_file(fs::path(file).replace_extension(".gnuplot"),
              caption_of(curves, title) + headers_of(sheet, file) + script);

@@ -181,21 +181,21 @@ std::string titled(const std::string& title, const Sweep& sweep, const Job& job)
   return title + (seed.empty() ? "" : ", seed " + seed);
 }
 
-}  // namespace
-
-Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder) {
-  const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
-  return {write_gallery(folder, {progress_figure("paper_progress", recording.config.options.name, progress)}), {}};
-}
-
-Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const std::filesystem::path& folder) {
+/// The figures of a sweep, and notes on the figures that lack a job.
+struct PaperFigures {
+  const Workshop& workshop;
+  const Sweep& sweep;
   std::vector<Figure> figures;
-  std::vector<std::string> notes;  // which job is missing for which
-  const auto progress = [&](const Job& job, const std::vector<int>& iterations) {
+  std::vector<std::string> notes;
+
+  PaperFigures(const Workshop& from, const Sweep& of) : workshop(from), sweep(of) {}
+
+  Progress progress(const Job& job, const std::vector<int>& iterations) const {
     return progress_of(workshop, read_recording(workshop, job_directory(sweep, job)), iterations);
-  };
-  const auto add_progress = [&](const char* name, const char* object, const char* scene,
-                                const std::vector<int>& iterations) {
+  }
+
+  /// Adds figure 2 or 3.
+  void add_progress(const char* name, const char* object, const char* scene, const std::vector<int>& iterations) {
     const std::vector<const Job*> jobs = finished_jobs(sweep, scene, "weighted");
     if (jobs.empty()) {
       notes.push_back(fmt::format("{} is left out: no finished job has scene={} and acquisition=weighted, {}", name,
@@ -204,30 +204,24 @@ Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const 
     }
     const std::string title = fmt::format("{}: surface, and where to tap next", object);
     figures.push_back(progress_figure(name, titled(title, sweep, *jobs.front()), progress(*jobs.front(), iterations)));
-  };
-  add_progress("figure_2", "Object I", "object_i", {1, 8, 10, 14});
-  add_progress("figure_3", "Object II", "object_ii", {1, 6, 12, 17});
-  // Figures 4 and 5: two jobs that differ in nothing but the strategy.
-  const auto rivals = finished_jobs(sweep, "object_i_right", "uncertainty");
-  const auto explorers = finished_jobs(sweep, "object_i_right", "weighted");
-  const auto alike = [&](const Job* one, const Job* other) {
+  }
+
+  /// Returns whether two jobs differ in nothing but the strategy.
+  bool alike(const Job* one, const Job* other) const {
     return std::all_of(sweep.keys.begin(), sweep.keys.end(), [&](const std::string& key) {
       return key == "acquisition" || value_of(sweep, *one, key) == value_of(sweep, *other, key);
     });
-  };
-  const auto rival = std::find_first_of(rivals.begin(), rivals.end(), explorers.begin(), explorers.end(), alike);
-  if (rival != rivals.end()) {
-    const auto explorer =
-        std::find_if(explorers.begin(), explorers.end(), [&](const Job* job) { return alike(*rival, job); });
-    const Progress above = progress(**rival, {1, 10, 16});
-    const Progress below = progress(**explorer, {1, 10, 16});
-    const auto add = [&](const char* name, const char* what, Eigen::VectorXd Snapshot::*map) {
-      const std::string title = fmt::format("Object I on the right: {}", what);
-      figures.push_back(panels_figure(name, titled(title, sweep, **rival), {{above, map}, {below, map}}));
-    };
-    add("figure_4", "where to tap next", &Snapshot::scores);
-    add("figure_5", "uncertainty", &Snapshot::uncertainty);
-  } else {
+  }
+
+  /// Adds figures 4 and 5, which compare two such jobs.
+  void add_comparisons() {
+    const auto rivals = finished_jobs(sweep, "object_i_right", "uncertainty");
+    const auto explorers = finished_jobs(sweep, "object_i_right", "weighted");
+    for (const Job* const rival : rivals) {
+      const auto explorer =
+          std::find_if(explorers.begin(), explorers.end(), [&](const Job* job) { return alike(rival, job); });
+      if (explorer != explorers.end()) return add_comparison(*rival, **explorer);
+    }
     const char* const missing = rivals.empty() ? "no finished job has scene=object_i_right and acquisition=uncertainty"
                                 : explorers.empty()
                                     ? "no finished job has scene=object_i_right and acquisition=weighted"
@@ -235,13 +229,38 @@ Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const 
                                       "acquisition=uncertainty and one with weighted, are equal in all else";
     notes.push_back(fmt::format("figure_4 and figure_5 are left out: {}, {}", missing, kAllOfThem));
   }
-  if (figures.empty()) {
+
+  void add_comparison(const Job& rival, const Job& explorer) {
+    const Progress above = progress(rival, {1, 10, 16});
+    const Progress below = progress(explorer, {1, 10, 16});
+    const auto add = [&](const char* name, const char* what, Eigen::VectorXd Snapshot::*map) {
+      const std::string title = fmt::format("Object I on the right: {}", what);
+      figures.push_back(panels_figure(name, titled(title, sweep, rival), {{above, map}, {below, map}}));
+    };
+    add("figure_4", "where to tap next", &Snapshot::scores);
+    add("figure_5", "uncertainty", &Snapshot::uncertainty);
+  }
+};
+
+}  // namespace
+
+Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder) {
+  const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
+  return {write_gallery(folder, {progress_figure("paper_progress", recording.config.options.name, progress)}), {}};
+}
+
+Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const std::filesystem::path& folder) {
+  PaperFigures out(workshop, sweep);
+  out.add_progress("figure_2", "Object I", "object_i", {1, 8, 10, 14});
+  out.add_progress("figure_3", "Object II", "object_ii", {1, 6, 12, 17});
+  out.add_comparisons();
+  if (out.figures.empty()) {
     throw Error(sweep.directory.string(),
                 "has no finished job with scene=object_i, object_ii or object_i_right and the strategy of one of the "
                 "paper's figures",
                 kAllOfThem);
   }
-  return {write_gallery(folder, figures), notes};
+  return {write_gallery(folder, out.figures), out.notes};
 }
 
 }  // namespace palpate

@@ -39,21 +39,17 @@ Figure surface_figure(const ExperimentOptions& options, const Ground& ground, co
   return {"surface", std::move(sheet)};
 }
 
-Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last) {
-  constexpr double kMargin = 70;
-  constexpr double kTop = 118;
-  constexpr double kPitch = 440;
-  constexpr double kSide = 290;
-  const Box first = map_box(ground.area, kMargin, kTop, kSide);
-  const double steps = last.has_weight() || last.has_scores ? 2 : 1;  // from the first panel to the last
-  Sheet sheet(static_cast<int>(kMargin + steps * kPitch + kSide + 90), static_cast<int>(kTop + first.height + 96));
-  struct Panel {
-    const char* name;
-    const Eigen::VectorXd& values;
-    Palette palette;
-    double high;          ///< from 0
-    std::string outside;  ///< what is to be said of values beyond that
-  };
+/// A map with its colour scale, which begins at 0.
+struct MapPanel {
+  const char* name;
+  Eigen::VectorXd values;
+  Palette palette;
+  double high;
+  std::string outside;  ///< the range of the values, if it exceeds the scale
+};
+
+/// Returns the maps of u and w with e = u w, or of u and p with the score.
+std::vector<MapPanel> map_panels(const Snapshot& last) {
   const auto outside = [](const Eigen::VectorXd& values, double high) {
     if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
     return fmt::format("\nrange: {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
@@ -61,7 +57,7 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
   // The strategy's score is u w only where there is a w.
   const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
   const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
-  std::vector<Panel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, ""}};
+  std::vector<MapPanel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, ""}};
   if (last.has_weight()) {
     panels.push_back({"w", last.weight, Palette::viridis, 1.0, outside(last.weight, 1)});
     panels.push_back({"e", e, Palette::viridis, most, outside(e, most)});
@@ -69,13 +65,25 @@ Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const
     panels.push_back({"p", last.probability, Palette::viridis, 1.0, ""});
     if (last.has_scores) panels.push_back({"score", e, Palette::viridis, most, outside(e, most)});
   }
+  return panels;
+}
+
+Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last) {
+  constexpr double kMargin = 70;
+  constexpr double kTop = 118;
+  constexpr double kPitch = 440;
+  constexpr double kSide = 290;
+  const Box first = map_box(ground.area, kMargin, kTop, kSide);
+  const std::vector<MapPanel> panels = map_panels(last);
+  const double steps = static_cast<double>(panels.size() - 1);  // from the first panel to the last
+  Sheet sheet(static_cast<int>(kMargin + steps * kPitch + kSide + 90), static_cast<int>(kTop + first.height + 96));
   const std::map<std::string, std::string> titles = map_titles(options);
   sheet.text(options.name, kMargin, 14, 15);
   sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kMargin, 42, 11);
-  for (const Panel& panel : panels) sheet.data(panel.name, matrix_of(ground, panel.values));
+  for (const MapPanel& panel : panels) sheet.data(panel.name, matrix_of(ground, panel.values));
   sheet.taps("last", last);
   double left = first.left;
-  for (const Panel& panel : panels) {
+  for (const MapPanel& panel : panels) {
     const Colours colours{panel.palette, 0.0, panel.high, ""};
     sheet.text(titles.at(panel.name) + panel.outside, left + 0.5 * first.width, kTop - 44, 11, Sheet::Align::centre);
     sheet.map({left, kTop, first.width, first.height}, ground, panel.name, "last", colours);

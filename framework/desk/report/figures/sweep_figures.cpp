@@ -96,6 +96,28 @@ void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
   sheet.plot(box, settings, clauses);
 }
 
+/// Returns the metrics of the figure of which some job has a value.
+std::vector<std::string> drawn_metrics(const std::vector<Group>& groups, const std::vector<Row>& results) {
+  std::vector<std::string> out{"object_taps", main_error(results), "footprint_iou", "robot_seconds"};
+  const auto is_absent = [&](const std::string& metric) {
+    return std::all_of(groups.begin(), groups.end(),
+                       [&](const Group& one) { return values_of(one.jobs, metric, kOption).empty(); });
+  };
+  out.erase(std::remove_if(out.begin(), out.end(), is_absent), out.end());
+  return out;
+}
+
+/// Writes the names of the groups in up to three lines each, the first at `top`, the next ones at a distance of `step`.
+void write_names(Sheet& sheet, const std::vector<Group>& groups, double top, double step) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::vector<std::string> lines = wrapped(groups[g].name, kLongestName);
+    if (lines.size() > 3) lines[2] += "...";
+    lines.resize(std::min<std::size_t>(lines.size(), 3));
+    const double middle = top + step * (static_cast<double>(g) + 0.5);
+    sheet.text(fmt::format("{}", fmt::join(lines, "\n")), 24, middle - 8.8 * static_cast<double>(lines.size()), 11);
+  }
+}
+
 Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results) {
   constexpr double kTop = 86;
   constexpr double kWidth = 250;
@@ -103,19 +125,10 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   const std::size_t left_out = groups.size() > kMostGroups ? groups.size() - kMostGroups : 0;
   groups.resize(groups.size() - left_out);
   std::size_t longest = 0;
-  for (const Group& group : groups) longest = std::max(longest, std::min(group.name.size(), kLongestName));
-  std::vector<std::string> metrics;
-  for (const std::string& metric :
-       {std::string("object_taps"), main_error(results), std::string("footprint_iou"), std::string("robot_seconds")}) {
-    const bool present = std::any_of(groups.begin(), groups.end(),
-                                     [&](const Group& one) { return !values_of(one.jobs, metric, kOption).empty(); });
-    if (present) metrics.emplace_back(metric);
-  }
-  const bool tall =
-      std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.name.size() > kLongestName; });
-  const double line = tall ? 52 : 34;
-  const double height = line * std::max(2.0, static_cast<double>(groups.size()));
-  const double left = 46 + 8.0 * static_cast<double>(longest);
+  for (const Group& group : groups) longest = std::max(longest, group.name.size());
+  const std::vector<std::string> metrics = drawn_metrics(groups, results);
+  const double height = (longest > kLongestName ? 52 : 34) * std::max(2.0, static_cast<double>(groups.size()));
+  const double left = 46 + 8.0 * static_cast<double>(std::min(longest, kLongestName));
   const double bottom = kTop + height + 62;
   Sheet sheet(
       static_cast<int>(left + (kWidth + 40) * static_cast<double>(std::max<std::size_t>(metrics.size(), 2)) + 20),
@@ -126,14 +139,7 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   if (dots) words += "; dots: jobs";
   if (left_out > 0) words += fmt::format("; {} more groups are not shown, results.csv has them", left_out);
   sheet.text(words, 24, 42, 11);
-  const double step = height / static_cast<double>(std::max<std::size_t>(groups.size(), 1));
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    std::vector<std::string> lines = wrapped(groups[g].name, kLongestName);
-    if (lines.size() > 3) lines[2] += "...";
-    lines.resize(std::min<std::size_t>(lines.size(), 3));
-    const double middle = kTop + step * (static_cast<double>(g) + 0.5);
-    sheet.text(fmt::format("{}", fmt::join(lines, "\n")), 24, middle - 8.8 * static_cast<double>(lines.size()), 11);
-  }
+  write_names(sheet, groups, kTop, height / static_cast<double>(std::max<std::size_t>(groups.size(), 1)));
   for (std::size_t m = 0; m < metrics.size(); ++m) {
     std::vector<std::vector<double>> values;
     for (const Group& group : groups) values.push_back(values_of(group.jobs, metrics[m], kOption));
@@ -171,75 +177,102 @@ std::string tics(const std::vector<std::string>& values) {
   return "(" + out + ")";
 }
 
-/// Of two swept keys but the seed that have two values or more; none where there are none.
-std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& results) {
-  const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
-  if (keys.size() < 2) return {};
-  const Axis y = axis_of(sweep, keys[0]);
-  const Axis x = axis_of(sweep, keys[1]);
-  const bool left_out = x.cut || y.cut;
-  std::vector<std::vector<double>> cells(y.values.size(), std::vector<double>(x.values.size(), std::nan("")));
-  std::vector<double> means;
-  const std::string error = main_error(results);
-  for (const JobGroup& group : group_jobs(sweep, results, {y.key, x.key})) {
-    const std::size_t row = y.place(group.values[0]);
-    const std::size_t column = x.place(group.values[1]);
-    const std::vector<double> values = values_of(group, error, kOption);
-    if (row == y.values.size() || column == x.values.size() || values.empty()) continue;
-    means.push_back(mean_of(values));
-    cells[row][column] = means.back();
+/// Mean errors by the values of two keys, NaN for no value.
+struct HeatMap {
+  Axis x;
+  Axis y;
+  std::string error;
+  std::vector<std::vector<double>> cells;  ///< rows by y
+  std::vector<double> means;               ///< of all cells with a value
+};
+
+HeatMap heat_map_of(const Sweep& sweep, const std::vector<Row>& results, const std::vector<std::string>& keys) {
+  HeatMap out{axis_of(sweep, keys[1]), axis_of(sweep, keys[0]), main_error(results), {}, {}};
+  out.cells.assign(out.y.values.size(), std::vector<double>(out.x.values.size(), std::nan("")));
+  for (const JobGroup& group : group_jobs(sweep, results, {out.y.key, out.x.key})) {
+    const std::size_t row = out.y.place(group.values[0]);
+    const std::size_t column = out.x.place(group.values[1]);
+    const std::vector<double> values = values_of(group, out.error, kOption);
+    if (row == out.y.values.size() || column == out.x.values.size() || values.empty()) continue;
+    out.means.push_back(mean_of(values));
+    out.cells[row][column] = out.means.back();
   }
-  if (means.empty()) return {};
-  const Scale scale = readable_scale(Unit::metre, means);
-  const auto [low, high] = std::minmax_element(means.begin(), means.end());
-  const double least = *low / scale.factor;
-  const double most = *high > *low ? *high / scale.factor : least + 1.0;
+  return out;
+}
+
+/// Adds the cells as a matrix, and their numbers in black on light colours, in white on dark ones.
+void add_cells(Sheet& sheet, const HeatMap& map, const Scale& scale, const Colours& colours) {
   std::string matrix;
   std::string numbers;
-  for (std::size_t r = 0; r < cells.size(); ++r) {
-    for (std::size_t c = 0; c < cells[r].size(); ++c) {
-      const double mean = cells[r][c] / scale.factor;
+  for (std::size_t r = 0; r < map.cells.size(); ++r) {
+    for (std::size_t c = 0; c < map.cells[r].size(); ++c) {
+      const double mean = map.cells[r][c] / scale.factor;
       matrix += fmt::format("{}{}", c > 0 ? " " : "", std::isnan(mean) ? "NaN" : fmt::format("{:.10g}", mean));
       if (std::isnan(mean)) continue;
-      const bool light = mean > least + 0.6 * (most - least);
-      numbers += fmt::format("{} {} {} {}\n", c, r, scale.number(cells[r][c]), light ? 0 : 0xffffff);
+      const bool light = mean > colours.low + 0.6 * (colours.high - colours.low);
+      numbers += fmt::format("{} {} {} {}\n", c, r, scale.number(map.cells[r][c]), light ? 0 : 0xffffff);
     }
     matrix += "\n";
   }
-  std::size_t longest_x = 0;
-  std::size_t longest_y = 0;
-  for (const std::string& value : x.values) longest_x = std::max(longest_x, value.size());
-  for (const std::string& value : y.values) longest_y = std::max(longest_y, value.size());
-  const double cell_width = 74;
-  const double left = 70 + 7.4 * static_cast<double>(std::min<std::size_t>(longest_y, 40));
-  const bool slanted = longest_x > 8;
-  const double below = slanted ? 44 + 4.6 * static_cast<double>(std::min<std::size_t>(longest_x, 40)) : 56;
-  const Box box{left, 96, std::max(220.0, cell_width * static_cast<double>(x.values.size())),
-                std::max(120.0, 44 * static_cast<double>(y.values.size()))};
-  Sheet sheet(static_cast<int>(std::max(560.0, box.left + box.width + 150)),
-              static_cast<int>(box.top + box.height + below + 16));
-  sheet.data("mean_" + error, matrix);
+  sheet.data("mean_" + map.error, matrix);
   sheet.data("numbers", numbers);
-  const Colours colours{Palette::viridis, least, most, scale.title("mean " + error)};
+}
+
+/// Returns "rmse_m, mean over seed, taps; the first 24 values of a key".
+std::string heat_map_words(const Sweep& sweep, const HeatMap& map, const std::vector<std::string>& keys) {
   std::vector<std::string> over;
   if (std::find(sweep.keys.begin(), sweep.keys.end(), "seed") != sweep.keys.end()) over.emplace_back("seed");
   over.insert(over.end(), keys.begin() + 2, keys.end());
-  std::string words = over.empty() ? error : fmt::format("{}, mean over {}", error, fmt::join(over, ", "));
-  if (left_out) words += fmt::format("; the first {} values of a key", kMostValues);
+  std::string out = over.empty() ? map.error : fmt::format("{}, mean over {}", map.error, fmt::join(over, ", "));
+  return out + (map.x.cut || map.y.cut ? fmt::format("; the first {} values of a key", kMostValues) : "");
+}
+
+std::string heat_map_axes(const HeatMap& map, const Colours& colours, bool slanted) {
+  std::string out = gnuplot_palette(colours.palette) +
+                    fmt::format("set cbrange [{:.10g}:{:.10g}]\nunset colorbox\nset border lc rgb '#555555'\n",
+                                colours.low, colours.high);
+  out += fmt::format("set xrange [-0.5:{}]\nset yrange [{}:-0.5]\n", static_cast<double>(map.x.values.size()) - 0.5,
+                     static_cast<double>(map.y.values.size()) - 0.5);
+  return out + fmt::format("set xtics {} {} scale 0 font ',10'\nset ytics {} scale 0 font ',10'\n",
+                           slanted ? "rotate by -35 left" : "norotate", tics(map.x.values), tics(map.y.values));
+}
+
+std::size_t longest_of(const std::vector<std::string>& values) {
+  std::size_t out = 0;
+  for (const std::string& value : values) out = std::max(out, value.size());
+  return out;
+}
+
+/// Draws the mean error by the first two swept keys but the seed that have several values; nothing without two.
+std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& results) {
+  const std::vector<std::string> keys = varying_keys(sweep, setting_keys(sweep));
+  if (keys.size() < 2) return {};
+  const HeatMap map = heat_map_of(sweep, results, keys);
+  if (map.means.empty()) return {};
+  const Scale scale = readable_scale(Unit::metre, map.means);
+  const auto [low, high] = std::minmax_element(map.means.begin(), map.means.end());
+  const double least = *low / scale.factor;
+  const double most = *high > *low ? *high / scale.factor : least + 1.0;
+  const Colours colours{Palette::viridis, least, most, scale.title("mean " + map.error)};
+  constexpr std::size_t kLongestValue = 40;
+  constexpr double kCellWidth = 74;
+  const std::size_t longest_x = longest_of(map.x.values);
+  const bool slanted = longest_x > 8;
+  const double below = slanted ? 44 + 4.6 * static_cast<double>(std::min(longest_x, kLongestValue)) : 56;
+  const Box box{70 + 7.4 * static_cast<double>(std::min(longest_of(map.y.values), kLongestValue)), 96,
+                std::max(220.0, kCellWidth * static_cast<double>(map.x.values.size())),
+                std::max(120.0, 44 * static_cast<double>(map.y.values.size()))};
+  Sheet sheet(static_cast<int>(std::max(560.0, box.left + box.width + 150)),
+              static_cast<int>(box.top + box.height + below + 16));
+  add_cells(sheet, map, scale, colours);
   sheet.text(sweep_name(sweep), 24, 14, 15);
-  sheet.text(words, 24, 42, 11);
-  std::string settings = gnuplot_palette(colours.palette) +
-                         fmt::format("set cbrange [{:.10g}:{:.10g}]\nunset colorbox\nset border lc rgb '#555555'\n",
-                                     colours.low, colours.high);
-  settings += fmt::format("set xrange [-0.5:{}]\nset yrange [{}:-0.5]\n", static_cast<double>(x.values.size()) - 0.5,
-                          static_cast<double>(y.values.size()) - 0.5);
-  settings += fmt::format("set xtics {} {} scale 0 font ',10'\nset ytics {} scale 0 font ',10'\n",
-                          slanted ? "rotate by -35 left" : "norotate", tics(x.values), tics(y.values));
-  settings += fmt::format("set label {} at screen {:.5f}, screen {:.5f} center font ',11'\n", gnuplot_text(x.key),
-                          (box.left + 0.5 * box.width) / sheet.width(), 14.0 / sheet.height());
-  sheet.text(y.key, 24, box.top - 24, 11);
-  sheet.plot(box, settings,
-             "plot $mean_" + error +
+  sheet.text(heat_map_words(sweep, map, keys), 24, 42, 11);
+  sheet.text(map.y.key, 24, box.top - 24, 11);
+  const std::string x_title =
+      fmt::format("set label {} at screen {:.5f}, screen {:.5f} center font ',11'\n", gnuplot_text(map.x.key),
+                  (box.left + 0.5 * box.width) / sheet.width(), 14.0 / sheet.height());
+  sheet.plot(box, heat_map_axes(map, colours, slanted) + x_title,
+             "plot $mean_" + map.error +
                  " matrix using 1:2:3 with image pixels, \\\n"
                  "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
   sheet.bar({box.left + box.width + 20, box.top, 14, box.height}, colours);

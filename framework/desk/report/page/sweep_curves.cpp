@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +53,29 @@ Json json_of_curve(const GroupCurve& curve) {
           {"jobs", jobs}};
 }
 
+Json json_of_set(const GroupCurves& made) {
+  Json curves = Json::array();
+  for (const GroupCurve& curve : made.curves) {
+    if (!curve.points.empty()) curves.push_back(json_of_curve(curve));
+  }
+  return {{"metric", made.metric.name},
+          {"against", made.against.name},
+          {"over", curve_units_words(made)},
+          {"remarks", curve_remarks(made)},
+          {"curves", curves}};
+}
+
+/// Returns the metrics that a reader may choose: the main error, then the other headline fields that are not swept.
+std::vector<std::string> columns_of(const Sweep& sweep, const std::vector<Row>& results) {
+  std::vector<std::string> out{main_error(results)};
+  for (const RecordField& field : summary_fields()) {
+    const bool swept = std::find(sweep.keys.begin(), sweep.keys.end(), field.name) != sweep.keys.end();
+    if (field.first_look && field.name != out.front() && field.name != kAgainstTime && !swept)
+      out.push_back(field.name);
+  }
+  return out;
+}
+
 }  // namespace
 
 Json json_of_curves(const Sweep& sweep) {
@@ -61,20 +83,14 @@ Json json_of_curves(const Sweep& sweep) {
   const std::vector<Row> results = sweep_results(sweep);
   const std::vector<std::vector<std::string>> keys = choices_of_keys(sweep);
   if (keys.empty()) return {};
-  std::vector<std::string> columns{main_error(results)};
-  for (const RecordField& field : summary_fields()) {
-    const bool swept = std::find(sweep.keys.begin(), sweep.keys.end(), field.name) != sweep.keys.end();
-    if (field.first_look && field.name != columns.front() && field.name != kAgainstTime && !swept)
-      columns.push_back(field.name);
-  }
-  std::vector<std::string> read = columns;
+  std::vector<std::string> metrics = columns_of(sweep, results);
+  std::vector<std::string> read = metrics;
   read.emplace_back(kAgainstTime);
   std::vector<TapValues> values(sweep.jobs.size());
   const TapSummaries summaries(sweep, keep_values(values, read));
   if (!summaries.missing().empty()) return {};
-  std::vector<std::string> metrics;
-  std::copy_if(columns.begin(), columns.end(), std::back_inserter(metrics),
-               [&](const std::string& column) { return any_has(values, column); });
+  const auto has_no_value = [&](const std::string& column) { return !any_has(values, column); };
+  metrics.erase(std::remove_if(metrics.begin(), metrics.end(), has_no_value), metrics.end());
   if (metrics.empty()) return {};
   const bool takes_time = std::any_of(values.begin(), values.end(), [](const TapValues& job) {
     const auto found = job.find(kAgainstTime);
@@ -83,22 +99,12 @@ Json json_of_curves(const Sweep& sweep) {
   Json by = Json::array();
   Json sets = Json::array();
   for (const std::vector<std::string>& one : keys) {
-    const std::string name = one.empty() ? "all jobs" : fmt::format("{}", fmt::join(one, ", "));
-    by.push_back(name);
+    by.push_back(one.empty() ? "all jobs" : fmt::format("{}", fmt::join(one, ", ")));
     for (const std::string& metric : metrics) {
       for (const char* const against : {kAgainstTaps, kAgainstTime}) {
         if (against == kAgainstTime && !takes_time) continue;
-        const GroupCurves made = make_group_curves(sweep, results, values, {one, metric, against, nullptr, true});
-        Json curves = Json::array();
-        for (const GroupCurve& curve : made.curves) {
-          if (!curve.points.empty()) curves.push_back(json_of_curve(curve));
-        }
-        sets.push_back({{"metric", metric},
-                        {"against", against},
-                        {"by", name},
-                        {"over", curve_units_words(made)},
-                        {"remarks", curve_remarks(made)},
-                        {"curves", curves}});
+        sets.push_back(json_of_set(make_group_curves(sweep, results, values, {one, metric, against, nullptr, true})));
+        sets.back()["by"] = by.back();
       }
     }
   }

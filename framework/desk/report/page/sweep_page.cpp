@@ -245,6 +245,50 @@ Json json_of_job(const Job& job, const RunStatus& standing, const fs::path& dire
           {"reported", fs::exists(directory / "report.html", none)}};
 }
 
+/// The jobs of a page, and a tally of all jobs.
+struct PageJobs {
+  std::vector<Row> results;  ///< of the jobs that have ended
+  std::vector<JobResult> jobs;
+  Json described;
+  Tally tally;
+};
+
+/// Reads all jobs and keeps every `step`-th of each setting.
+PageJobs read_page_jobs(const Sweep& sweep, std::size_t step, const OnProgress& progress) {
+  const std::vector<bool> drawn = drawn_jobs(sweep, step);
+  PageJobs out;
+  out.results.reserve(sweep.jobs.size() / step + 1);  // `jobs` point to its elements
+  int looked_at = 0;
+  read_jobs(sweep, all_jobs(sweep), read_standing, [&](std::size_t index, RunStatus now) {
+    const Job& job = sweep.jobs[index];
+    out.tally.add(job, now);
+    if (drawn[index]) {
+      out.described.push_back(json_of_job(job, now, job_directory(sweep, job)));
+      if (now.end) out.results.push_back(result_row(sweep, job, std::move(now.end->summary)));
+      out.jobs.push_back({&job, now.end ? &out.results.back() : nullptr});
+    }
+    progress(++looked_at, static_cast<int>(sweep.jobs.size()));
+  });
+  return out;
+}
+
+/// Adds to the data of a page the columns with their means over settings, and the fronts.
+void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& jobs,
+                 const std::vector<NumberColumn>& columns, const std::vector<std::size_t>& units) {
+  const std::vector<PageSetting> settings = settings_of(sweep, jobs);
+  data["setting_jobs"] = Json::array();
+  for (const PageSetting& one : settings) data["setting_jobs"].push_back(one.jobs);
+  data["columns"] = Json::array();
+  std::vector<Estimates> estimates;
+  for (const NumberColumn& one : columns) {
+    estimates.push_back(estimate_settings(settings, jobs, one, units));
+    data["columns"].push_back(json_of_column(one));
+    // Where each setting has one job, the job's number is the mean.
+    if (settings.size() < jobs.size()) data["columns"].back()["estimates"] = json_of_estimates(estimates.back());
+  }
+  data["fronts"] = json_of_fronts(settings, columns, estimates);
+}
+
 /// The fields that are worth a first look: the main error, and the others in the order of the summary.
 std::vector<std::string> first_looks(const std::vector<Row>& results) {
   std::vector<std::string> names{main_error(results)};
@@ -264,55 +308,25 @@ std::string sweep_page(const Sweep& sweep, const OnProgress& progress, std::size
 
 Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs) {
   const std::size_t step = (sweep.jobs.size() + most_jobs - 1) / most_jobs;
-  const std::vector<bool> drawn = drawn_jobs(sweep, step);
-  std::vector<Row> results;
-  results.reserve(sweep.jobs.size() / step + 1);  // what is pointed at does not move
-  std::vector<JobResult> shown;
-  Json jobs;
-  Tally tally;
-  int looked_at = 0;
-  read_jobs(sweep, all_jobs(sweep), read_standing, [&](std::size_t index, RunStatus now) {
-    const Job& job = sweep.jobs[index];
-    tally.add(job, now);
-    if (drawn[index]) {
-      jobs.push_back(json_of_job(job, now, job_directory(sweep, job)));
-      if (now.end) results.push_back(result_row(sweep, job, std::move(now.end->summary)));
-      shown.push_back({&job, now.end ? &results.back() : nullptr});
-    }
-    progress(++looked_at, static_cast<int>(sweep.jobs.size()));
-  });
+  const PageJobs page = read_page_jobs(sweep, step, progress);
+  const std::vector<NumberColumn> columns = number_columns(page.results, page.jobs);
+  const std::vector<std::size_t> units = unit_numbers(sweep, page.results, page.jobs);
   const fs::path directory = fs::absolute(sweep.directory / "").lexically_normal().parent_path();
   Json keys = Json::array();
-  for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, shown, key));
-  const std::vector<NumberColumn> columns = number_columns(results, shown);
-  const std::vector<std::size_t> units = unit_numbers(sweep, results, shown);
-  const std::vector<PageSetting> settings = settings_of(sweep, shown);
-  Json json_of_settings = Json::array();
-  for (const PageSetting& one : settings) json_of_settings.push_back(one.jobs);
-  // Where each setting has one job, the job's number is the mean.
-  const bool has_means = settings.size() < shown.size();
-  std::vector<Estimates> estimates;
-  Json json_of_columns = Json::array();
-  for (const NumberColumn& one : columns) {
-    estimates.push_back(estimate_settings(settings, shown, one, units));
-    json_of_columns.push_back(json_of_column(one));
-    if (has_means) json_of_columns.back()["estimates"] = json_of_estimates(estimates.back());
-  }
+  for (const std::string& key : sweep.keys) keys.push_back(json_of_key(sweep, page.jobs, key));
   Json out{{"version", kVersion},
            {"name", sweep_name(sweep)},
            {"id", directory.filename().string()},
            {"folder", (sweep.directory / "").lexically_normal().parent_path().string()},
            {"keys", keys},
-           {"jobs", jobs},
+           {"jobs", page.described},
            {"units_of_jobs", units},
-           {"columns", json_of_columns},
-           {"setting_jobs", json_of_settings},
-           {"fronts", json_of_fronts(settings, columns, estimates)},
-           {"units", display_units(names_of(results))},
-           {"first_looks", first_looks(results)},
+           {"units", display_units(names_of(page.results))},
+           {"first_looks", first_looks(page.results)},
            {"scene_keys", scene_keys(sweep)},
-           {"tally", tally.json(sweep, step)},
+           {"tally", page.tally.json(sweep, step)},
            {"config", to_yaml(read_run_config(sweep.directory))}};
+  add_columns(out, sweep, page.jobs, columns, units);
   return out;
 }
 

@@ -90,26 +90,35 @@ class ApproachExplained final : public Explanation {
     if (now->ties.value_or(1) > 1)
       text += fmt::format("; {} are tied with it (tie_tolerance), and the first of them is taken", *now->ties - 1);
     page_.say(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
+    explain_gains(scores.size(), now->candidate);
+    explain_second(scores, now->candidate);
+  }
+
+  /// Describes the expected effects of the tap that rules read, if they were computed for the scores.
+  void explain_gains(Eigen::Index approaches, int chosen) {
     const Eigen::VectorXd& expected_discovery = experiment_.belief().expected_discovery();
-    if (expected_discovery.size() == scores.size()) {
+    if (expected_discovery.size() == approaches) {
       page_.say(
           fmt::format("Of one further solid that no contact contradicts, this line is expected to find {} (mean over "
                       "lines from all sides); the best line finds {}.",
-                      length_words(expected_discovery(now->candidate)), length_words(expected_discovery.maxCoeff())));
+                      length_words(expected_discovery(chosen)), length_words(expected_discovery.maxCoeff())));
     }
     const Eigen::VectorXd& std_reduction = experiment_.belief().std_reduction();
-    if (std_reduction.size() == scores.size()) {
+    if (std_reduction.size() == approaches) {
       page_.say(
           fmt::format("A contact there is expected to reduce the mean standard deviation of the surface by {}; the "
                       "best line reduces it by {}.",
-                      length_words(std_reduction(now->candidate)), length_words(std_reduction.maxCoeff())));
+                      length_words(std_reduction(chosen)), length_words(std_reduction.maxCoeff())));
     }
+  }
+
+  void explain_second(const Eigen::VectorXd& scores, int chosen) {
     if (scores.size() < 2) return;
-    Eigen::Index second = now->candidate == 0 ? 1 : 0;
+    Eigen::Index second = chosen == 0 ? 1 : 0;
     for (Eigen::Index i = 0; i < scores.size(); ++i)
-      if (i != now->candidate && scores(i) > scores(second)) second = i;
+      if (i != chosen && scores(i) > scores(second)) second = i;
     const Line& line = experiment_.belief().approaches()[static_cast<std::size_t>(second)].line;
-    explain_runner_up(line_words(line), score, scores(second));
+    explain_runner_up(line_words(line), scores(chosen), scores(second));
   }
 
   /// What the record has of a score, where a program gave it.

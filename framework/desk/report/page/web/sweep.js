@@ -293,29 +293,11 @@ function noPanels(sweep) {
   return () => tellDrawn(1);
 }
 
-function drawPanels(sweep) {
+/// The panels with their controls, which `chooser` makes.
+function placePanels(sweep, chooser) {
   const columns = [...sweep.columns.keys()];
-  const keys = sweep.keys.map((key) => key.name);
   const [errors, costs] = ["is_error", "is_cost"].map((role) => columns.filter((name) => sweep.columns.get(name)[role]));
-  const choice = firstChoices(sweep);
-  const jobs = new JobTable(sweep);
-  let drawn = 0;
-  const drawAll = (panels) =>
-    inTurn(async () => {
-      for (const panel of panels) await panel(sweep, choice);
-      tellDrawn(++drawn);
-    });
-  /// A choice among names that some panels follow.
-  const chooser = (id, label, names, panels, textOf = (name) => name) => {
-    const options = names.map((name) => element("option", { value: name, ...(name === choice[id] ? { selected: "" } : {}) }, brief(textOf(name), 60)));
-    const control = element("select", { id }, ...options);
-    control.addEventListener("change", () => {
-      choice[id] = control.value;
-      jobs.choose(choice);
-      drawAll(panels);
-    });
-    return element("label", {}, `${label} `, control);
-  };
+  const keys = sweep.keys.map((key) => key.name);
   const choices = (...choosers) => element("p", { class: "choices" }, ...choosers);
   const orNothing = (name) => name || "nothing";
   const scenes = sweep.scenes();
@@ -341,8 +323,31 @@ function drawPanels(sweep) {
       figure("front", ""),
       element("div", { id: "front_list" }),
     ),
-    jobs.place(),
   );
+}
+
+function drawPanels(sweep) {
+  const choice = firstChoices(sweep);
+  const jobs = new JobTable(sweep);
+  let drawn = 0;
+  const drawAll = (panels) =>
+    inTurn(async () => {
+      for (const panel of panels) await panel(sweep, choice);
+      tellDrawn(++drawn);
+    });
+  /// A choice among names that some panels follow.
+  const chooser = (id, label, names, panels, textOf = (name) => name) => {
+    const options = names.map((name) => element("option", { value: name, ...(name === choice[id] ? { selected: "" } : {}) }, brief(textOf(name), 60)));
+    const control = element("select", { id }, ...options);
+    control.addEventListener("change", () => {
+      choice[id] = control.value;
+      jobs.choose(choice);
+      drawAll(panels);
+    });
+    return element("label", {}, `${label} `, control);
+  };
+  placePanels(sweep, chooser);
+  document.body.append(jobs.place());
   jobs.choose(choice);
   const all = [drawCells, drawGroups, drawParallel, ...(sweep.curves ? [drawCurves] : []), drawFront];
   sweep.refresh = () => {

@@ -132,6 +132,28 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
   ]);
 }
 
+/// The values of some jobs as a lying box at place `i`.
+function boxTrace(sweep, metric, jobs, i, colour, withPoints) {
+  const valued = jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
+  return {
+    type: "box",
+    orientation: "h",
+    name: String(i),
+    x: sweep.numbers(metric, valued),
+    y: valued.map(() => i),
+    boxpoints: withPoints ? "all" : "outliers",
+    jitter: 0.7,
+    pointpos: 0,
+    width: 0.7,
+    quartilemethod: "linear",
+    marker: { size: 3, color: colour, opacity: 0.45 },
+    line: { color: colour, width: 1.5 },
+    fillcolor: "rgba(128,128,128,0.08)",
+    text: valued.map((job) => `job ${job.index}`),
+    hoveron: "boxes+points",
+  };
+}
+
 /// The values of the jobs of each group as a box, with the jobs themselves as points.
 function drawGroups(sweep, { group, then, metric }) {
   const kMostGroups = 40;
@@ -145,27 +167,7 @@ function drawGroups(sweep, { group, then, metric }) {
   const nameOf = ({ jobs }) => (keys.length === 1 ? sweep.text(keys[0], jobs[0]) : sweep.words(jobs[0], named));
   const colourOf = ({ jobs }) => lineColour(keys.length > 1 && named.length > 0 ? named[0].of_job[jobs[0].place] : 0);
   const few = groups.reduce((sum, { jobs }) => sum + jobs.length, 0) <= kMostPoints;
-  const traces = groups.map((one, i) => {
-    const valued = one.jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
-    const colour = colourOf(one);
-    return {
-      type: "box",
-      orientation: "h",
-      name: String(i),
-      x: sweep.numbers(metric, valued),
-      y: valued.map(() => i),
-      boxpoints: few ? "all" : "outliers",
-      jitter: 0.7,
-      pointpos: 0,
-      width: 0.7,
-      quartilemethod: "linear",
-      marker: { size: 3, color: colour, opacity: 0.45 },
-      line: { color: colour, width: 1.5 },
-      fillcolor: "rgba(128,128,128,0.08)",
-      text: valued.map((job) => `job ${job.index}`),
-      hoveron: "boxes+points",
-    };
-  });
+  const traces = groups.map((one, i) => boxTrace(sweep, metric, one.jobs, i, colourOf(one), few));
   const rest = all.length - groups.length;
   const without = groups.reduce((sum, { jobs }, i) => sum + jobs.length - traces[i].x.length, 0);
   say(
