@@ -122,10 +122,10 @@ std::string caption_of(const GroupCurves& curves, const std::string& title) {
 }
 
 /// The header for `file`, and for the other formats as comments.
-std::string headers_of(const Sheet& sheet, const fs::path& file) {
+std::string headers_of(const FigureLayout& layout, const fs::path& file) {
   const auto header = [&](const fs::path& one) {
     const fs::path name = one.filename();
-    return picture_header(sheet.width(), sheet.height(), name, name.string(), PictureUnit::point);
+    return picture_header(layout.width(), layout.height(), name, name.string(), PictureUnit::point);
   };
   std::string out = header(file);
   for (const char* const other : {".pdf", ".png", ".svg"}) {
@@ -137,7 +137,7 @@ std::string headers_of(const Sheet& sheet, const fs::path& file) {
 }
 
 /// Which curves are drawn, and where everything stands.
-struct CurvesLayout {
+struct PanelGrid {
   std::vector<std::string> names;   ///< of the groups that are drawn
   std::vector<std::string> scenes;  ///< whose panels are drawn
   std::string left_out;             ///< what is not, in words
@@ -160,8 +160,8 @@ struct CurvesLayout {
   }
 };
 
-CurvesLayout layout_of(const GroupCurves& curves, const std::string& y_title, double width) {
-  CurvesLayout out;
+PanelGrid grid_of(const GroupCurves& curves, const std::string& y_title, double width) {
+  PanelGrid out;
   out.width = width;
   out.names = group_names(curves);
   out.scenes = curves.scene_names();
@@ -229,12 +229,12 @@ std::size_t place_in(const std::vector<std::string>& all, const std::string& one
   return static_cast<std::size_t>(std::find(all.begin(), all.end(), one) - all.begin());
 }
 
-DrawnCurves drawn_curves(const GroupCurves& curves, const CurvesLayout& layout) {
+DrawnCurves drawn_curves(const GroupCurves& curves, const PanelGrid& grid) {
   std::vector<const GroupCurve*> drawn;
   std::vector<double> places;
   for (const GroupCurve& curve : curves.curves) {
-    if (place_in(layout.names, curve.name()) == layout.names.size() ||
-        place_in(layout.scenes, curve.scene_name()) == layout.scenes.size())
+    if (place_in(grid.names, curve.name()) == grid.names.size() ||
+        place_in(grid.scenes, curve.scene_name()) == grid.scenes.size())
       continue;
     drawn.push_back(&curve);
     for (const CurvePoint& point : curve.points) places.push_back(point.at);
@@ -246,43 +246,43 @@ DrawnCurves drawn_curves(const GroupCurves& curves, const CurvesLayout& layout) 
 }
 
 /// Returns the labels of a panel: its scene, and on the panels at the edges the titles of the axes.
-std::string panel_labels(const Sheet& sheet, const GroupCurves& curves, const DrawnCurves& drawn,
-                         const CurvesLayout& layout, std::size_t panel) {
-  const Box box = layout.box(panel);
+std::string panel_labels(const FigureLayout& layout, const GroupCurves& curves, const DrawnCurves& drawn,
+                         const PanelGrid& grid, std::size_t panel) {
+  const Box box = grid.box(panel);
   std::string out;
-  double y = box.top - layout.head + 0.5 * kLineHeight;
-  for (const std::string& line : panel_title(curves, layout.scenes[panel], box.width)) {
-    out += sheet.label(line, box.left, y, "left");
+  double y = box.top - grid.head + 0.5 * kLineHeight;
+  for (const std::string& line : panel_title(curves, grid.scenes[panel], box.width)) {
+    out += layout.label(line, box.left, y, "left");
     y += kLineHeight;
   }
-  if (panel + layout.across >= layout.scenes.size())
-    out += sheet.label(drawn.axis.title(curves.against.words()), box.left + 0.5 * box.width,
-                       box.top + box.height + kNumbersRoom + 0.6 * kLineHeight, "center");
+  if (panel + grid.across >= grid.scenes.size())
+    out += layout.label(drawn.axis.title(curves.against.words()), box.left + 0.5 * box.width,
+                        box.top + box.height + kNumbersRoom + 0.6 * kLineHeight, "center");
   if (panel > 0) return out;
-  const Box below = layout.box(layout.scenes.size() - 1);
-  for (std::size_t line = 0; line < layout.y_title.size(); ++line)
-    out += sheet.label(layout.y_title[line], 7 + kLineHeight * static_cast<double>(line),
-                       0.5 * (box.top + below.top + below.height), "center rotate by 90");
+  const Box below = grid.box(grid.scenes.size() - 1);
+  for (std::size_t line = 0; line < grid.y_title.size(); ++line)
+    out += layout.label(grid.y_title[line], 7 + kLineHeight * static_cast<double>(line),
+                        0.5 * (box.top + below.top + below.height), "center rotate by 90");
   return out;
 }
 
-void draw_panel(Sheet& sheet, const GroupCurves& curves, const DrawnCurves& drawn, const CurvesLayout& layout,
+void draw_panel(FigureLayout& layout, const GroupCurves& curves, const DrawnCurves& drawn, const PanelGrid& grid,
                 std::size_t panel) {
-  const Box box = layout.box(panel);
+  const Box box = grid.box(panel);
   CurveClauses clauses;
   for (const GroupCurve* curve : drawn.curves) {
-    if (curve->scene_name() != layout.scenes[panel] || curve->points.empty()) continue;
-    const std::size_t group = place_in(layout.names, curve->name());
+    if (curve->scene_name() != grid.scenes[panel] || curve->points.empty()) continue;
+    const std::size_t group = place_in(grid.names, curve->name());
     const std::string block = fmt::format("curve_{}_{}", panel + 1, group + 1);
-    sheet.data(block, block_of(*curve, drawn.axis.factor, drawn.value.factor));
+    layout.data(block, block_of(*curve, drawn.axis.factor, drawn.value.factor));
     clauses.add(block, line_style(group), curve->points.size());
   }
   std::string settings = "set border 3 lc rgb '#555555' lw 0.5\nset grid y lc rgb '#e4e4e4' lt 1 lw 0.5\n";
-  settings += panel_labels(sheet, curves, drawn, layout, panel);
+  settings += panel_labels(layout, curves, drawn, grid, panel);
   settings += drawn.x.settings('x', box.width, curves.against.name == kAgainstTaps);
   settings += drawn.y.settings('y', box.height, false);
-  if (panel % layout.across > 0) settings += "set ytics format ''\n";
-  sheet.plot(box, settings, clauses.plot());
+  if (panel % grid.across > 0) settings += "set ytics format ''\n";
+  layout.plot(box, settings, clauses.plot());
 }
 
 }  // namespace
@@ -290,20 +290,20 @@ void draw_panel(Sheet& sheet, const GroupCurves& curves, const DrawnCurves& draw
 std::string write_curves_figure(const GroupCurves& curves, const std::string& title, double width,
                                 const fs::path& file) {
   constexpr double kPointsPerMetre = 72.0 / 0.0254;
-  const CurvesLayout layout =
-      layout_of(curves, metric_scale(curves).title(curves.metric.words()), std::floor(width * kPointsPerMetre));
-  const DrawnCurves drawn = drawn_curves(curves, layout);
-  Sheet sheet(static_cast<int>(layout.width), static_cast<int>(layout.height));
-  draw_legend(sheet, layout.legend);
-  for (std::size_t panel = 0; panel < layout.scenes.size(); ++panel) draw_panel(sheet, curves, drawn, layout, panel);
-  const std::string script = sheet.script();
+  const PanelGrid grid =
+      grid_of(curves, metric_scale(curves).title(curves.metric.words()), std::floor(width * kPointsPerMetre));
+  const DrawnCurves drawn = drawn_curves(curves, grid);
+  FigureLayout layout(static_cast<int>(grid.width), static_cast<int>(grid.height));
+  draw_legend(layout, grid.legend);
+  for (std::size_t panel = 0; panel < grid.scenes.size(); ++panel) draw_panel(layout, curves, drawn, grid, panel);
+  const std::string script = layout.script();
   write_file(fs::path(file).replace_extension(".gnuplot"),
-             caption_of(curves, title) + headers_of(sheet, file) + script);
-  const std::string trouble = draw_picture(script, sheet.width(), sheet.height(), file, PictureUnit::point);
+             caption_of(curves, title) + headers_of(layout, file) + script);
+  const std::string trouble = draw_picture(script, layout.width(), layout.height(), file, PictureUnit::point);
   if (!trouble.empty())
     throw Error(file.string(), "was not drawn: " + trouble,
                 "write a CSV with '-o NAME.csv', which needs no other program", Error::Kind::run);
-  return layout.left_out;
+  return grid.left_out;
 }
 
 }  // namespace palpate

@@ -83,7 +83,7 @@ std::vector<LegendEntry> place_names(const std::vector<std::string>& names, doub
   return out;
 }
 
-void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
+void draw_legend(FigureLayout& layout, const std::vector<LegendEntry>& entries) {
   std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const LegendEntry& entry = entries[i];
@@ -91,17 +91,17 @@ void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries) {
     const double right = entry.x + kSampleLength;
     double y = 4 + kLineHeight * (static_cast<double>(entry.row) + 0.5);
     settings += fmt::format("set object rectangle from {} to {} fc rgb '{}' fs transparent solid 0.18 noborder\n",
-                            sheet.at(entry.x, y - 3.5), sheet.at(right, y + 3.5), style.colour);
+                            layout.at(entry.x, y - 3.5), layout.at(right, y + 3.5), style.colour);
     settings +=
-        fmt::format("set arrow from {} to {} nohead {}\n", sheet.at(entry.x, y), sheet.at(right, y), style.line);
-    settings += sheet.label("", 0.5 * (entry.x + right), y,
-                            fmt::format("point {} lc rgb '{}' front", style.point, style.colour));
+        fmt::format("set arrow from {} to {} nohead {}\n", layout.at(entry.x, y), layout.at(right, y), style.line);
+    settings += layout.label("", 0.5 * (entry.x + right), y,
+                             fmt::format("point {} lc rgb '{}' front", style.point, style.colour));
     for (const std::string& line : entry.lines) {
-      settings += sheet.label(line, right + kNameGap, y, "left");
+      settings += layout.label(line, right + kNameGap, y, "left");
       y += kLineHeight;
     }
   }
-  sheet.plot({0, 0, 10, 10}, settings, "plot NaN");
+  layout.plot({0, 0, 10, 10}, settings, "plot NaN");
 }
 
 }  // namespace palpate

@@ -2,7 +2,7 @@
 // The legend of a figure with curves, and the widths of its texts. All lengths are points in print.
 #pragma once
 
-#include "report/figures/sheet.hpp"
+#include "report/figures/figure_layout.hpp"
 
 #include <cstddef>
 #include <string>
@@ -41,6 +41,6 @@ struct LegendEntry {
 std::vector<LegendEntry> place_names(const std::vector<std::string>& names, double left, double width);
 
 /// Draws bands, lines, marks and names of the groups.
-void draw_legend(Sheet& sheet, const std::vector<LegendEntry>& entries);
+void draw_legend(FigureLayout& layout, const std::vector<LegendEntry>& entries);
 
 }  // namespace palpate

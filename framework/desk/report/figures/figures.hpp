@@ -41,7 +41,7 @@ inline constexpr double kFigureWidth = 0.178;
 std::string write_curves_figure(const GroupCurves& curves, const std::string& title, double width,
                                 const std::filesystem::path& file);
 
-/// Of a run: `paper_progress`, in the layout of the paper's figure 2. Throws Error as above.
+/// Of a run: `paper_progress`, in the grid of the paper's figure 2. Throws Error as above.
 Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder);
 
 /// Of a sweep: the paper's `figure_2` to `figure_5`, of the jobs that they need. Throws Error as above, and where not

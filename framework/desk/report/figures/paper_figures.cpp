@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/groups.hpp"
 #include "record/run_directory.hpp"
+#include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
-#include "report/figures/sheet.hpp"
 
 #include <palpate/error.hpp>
 
@@ -20,7 +20,7 @@ struct Progress {
   std::string strategy;
   std::vector<int> iterations;
   std::vector<Snapshot> snapshots;  ///< one for each iteration
-  Ground ground;
+  SceneFrame frame;
 };
 
 /// A panel for each of the run's snapshots: the surface seen from the side, or the map of the scores or of u.
@@ -76,30 +76,30 @@ std::string key_of(const Progress& progress, std::size_t column) {
 double height_of(const PanelRow& row, const Box& map) { return is_surface(row) ? kSurface : map.height; }
 
 /// The panels of a row below `top`, and the scale of their colours; `map` is the box of the first map.
-void draw_row(Sheet& sheet, const PanelRow& row, double top, const Box& map) {
+void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& map) {
   const Progress& run = row.run;
   const Colours colours = colours_of(row);
-  const Relief relief = relief_of(run.snapshots, run.ground);
+  const ZRange z_range = z_range_of(run.snapshots, run.frame);
   double left = map.left;
   for (std::size_t i = 0; i < run.snapshots.size(); ++i, left += kStep) {
     const Snapshot& snapshot = run.snapshots[i];
     const std::string key = key_of(run, i);
     if (is_surface(row)) {
-      sheet.data("surface_" + key, surface_of(run.ground, snapshot.surface, snapshot.deviation));
-      Snapshot seen = in_sight(snapshot, run.ground);
+      layout.data("surface_" + key, surface_of(run.frame, snapshot.surface, snapshot.deviation));
+      Snapshot seen = in_sight(snapshot, run.frame);
       seen.next.reset();  // it stands in the map
-      sheet.taps("seen_" + key, seen);
-      sheet.surface({left - 4, top, map.width + 26, kSurface}, run.ground, "surface_" + key, "seen_" + key, colours,
-                    relief);
+      layout.taps("seen_" + key, seen);
+      layout.surface({left - 4, top, map.width + 26, kSurface}, run.frame, "surface_" + key, "seen_" + key, colours,
+                     z_range);
     } else {
       const std::string block = (is_scores(row) ? "scores_" : "u_") + key;
-      sheet.data(block, matrix_of(run.ground, snapshot.*row.map));
-      sheet.taps(key, snapshot);
-      sheet.map({left, top, map.width, map.height}, run.ground, block, key, colours);
+      layout.data(block, matrix_of(run.frame, snapshot.*row.map));
+      layout.taps(key, snapshot);
+      layout.map({left, top, map.width, map.height}, run.frame, block, key, colours);
     }
   }
   const double gap = is_surface(row) ? 48 : 22;  // the axis of heights stands out
-  sheet.bar({left - kStep + map.width + gap, top, 14, height_of(row, map)}, colours);
+  layout.bar({left - kStep + map.width + gap, top, 14, height_of(row, map)}, colours);
 }
 
 /// The run after these iterations of the paper: k is the state after k taps beyond the initial ones but one. The first
@@ -119,7 +119,7 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
     taps.push_back(at);
   }
   return {recording.config.options.acquisition.type, shown, snapshots_at(playback, recording, taps),
-          ground_of(playback.from_above())};
+          scene_frame_of(playback.from_above())};
 }
 
 /// Rows below each other, of one run or of several with as many snapshots; `rows` is not empty.
@@ -128,7 +128,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   constexpr double kBelow = 54;  // a row
   const std::size_t columns = rows.front().run.snapshots.size();
   const bool several = &rows.front().run != &rows.back().run;
-  const Box map = map_box(rows.front().run.ground.area, several ? kLeft + 24 : kLeft, 0, kMap);
+  const Box map = map_box(rows.front().run.frame.area, several ? kLeft + 24 : kLeft, 0, kMap);
   const auto begins_run = [&](std::size_t row) { return row == 0 || &rows[row].run != &rows[row - 1].run; };
   std::vector<double> tops;
   double bottom = kHead;
@@ -136,25 +136,25 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
     tops.push_back(bottom + (begins_run(i) ? kWords : 0.0));
     bottom = tops.back() + height_of(rows[i], map) + kBelow;
   }
-  Sheet sheet(static_cast<int>(map.left + kStep * static_cast<double>(columns - 1) + kMap + kRight),
-              static_cast<int>(bottom + 40));
-  sheet.text(title, map.left, 14, 15);
+  FigureLayout layout(static_cast<int>(map.left + kStep * static_cast<double>(columns - 1) + kMap + kRight),
+                      static_cast<int>(bottom + 40));
+  layout.text(title, map.left, 14, 15);
   bool failed = false;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Progress& run = rows[i].run;
     for (std::size_t k = 0; begins_run(i) && k < columns; ++k) {
       const Snapshot& snapshot = run.snapshots[k];
       failed = failed || snapshot.result.failed_taps > 0;
-      sheet.text(
+      layout.text(
           fmt::format("iteration {}, after tap {}\n{}", run.iterations[k], snapshot.taps, count_words(snapshot.result)),
-          map.left + kStep * static_cast<double>(k) + 0.5 * map.width, tops[i] - 52, 11, Sheet::Align::centre);
+          map.left + kStep * static_cast<double>(k) + 0.5 * map.width, tops[i] - 52, 11, FigureLayout::Align::centre);
     }
-    if (several) sheet.upright(run.strategy, 22, tops[i] + 0.5 * height_of(rows[i], map), 14);
-    draw_row(sheet, rows[i], tops[i], map);
+    if (several) layout.upright(run.strategy, 22, tops[i] + 0.5 * height_of(rows[i], map), 14);
+    draw_row(layout, rows[i], tops[i], map);
   }
-  if (const std::string words = below_zero_words(rows); !words.empty()) sheet.text(words, 680, bottom + 6, 10);
-  sheet.legend(map.left + 6, bottom + 14, failed);
-  return {name, std::move(sheet)};
+  if (const std::string words = below_zero_words(rows); !words.empty()) layout.text(words, 680, bottom + 6, 10);
+  layout.legend(map.left + 6, bottom + 14, failed);
+  return {name, std::move(layout)};
 }
 
 /// Surfaces above, the strategy's suggestion function below: figures 2 and 3.

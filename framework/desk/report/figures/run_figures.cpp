@@ -4,8 +4,8 @@
 #include "config/layout.hpp"
 #include "record/fields.hpp"
 #include "report/curves.hpp"
+#include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
-#include "report/figures/sheet.hpp"
 #include "report/words/titles.hpp"
 
 #include <palpate/error.hpp>
@@ -22,21 +22,21 @@ std::string after_words(const Snapshot& snapshot) {
   return fmt::format("after tap {}: {}", snapshot.taps, count_words(snapshot.result));
 }
 
-Figure surface_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last) {
-  Sheet sheet(1000, 700);
-  sheet.data("surface", surface_of(ground, last.surface, last.deviation));
-  const Snapshot seen = in_sight(last, ground);
-  sheet.taps("last", seen);
-  sheet.text(options.name, 30, 16, 15);
+Figure surface_figure(const ExperimentOptions& options, const SceneFrame& frame, const Snapshot& last) {
+  FigureLayout layout(1000, 700);
+  layout.data("surface", surface_of(frame, last.surface, last.deviation));
+  const Snapshot seen = in_sight(last, frame);
+  layout.taps("last", seen);
+  layout.text(options.name, 30, 16, 15);
   const auto behind = last.marks.size() - seen.marks.size();
-  sheet.text(map_titles(options).at("height") + " " + after_words(last) +
-                 (behind > 0 ? fmt::format("; {} of them hidden behind it", behind) : ""),
-             30, 44, 11);
+  layout.text(map_titles(options).at("height") + " " + after_words(last) +
+                  (behind > 0 ? fmt::format("; {} of them hidden behind it", behind) : ""),
+              30, 44, 11);
   const Colours colours = deviation_colours(last.deviation.minCoeff(), last.deviation.maxCoeff());
-  sheet.surface({90, 80, 740, 510}, ground, "surface", "last", colours, relief_of({last}, ground));
-  sheet.bar({880, 160, 18, 380}, colours);
-  sheet.legend(36, 670, last.result.failed_taps > 0, false);
-  return {"surface", std::move(sheet)};
+  layout.surface({90, 80, 740, 510}, frame, "surface", "last", colours, z_range_of({last}, frame));
+  layout.bar({880, 160, 18, 380}, colours);
+  layout.legend(36, 670, last.result.failed_taps > 0, false);
+  return {"surface", std::move(layout)};
 }
 
 /// A map with its colour scale, which begins at 0.
@@ -68,30 +68,32 @@ std::vector<MapPanel> map_panels(const Snapshot& last) {
   return panels;
 }
 
-Figure maps_figure(const ExperimentOptions& options, const Ground& ground, const Snapshot& last) {
+Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, const Snapshot& last) {
   constexpr double kMargin = 70;
   constexpr double kTop = 118;
   constexpr double kPitch = 440;
   constexpr double kSide = 290;
-  const Box first = map_box(ground.area, kMargin, kTop, kSide);
+  const Box first = map_box(frame.area, kMargin, kTop, kSide);
   const std::vector<MapPanel> panels = map_panels(last);
   const double steps = static_cast<double>(panels.size() - 1);  // from the first panel to the last
-  Sheet sheet(static_cast<int>(kMargin + steps * kPitch + kSide + 90), static_cast<int>(kTop + first.height + 96));
+  FigureLayout layout(static_cast<int>(kMargin + steps * kPitch + kSide + 90),
+                      static_cast<int>(kTop + first.height + 96));
   const std::map<std::string, std::string> titles = map_titles(options);
-  sheet.text(options.name, kMargin, 14, 15);
-  sheet.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kMargin, 42, 11);
-  for (const MapPanel& panel : panels) sheet.data(panel.name, matrix_of(ground, panel.values));
-  sheet.taps("last", last);
+  layout.text(options.name, kMargin, 14, 15);
+  layout.text(fmt::format("{}; strategy {}", after_words(last), options.acquisition.type), kMargin, 42, 11);
+  for (const MapPanel& panel : panels) layout.data(panel.name, matrix_of(frame, panel.values));
+  layout.taps("last", last);
   double left = first.left;
   for (const MapPanel& panel : panels) {
     const Colours colours{panel.palette, 0.0, panel.high, ""};
-    sheet.text(titles.at(panel.name) + panel.outside, left + 0.5 * first.width, kTop - 44, 11, Sheet::Align::centre);
-    sheet.map({left, kTop, first.width, first.height}, ground, panel.name, "last", colours);
-    sheet.bar({left + first.width + 14, kTop, 14, first.height}, colours);
+    layout.text(titles.at(panel.name) + panel.outside, left + 0.5 * first.width, kTop - 44, 11,
+                FigureLayout::Align::centre);
+    layout.map({left, kTop, first.width, first.height}, frame, panel.name, "last", colours);
+    layout.bar({left + first.width + 14, kTop, 14, first.height}, colours);
     left += kPitch;
   }
-  sheet.legend(kMargin + 6, kTop + first.height + 68, last.result.failed_taps > 0, last.next.has_value());
-  return {"maps", std::move(sheet)};
+  layout.legend(kMargin + 6, kTop + first.height + 68, last.result.failed_taps > 0, last.next.has_value());
+  return {"maps", std::move(layout)};
 }
 
 constexpr double kNameHeight = 17;
@@ -109,7 +111,7 @@ std::size_t name_lines(const CurvePanel& panel) {
   return (panel.curves.size() + columns_of(panel) - 1) / columns_of(panel);
 }
 
-void draw_curves(Sheet& sheet, const Box& box, double top, const CurvePanel& panel, int number, int taps) {
+void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePanel& panel, int number, int taps) {
   std::string settings =
       "set border 3 lc rgb '#555555'\nset tics nomirror out scale 0.5 font ',10'\nset grid lc rgb '#e4e4e4' lt 1\n";
   settings += fmt::format("set xrange [0:{}]\nset xlabel 'taps' font ',10' offset 0,0.6\n", std::max(1, taps));
@@ -128,13 +130,13 @@ void draw_curves(Sheet& sheet, const Box& box, double top, const CurvePanel& pan
       if (values[tap]) lines += fmt::format("{} {:.10g}\n", tap, *values[tap]);
     }
     const std::string name = fmt::format("curve_{}_{}", number, i + 1);
-    sheet.data(name, lines);
+    layout.data(name, lines);
     clauses += fmt::format("{}${} using 1:2 with linespoints lw 2 pt 7 ps 0.6 dt {} lc rgb '{}' title {}",
                            i > 0 ? ", \\\n  " : "", name, 1 + i / kLineColours.size(),
                            kLineColours[i % kLineColours.size()], gnuplot_text(panel.curves[i].name));
   }
-  sheet.text(panel.full_title(), box.left, top, 12);
-  sheet.plot(box, settings, clauses);
+  layout.text(panel.full_title(), box.left, top, 12);
+  layout.plot(box, settings, clauses);
 }
 
 /// Curves over the taps. What the run has not is left out.
@@ -164,16 +166,16 @@ Figure curves_figure(const Recording& recording, const History& history) {
   for (const std::string& one : constants) {
     for (std::string& line : wrapped(one, static_cast<std::size_t>(width - 90) / 8)) words.push_back(std::move(line));
   }
-  Sheet sheet(width, static_cast<int>(bottom + 18 * static_cast<double>(words.size())));
-  sheet.text(fmt::format("{}", fmt::join(words, "\n")), 60, bottom - 8, 11);
-  sheet.text(recording.config.options.name, 60, 14, 15);
-  sheet.text(fmt::format("{} taps: {}", last.taps, count_words(last)), 60, 42, 11);
+  FigureLayout layout(width, static_cast<int>(bottom + 18 * static_cast<double>(words.size())));
+  layout.text(fmt::format("{}", fmt::join(words, "\n")), 60, bottom - 8, 11);
+  layout.text(recording.config.options.name, 60, 14, 15);
+  layout.text(fmt::format("{} taps: {}", last.taps, count_words(last)), 60, 42, 11);
   for (int i = 0; i < count; ++i) {
     const Box box{60.0 + 365 * (i % kColumns), tops[static_cast<std::size_t>(i / kColumns)], kWidth, kHeight};
-    draw_curves(sheet, box, title_tops[static_cast<std::size_t>(i / kColumns)], panels[static_cast<std::size_t>(i)],
+    draw_curves(layout, box, title_tops[static_cast<std::size_t>(i / kColumns)], panels[static_cast<std::size_t>(i)],
                 i + 1, last.taps);
   }
-  return {"curves", std::move(sheet)};
+  return {"curves", std::move(layout)};
 }
 
 }  // namespace
@@ -182,9 +184,9 @@ Figures write_run_figures(const Workshop& workshop, const Recording& recording, 
                           const std::filesystem::path& folder) {
   Playback playback(workshop, recording);
   const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
-  const Ground ground = ground_of(playback.from_above());
+  const SceneFrame frame = scene_frame_of(playback.from_above());
   const ExperimentOptions& options = recording.config.options;
-  return {write_gallery(folder, {surface_figure(options, ground, last), maps_figure(options, ground, last),
+  return {write_gallery(folder, {surface_figure(options, frame, last), maps_figure(options, frame, last),
                                  curves_figure(recording, history)}),
           {}};
 }

@@ -5,8 +5,8 @@
 #include "analysis/readable.hpp"
 #include "analysis/statistics.hpp"
 #include "config/layout.hpp"
+#include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
-#include "report/figures/sheet.hpp"
 
 #include <palpate/error.hpp>
 
@@ -55,7 +55,7 @@ std::string value_axis(const std::vector<double>& values, double factor) {
 }
 
 /// A panel of lying boxes, a group a line, the first on top.
-void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
+void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
                 const std::vector<std::vector<double>>& groups) {
   std::vector<double> all;
   for (const auto& values : groups) all.insert(all.end(), values.begin(), values.end());
@@ -76,8 +76,8 @@ void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
       dots += fmt::format("{:.10g} {:.3f}\n", values[i] / scale.factor, static_cast<double>(g + 1) + shift);
     }
   }
-  sheet.data("boxes_" + metric, boxes);
-  sheet.data("jobs_" + metric, dots);
+  layout.data("boxes_" + metric, boxes);
+  layout.data("jobs_" + metric, dots);
   std::string settings = "set border 1 lc rgb '#555555'\nset xtics nomirror out scale 0.5 font ',10'\nunset ytics\n";
   settings +=
       fmt::format("set yrange [{}:0.4]\nset grid x lc rgb '#e4e4e4' lt 1\n", static_cast<double>(groups.size()) + 0.6);
@@ -93,7 +93,7 @@ void draw_boxes(Sheet& sheet, const Box& box, const std::string& metric,
   if (!dots.empty())
     clauses += fmt::format(", \\\n  $jobs_{} using 1:2 with points pt 7 ps 0.45 lc rgb '#303030'", metric);
   clauses += fmt::format(", \\\n  {0} using 4:($1-0.3):(0):(0.6) with vectors nohead lw 3 lc rgb '#d55e00'", block);
-  sheet.plot(box, settings, clauses);
+  layout.plot(box, settings, clauses);
 }
 
 /// Returns the metrics of the figure of which some job has a value.
@@ -108,13 +108,13 @@ std::vector<std::string> drawn_metrics(const std::vector<Group>& groups, const s
 }
 
 /// Writes the names of the groups in up to three lines each, the first at `top`, the next ones at a distance of `step`.
-void write_names(Sheet& sheet, const std::vector<Group>& groups, double top, double step) {
+void write_names(FigureLayout& layout, const std::vector<Group>& groups, double top, double step) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<std::string> lines = wrapped(groups[g].name, kLongestName);
     if (lines.size() > 3) lines[2] += "...";
     lines.resize(std::min<std::size_t>(lines.size(), 3));
     const double middle = top + step * (static_cast<double>(g) + 0.5);
-    sheet.text(fmt::format("{}", fmt::join(lines, "\n")), 24, middle - 8.8 * static_cast<double>(lines.size()), 11);
+    layout.text(fmt::format("{}", fmt::join(lines, "\n")), 24, middle - 8.8 * static_cast<double>(lines.size()), 11);
   }
 }
 
@@ -130,24 +130,24 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   const double height = (longest > kLongestName ? 52 : 34) * std::max(2.0, static_cast<double>(groups.size()));
   const double left = 46 + 8.0 * static_cast<double>(std::min(longest, kLongestName));
   const double bottom = kTop + height + 62;
-  Sheet sheet(
+  FigureLayout layout(
       static_cast<int>(left + (kWidth + 40) * static_cast<double>(std::max<std::size_t>(metrics.size(), 2)) + 20),
       static_cast<int>(bottom + 44));
-  sheet.text(sweep_name(sweep), 24, 14, 15);
+  layout.text(sweep_name(sweep), 24, 14, 15);
   std::string words = "line: 10 % to 90 % of a group's jobs; box: the middle half; bar: median";
   const bool dots = std::any_of(groups.begin(), groups.end(), [](const Group& one) { return one.done <= kMostDots; });
   if (dots) words += "; dots: jobs";
   if (left_out > 0) words += fmt::format("; {} more groups are not shown, results.csv has them", left_out);
-  sheet.text(words, 24, 42, 11);
-  write_names(sheet, groups, kTop, height / static_cast<double>(std::max<std::size_t>(groups.size(), 1)));
+  layout.text(words, 24, 42, 11);
+  write_names(layout, groups, kTop, height / static_cast<double>(std::max<std::size_t>(groups.size(), 1)));
   for (std::size_t m = 0; m < metrics.size(); ++m) {
     std::vector<std::vector<double>> values;
     for (const Group& group : groups) values.push_back(values_of(group.jobs, metrics[m], kOption));
-    draw_boxes(sheet, {left + (kWidth + 40) * static_cast<double>(m), kTop, kWidth, height}, metrics[m], values);
+    draw_boxes(layout, {left + (kWidth + 40) * static_cast<double>(m), kTop, kWidth, height}, metrics[m], values);
   }
   const auto done = std::count_if(results.begin(), results.end(), [](const Row& row) { return is_done(row); });
-  sheet.text(fmt::format("{} jobs, {} of them done", sweep.jobs.size(), done), 24, bottom + 12, 10);
-  return {"distributions", std::move(sheet)};
+  layout.text(fmt::format("{} jobs, {} of them done", sweep.jobs.size(), done), 24, bottom + 12, 10);
+  return {"distributions", std::move(layout)};
 }
 
 /// A swept key and its values, in the order of the sweep, as many as are shown.
@@ -201,7 +201,7 @@ HeatMap heat_map_of(const Sweep& sweep, const std::vector<Row>& results, const s
 }
 
 /// Adds the cells as a matrix, and their numbers in black on light colours, in white on dark ones.
-void add_cells(Sheet& sheet, const HeatMap& map, const Scale& scale, const Colours& colours) {
+void add_cells(FigureLayout& layout, const HeatMap& map, const Scale& scale, const Colours& colours) {
   std::string matrix;
   std::string numbers;
   for (std::size_t r = 0; r < map.cells.size(); ++r) {
@@ -214,8 +214,8 @@ void add_cells(Sheet& sheet, const HeatMap& map, const Scale& scale, const Colou
     }
     matrix += "\n";
   }
-  sheet.data("mean_" + map.error, matrix);
-  sheet.data("numbers", numbers);
+  layout.data("mean_" + map.error, matrix);
+  layout.data("numbers", numbers);
 }
 
 /// Returns "rmse_m, mean over seed, taps; the first 24 values of a key".
@@ -262,21 +262,21 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   const Box box{70 + 7.4 * static_cast<double>(std::min(longest_of(map.y.values), kLongestValue)), 96,
                 std::max(220.0, kCellWidth * static_cast<double>(map.x.values.size())),
                 std::max(120.0, 44 * static_cast<double>(map.y.values.size()))};
-  Sheet sheet(static_cast<int>(std::max(560.0, box.left + box.width + 150)),
-              static_cast<int>(box.top + box.height + below + 16));
-  add_cells(sheet, map, scale, colours);
-  sheet.text(sweep_name(sweep), 24, 14, 15);
-  sheet.text(heat_map_words(sweep, map, keys), 24, 42, 11);
-  sheet.text(map.y.key, 24, box.top - 24, 11);
+  FigureLayout layout(static_cast<int>(std::max(560.0, box.left + box.width + 150)),
+                      static_cast<int>(box.top + box.height + below + 16));
+  add_cells(layout, map, scale, colours);
+  layout.text(sweep_name(sweep), 24, 14, 15);
+  layout.text(heat_map_words(sweep, map, keys), 24, 42, 11);
+  layout.text(map.y.key, 24, box.top - 24, 11);
   const std::string x_title =
       fmt::format("set label {} at screen {:.5f}, screen {:.5f} center font ',11'\n", gnuplot_text(map.x.key),
-                  (box.left + 0.5 * box.width) / sheet.width(), 14.0 / sheet.height());
-  sheet.plot(box, heat_map_axes(map, colours, slanted) + x_title,
-             "plot $mean_" + map.error +
-                 " matrix using 1:2:3 with image pixels, \\\n"
-                 "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
-  sheet.bar({box.left + box.width + 20, box.top, 14, box.height}, colours);
-  return Figure{"heat_map", std::move(sheet)};
+                  (box.left + 0.5 * box.width) / layout.width(), 14.0 / layout.height());
+  layout.plot(box, heat_map_axes(map, colours, slanted) + x_title,
+              "plot $mean_" + map.error +
+                  " matrix using 1:2:3 with image pixels, \\\n"
+                  "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");
+  layout.bar({box.left + box.width + 20, box.top, 14, box.height}, colours);
+  return Figure{"heat_map", std::move(layout)};
 }
 
 /// The error over the taps, by all keys that vary: none unless its values after each tap are kept.

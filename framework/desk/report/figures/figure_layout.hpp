@@ -14,13 +14,13 @@
 namespace palpate {
 
 /// What all snapshots of a run share.
-struct Ground {
+struct SceneFrame {
   Candidates candidates;
   Area area;
   double desk = 0.0;  ///< metres
 };
 
-Ground ground_of(const FromAbove& experiment);
+SceneFrame scene_frame_of(const FromAbove& experiment);
 
 /// A rectangle of the picture, pixels from its upper left corner.
 struct Box {
@@ -34,20 +34,20 @@ struct Box {
 std::string gnuplot_palette(Palette palette);
 
 /// The snapshot without the marks that the surface hides when it is seen from the side.
-Snapshot in_sight(const Snapshot& snapshot, const Ground& ground);
+Snapshot in_sight(const Snapshot& snapshot, const SceneFrame& frame);
 
 /// Rows of `values`, one for each candidate, the lowest y first: every cell once unless there are more than a picture
 /// can show.
-std::string matrix_of(const Ground& ground, const Eigen::VectorXd& values);
+std::string matrix_of(const SceneFrame& frame, const Eigen::VectorXd& values);
 
 /// gnuplot's columns that place such a matrix, in centimetres.
-std::string matrix_columns(const Ground& ground);
+std::string matrix_columns(const SceneFrame& frame);
 
 /// "x y height deviation" of the same cells in centimetres, a blank line behind each row.
-std::string surface_of(const Ground& ground, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation);
+std::string surface_of(const SceneFrame& frame, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation);
 
 /// The room that surfaces take when they are seen from the side, metres.
-struct Relief {
+struct ZRange {
   double low = 0.0;  ///< least and largest height; the desk lies between them
   double top = 0.0;
   double above = 0.0;  ///< in the picture, from the middle of the desk to the upper edge, and to the lower one
@@ -55,11 +55,11 @@ struct Relief {
 };
 
 /// What these snapshots of one experiment need to be drawn alike.
-Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground);
+ZRange z_range_of(const std::vector<Snapshot>& snapshots, const SceneFrame& frame);
 
-class Sheet {
+class FigureLayout {
  public:
-  Sheet(int width, int height) : width_(width), height_(height) {}
+  FigureLayout(int width, int height) : width_(width), height_(height) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -84,11 +84,11 @@ class Sheet {
   void upright(const std::string& words, double x, double middle, int points);
 
   /// The block `map` seen from above, with the taps NAME over it. The box has the aspect of the area.
-  void map(const Box& box, const Ground& ground, const std::string& map, const std::string& taps,
+  void map(const Box& box, const SceneFrame& frame, const std::string& map, const std::string& taps,
            const Colours& colours);
   /// The block `surface` in three dimensions, with the taps NAME on it, in the middle of the box.
-  void surface(const Box& box, const Ground& ground, const std::string& surface, const std::string& taps,
-               const Colours& colours, const Relief& relief);
+  void surface(const Box& box, const SceneFrame& frame, const std::string& surface, const std::string& taps,
+               const Colours& colours, const ZRange& z_range);
   /// The scale of the colours.
   void bar(const Box& box, const Colours& colours);
   /// What the marks mean, from `x` on, its middle at `y`.
@@ -122,7 +122,7 @@ Box map_box(const Area& area, double left, double top, double side);
 /// A picture before it is drawn.
 struct Figure {
   std::string name;
-  Sheet sheet;
+  FigureLayout layout;
 };
 
 /// Writes all scripts to `folder`, then draws them. Throws Error.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/figures/sheet.hpp"
+#include "report/figures/figure_layout.hpp"
 
 #include "analysis/gnuplot.hpp"
 #include "record/files.hpp"
@@ -53,8 +53,8 @@ int drawn(int count) { return std::clamp(count, 2, kMostDrawn); }
 
 /// What `cell` makes of each cell that is drawn, by its candidate, column and row, a line end behind each row.
 template <class Cell>
-std::string rows_of(const Ground& ground, const Cell& cell) {
-  const Candidates& all = ground.candidates;
+std::string rows_of(const SceneFrame& frame, const Cell& cell) {
+  const Candidates& all = frame.candidates;
   std::string out;
   for (int row = 0; row < drawn(all.rows); ++row) {
     const int from_row = static_cast<int>((row + 0.5) * all.rows / drawn(all.rows));
@@ -83,7 +83,7 @@ std::string gnuplot_palette(Palette palette) {
   return out + ")\n";
 }
 
-Ground ground_of(const FromAbove& experiment) {
+SceneFrame scene_frame_of(const FromAbove& experiment) {
   return {experiment.candidates(), experiment.scene().area(), experiment.scene().desk()};
 }
 
@@ -100,15 +100,14 @@ Box map_box(const Area& area, double left, double top, double side) {
   return {left, top, scale * area.width, scale * area.depth};
 }
 
-Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground) {
+ZRange z_range_of(const std::vector<Snapshot>& snapshots, const SceneFrame& frame) {
   // Upwards in the picture, from the middle of the desk, gnuplot's projection being a parallel one.
   const auto up = [&](double x, double y, double height) {
-    const double back =
-        (y - 0.5 * ground.area.depth) * std::cos(kTurn) - (x - 0.5 * ground.area.width) * std::sin(kTurn);
-    return back * std::cos(kTilt) + (height - ground.desk) * std::sin(kTilt);
+    const double back = (y - 0.5 * frame.area.depth) * std::cos(kTurn) - (x - 0.5 * frame.area.width) * std::sin(kTurn);
+    return back * std::cos(kTilt) + (height - frame.desk) * std::sin(kTilt);
   };
-  const double far = up(0.0, ground.area.depth, ground.desk);
-  Relief out{ground.desk, ground.desk + 0.01, far, far};
+  const double far = up(0.0, frame.area.depth, frame.desk);
+  ZRange out{frame.desk, frame.desk + 0.01, far, far};
   const auto include = [&](double x, double y, double height) {
     out.low = std::min(out.low, height);
     out.top = std::max(out.top, height);
@@ -117,15 +116,15 @@ Relief relief_of(const std::vector<Snapshot>& snapshots, const Ground& ground) {
   };
   for (const Snapshot& one : snapshots) {
     for (Eigen::Index i = 0; i < one.surface.size(); ++i)
-      include(ground.candidates.points(i, 0), ground.candidates.points(i, 1), one.surface(i));
+      include(frame.candidates.points(i, 0), frame.candidates.points(i, 1), one.surface(i));
     for (const TapMark& mark : one.marks) include(mark.x, mark.y, mark.height);
   }
   return out;
 }
 
-Snapshot in_sight(const Snapshot& snapshot, const Ground& ground) {
-  const Area& area = ground.area;
-  const Candidates& candidates = ground.candidates;
+Snapshot in_sight(const Snapshot& snapshot, const SceneFrame& frame) {
+  const Area& area = frame.area;
+  const Candidates& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
   // A tap lies on the surface, and its mark reaches above it: what is higher by less hides nothing.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
@@ -144,35 +143,37 @@ Snapshot in_sight(const Snapshot& snapshot, const Ground& ground) {
   return out;
 }
 
-std::string matrix_of(const Ground& ground, const Eigen::VectorXd& values) {
-  return rows_of(ground, [&](Eigen::Index candidate, int column, int /*row*/) {
+std::string matrix_of(const SceneFrame& frame, const Eigen::VectorXd& values) {
+  return rows_of(frame, [&](Eigen::Index candidate, int column, int /*row*/) {
     return (column > 0 ? " " : "") + number(values(candidate));
   });
 }
 
-std::string matrix_columns(const Ground& ground) {
+std::string matrix_columns(const SceneFrame& frame) {
   return fmt::format("({0} * (column(1) + 0.5)):({1} * (column(2) + 0.5)):3",
-                     100.0 * ground.area.width / drawn(ground.candidates.columns),
-                     100.0 * ground.area.depth / drawn(ground.candidates.rows));
+                     100.0 * frame.area.width / drawn(frame.candidates.columns),
+                     100.0 * frame.area.depth / drawn(frame.candidates.rows));
 }
 
-std::string surface_of(const Ground& ground, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) {
-  return rows_of(ground, [&](Eigen::Index candidate, int column, int row) {
-    const double x = (column + 0.5) * ground.area.width / drawn(ground.candidates.columns);
-    const double y = (row + 0.5) * ground.area.depth / drawn(ground.candidates.rows);
+std::string surface_of(const SceneFrame& frame, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation) {
+  return rows_of(frame, [&](Eigen::Index candidate, int column, int row) {
+    const double x = (column + 0.5) * frame.area.width / drawn(frame.candidates.columns);
+    const double y = (row + 0.5) * frame.area.depth / drawn(frame.candidates.rows);
     return fmt::format("{} {} {} {}\n", number(100.0 * x), number(100.0 * y), number(100.0 * height(candidate)),
                        number(100.0 * deviation(candidate)));
   });
 }
 
-bool Sheet::has(const std::string& block) const { return data_.find("$" + block + " << END\n") != std::string::npos; }
+bool FigureLayout::has(const std::string& block) const {
+  return data_.find("$" + block + " << END\n") != std::string::npos;
+}
 
-void Sheet::data(const std::string& name, const std::string& lines) {
+void FigureLayout::data(const std::string& name, const std::string& lines) {
   if (lines.empty()) return;
   data_ += fmt::format("${} << END\n{}END\n", name, lines);
 }
 
-void Sheet::taps(const std::string& name, const Snapshot& snapshot) {
+void FigureLayout::taps(const std::string& name, const Snapshot& snapshot) {
   constexpr const char* kKinds[] = {"on_", "off_", "failed_"};  // by TapMark::Kind
   std::string lines[std::size(kKinds)];
   for (const TapMark& mark : snapshot.marks)
@@ -183,7 +184,7 @@ void Sheet::taps(const std::string& name, const Snapshot& snapshot) {
     data("next_" + name, centimetres(snapshot.next->target.x) + " " + centimetres(snapshot.next->target.y) + "\n");
 }
 
-void Sheet::text(const std::string& words, double x, double top, int points, Align align) {
+void FigureLayout::text(const std::string& words, double x, double top, int points, Align align) {
   double y = top + 0.5 * 1.35 * points;
   std::size_t begin = 0;
   while (begin <= words.size()) {
@@ -195,19 +196,19 @@ void Sheet::text(const std::string& words, double x, double top, int points, Ali
   }
 }
 
-void Sheet::upright(const std::string& words, double x, double middle, int points) {
+void FigureLayout::upright(const std::string& words, double x, double middle, int points) {
   texts_ += label(words, x, middle, fmt::format("center rotate by 90 font ',{}'", points));
 }
 
-std::string Sheet::at(double x, double y) const {
+std::string FigureLayout::at(double x, double y) const {
   return fmt::format("screen {:.5f}, screen {:.5f}", x / width_, 1.0 - y / height_);
 }
 
-std::string Sheet::label(const std::string& words, double x, double y, const std::string& style) const {
+std::string FigureLayout::label(const std::string& words, double x, double y, const std::string& style) const {
   return fmt::format("set label {} at {} {}\n", gnuplot_text(words), at(x, y), style);
 }
 
-std::string Sheet::place(const Box& box) const {
+std::string FigureLayout::place(const Box& box) const {
   return fmt::format(
       "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset bmargin at "
       "screen {:.5f}\n",
@@ -215,11 +216,11 @@ std::string Sheet::place(const Box& box) const {
       1.0 - (box.top + box.height) / height_);
 }
 
-void Sheet::plot(const Box& box, const std::string& settings, const std::string& clauses) {
+void FigureLayout::plot(const Box& box, const std::string& settings, const std::string& clauses) {
   panels_ += "\nreset\nunset key\n" + place(box) + std::exchange(texts_, "") + settings + clauses + "\n";
 }
 
-std::string Sheet::marks(const std::string& taps, const std::string& columns) const {
+std::string FigureLayout::marks(const std::string& taps, const std::string& columns) const {
   std::string out;
   const auto add = [&](const std::string& kind, const std::string& under, const std::string& over) {
     if (!has(kind + "_" + taps)) return;
@@ -232,9 +233,9 @@ std::string Sheet::marks(const std::string& taps, const std::string& columns) co
   return out;
 }
 
-void Sheet::map(const Box& box, const Ground& ground, const std::string& map, const std::string& taps,
-                const Colours& colours) {
-  const Area& area = ground.area;
+void FigureLayout::map(const Box& box, const SceneFrame& frame, const std::string& map, const std::string& taps,
+                       const Colours& colours) {
+  const Area& area = frame.area;
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
   settings += "unset colorbox\nset border lc rgb '#555555'\nset xlabel 'x [cm]' font ',10' offset 0,0.7\n";
   settings += "set ylabel 'y [cm]' font ',10' offset 1.6,0\n";
@@ -243,24 +244,24 @@ void Sheet::map(const Box& box, const Ground& ground, const std::string& map, co
     settings += star_at(100.0 * 0.042 * std::max(area.width, area.depth));
   }
   plot(box, settings,
-       fmt::format("plot ${} matrix using {} with image", map, matrix_columns(ground)) + marks(taps, "1:2"));
+       fmt::format("plot ${} matrix using {} with image", map, matrix_columns(frame)) + marks(taps, "1:2"));
 }
 
-void Sheet::surface(const Box& box, const Ground& ground, const std::string& surface, const std::string& taps,
-                    const Colours& colours, const Relief& relief) {
-  const Area& area = ground.area;
+void FigureLayout::surface(const Box& box, const SceneFrame& frame, const std::string& surface, const std::string& taps,
+                           const Colours& colours, const ZRange& z_range) {
+  const Area& area = frame.area;
   const double wide = area.width * std::cos(kTurn) + area.depth * std::sin(kTurn);
-  const double scale = std::min(box.width / wide, box.height / (relief.above + relief.below));     // pixels a metre
-  const double middle = box.top + 0.5 * box.height + 0.5 * scale * (relief.above - relief.below);  // of the desk
-  const double lift = scale * (0.5 * (relief.low + relief.top) - ground.desk) * std::sin(kTilt);
+  const double scale = std::min(box.width / wide, box.height / (z_range.above + z_range.below));     // pixels a metre
+  const double middle = box.top + 0.5 * box.height + 0.5 * scale * (z_range.above - z_range.below);  // of the desk
+  const double lift = scale * (0.5 * (z_range.low + z_range.top) - frame.desk) * std::sin(kTilt);
   // gnuplot puts the longer side of the area to the shorter one of the margins, and the middle of all into theirs.
   const double side = scale * std::max(area.width, area.depth);
   const Box inner{box.left + 0.5 * (box.width - side), middle - lift - 0.5 * side, side, side};
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
-  settings += fmt::format("set zrange [{}:{}]\nset ztics 5 font ',9' offset 0.7,0\n", centimetres(relief.low),
-                          centimetres(relief.top));
+  settings += fmt::format("set zrange [{}:{}]\nset ztics 5 font ',9' offset 0.7,0\n", centimetres(z_range.low),
+                          centimetres(z_range.top));
   settings +=
-      fmt::format("unset colorbox\nset border 31 lc rgb '#777777'\nset xyplane at {}\n", centimetres(ground.desk));
+      fmt::format("unset colorbox\nset border 31 lc rgb '#777777'\nset xyplane at {}\n", centimetres(frame.desk));
   settings += "set xlabel 'x [cm]' font ',10' rotate parallel offset 1.2,-0.3\n";
   settings += "set ylabel 'y [cm]' font ',10' rotate parallel offset -1.5,-0.3\n";
   settings += "set zlabel 'height [cm]' font ',10' rotate by 90 offset 3.2,0\n";
@@ -270,7 +271,7 @@ void Sheet::surface(const Box& box, const Ground& ground, const std::string& sur
   plot(inner, settings, fmt::format("splot ${} using 1:2:3:4 with pm3d", surface) + marks(taps, "1:2:3"));
 }
 
-void Sheet::bar(const Box& box, const Colours& colours) {
+void FigureLayout::bar(const Box& box, const Colours& colours) {
   std::string settings = gnuplot_palette(colours.palette) + "unset colorbox\nset border lc rgb '#555555'\n";
   settings += fmt::format("unset xtics\nunset ytics\nset xrange [-0.5:1.5]\nset yrange [-0.5:{}]\n", kBarSteps - 0.5);
   settings += fmt::format("set y2range [{}:{}]\nset y2tics nomirror out scale 0.5 font ',9'\n", number(colours.low),
@@ -280,7 +281,7 @@ void Sheet::bar(const Box& box, const Colours& colours) {
   plot(box, settings, "plot $bar matrix using 1:2:3 with image");
 }
 
-void Sheet::legend(double x, double y, bool failed, bool next) {
+void FigureLayout::legend(double x, double y, bool failed, bool next) {
   std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
   const auto entry = [&](const std::string& style, const std::string& words, double width) {
     if (!style.empty()) settings += label("", x, y, "point " + style + " front");
@@ -298,7 +299,7 @@ void Sheet::legend(double x, double y, bool failed, bool next) {
   plot(star, settings, "plot NaN");
 }
 
-std::string Sheet::script() const {
+std::string FigureLayout::script() const {
   std::string bar;
   for (int i = 0; i < kBarSteps; ++i) bar += fmt::format("{0} {0}\n", i);
   const bool has_bar = panels_.find("$bar ") != std::string::npos;
@@ -313,16 +314,16 @@ std::string Sheet::script() const {
 std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Figure>& figures) {
   make_inner_folder(folder);
   std::error_code failed;
-  for (const auto& [name, sheet] : figures) {
+  for (const auto& [name, layout] : figures) {
     // An older picture would be that of another script.
     fs::remove(folder / (name + ".png"), failed);
     write_file(folder / (name + ".gnuplot"),
-               picture_header(sheet.width(), sheet.height(), name + ".png", name + ".png") + sheet.script());
+               picture_header(layout.width(), layout.height(), name + ".png", name + ".png") + layout.script());
   }
   std::vector<fs::path> pictures;
-  for (const auto& [name, sheet] : figures) {
+  for (const auto& [name, layout] : figures) {
     pictures.push_back(folder / (name + ".png"));
-    const std::string trouble = draw_picture(sheet.script(), sheet.width(), sheet.height(), pictures.back());
+    const std::string trouble = draw_picture(layout.script(), layout.width(), layout.height(), pictures.back());
     if (trouble.empty()) continue;
     throw Error(pictures.back().string(), "was not drawn: " + trouble,
                 fmt::format("run 'gnuplot {}.gnuplot' in that folder to draw it later", name), Error::Kind::run);
