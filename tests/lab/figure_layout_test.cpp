@@ -61,8 +61,8 @@ TEST(MatrixTest, WhatIsNotFiniteIsAGapAndNoWord) {
   EXPECT_EQ(matrix_of(frame, values), "0 NaN\nNaN 0\n");
 }
 
-Snapshot flat_moment(double height) {
-  Snapshot snapshot;
+MapsAtTap flat_moment(double height) {
+  MapsAtTap snapshot;
   snapshot.surface = Eigen::VectorXd::Constant(1, height);
   return snapshot;
 }
@@ -81,7 +81,7 @@ TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
   const ZRange pit = z_range_of({flat_moment(-0.5)}, frame);
   EXPECT_EQ(pit.low, -0.5);
   EXPECT_EQ(pit.below, hill.above);
-  Snapshot tapped = flat_moment(0.0);
+  MapsAtTap tapped = flat_moment(0.0);
   tapped.marks.push_back({1, TapMark::Kind::on, 0.1, 0.1, 0.7});
   EXPECT_EQ(z_range_of({tapped}, frame).top, 0.7);
 }
@@ -89,7 +89,7 @@ TEST(ReliefTest, HoldsDeskSurfaceAndTaps) {
 TEST(InSightTest, LeavesOutWhatTheSurfaceHidesFromTheSide) {
   const Area area{0.2, 0.2};
   const SceneFrame frame{grid_by_count(area, 20), area};
-  Snapshot snapshot;
+  MapsAtTap snapshot;
   snapshot.surface = Eigen::VectorXd::Zero(frame.candidates.size());
   // A wall across the middle, 10 cm high: seen from 30 degrees above, it hides what lies up to 17 cm behind it.
   for (int i = 0; i < frame.candidates.size(); ++i) {
@@ -106,7 +106,7 @@ TEST(InSightTest, LeavesOutWhatTheSurfaceHidesFromTheSide) {
 
 TEST(SheetTest, WritesEachKindOfTapToABlockOfItsOwnAndPlotsOnlyWhatThereIs) {
   FigureLayout layout(400, 300);
-  Snapshot snapshot;
+  MapsAtTap snapshot;
   snapshot.marks = {{1, TapMark::Kind::on, 0.01, 0.02, 0.03}, {2, TapMark::Kind::failed, 0.04, 0.05, 0.0}};
   snapshot.next.emplace();
   snapshot.next->target = {0.06, 0.07};

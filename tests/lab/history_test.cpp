@@ -65,7 +65,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   int compared_footprint = 0;
   for (std::size_t made = 0; made < recording.rows.size(); ++made) {
     const Row& row = recording.rows[made];
-    const Moment& moment = history.moments[made];
+    const RunAtTap& moment = history.moments[made];
     ASSERT_TRUE(moment.next.has_value());
     const Row next = tap_row(*moment.next);
     for (const char* field : {"x", "y", "source", "score", "ties", "runner_up.x"}) {
@@ -178,7 +178,7 @@ TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
   const auto hit = static_cast<int>(recording.summary.value().number("first_hit_tap").value());
   EXPECT_LE(hit, 9);
   for (int taps = 0; taps <= 9; ++taps) {
-    const Moment& moment = history.moments[static_cast<std::size_t>(taps)];
+    const RunAtTap& moment = history.moments[static_cast<std::size_t>(taps)];
     EXPECT_EQ(history.surfaces[static_cast<std::size_t>(taps)].vertices.empty(), taps < hit);
     ASSERT_TRUE(moment.next && moment.next->approach && moment.next_along);
     EXPECT_LE(*moment.next_along, moment.next->approach->length);
@@ -187,16 +187,16 @@ TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
   }
   EXPECT_EQ(history.moments.back().result.errors.surface_distance, recording.summary->number("surface_distance_m"));
 
-  // A page with all taps gets the end of the run without surfaces, and keeps its plots.
-  HistoryGrower grower(run.workshop, recording);
-  while (grower.taps() < 9) grower.advance();
+  // A page that has all moments is told of the end without any surface, and keeps its plots.
+  HistoryBuilder builder(run.workshop, recording);
+  while (builder.taps() < 9) builder.advance();
   const auto titles = [&](const History& of) {
     std::vector<std::string> out;
     for (const CurvePanel& panel : curves_of(recording, of).panels) out.push_back(panel.title);
     return out;
   };
-  EXPECT_TRUE(grower.since(10).surfaces.empty());
-  EXPECT_EQ(titles(grower.since(10)), titles(history));
+  EXPECT_TRUE(builder.since(10).surfaces.empty());
+  EXPECT_EQ(titles(builder.since(10)), titles(history));
 }
 
 TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {

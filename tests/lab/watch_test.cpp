@@ -142,14 +142,14 @@ class Watching : public ::testing::Test {
 TEST_F(Watching, AHistoryThatGrowsIsAtEachTapThatOfARunThatEndsThere) {
   const Recording whole = read_recording(workshop_, made("paper/object_i.yaml", {"taps=9"}));
   Recording growing{whole.directory, whole.config, {whole.rows.front()}, {whole.taps.front()}, {}, {}, {}};
-  HistoryGrower grower(workshop_, growing);
-  grower.advance();
+  HistoryBuilder builder(workshop_, growing);
+  builder.advance();
   for (std::size_t taps = 1;; ++taps) {
     Recording until{whole.directory, whole.config, {}, {}, {}, {}, {}};
     until.rows.assign(whole.rows.begin(), whole.rows.begin() + static_cast<std::ptrdiff_t>(taps));
     until.taps.assign(whole.taps.begin(), whole.taps.begin() + static_cast<std::ptrdiff_t>(taps));
     const History expected = make_history(workshop_, until, [](int, int) {});
-    const History now = grower.since(0);
+    const History now = builder.since(0);
     ASSERT_EQ(now.moments.size(), taps + 1);
     ASSERT_EQ(now.maps.size(), expected.maps.size());
     for (std::size_t map = 0; map < now.maps.size(); ++map) {
@@ -160,9 +160,9 @@ TEST_F(Watching, AHistoryThatGrowsIsAtEachTapThatOfARunThatEndsThere) {
     if (taps == whole.taps.size()) break;
     growing.rows.push_back(whole.rows[taps]);
     growing.taps.push_back(whole.taps[taps]);
-    grower.advance();
+    builder.advance();
   }
-  const History last = grower.since(8);
+  const History last = builder.since(8);
   EXPECT_EQ(last.shown, (std::vector<int>{8, 9}));
   EXPECT_EQ(last.maps.front().frames.size(), 2U);
   EXPECT_EQ(last.moments.size(), 10U);
@@ -171,12 +171,12 @@ TEST_F(Watching, AHistoryThatGrowsIsAtEachTapThatOfARunThatEndsThere) {
 TEST_F(Watching, AHistoryThatIsThinnedKeepsTheLastMomentAndEverySecondOfTheOthers) {
   const Recording recording = read_recording(workshop_, made("paper/object_i.yaml", {"taps=7"}));
   const History whole = make_history(workshop_, recording, [](int, int) {});
-  HistoryGrower grower(workshop_, recording);
-  while (grower.taps() < 7) grower.advance();
-  grower.thin(1000U << 20U);
-  EXPECT_EQ(grower.since(0).shown.size(), 8U) << "few enough";
-  grower.thin(1);
-  const History now = grower.since(0);
+  HistoryBuilder builder(workshop_, recording);
+  while (builder.taps() < 7) builder.advance();
+  builder.thin(1000U << 20U);
+  EXPECT_EQ(builder.since(0).shown.size(), 8U) << "few enough";
+  builder.thin(1);
+  const History now = builder.since(0);
   EXPECT_EQ(now.shown, (std::vector<int>{1, 3, 5, 7}));
   EXPECT_EQ(now.moments.size(), 8U);
   for (std::size_t i = 0; i < now.shown.size(); ++i)

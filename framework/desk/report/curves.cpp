@@ -20,7 +20,7 @@ constexpr double kMillimetres = 1e3;
 template <class Get>
 Curve curve_of(const History& history, const std::string& name, const Get& get) {
   Curve curve{name, {}};
-  for (const Moment& moment : history.moments) curve.values.push_back(get(moment));
+  for (const RunAtTap& moment : history.moments) curve.values.push_back(get(moment));
   return curve;
 }
 
@@ -31,7 +31,7 @@ std::vector<Curve> named_curves(const History& history, const RowAt& row_at) {
   const Row last = row_at(history.moments.back());
   for (const auto& field : last.fields) {
     const std::string& name = field.first;
-    out.push_back(curve_of(history, name, [&](const Moment& moment) { return row_at(moment).number(name); }));
+    out.push_back(curve_of(history, name, [&](const RunAtTap& moment) { return row_at(moment).number(name); }));
   }
   return out;
 }
@@ -43,7 +43,7 @@ struct NamedState {
 constexpr std::array<NamedState, 3> kStates{
     {{"height GP", &RunResult::height_gp}, {"label GP", &RunResult::label_gp}, {"surface GP", &RunResult::surface_gp}}};
 
-Row likelihoods_of(const Moment& moment) {
+Row likelihoods_of(const RunAtTap& moment) {
   Row out;
   for (const NamedState& one : kStates) {
     if (const auto& state = moment.result.*one.state) out.add(one.name, state->log_marginal_likelihood);
@@ -136,7 +136,7 @@ std::vector<CurvePanel> error_panels(const ExperimentOptions& options, const His
   };
   for (const RecordField& error : error_fields()) {
     const bool is_length = error.unit == Unit::metre;
-    Curve curve = curve_of(history, is_length ? error.label : "", [&](const Moment& moment) {
+    Curve curve = curve_of(history, is_length ? error.label : "", [&](const RunAtTap& moment) {
       Row row;
       add_errors(row, moment.result.errors);
       return is_length ? in_millimetres(row.number(error.name)) : row.number(error.name);
@@ -148,7 +148,7 @@ std::vector<CurvePanel> error_panels(const ExperimentOptions& options, const His
     }
   }
   lengths.push_back(curve_of(history, find_summary_field(kExpectedError)->label,
-                             [&](const Moment& moment) { return in_millimetres(moment.result.expected_rmse); }));
+                             [&](const RunAtTap& moment) { return in_millimetres(moment.result.expected_rmse); }));
   out.front() = {surface_error_title(options), "mm", CurveAxis::from_zero, std::move(lengths)};
   return out;
 }
@@ -180,25 +180,25 @@ Curves curves_of(const Recording& recording, const History& history) {
   };
   const auto one = [&](const auto& get) { return std::vector<Curve>{curve_of(history, "", get)}; };
   add(any_side ? "Largest standard deviation of the surface" : "Largest standard deviation of a height", "cm",
-      CurveAxis::from_zero, one([&](const Moment& moment) {
+      CurveAxis::from_zero, one([&](const RunAtTap& moment) {
         const bool drawn = !any_side || moment.largest_deviation > 0.0;
         return drawn ? std::optional(100.0 * moment.largest_deviation) : std::nullopt;
       }));
-  add("Share of the taps on the object", "", CurveAxis::share, one([](const Moment& moment) {
+  add("Share of the taps on the object", "", CurveAxis::share, one([](const RunAtTap& moment) {
         const RunResult& result = moment.result;
         return moment.taps > 0 ? std::optional(static_cast<double>(result.object_taps) / moment.taps) : std::nullopt;
       }));
   add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
   for (const NamedState& state : kStates) {
     add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
-        named_curves(history, [&](const Moment& moment) { return parameters_of(moment.result.*state.state); }));
+        named_curves(history, [&](const RunAtTap& moment) { return parameters_of(moment.result.*state.state); }));
   }
   add(fmt::format("Numbers of footprint/{}", options.footprint.type), "", CurveAxis::free,
-      named_curves(history, [](const Moment& moment) { return numbers_of(moment.result.footprint); }));
+      named_curves(history, [](const RunAtTap& moment) { return numbers_of(moment.result.footprint); }));
   add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
   if (history.moments.back().result.robot_seconds > 0.0)
     add("Robot time so far", "s", CurveAxis::from_zero,
-        one([](const Moment& moment) { return moment.result.robot_seconds; }));
+        one([](const RunAtTap& moment) { return moment.result.robot_seconds; }));
   return without_constants(std::move(panels));
 }
 

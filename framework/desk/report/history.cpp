@@ -25,16 +25,16 @@ TapMark mark_of(const Recording& recording, std::size_t index, double desk, cons
 }
 
 /// Whether the scores are a map of their own, beside those that are shown anyhow.
-bool own_scores(const Snapshot& now) {
+bool own_scores(const MapsAtTap& now) {
   if (!now.has_scores || now.scores == now.uncertainty) return false;
   return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
 }
 
 /// The run as `playback` has it now, after as many of the taps of `recording`.
-Snapshot snapshot_of(Playback& playback, const Recording& recording) {
+MapsAtTap maps_of(Playback& playback, const Recording& recording) {
   FromAbove& experiment = playback.from_above();
   const TapBelief& belief = experiment.belief();
-  Snapshot out;
+  MapsAtTap out;
   out.taps = playback.taps();
   for (int i = 0; i < out.taps; ++i)
     out.marks.push_back(
@@ -61,11 +61,11 @@ Snapshot snapshot_of(Playback& playback, const Recording& recording) {
 
 }  // namespace
 
-std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps) {
-  std::vector<Snapshot> out;
+std::vector<MapsAtTap> maps_at_taps(Playback& playback, const Recording& recording, const std::vector<int>& taps) {
+  std::vector<MapsAtTap> out;
   for (const int count : taps) {
     playback.advance_to(count);
-    out.push_back(snapshot_of(playback, recording));
+    out.push_back(maps_of(playback, recording));
   }
   return out;
 }
@@ -76,100 +76,101 @@ std::string count_words(const RunResult& result) {
   return out;
 }
 
-HistoryGrower::HistoryGrower(const Workshop& workshop, const Recording& recording)
+HistoryBuilder::HistoryBuilder(const Workshop& workshop, const Recording& recording)
     : recording_(recording),
       playback_(workshop, recording),
       any_side_(dynamic_cast<FromAnySide*>(&playback_.experiment())) {
-  grown_.truth_lost = playback_.truth_lost();
+  history_.truth_lost = playback_.truth_lost();
   if (any_side_ != nullptr) {
     add_surface();
     return;
   }
   const Candidates& all = playback_.from_above().candidates();
   stride_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
-  grown_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
-  grown_.y = all.ys(Eigen::seq(0, Eigen::last, stride_));
+  history_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
+  history_.y = all.ys(Eigen::seq(0, Eigen::last, stride_));
   const bool weight = playback_.from_above().belief().footprint_is_weight();
-  for (const char* name : {"height", "deviation", "u", weight ? "w" : "p", "score"}) grown_.maps.push_back({name, {}});
+  for (const char* name : {"height", "deviation", "u", weight ? "w" : "p", "score"})
+    history_.maps.push_back({name, {}});
   add();
 }
 
-void HistoryGrower::advance() {
+void HistoryBuilder::advance() {
   playback_.advance_to(playback_.taps() + 1);
   any_side_ != nullptr ? add_surface() : add();
 }
 
-void HistoryGrower::add_surface() {
+void HistoryBuilder::add_surface() {
   FromAnySide& experiment = *any_side_;
   constexpr double kSide = 0.0025;  // walls of 3 mm are whole, most pages have all moments
-  Moment now;
+  RunAtTap now;
   now.taps = playback_.taps();
   now.next = experiment.choose_next();
   now.is_next_known = now.next || experiment.has_scores();
   if (now.next) now.next_along = experiment.belief().meeting(*now.next->approach, experiment.belief().solids().best());
   now.result = playback_.result();
-  grown_.surfaces.push_back(experiment.crossings(kSide));
-  for (const Crossings::Vertex& one : grown_.surfaces.back().vertices)
+  history_.surfaces.push_back(experiment.crossings(kSide));
+  for (const Crossings::Vertex& one : history_.surfaces.back().vertices)
     now.largest_deviation = std::max(now.largest_deviation, one.deviation);
-  if (grown_.true_contours.empty() || experiment.scene().effects().push)
-    grown_.true_contours = experiment.true_contours();
-  grown_.shown.push_back(now.taps);
-  grown_.moments.push_back(now);
+  if (history_.true_contours.empty() || experiment.scene().effects().push)
+    history_.true_contours = experiment.true_contours();
+  history_.shown.push_back(now.taps);
+  history_.moments.push_back(now);
   // More than a page can carry; of a thousand taps they would take gigabytes.
   constexpr std::size_t kMost = 10'000'000;
   thin(kMost);
 }
 
-void HistoryGrower::add() {
-  const Snapshot now = snapshot_of(playback_, recording_);
+void HistoryBuilder::add() {
+  const MapsAtTap now = maps_of(playback_, recording_);
   const Eigen::VectorXd* const maps[]{&now.surface, &now.deviation, &now.uncertainty,
                                       now.has_weight() ? &now.weight : &now.probability, &now.scores};
-  for (std::size_t i = 0; i < std::size(maps); ++i) grown_.maps[i].frames.push_back(shown(*maps[i]));
+  for (std::size_t i = 0; i < std::size(maps); ++i) history_.maps[i].frames.push_back(shown(*maps[i]));
   own_scores_ = own_scores_ || own_scores(now);
   largest_ = std::max(largest_, now.largest_deviation);
   if (const Truth* truth = playback_.from_above().truth()) truth_ = shown(truth->height);
-  grown_.shown.push_back(now.taps);
-  grown_.moments.push_back(now);
+  history_.shown.push_back(now.taps);
+  history_.moments.push_back(now);
 }
 
-Eigen::VectorXf HistoryGrower::shown(const Eigen::VectorXd& map) {
+Eigen::VectorXf HistoryBuilder::shown(const Eigen::VectorXd& map) {
   const Candidates& all = playback_.from_above().candidates();
   const auto some = Eigen::seq(0, Eigen::last, stride_);
   const Eigen::MatrixXd cells = map.reshaped<Eigen::RowMajor>(all.rows, all.columns)(some, some);
   return cells.reshaped<Eigen::RowMajor>().cast<float>();
 }
 
-void HistoryGrower::thin(std::size_t most) {
-  const auto drop = [last = grown_.shown.size() - 1](auto& list) {
+void HistoryBuilder::thin(std::size_t most) {
+  const auto drop = [last = history_.shown.size() - 1](auto& list) {
     std::size_t kept = 0;
     for (std::size_t i = last % 2; i <= last; i += 2) list[kept++] = std::move(list[i]);
     list.resize(kept);
   };
   std::size_t numbers = 0;
-  for (const MapSeries& map : grown_.maps)
+  for (const MapSeries& map : history_.maps)
     numbers += map.frames.size() * static_cast<std::size_t>(map.frames.front().size());
   constexpr std::size_t kOfAVertex = 7;
-  for (const Crossings& one : grown_.surfaces) numbers += kOfAVertex * one.vertices.size() + one.inside.size() / 8;
-  if (grown_.shown.size() < 2 || numbers <= most) return;
-  for (MapSeries& map : grown_.maps) drop(map.frames);
-  if (!grown_.surfaces.empty()) drop(grown_.surfaces);
-  drop(grown_.shown);
+  for (const Crossings& one : history_.surfaces) numbers += kOfAVertex * one.vertices.size() + one.inside.size() / 8;
+  if (history_.shown.size() < 2 || numbers <= most) return;
+  for (MapSeries& map : history_.maps) drop(map.frames);
+  if (!history_.surfaces.empty()) drop(history_.surfaces);
+  drop(history_.shown);
 }
 
-History HistoryGrower::since(int moment) const {
-  const auto first = std::lower_bound(grown_.shown.begin(), grown_.shown.end(), moment);
-  History out{grown_.moments,   {first, grown_.shown.end()}, {}, grown_.x, grown_.y, {}, grown_.true_contours,
-              grown_.truth_lost};
-  if (!grown_.surfaces.empty())
-    out.surfaces = {grown_.surfaces.end() - (grown_.shown.end() - first), grown_.surfaces.end()};
-  for (const MapSeries& map : grown_.maps)
-    out.maps.push_back({map.name, {map.frames.end() - (grown_.shown.end() - first), map.frames.end()}});
+History HistoryBuilder::since(int moment) const {
+  const auto first = std::lower_bound(history_.shown.begin(), history_.shown.end(), moment);
+  History out{history_.moments,   {first, history_.shown.end()}, {}, history_.x, history_.y, {}, history_.true_contours,
+              history_.truth_lost};
+  if (!history_.surfaces.empty())
+    out.surfaces = {history_.surfaces.end() - (history_.shown.end() - first), history_.surfaces.end()};
+  for (const MapSeries& map : history_.maps)
+    out.maps.push_back({map.name, {map.frames.end() - (history_.shown.end() - first), map.frames.end()}});
   return finished(std::move(out));
 }
 
-History HistoryGrower::take() { return finished(std::move(grown_)); }
+History HistoryBuilder::take() { return finished(std::move(history_)); }
 
-History HistoryGrower::finished(History history) const {
+History HistoryBuilder::finished(History history) const {
   if (history.maps.empty()) return history;
   for (Eigen::VectorXf& frame : history.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest_));
   if (!own_scores_) history.maps.pop_back();
@@ -179,13 +180,13 @@ History HistoryGrower::finished(History history) const {
 
 History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress) {
   const auto last = static_cast<int>(recording.taps.size());
-  HistoryGrower grower(workshop, recording);
+  HistoryBuilder builder(workshop, recording);
   progress(0, last);
-  while (grower.taps() < last) {
-    grower.advance();
-    progress(grower.taps(), last);
+  while (builder.taps() < last) {
+    builder.advance();
+    progress(builder.taps(), last);
   }
-  return grower.take();
+  return builder.take();
 }
 
 }  // namespace palpate

@@ -26,7 +26,7 @@ struct TapMark {
 };
 
 /// A run after its first `taps` taps.
-struct Moment {
+struct RunAtTap {
   int taps = 0;
   RunResult result;                  ///< what summary.json would say if the run had ended here
   std::optional<TapRecord> next;     ///< what would be tapped next; absent if no candidate is left, or if nobody says
@@ -38,7 +38,7 @@ struct Moment {
 };
 
 /// The same with what was believed. The maps have one value for each candidate.
-struct Snapshot : Moment {
+struct MapsAtTap : RunAtTap {
   std::vector<TapMark> marks;   ///< of these taps, in their order
   Eigen::VectorXd surface;      ///< as reconstructed, metres
   Eigen::VectorXd deviation;    ///< standard deviation of the height, metres
@@ -54,7 +54,7 @@ struct Snapshot : Moment {
 };
 
 /// The run after each of these numbers of taps, which ascend and lie between 1 and all.
-std::vector<Snapshot> snapshots_at(Playback& playback, const Recording& recording, const std::vector<int>& taps);
+std::vector<MapsAtTap> maps_at_taps(Playback& playback, const Recording& recording, const std::vector<int>& taps);
 
 /// "7 on the object, 10 on the desk, 1 failed"; what there is none of but the first two is left out.
 std::string count_words(const RunResult& result);
@@ -66,8 +66,8 @@ struct MapSeries {
 };
 
 struct History {
-  std::vector<Moment> moments;  ///< before the first tap, and after each
-  std::vector<int> shown;       ///< the moments of which there are maps, ascending
+  std::vector<RunAtTap> moments;  ///< before the first tap, and after each
+  std::vector<int> shown;         ///< the moments of which there are maps, ascending
   /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres, at most
   /// the largest that the height GP has at any moment: that of an object's level before it is touched means
   /// nothing), "u", "w" or, where the footprint is not the weight, "p", and "score" where the acquisition's is none of
@@ -91,11 +91,11 @@ using OnProgress = std::function<void(int done, int all)>;
 inline constexpr int kMostCellsAcross = 128;
 
 /// A history that is lived through tap by tap, and may be looked at in between: of a run that goes on.
-class HistoryGrower {
+class HistoryBuilder {
  public:
   /// At the moment before the first tap. `workshop` and `recording` must outlive it; `recording`, which has a tap, may
   /// get more of them. Throws Error as Playback does.
-  HistoryGrower(const Workshop& workshop, const Recording& recording);
+  HistoryBuilder(const Workshop& workshop, const Recording& recording);
 
   /// As many as there are moments so far, less one.
   int taps() const { return playback_.taps(); }
@@ -123,7 +123,7 @@ class HistoryGrower {
   bool own_scores_ = false;
   std::optional<Eigen::VectorXf> truth_;  ///< as of now: what is pushed moves it
   double largest_ = 0.0;                  ///< standard deviation of the height GP, of all moments
-  History grown_;                         ///< maps as they are: finished() has the last word on them
+  History history_;                       ///< maps as they are: finished() has the last word on them
 };
 
 /// Lives through the taps of a recorded run again. Throws Error as Playback does.

@@ -46,7 +46,7 @@ RunFollower::RunFollower(const Workshop& workshop, fs::path directory)
 bool RunFollower::goes_on() const { return is_running(directory_); }
 
 void RunFollower::begin_anew() {
-  grower_.reset();
+  builder_.reset();
   recording_.reset();
   pending_.clear();
   manifest_.reset();
@@ -114,17 +114,17 @@ void RunFollower::take_in() {
   recording_->taps.push_back(past_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));
   pending_.pop_front();
-  if (!grower_) grower_ = std::make_unique<HistoryGrower>(workshop_, *recording_);
-  const bool own_scores = grower_->has_own_scores();
-  grower_->advance();
-  grower_->thin(kMostNumbers);
+  if (!builder_) builder_ = std::make_unique<HistoryBuilder>(workshop_, *recording_);
+  const bool own_scores = builder_->has_own_scores();
+  builder_->advance();
+  builder_->thin(kMostNumbers);
   // There is one map more, which pages lack.
-  if (grower_->has_own_scores() != own_scores) ++generation_;
+  if (builder_->has_own_scores() != own_scores) ++generation_;
   if (pending_.empty()) recording_->summary = read_outcome(directory_);
 }
 
 std::string RunFollower::at() const {
-  return fmt::format("{}.{}.{}", generation_, grower_ ? grower_->taps() + 1 : 0, revision_);
+  return fmt::format("{}.{}.{}", generation_, builder_ ? builder_->taps() + 1 : 0, revision_);
 }
 
 std::string RunFollower::why_waiting() const {
@@ -134,8 +134,8 @@ std::string RunFollower::why_waiting() const {
 
 std::string RunFollower::page() {
   std::string out;
-  if (grower_) {
-    if (const auto trouble = catch_error([&] { out = live_run_page(*recording_, grower_->since(0), at()); }))
+  if (builder_) {
+    if (const auto trouble = catch_error([&] { out = live_run_page(*recording_, builder_->since(0), at()); }))
       trouble_ = trouble->what();
   }
   if (!out.empty()) return out;
@@ -151,13 +151,13 @@ std::optional<std::string> RunFollower::news(const std::string& at) {
   const Position page = parse_position(at);
   const std::string now = this->at();
   if (now == at) return std::nullopt;
-  const int moments = grower_ ? grower_->taps() + 1 : 0;
+  const int moments = builder_ ? builder_->taps() + 1 : 0;
   const bool other = page.generation != generation_ || page.moments > moments || (page.moments == 0 && moments > 0);
   if (other) return line_of({{"at", now}, {"anew", true}});
-  if (!trouble_.empty() || !grower_) return line_of({{"at", now}, {"trouble", why_waiting()}});
+  if (!trouble_.empty() || !builder_) return line_of({{"at", now}, {"trouble", why_waiting()}});
   std::string out;
   const auto trouble =
-      catch_error([&] { out = run_news(*recording_, grower_->since(page.moments), page.moments, now); });
+      catch_error([&] { out = run_news(*recording_, builder_->since(page.moments), page.moments, now); });
   return trouble ? line_of({{"at", now}, {"trouble", trouble->what()}}) : out;
 }
 

@@ -42,13 +42,13 @@ class RunFollower final : public Watched {
   GrowingLog log_;
   std::optional<Tree> manifest_;
   std::vector<TapTimes> timings_;
-  std::deque<Row> pending_;                ///< recorded, and not yet in recording_
-  std::unique_ptr<Recording> recording_;   ///< null before the first tap
-  std::unique_ptr<HistoryGrower> grower_;  ///< of as many taps as recording_ has
-  std::string trouble_;                    ///< with the record as it is, "" for none
-  std::string standing_;                   ///< how the run stood at the last look
-  int generation_ = 1;                     ///< of pages: those of another one begin anew
-  int revision_ = 0;                       ///< counts what changed without a tap
+  std::deque<Row> pending_;                  ///< recorded, and not yet in recording_
+  std::unique_ptr<Recording> recording_;     ///< null before the first tap
+  std::unique_ptr<HistoryBuilder> builder_;  ///< of as many taps as recording_ has
+  std::string trouble_;                      ///< with the record as it is, "" for none
+  std::string standing_;                     ///< how the run stood at the last look
+  int generation_ = 1;                       ///< of pages: those of another one begin anew
+  int revision_ = 0;                         ///< counts what changed without a tap
 };
 
 }  // namespace palpate

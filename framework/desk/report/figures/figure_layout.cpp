@@ -100,7 +100,7 @@ Box map_box(const Area& area, double left, double top, double side) {
   return {left, top, scale * area.width, scale * area.depth};
 }
 
-ZRange z_range_of(const std::vector<Snapshot>& snapshots, const SceneFrame& frame) {
+ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& frame) {
   // Upwards in the picture, from the middle of the desk, gnuplot's projection being a parallel one.
   const auto up = [&](double x, double y, double height) {
     const double back = (y - 0.5 * frame.area.depth) * std::cos(kTurn) - (x - 0.5 * frame.area.width) * std::sin(kTurn);
@@ -114,7 +114,7 @@ ZRange z_range_of(const std::vector<Snapshot>& snapshots, const SceneFrame& fram
     out.above = std::max(out.above, up(x, y, height));
     out.below = std::max(out.below, -up(x, y, height));
   };
-  for (const Snapshot& one : snapshots) {
+  for (const MapsAtTap& one : snapshots) {
     for (Eigen::Index i = 0; i < one.surface.size(); ++i)
       include(frame.candidates.points(i, 0), frame.candidates.points(i, 1), one.surface(i));
     for (const TapMark& mark : one.marks) include(mark.x, mark.y, mark.height);
@@ -122,7 +122,7 @@ ZRange z_range_of(const std::vector<Snapshot>& snapshots, const SceneFrame& fram
   return out;
 }
 
-Snapshot in_sight(const Snapshot& snapshot, const SceneFrame& frame) {
+MapsAtTap in_sight(const MapsAtTap& snapshot, const SceneFrame& frame) {
   const Area& area = frame.area;
   const Candidates& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
@@ -138,7 +138,7 @@ Snapshot in_sight(const Snapshot& snapshot, const SceneFrame& frame) {
       if (snapshot.surface(candidates.nearest(x, y, area)) > z) return true;
     }
   };
-  Snapshot out = snapshot;
+  MapsAtTap out = snapshot;
   out.marks.erase(std::remove_if(out.marks.begin(), out.marks.end(), hidden), out.marks.end());
   return out;
 }
@@ -173,7 +173,7 @@ void FigureLayout::data(const std::string& name, const std::string& lines) {
   data_ += fmt::format("${} << END\n{}END\n", name, lines);
 }
 
-void FigureLayout::taps(const std::string& name, const Snapshot& snapshot) {
+void FigureLayout::taps(const std::string& name, const MapsAtTap& snapshot) {
   constexpr const char* kKinds[] = {"on_", "off_", "failed_"};  // by TapMark::Kind
   std::string lines[std::size(kKinds)];
   for (const TapMark& mark : snapshot.marks)

@@ -34,7 +34,7 @@ struct Box {
 std::string gnuplot_palette(Palette palette);
 
 /// The snapshot without the marks that the surface hides when it is seen from the side.
-Snapshot in_sight(const Snapshot& snapshot, const SceneFrame& frame);
+MapsAtTap in_sight(const MapsAtTap& snapshot, const SceneFrame& frame);
 
 /// Rows of `values`, one for each candidate, the lowest y first: every cell once unless there are more than a picture
 /// can show.
@@ -55,7 +55,7 @@ struct ZRange {
 };
 
 /// What these snapshots of one experiment need to be drawn alike.
-ZRange z_range_of(const std::vector<Snapshot>& snapshots, const SceneFrame& frame);
+ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& frame);
 
 class FigureLayout {
  public:
@@ -75,7 +75,7 @@ class FigureLayout {
   void data(const std::string& name, const std::string& lines);
   /// The taps of a snapshot as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number") and the next one as
   /// `next_NAME` ("x y"), in centimetres.
-  void taps(const std::string& name, const Snapshot& snapshot);
+  void taps(const std::string& name, const MapsAtTap& snapshot);
 
   /// Text whose upper edge is at `top`; `x` is its left end or its middle. May have several lines.
   enum class Align { left, centre };

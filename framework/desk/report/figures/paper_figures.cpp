@@ -19,14 +19,14 @@ namespace {
 struct Progress {
   std::string strategy;
   std::vector<int> iterations;
-  std::vector<Snapshot> snapshots;  ///< one for each iteration
+  std::vector<MapsAtTap> snapshots;  ///< one for each iteration
   SceneFrame frame;
 };
 
 /// A panel for each of the run's snapshots: the surface seen from the side, or the map of the scores or of u.
 struct PanelRow {
   const Progress& run;
-  Eigen::VectorXd Snapshot::*map;
+  Eigen::VectorXd MapsAtTap::*map;
 };
 constexpr double kLeft = 70;    // of the first panel: room for an axis
 constexpr double kRight = 150;  // of the last one: room for a scale
@@ -38,19 +38,19 @@ constexpr double kSurface = 200;
 /// The least and the largest value of a map over the snapshots of a run.
 std::pair<double, double> extent(const PanelRow& row) {
   std::pair<double, double> out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const Snapshot& one : row.run.snapshots) {
+  for (const MapsAtTap& one : row.run.snapshots) {
     const Eigen::VectorXd& map = one.*row.map;
     out = {std::min(out.first, map.minCoeff()), std::max(out.second, map.maxCoeff())};
   }
   return out;
 }
 
-bool is_surface(const PanelRow& row) { return row.map == &Snapshot::surface; }
-bool is_scores(const PanelRow& row) { return row.map == &Snapshot::scores; }
+bool is_surface(const PanelRow& row) { return row.map == &MapsAtTap::surface; }
+bool is_scores(const PanelRow& row) { return row.map == &MapsAtTap::scores; }
 
 Colours colours_of(const PanelRow& row) {
   if (is_surface(row)) {
-    const auto [least, most] = extent({row.run, &Snapshot::deviation});
+    const auto [least, most] = extent({row.run, &MapsAtTap::deviation});
     return deviation_colours(least, most);
   }
   if (!is_scores(row)) return {Palette::cividis, 0.0, 1.0, "u"};
@@ -82,11 +82,11 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
   const ZRange z_range = z_range_of(run.snapshots, run.frame);
   double left = map.left;
   for (std::size_t i = 0; i < run.snapshots.size(); ++i, left += kStep) {
-    const Snapshot& snapshot = run.snapshots[i];
+    const MapsAtTap& snapshot = run.snapshots[i];
     const std::string key = key_of(run, i);
     if (is_surface(row)) {
       layout.data("surface_" + key, surface_of(run.frame, snapshot.surface, snapshot.deviation));
-      Snapshot seen = in_sight(snapshot, run.frame);
+      MapsAtTap seen = in_sight(snapshot, run.frame);
       seen.next.reset();  // it stands in the map
       layout.taps("seen_" + key, seen);
       layout.surface({left - 4, top, map.width + 26, kSurface}, run.frame, "surface_" + key, "seen_" + key, colours,
@@ -118,7 +118,7 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
     shown.push_back(one);
     taps.push_back(at);
   }
-  return {recording.config.options.acquisition.type, shown, snapshots_at(playback, recording, taps),
+  return {recording.config.options.acquisition.type, shown, maps_at_taps(playback, recording, taps),
           scene_frame_of(playback.from_above())};
 }
 
@@ -143,7 +143,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Progress& run = rows[i].run;
     for (std::size_t k = 0; begins_run(i) && k < columns; ++k) {
-      const Snapshot& snapshot = run.snapshots[k];
+      const MapsAtTap& snapshot = run.snapshots[k];
       failed = failed || snapshot.result.failed_taps > 0;
       layout.text(
           fmt::format("iteration {}, after tap {}\n{}", run.iterations[k], snapshot.taps, count_words(snapshot.result)),
@@ -159,7 +159,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
 
 /// Surfaces above, the strategy's suggestion function below: figures 2 and 3.
 Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
-  return panels_figure(name, title, {{progress, &Snapshot::surface}, {progress, &Snapshot::scores}});
+  return panels_figure(name, title, {{progress, &MapsAtTap::surface}, {progress, &MapsAtTap::scores}});
 }
 
 constexpr const char* kAllOfThem = "run configs/paper/figures.yaml, which has all of them";
@@ -233,12 +233,12 @@ struct PaperFigures {
   void add_comparison(const Job& rival, const Job& explorer) {
     const Progress above = progress(rival, {1, 10, 16});
     const Progress below = progress(explorer, {1, 10, 16});
-    const auto add = [&](const char* name, const char* what, Eigen::VectorXd Snapshot::*map) {
+    const auto add = [&](const char* name, const char* what, Eigen::VectorXd MapsAtTap::*map) {
       const std::string title = fmt::format("Object I on the right: {}", what);
       figures.push_back(panels_figure(name, titled(title, sweep, rival), {{above, map}, {below, map}}));
     };
-    add("figure_4", "where to tap next", &Snapshot::scores);
-    add("figure_5", "uncertainty", &Snapshot::uncertainty);
+    add("figure_4", "where to tap next", &MapsAtTap::scores);
+    add("figure_5", "uncertainty", &MapsAtTap::uncertainty);
   }
 };
 

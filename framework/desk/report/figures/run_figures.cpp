@@ -18,14 +18,14 @@
 namespace palpate {
 namespace {
 
-std::string after_words(const Snapshot& snapshot) {
+std::string after_words(const MapsAtTap& snapshot) {
   return fmt::format("after tap {}: {}", snapshot.taps, count_words(snapshot.result));
 }
 
-Figure surface_figure(const ExperimentOptions& options, const SceneFrame& frame, const Snapshot& last) {
+Figure surface_figure(const ExperimentOptions& options, const SceneFrame& frame, const MapsAtTap& last) {
   FigureLayout layout(1000, 700);
   layout.data("surface", surface_of(frame, last.surface, last.deviation));
-  const Snapshot seen = in_sight(last, frame);
+  const MapsAtTap seen = in_sight(last, frame);
   layout.taps("last", seen);
   layout.text(options.name, 30, 16, 15);
   const auto behind = last.marks.size() - seen.marks.size();
@@ -49,7 +49,7 @@ struct MapPanel {
 };
 
 /// Returns the maps of u and w with e = u w, or of u and p with the score.
-std::vector<MapPanel> map_panels(const Snapshot& last) {
+std::vector<MapPanel> map_panels(const MapsAtTap& last) {
   const auto outside = [](const Eigen::VectorXd& values, double high) {
     if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
     return fmt::format("\nrange: {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
@@ -68,7 +68,7 @@ std::vector<MapPanel> map_panels(const Snapshot& last) {
   return panels;
 }
 
-Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, const Snapshot& last) {
+Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, const MapsAtTap& last) {
   constexpr double kMargin = 70;
   constexpr double kTop = 118;
   constexpr double kPitch = 440;
@@ -183,7 +183,7 @@ Figure curves_figure(const Recording& recording, const History& history) {
 Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history,
                           const std::filesystem::path& folder) {
   Playback playback(workshop, recording);
-  const Snapshot last = snapshots_at(playback, recording, {static_cast<int>(recording.taps.size())}).front();
+  const MapsAtTap last = maps_at_taps(playback, recording, {static_cast<int>(recording.taps.size())}).front();
   const SceneFrame frame = scene_frame_of(playback.from_above());
   const ExperimentOptions& options = recording.config.options;
   return {write_gallery(folder, {surface_figure(options, frame, last), maps_figure(options, frame, last),

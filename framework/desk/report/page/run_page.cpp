@@ -74,7 +74,7 @@ Json json_of_build(const Tree& manifest) {
 }  // namespace
 
 /// The numbers of the taps whose contacts read otherwise at a moment than their rows say.
-static std::vector<int> relabelled(const Moment& moment) {
+static std::vector<int> relabelled(const RunAtTap& moment) {
   std::vector<int> out;
   for (const Relabelled& one : moment.result.relabelled) out.push_back(one.tap);
   return out;
@@ -82,7 +82,7 @@ static std::vector<int> relabelled(const Moment& moment) {
 
 static void to_json(Json& out, const SuspectedOutlier& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
-static void to_json(Json& out, const Moment& moment) {
+static void to_json(Json& out, const RunAtTap& moment) {
   const RunResult& result = moment.result;
   Row errors;
   add_errors(errors, result.errors);
@@ -318,7 +318,7 @@ std::string run_news(const Recording& recording, const History& history, int mom
   const auto known = static_cast<std::size_t>(moments);
   const auto row = [&](std::size_t moment) { return recording.rows.begin() + static_cast<std::ptrdiff_t>(moment) - 1; };
   news["at"] = at;
-  news["moments"] = std::vector<Moment>(history.moments.begin() + moments, history.moments.end());
+  news["moments"] = std::vector<RunAtTap>(history.moments.begin() + moments, history.moments.end());
   news["taps"] = known < made ? std::vector<Row>(row(known), row(made)) : std::vector<Row>{};
   if (recording.config.options.scene.effects.values.push) news["true_contours"] = true_contours_of(history);
   if (!history.shown.empty()) news["bytes"] = base64(deflated(add_maps(news, history, 1)));

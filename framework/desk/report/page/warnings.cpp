@@ -90,10 +90,12 @@ void warn_of_choices(const Recording& recording, const History& history, std::ve
 
 void warn_of_weights(const Recording& recording, const History& history, std::vector<std::string>& out) {
   if (!history.moments.back().least_weight) return;
-  const auto least = std::min_element(history.moments.begin(), history.moments.end(),
-                                      [](const Moment& a, const Moment& b) { return a.least_weight < b.least_weight; });
-  const auto most = std::max_element(history.moments.begin(), history.moments.end(),
-                                     [](const Moment& a, const Moment& b) { return a.most_weight < b.most_weight; });
+  const auto least =
+      std::min_element(history.moments.begin(), history.moments.end(),
+                       [](const RunAtTap& a, const RunAtTap& b) { return a.least_weight < b.least_weight; });
+  const auto most =
+      std::max_element(history.moments.begin(), history.moments.end(),
+                       [](const RunAtTap& a, const RunAtTap& b) { return a.most_weight < b.most_weight; });
   constexpr double kRounding = 1e-6;
   if (*least->least_weight >= -kRounding && *most->most_weight <= 1.0 + kRounding) return;
   out.push_back(
