@@ -78,18 +78,18 @@ TEST(Compare, CountsFailedUnfinishedAndValuelessJobsAndLeavesThemOutOfTheMean) {
                                      {"b", "k", 6, 0.2}})
                               .by({"acquisition"});
   EXPECT_EQ(made.groups[0].counts.all(), 5);
-  EXPECT_EQ(made.groups[0].counts.of(Fate::failed), 1);
-  EXPECT_EQ(made.groups[0].counts.of(Fate::unfinished), 1);
-  EXPECT_EQ(made.groups[0].counts.of(Fate::without_value), 1);
+  EXPECT_EQ(made.groups[0].counts.of(ValueStatus::failed), 1);
+  EXPECT_EQ(made.groups[0].counts.of(ValueStatus::unfinished), 1);
+  EXPECT_EQ(made.groups[0].counts.of(ValueStatus::without_value), 1);
   EXPECT_EQ(made.groups[0].mean.count, 2U);
   EXPECT_DOUBLE_EQ(made.groups[0].mean.mean, 0.2);
   EXPECT_EQ(made.groups[1].mean.count, 5U);
   const ComparedPair& pair = made.pairs[0];
   EXPECT_EQ(pair.difference.count, 1U);
-  EXPECT_EQ(pair.lost.of(Fate::failed), 1);
-  EXPECT_EQ(pair.lost.of(Fate::unfinished), 1);
-  EXPECT_EQ(pair.lost.of(Fate::without_value), 1);
-  EXPECT_EQ(pair.lost.of(Fate::without_partner), 2) << "seeds 5 and 6";
+  EXPECT_EQ(pair.lost.of(ValueStatus::failed), 1);
+  EXPECT_EQ(pair.lost.of(ValueStatus::unfinished), 1);
+  EXPECT_EQ(pair.lost.of(ValueStatus::without_value), 1);
+  EXPECT_EQ(pair.lost.of(ValueStatus::without_partner), 2) << "seeds 5 and 6";
   EXPECT_THAT(compare_tables(made),
               HasSubstr("b - a: pairs lost: 2 without a partner, 1 unfinished, 1 failed, 1 without a value\n"));
 }
@@ -190,12 +190,12 @@ TEST(CompareWhere, LeavesJobsOutAndCountsThemAndThePairsThatItBreaks) {
                             {"b", "k", 1, 0.1}, {"b", "k", 2, 0.4}, {"b", "k", 3, 0.4}, {"b", "k", 4, {}, "absent"}};
   const Comparison made = MadeSweep(jobs).by({"acquisition"}, "rmse_m", {}, "rmse_m <= 30 cm");
   EXPECT_EQ(made.left_out.all(), 5);
-  EXPECT_EQ(made.groups[0].counts.of(Fate::left_out), 2);
-  EXPECT_EQ(made.groups[0].counts.of(Fate::failed), 0);
-  EXPECT_EQ(made.groups[1].counts.of(Fate::left_out), 3);
+  EXPECT_EQ(made.groups[0].counts.of(ValueStatus::left_out), 2);
+  EXPECT_EQ(made.groups[0].counts.of(ValueStatus::failed), 0);
+  EXPECT_EQ(made.groups[1].counts.of(ValueStatus::left_out), 3);
   EXPECT_EQ(made.groups[1].mean.count, 1U);
   EXPECT_EQ(made.pairs[0].difference.count, 1U);
-  EXPECT_EQ(made.pairs[0].lost.of(Fate::left_out), 1) << "seed 2; seeds 3 and 4 are left out whole";
+  EXPECT_EQ(made.pairs[0].lost.of(ValueStatus::left_out), 1) << "seed 2; seeds 3 and 4 are left out whole";
   EXPECT_EQ(made.pairs[0].lost.all(), 1);
   const std::string tables = compare_tables(made);
   EXPECT_THAT(tables, HasSubstr("--where excludes 5 of 8 jobs, of which 1 failed, 1 unfinished\n"));
@@ -207,14 +207,14 @@ TEST(CompareWhere, OnASweptKeyKnowsJobsThatHaveNotEnded) {
       MadeSweep({{"a", "k", 1, 0.1}, {"a", "k", 2, 9.0, "absent"}, {"a", "m", 1, 0.3}, {"b", "k", 1, 0.2}})
           .by({"acquisition"}, "rmse_m", {}, "kernel == k");
   EXPECT_EQ(made.left_out.all(), 1);
-  EXPECT_EQ(made.groups[0].counts.of(Fate::unfinished), 1);
+  EXPECT_EQ(made.groups[0].counts.of(ValueStatus::unfinished), 1);
 }
 
 TEST(CompareWhere, AGroupThatItLeavesOutWholeIsCountedAndComparedWithNone) {
   const MadeSweep made(two_by_two(5));
   const Comparison three = made.by({"acquisition", "kernel"}, "rmse_m", {}, "acquisition != a or kernel != rbf");
   EXPECT_EQ(three.groups.size(), 4U);
-  EXPECT_EQ(three.groups[0].counts.of(Fate::left_out), 5);
+  EXPECT_EQ(three.groups[0].counts.of(ValueStatus::left_out), 5);
   ASSERT_EQ(three.pairs.size(), 3U);
   for (const ComparedPair& pair : three.pairs) {
     EXPECT_NE(pair.second, 0U);

@@ -11,7 +11,8 @@ ComparedGroup group(const std::string& name, std::size_t count, double mean) {
   ComparedGroup out;
   out.name = name;
   out.values = {name};
-  for (std::size_t job = 0; job < 4; ++job) out.counts.add(job < count ? Fate::counted : Fate::without_value);
+  for (std::size_t job = 0; job < 4; ++job)
+    out.counts.add(job < count ? ValueStatus::counted : ValueStatus::without_value);
   out.mean.count = count;
   out.mean.mean = mean;
   return out;
@@ -48,9 +49,10 @@ TEST(MeansTable, OfJobsAsTheyEndedHasNoTaps) {
 
 TEST(MeansTable, SaysWhatIsInNoMeanAndLeavesOutWhatIsLeftOut) {
   Comparison one = comparison("rmse_m", Unit::metre, {}, {group("bold", 4, 0.02), group("shy", 4, 0.03)});
-  for (const Fate fate : {Fate::failed, Fate::failed, Fate::unfinished}) one.groups[0].counts.add(fate);
+  for (const ValueStatus status : {ValueStatus::failed, ValueStatus::failed, ValueStatus::unfinished})
+    one.groups[0].counts.add(status);
   one.groups[1].counts = {};
-  for (int job = 0; job < 4; ++job) one.groups[1].counts.add(Fate::left_out);
+  for (int job = 0; job < 4; ++job) one.groups[1].counts.add(ValueStatus::left_out);
   EXPECT_EQ(means_table({one}),
             "| strategy | rmse_m [mm] |\n"
             "|---|---:|\n"

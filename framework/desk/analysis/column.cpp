@@ -64,23 +64,24 @@ std::string written_in(const std::string& column, const Scalar& cell) {
 }
 
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option) {
-  if (row == nullptr) return {Fate::unfinished};
-  if (!is_done(*row)) return {Fate::failed};
+  if (row == nullptr) return {ValueStatus::unfinished};
+  if (!is_done(*row)) return {ValueStatus::failed};
   const CellNumber number = number_of(result_of(*row, column));
   if (number.is_text) {
     throw Error("command line",
                 fmt::format("{}: the column '{}' holds {}, not numbers", option, column, row->cell(column)),
                 "name a column of numbers");
   }
-  return number.value ? JobValue{Fate::counted, *number.value} : JobValue{Fate::without_value};
+  return number.value ? JobValue{ValueStatus::counted, *number.value} : JobValue{ValueStatus::without_value};
 }
 
-std::string FateCounts::words(const std::vector<Fate>& fates, const std::string& behind) const {
+std::string StatusCounts::words(const std::vector<ValueStatus>& statuses, const std::string& behind) const {
   constexpr const char* kWords[] = {"with one job excluded by --where", "without a partner", "unfinished", "failed",
-                                    "without a value"};  // by Fate
+                                    "without a value"};  // by ValueStatus
   std::vector<std::string> out;
-  for (const Fate fate : fates) {
-    if (of(fate) > 0) out.push_back(fmt::format("{}{} {}", of(fate), behind, kWords[static_cast<std::size_t>(fate)]));
+  for (const ValueStatus status : statuses) {
+    if (of(status) > 0)
+      out.push_back(fmt::format("{}{} {}", of(status), behind, kWords[static_cast<std::size_t>(status)]));
   }
   return fmt::format("{}", fmt::join(out, ", "));
 }

@@ -40,8 +40,8 @@ CellNumber number_of(const Scalar* cell);
 /// "" of what is missing or not finite.
 std::string written_in(const std::string& column, const Scalar& cell);
 
-/// What became of a job of which a column is asked. Where a pair of jobs is, it has the fate that stands first.
-enum class Fate {
+/// What became of a job of which a column is asked. Where a pair of jobs is, it has the status that stands first.
+enum class ValueStatus {
   left_out,  ///< by a condition, which fails where it asks for what a job has not
   without_partner,
   unfinished,
@@ -51,7 +51,7 @@ enum class Fate {
 };
 
 struct JobValue {
-  Fate fate = Fate::counted;
+  ValueStatus status = ValueStatus::counted;
   double value = 0.0;  ///< if it counts
 };
 
@@ -60,14 +60,14 @@ struct JobValue {
 JobValue value_of_job(const Row* row, const std::string& column, const std::string& option);
 
 /// Some jobs, or pairs of them, by what became of each. What is left out counts as that alone, however it ended.
-class FateCounts {
+class StatusCounts {
  public:
-  void add(Fate fate) { ++counts_.at(static_cast<std::size_t>(fate)); }
-  int of(Fate fate) const { return counts_.at(static_cast<std::size_t>(fate)); }
+  void add(ValueStatus status) { ++counts_.at(static_cast<std::size_t>(status)); }
+  int of(ValueStatus status) const { return counts_.at(static_cast<std::size_t>(status)); }
   int all() const { return std::accumulate(counts_.begin(), counts_.end(), 0); }
-  bool all_are(Fate fate) const { return of(fate) == all(); }
-  /// "2 failed, 1 unfinished": of `fates` those that there are, with `behind` behind each number.
-  std::string words(const std::vector<Fate>& fates, const std::string& behind = "") const;
+  bool all_are(ValueStatus status) const { return of(status) == all(); }
+  /// "2 failed, 1 unfinished": of `statuses` those that there are, with `behind` behind each number.
+  std::string words(const std::vector<ValueStatus>& statuses, const std::string& behind = "") const;
 
  private:
   std::array<int, 6> counts_{};

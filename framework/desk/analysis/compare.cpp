@@ -79,10 +79,10 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
       const auto& [job, row] = one;
       JobOutcome outcome{value_of_job(row, query.metric, "--metric"), units.of(one)};
       if (!where.keeps(one)) {
-        out.left_out.add(outcome.value.fate);
-        outcome.value = {Fate::left_out};
+        out.left_out.add(outcome.value.status);
+        outcome.value = {ValueStatus::left_out};
       }
-      if (outcome.value.fate == Fate::counted && row->flag(kReached) == false) ++groups.back().never;
+      if (outcome.value.status == ValueStatus::counted && row->flag(kReached) == false) ++groups.back().never;
       Values pairing;
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
       // A list may hold the same job more than once: each is the counterpart of its like.
@@ -103,8 +103,8 @@ ComparedGroup summarise(const Collected& collected, bool only_mean) {
   std::vector<double> values;
   UnitClusters units;
   for (const auto& [pairing, outcome] : collected.outcomes) {
-    out.counts.add(outcome.value.fate);
-    if (outcome.value.fate != Fate::counted) continue;
+    out.counts.add(outcome.value.status);
+    if (outcome.value.status != ValueStatus::counted) continue;
     values.push_back(outcome.value.value);
     units.add(outcome.unit, outcome.value.value);
   }
@@ -135,24 +135,25 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   UnitClusters differences;
   double largest = 0.0;
   const auto add = [&](const JobOutcome& one, const JobOutcome& other) {
-    const Fate fate = std::min(one.value.fate, other.value.fate);
-    if (fate == Fate::counted) {
+    const ValueStatus status = std::min(one.value.status, other.value.status);
+    if (status == ValueStatus::counted) {
       // The same seed, or copies of one pair.
       const std::string unit = one.unit + "-" + other.unit;
       of_a.add(unit, one.value.value);
       of_b.add(unit, other.value.value);
       differences.add(unit, one.value.value - other.value.value);
       largest = std::max({largest, std::abs(one.value.value), std::abs(other.value.value)});
-    } else if (fate != Fate::left_out || std::max(one.value.fate, other.value.fate) > Fate::without_partner) {
-      out.lost.add(fate);
+    } else if (status != ValueStatus::left_out ||
+               std::max(one.value.status, other.value.status) > ValueStatus::without_partner) {
+      out.lost.add(status);
     }
   };
   for (const auto& [pairing, outcome] : a) {
     const auto partner = b.find(pairing);
-    add(outcome, partner != b.end() ? partner->second : JobOutcome{{Fate::without_partner}, ""});
+    add(outcome, partner != b.end() ? partner->second : JobOutcome{{ValueStatus::without_partner}, ""});
   }
   for (const auto& [pairing, outcome] : b) {
-    if (a.count(pairing) == 0) add({{Fate::without_partner}, ""}, outcome);
+    if (a.count(pairing) == 0) add({{ValueStatus::without_partner}, ""}, outcome);
   }
   out.difference = mean_of_sample(differences.clusters(), largest);
   if (ratio) out.ratio = bootstrap_ratio(sums_of(of_a.clusters()), sums_of(of_b.clusters()));
@@ -273,7 +274,7 @@ void check_values(const Comparison& made, const Sweep& sweep) {
   int without_value = 0;
   for (const ComparedGroup& group : made.groups) {
     if (group.mean.count > 0) return;
-    without_value += group.counts.of(Fate::without_value);
+    without_value += group.counts.of(ValueStatus::without_value);
   }
   if (made.left_out.all() == made.jobs) {
     throw Error("command line", fmt::format("--where: matches none of the {} jobs", made.jobs),
@@ -322,7 +323,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   check_values(out, sweep);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (!out.groups[i].counts.all_are(Fate::left_out)) kept.push_back(i);
+    if (!out.groups[i].counts.all_are(ValueStatus::left_out)) kept.push_back(i);
   }
   const std::vector<bool> scenes = scene_places(sweep, query.by);
   std::vector<ComparedBlock> blocks = blocks_of(out.groups, kept, scenes);
@@ -334,7 +335,7 @@ Comparison compare(const Sweep& sweep, const std::vector<Row>& results, const Co
   add_pairs(blocks, groups, query, out);
   std::set<std::size_t> apart;
   for (const ComparedPair& pair : out.pairs) {
-    if (pair.lost.of(Fate::without_partner) > 0)
+    if (pair.lost.of(ValueStatus::without_partner) > 0)
       find_apart(groups[pair.first].outcomes, groups[pair.second].outcomes, apart);
   }
   for (const std::size_t place : apart) out.apart.push_back(paired[place]);

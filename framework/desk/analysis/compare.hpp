@@ -37,7 +37,7 @@ struct CompareQuery {
 struct ComparedGroup {
   std::string name;  ///< its values, in the order of the keys: "weighted, rbf"; "(none)" of a key that its jobs lack
   std::vector<std::string> values;  ///< the same one by one
-  FateCounts counts;
+  StatusCounts counts;
   int never = 0;      ///< jobs that count as they ended, because they never got where they were to be looked at
   MeanEstimate mean;  ///< over the jobs that have a value; clusters: seeds, or jobs where these are the units
   double median = 0.0;
@@ -50,7 +50,7 @@ struct ComparedPair {
   std::size_t first = 0;  ///< indices in Comparison::groups
   std::size_t second = 0;
   /// Pairs that are not complete. Of what the condition leaves out those count of which it keeps one job.
-  FateCounts lost;
+  StatusCounts lost;
   MeanEstimate difference;             ///< count: pairs of jobs; clusters: seeds
   std::optional<RatioEstimate> ratio;  ///< mean of the first over that of the second; if asked for, and it makes sense
   SignedRank test;                     ///< of the means per unit: JobUnits
@@ -77,7 +77,7 @@ struct Comparison {
   bool ratios = false;               ///< asked for
   std::optional<Occasion> occasion;  ///< at which the jobs are looked at; none: as they ended
   int jobs = 0;                      ///< of the sweep
-  FateCounts left_out;               ///< of them, by the condition: what else became of those
+  StatusCounts left_out;             ///< of them, by the condition: what else became of those
 };
 
 /// With more groups, of one scene each, only pairs with the first group are compared, unless a baseline is named.

@@ -91,10 +91,10 @@ Table group_table(const Comparison& comparison, const Scale& scale, const std::s
     table.show(keys_text(comparison.by), one.name, Kind::text);
     table.store("group", one.name);
     table.show("jobs", std::to_string(one.counts.all()));
-    for (const auto& [title, fate] :
-         {std::pair("left out", Fate::left_out), std::pair("failed", Fate::failed),
-          std::pair("unfinished", Fate::unfinished), std::pair("no value", Fate::without_value)})
-      table.show(title, std::to_string(one.counts.of(fate)), Kind::count);
+    for (const auto& [title, status] :
+         {std::pair("left out", ValueStatus::left_out), std::pair("failed", ValueStatus::failed),
+          std::pair("unfinished", ValueStatus::unfinished), std::pair("no value", ValueStatus::without_value)})
+      table.show(title, std::to_string(one.counts.of(status)), Kind::count);
     add_counts(table.last_row(), one.counts, true);
     table.show("n", std::to_string(one.mean.count));
     table.show(units_title(comparison), units_cell(comparison, one.mean), Kind::count);
@@ -147,11 +147,11 @@ void store_ratio(Table& table, const std::optional<RatioEstimate>& ratio) {
 
 void store_test(Table& table, const ComparedPair& pair) {
   const SignedRank& test = pair.test;
-  for (const auto& [name, fate] :
-       {std::pair("left_out", Fate::left_out), std::pair("without_partner", Fate::without_partner),
-        std::pair("unfinished", Fate::unfinished), std::pair("failed", Fate::failed),
-        std::pair("without_value", Fate::without_value)})
-    table.store(fmt::format("lost_{}", name), pair.lost.of(fate));
+  for (const auto& [name, status] :
+       {std::pair("left_out", ValueStatus::left_out), std::pair("without_partner", ValueStatus::without_partner),
+        std::pair("unfinished", ValueStatus::unfinished), std::pair("failed", ValueStatus::failed),
+        std::pair("without_value", ValueStatus::without_value)})
+    table.store(fmt::format("lost_{}", name), pair.lost.of(status));
   table.store("higher", static_cast<std::int64_t>(test.higher));
   table.store("equal", static_cast<std::int64_t>(test.equal));
   table.store("lower", static_cast<std::int64_t>(test.lower));
@@ -207,7 +207,8 @@ std::string contrary_note(const Comparison& comparison, const ComparedPair& pair
 
 std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
   const std::string reasons =
-      pair.lost.words({Fate::left_out, Fate::without_partner, Fate::unfinished, Fate::failed, Fate::without_value});
+      pair.lost.words({ValueStatus::left_out, ValueStatus::without_partner, ValueStatus::unfinished,
+                       ValueStatus::failed, ValueStatus::without_value});
   return reasons.empty() ? "" : fmt::format("{}: pairs lost: {}\n", pair_name(comparison, pair), reasons);
 }
 
@@ -265,9 +266,9 @@ std::size_t groups_without_pair(const Comparison& comparison) {
 std::string remarks(const Comparison& comparison) {
   std::string out;
   const std::size_t groups = comparison.compared;
-  if (const FateCounts& left_out = comparison.left_out; left_out.all() > 0) {
+  if (const StatusCounts& left_out = comparison.left_out; left_out.all() > 0) {
     out += fmt::format("--where excludes {} of {} jobs", left_out.all(), comparison.jobs);
-    const std::string ends = left_out.words({Fate::failed, Fate::unfinished});
+    const std::string ends = left_out.words({ValueStatus::failed, ValueStatus::unfinished});
     out += (ends.empty() ? "" : ", of which " + ends) + "\n";
   }
   out += few_note(comparison) + units_note(comparison);

@@ -73,12 +73,12 @@ bool has_value(const std::vector<double>& values) {
 }
 
 /// Returns what becomes of a job in the curves of its group; `metric` has its values after each tap, null for none.
-Fate fate_of(const JobResult& job, const std::vector<double>* metric, const JobCondition& where,
-             const CurvesQuery& query) {
-  const Fate fate = value_of_job(job.row, query.metric, "--metric").fate;
-  if (!where.keeps(job)) return Fate::left_out;
-  if (fate != Fate::counted && fate != Fate::without_value) return fate;
-  return metric != nullptr && has_value(*metric) ? Fate::counted : Fate::without_value;
+ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, const JobCondition& where,
+                      const CurvesQuery& query) {
+  const ValueStatus status = value_of_job(job.row, query.metric, "--metric").status;
+  if (!where.keeps(job)) return ValueStatus::left_out;
+  if (status != ValueStatus::counted && status != ValueStatus::without_value) return status;
+  return metric != nullptr && has_value(*metric) ? ValueStatus::counted : ValueStatus::without_value;
 }
 
 /// Makes the curve of a group, whose first `scenes` values are those of the scene.
@@ -93,9 +93,9 @@ GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vect
     const TapValues& of_job = values[static_cast<std::size_t>(one.job->index)];
     const auto found = of_job.find(query.metric);
     const std::vector<double>* const metric = found != of_job.end() ? &found->second : nullptr;
-    const Fate fate = fate_of(one, metric, where, query);
-    curve.counts.add(fate);
-    if (fate != Fate::counted) continue;
+    const ValueStatus status = status_of(one, metric, where, query);
+    curve.counts.add(status);
+    if (status != ValueStatus::counted) continue;
     jobs.push_back({metric, query.against == kAgainstTaps ? nullptr : &of_job.at(query.against), units.of(one)});
   }
   std::size_t most = 0;
@@ -114,7 +114,7 @@ void check_points(const GroupCurves& made, const Sweep& sweep) {
   bool is_drawn = false;
   bool takes_time = made.against.name == kAgainstTaps;
   for (const GroupCurve& curve : made.curves) {
-    without_value += curve.counts.of(Fate::without_value);
+    without_value += curve.counts.of(ValueStatus::without_value);
     is_drawn = is_drawn || !curve.points.empty();
     takes_time = takes_time || (!curve.points.empty() && curve.points.back().at > 0.0);
   }
@@ -196,7 +196,7 @@ GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& result
   keys.insert(keys.end(), query.by.begin(), query.by.end());
   for (const JobGroup& group : group_jobs(sweep, results, keys)) {
     GroupCurve curve = make_curve(group, out.scenes.size(), values, units, where, query);
-    if (!curve.counts.all_are(Fate::left_out)) out.curves.push_back(std::move(curve));
+    if (!curve.counts.all_are(ValueStatus::left_out)) out.curves.push_back(std::move(curve));
   }
   std::stable_sort(out.curves.begin(), out.curves.end(), [names = out.scene_names()](const auto& a, const auto& b) {
     const auto place = [&](const GroupCurve& one) { return std::find(names.begin(), names.end(), one.scene_name()); };

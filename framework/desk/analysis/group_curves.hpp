@@ -46,7 +46,7 @@ struct CurvePoint {
 struct GroupCurve {
   std::vector<std::string> scene;   ///< its values of GroupCurves::scenes
   std::vector<std::string> values;  ///< of GroupCurves::by
-  FateCounts counts;                ///< of its jobs; without a value: at no point
+  StatusCounts counts;              ///< of its jobs; without a value: at no point
   int ended = 0;                    ///< of those that count, the ones that made fewer taps than others of the group
   std::vector<CurvePoint> points;   ///< at ascending `at`; none where no job has a value
 

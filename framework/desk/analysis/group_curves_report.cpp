@@ -74,12 +74,13 @@ std::string curve_remarks(const GroupCurves& curves) {
   for (const GroupCurve& curve : curves.curves) {
     const std::string scene = curve.scene_name();
     const std::string name = (scene.empty() ? "" : scene + ", ") + curve.name();
-    const std::string lost = curve.counts.words({Fate::left_out, Fate::failed, Fate::unfinished, Fate::without_value});
+    const std::string lost = curve.counts.words(
+        {ValueStatus::left_out, ValueStatus::failed, ValueStatus::unfinished, ValueStatus::without_value});
     if (!lost.empty()) out += fmt::format("{}: jobs in no point, of {}: {}\n", name, curve.counts.all(), lost);
     if (curve.points.empty()) continue;
     if (curve.ended > 0) {
       out += fmt::format("{}: {} of {} jobs made fewer taps than others and count afterwards with their final values\n",
-                         name, curve.ended, curve.counts.of(Fate::counted));
+                         name, curve.ended, curve.counts.of(ValueStatus::counted));
     }
     const auto fewer = [](const CurvePoint& a, const CurvePoint& b) { return a.mean.count < b.mean.count; };
     const auto [fewest, most] = std::minmax_element(curve.points.begin(), curve.points.end(), fewer);

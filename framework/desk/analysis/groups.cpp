@@ -53,7 +53,7 @@ std::vector<double> values_of(const JobGroup& group, const std::string& column, 
   std::vector<double> out;
   for (const JobResult& job : group.jobs) {
     const JobValue one = value_of_job(job.row, column, option);
-    if (one.fate == Fate::counted) out.push_back(one.value);
+    if (one.status == ValueStatus::counted) out.push_back(one.value);
   }
   std::sort(out.begin(), out.end());
   return out;

@@ -80,7 +80,7 @@ Table table_of(const std::vector<Comparison>& comparisons, const MeansLayout& la
   for (std::size_t block = 0; block < comparisons.size(); block += layout.metrics) {
     const Comparison& first = comparisons[block];
     for (std::size_t i = 0; i < first.groups.size(); ++i) {
-      if (first.groups[i].counts.all_are(Fate::left_out)) continue;
+      if (first.groups[i].counts.all_are(ValueStatus::left_out)) continue;
       out.add_row();
       for (std::size_t key = 0; key < first.by.size(); ++key)
         out.show(first.by[key], first.groups[i].values[key], Table::Kind::text);
@@ -103,7 +103,7 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
     bool lacks = false;
     for (std::size_t i = metric; i < comparisons.size(); i += metrics) {
       for (const ComparedGroup& group : comparisons[i].groups)
-        lacks = lacks || group.counts.of(Fate::without_value) > 0;
+        lacks = lacks || group.counts.of(ValueStatus::without_value) > 0;
     }
     if (!lacks) continue;
     out +=
@@ -115,8 +115,8 @@ std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metr
   int never = 0;
   for (const ComparedGroup& group : comparisons.front().groups) {
     never += group.never;
-    failed += group.counts.of(Fate::failed);
-    unfinished += group.counts.of(Fate::unfinished);
+    failed += group.counts.of(ValueStatus::failed);
+    unfinished += group.counts.of(ValueStatus::unfinished);
   }
   if (failed + unfinished > 0)
     out += fmt::format("{} jobs failed and {} have not ended: the means exclude them.\n", failed, unfinished);

@@ -36,9 +36,9 @@ Setting make_setting(const JobGroup& group, const JobUnits& units, const JobCond
     if (!where.keeps(one)) continue;
     const JobValue paid = value_of_job(one.row, pareto.cost.name, "--cost");
     const JobValue missed = value_of_job(one.row, pareto.error.name, "--error");
-    const Fate fate = std::min(paid.fate, missed.fate);
-    out.counts.add(fate);
-    if (fate != Fate::counted) continue;
+    const ValueStatus status = std::min(paid.status, missed.status);
+    out.counts.add(status);
+    if (status != ValueStatus::counted) continue;
     const std::string unit = units.of(one);
     costs.add(unit, paid.value);
     errors.add(unit, missed.value);
@@ -114,7 +114,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
     setting.name = key_words(sweep, *group.jobs.front().job, differing, true);
     if (setting.name.empty()) setting.name = "the only setting";
     pareto.jobs += setting.counts.all();
-    pareto.unfinished += setting.counts.of(Fate::unfinished);
+    pareto.unfinished += setting.counts.of(ValueStatus::unfinished);
     pareto.settings.push_back(std::move(setting));
   }
   if (pareto.settings.empty())

@@ -20,7 +20,7 @@ struct Setting {
   std::string name;                 ///< "acquisition=weighted, taps=17": the keys that differ within the sweep
   std::size_t first_job = 0;        ///< index in Sweep::jobs
   std::size_t scene = 0;            ///< index in Pareto::scenes
-  FateCounts counts;                ///< without a value: of cost or error
+  StatusCounts counts;              ///< without a value: of cost or error
   MeanEstimate cost;                ///< over the jobs that are done and have both values; clusters: their units
   MeanEstimate error;
   /// Its number on the front of its scene, from 1 in the order of cost; 0 if it is not on it: another complete one of
@@ -29,7 +29,7 @@ struct Setting {
 
   /// Whether every job has both values. Others are shown, but the front is made, and the cheapest chosen, without them:
   /// the mean of the jobs that went well says nothing about those that did not.
-  bool complete() const { return counts.all_are(Fate::counted); }
+  bool complete() const { return counts.all_are(ValueStatus::counted); }
 };
 
 struct Pareto {

@@ -152,8 +152,9 @@ static Table settings_table(const Pareto& pareto) {
     add_mean(table.last_row(), pareto.cost.name + ".", one.cost);
     table.show(error.title(pareto.error.name), error.estimate(one.error));
     add_mean(table.last_row(), pareto.error.name + ".", one.error);
-    table.show("", one.counts.words({Fate::failed, Fate::unfinished, Fate::without_value}, " of " + jobs),
-               Table::Kind::text);
+    table.show(
+        "", one.counts.words({ValueStatus::failed, ValueStatus::unfinished, ValueStatus::without_value}, " of " + jobs),
+        Table::Kind::text);
   }
   return table;
 }

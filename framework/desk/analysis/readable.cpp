@@ -44,12 +44,12 @@ void add_interval(Row& row, const std::string& prefix, const std::optional<MeanI
   row.add(prefix + "high_95", ends ? std::optional(ends->high) : std::nullopt);
 }
 
-void add_counts(Row& row, const FateCounts& counts, bool left_out) {
+void add_counts(Row& row, const StatusCounts& counts, bool left_out) {
   row.add("jobs", counts.all());
-  if (left_out) row.add("left_out", counts.of(Fate::left_out));
-  row.add("failed", counts.of(Fate::failed));
-  row.add("unfinished", counts.of(Fate::unfinished));
-  row.add("without_value", counts.of(Fate::without_value));
+  if (left_out) row.add("left_out", counts.of(ValueStatus::left_out));
+  row.add("failed", counts.of(ValueStatus::failed));
+  row.add("unfinished", counts.of(ValueStatus::unfinished));
+  row.add("without_value", counts.of(ValueStatus::without_value));
 }
 
 }  // namespace palpate

@@ -48,6 +48,6 @@ void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate)
 /// The same of the ends alone.
 void add_interval(Row& row, const std::string& prefix, const std::optional<MeanInterval>& ends);
 /// Adds how many jobs there are and what became of them, on request with those that a condition leaves out.
-void add_counts(Row& row, const FateCounts& counts, bool left_out = false);
+void add_counts(Row& row, const StatusCounts& counts, bool left_out = false);
 
 }  // namespace palpate
