@@ -5,7 +5,7 @@
 #include "cli/output.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
-#include "report/exchange/exchange.hpp"
+#include "report/exchange/mesh_export.hpp"
 
 #include <palpate/error.hpp>
 

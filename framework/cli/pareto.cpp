@@ -2,8 +2,9 @@
 #include "cli/pareto.hpp"
 
 #include "analysis/gnuplot.hpp"
+#include "analysis/mean_output.hpp"
 #include "analysis/pareto_report.hpp"
-#include "analysis/readable.hpp"
+#include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"

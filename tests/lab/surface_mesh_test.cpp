@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heights over a grid as a triangle mesh: normals, orientation, connectivity.
-#include "report/exchange/exchange.hpp"
+// Heights over a grid as triangles: normals, orientation, and what hangs together.
+#include "report/exchange/mesh_export.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

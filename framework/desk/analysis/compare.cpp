@@ -2,7 +2,7 @@
 #include "analysis/compare.hpp"
 
 #include "analysis/groups.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "sweep/earlier_results.hpp"
 
 #include <palpate/error.hpp>

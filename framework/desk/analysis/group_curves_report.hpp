@@ -4,7 +4,7 @@
 #pragma once
 
 #include "analysis/group_curves.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "record/row.hpp"
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/groups.hpp"
 
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "config/tree.hpp"
 
 #include <palpate/error.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/compare_report.hpp"
 
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "analysis/table.hpp"
 
 #include <fmt/format.h>

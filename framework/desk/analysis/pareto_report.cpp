@@ -2,7 +2,7 @@
 #include "analysis/pareto_report.hpp"
 
 #include "analysis/gnuplot.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "analysis/table.hpp"
 
 #include <fmt/format.h>

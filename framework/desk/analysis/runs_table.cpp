@@ -2,7 +2,7 @@
 #include "analysis/runs_table.hpp"
 
 #include "analysis/groups.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "analysis/table.hpp"
 #include "launch/conduct.hpp"
 #include "record/catalogue.hpp"

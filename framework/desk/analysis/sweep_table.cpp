@@ -3,7 +3,7 @@
 
 #include "analysis/column.hpp"
 #include "analysis/groups.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "analysis/statistics.hpp"
 #include "analysis/table.hpp"
 #include "record/fields.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/gnuplot.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "config/layout.hpp"
 #include "record/fields.hpp"
 #include "report/curves.hpp"

@@ -2,7 +2,7 @@
 #include "analysis/column.hpp"
 #include "analysis/gnuplot.hpp"
 #include "analysis/groups.hpp"
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "analysis/statistics.hpp"
 #include "config/layout.hpp"
 #include "report/figures/figure_layout.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/words.hpp"
 
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 #include "config/scale.hpp"
 
 #include <fmt/format.h>

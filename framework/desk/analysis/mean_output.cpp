@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/readable.hpp"
+#include "analysis/mean_output.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "report/exchange/exchange.hpp"
+#include "report/exchange/mesh_export.hpp"
 
 #include "experiment/metrics.hpp"
 #include "record/tap_row.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Exported PLY files, as other programs read them.
-#include "report/exchange/exchange.hpp"
+// PLY as other programs read it.
+#include "report/exchange/mesh_export.hpp"
 #include "support/support.hpp"
 
 #include <gmock/gmock.h>
