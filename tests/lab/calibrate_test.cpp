@@ -3,7 +3,7 @@
 // must err like the original arm.
 #include "calibrate/calibrate.hpp"
 
-#include "calibrate/contacts.hpp"
+#include "calibrate/contact_fit.hpp"
 #include "config/yaml.hpp"
 #include "record/session.hpp"
 #include "scene/scene_options.hpp"
@@ -141,8 +141,8 @@ TEST_F(Calibrate, HasTheSimulatorErrAsTheArmDidThatTheTapsAreOf) {
     Tree found = test::shipped_config("default.yaml", words).tree;
     found.at("scene").at("effects") = parse_yaml(file, "effects.yaml").at("effects");
     found.at("seed") = Tree::scalar("12");
-    const Recording twin = recorded(resolve_experiment(found, shared_host()));
-    EXPECT_NEAR(mean_error(twin), mean_error(arm), 0.001);
+    const Recording rerun = recorded(resolve_experiment(found, shared_host()));
+    EXPECT_NEAR(mean_error(rerun), mean_error(arm), 0.001);
     EXPECT_THAT(file, HasSubstr("height_offset"));
     EXPECT_THAT(file, HasSubstr("# assumed"));
   }

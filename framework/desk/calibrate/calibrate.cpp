@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "calibrate/calibrate.hpp"
 
-#include "calibrate/contacts.hpp"
-#include "calibrate/twin.hpp"
+#include "calibrate/contact_fit.hpp"
+#include "calibrate/simulated_rerun.hpp"
 #include "config/yaml.hpp"
 #include "scene/scene_options.hpp"
 
@@ -55,20 +55,20 @@ std::string words(const Estimated& one, double unit, const char* name) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}] {}", one.value / unit, one.low / unit, one.high / unit, name);
 }
 
-/// A run, its twin, and what both come to.
-struct Pair {
+/// A run, its rerun, and what both come to.
+struct CalibrationRun {
   const Recording& recording;
   std::unique_ptr<const Scene> scene;
-  Twin twin;
-  Twin::Made made;  ///< by what is assumed
+  SimulatedRerun rerun;
+  SimulatedRerun::Result made;  ///< by what is assumed
   std::size_t contacts = 0;
 
-  Pair(const Workshop& workshop, const Recording& from)
+  CalibrationRun(const Workshop& workshop, const Recording& from)
       : recording(from),
         scene(build_scene(from.config.options.scene, static_cast<std::uint64_t>(from.config.options.seed),
                           workshop.host)),
-        twin(workshop, from),
-        made(twin.make(assumed())) {}
+        rerun(workshop, from),
+        made(rerun.make(assumed())) {}
 };
 
 /// All taps of all runs, as counts and sums.
@@ -81,8 +81,8 @@ class Calibrated {
  public:
   Calibrated(const Workshop& workshop, const std::vector<Recording>& recordings) {
     for (const Recording& recording : recordings) {
-      pairs_.emplace_back(workshop, recording);
-      add(pairs_.back());
+      runs_.emplace_back(workshop, recording);
+      add(runs_.back());
     }
     if (contacts_.size() < kFewest) {
       throw Error(recordings.front().directory.string(),
@@ -90,7 +90,7 @@ class Calibrated {
                   "make more taps on a scene that stands as in its config: a bare desk, a block");
     }
     double highest = 0.0;
-    for (const Pair& pair : pairs_) highest = std::max(highest, pair.scene->highest() - pair.scene->desk());
+    for (const CalibrationRun& pair : runs_) highest = std::max(highest, pair.scene->highest() - pair.scene->desk());
     fit_ = fit_contacts(contacts_, highest + kAbove);
     check_scenes();
   }
@@ -122,11 +122,11 @@ class Calibrated {
                      words(vertical, kMillimetre, "mm")));
     const Estimated failed = share_of(sums_.failed, sums_.taps);
     rate(line, "missed_contacts", failed, fmt::format("{:g} of {:g} taps made no contact", sums_.failed, sums_.taps),
-         [](const Twin::Made& made) { return made.failed; });
+         [](const SimulatedRerun::Result& made) { return made.failed; });
     rate(line, "false_contacts", fit_.false_share,
          fmt::format("{:.1f} of {:g} contacts are estimated to be far from the scene",
                      fit_.false_share.value * static_cast<double>(contacts_.size()), sums_.contacts),
-         [](const Twin::Made& made) { return made.far_off; });
+         [](const SimulatedRerun::Result& made) { return made.far_off; });
     for (const auto& [effect, value] : kAssumed) line(effect, value, "assumed");
     return head(effects) + "effects:\n" + lines;
   }
@@ -136,14 +136,14 @@ class Calibrated {
   void check_scenes() const {
     constexpr const char* kRemedy = "use taps on a scene that stands as in its config";
     std::size_t next = 0;
-    for (const Pair& pair : pairs_) {
+    for (const CalibrationRun& pair : runs_) {
       std::size_t far = 0;
       std::size_t through = 0;
       for (std::size_t i = 0; i < pair.contacts; ++i, ++next) {
         const KnownContact& one = contacts_[next];
         const double beyond = beyond_surface(one, offset_at(one.elapsed));
-        far += std::abs(beyond) > Twin::kFarOff ? 1 : 0;
-        through += beyond < -Twin::kFarOff ? 1 : 0;
+        far += std::abs(beyond) > SimulatedRerun::kFarOff ? 1 : 0;
+        through += beyond < -SimulatedRerun::kFarOff ? 1 : 0;
       }
       const auto refuse = [&](std::size_t count, const char* what, std::size_t one_in) {
         throw Error(
@@ -156,14 +156,14 @@ class Calibrated {
     }
     if (std::abs(fit_.offset.value) <= kMostOffset) return;
     throw Error(
-        pairs_.front().recording.directory.string(),
+        runs_.front().recording.directory.string(),
         fmt::format("the heights are off by {:.1f} mm beyond the assumed effects, but an arm errs by at most {:g} mm",
                     fit_.offset.value / kMillimetre, kMostOffset / kMillimetre),
         std::string("check the height of the desk in config and robot, ") + kRemedy);
   }
 
-  void add(Pair& pair) {
-    const Twin::Made& made = pair.made;
+  void add(CalibrationRun& pair) {
+    const SimulatedRerun::Result& made = pair.made;
     const std::vector<TapRequest> requests = requests_of(pair.recording);
     double variance = 0.0;
     for (std::size_t i = 0; i < requests.size(); ++i) {
@@ -183,7 +183,7 @@ class Calibrated {
       contacts_.push_back({pair.scene.get(), place, requests[i].elapsed, contact.height - made.error[i]});
     }
     simulated_variance_ +=
-        (variance / static_cast<double>(requests.size()) - simulated_variance_) / static_cast<double>(pairs_.size());
+        (variance / static_cast<double>(requests.size()) - simulated_variance_) / static_cast<double>(runs_.size());
   }
 
   /// The rate at which the simulator shows as many: none and all of the taps being so, it shows so many.
@@ -191,9 +191,9 @@ class Calibrated {
   void rate(const Line& line, const char* effect, const Estimated& seen, const std::string& what, const Shown& shown) {
     double none = 0.0;
     double all = 0.0;
-    for (const Pair& pair : pairs_) {
-      none += shown(pair.made) / static_cast<double>(pairs_.size());
-      all += shown(pair.twin.make(with_rate(effect), pair.made.error)) / static_cast<double>(pairs_.size());
+    for (const CalibrationRun& pair : runs_) {
+      none += shown(pair.made) / static_cast<double>(runs_.size());
+      all += shown(pair.rerun.make(with_rate(effect), pair.made.error)) / static_cast<double>(runs_.size());
     }
     if (all - none < kShown) {
       return line(effect, "{probability: 0.02}",
@@ -214,19 +214,19 @@ class Calibrated {
   std::string head(const Tree& effects) {
     double error = 0.0;
     double near = 0.0;
-    double twin_error = 0.0;
+    double rerun_error = 0.0;
     std::string runs;
-    for (const Pair& pair : pairs_) {
+    for (const CalibrationRun& pair : runs_) {
       std::vector<double> expected;
       for (const TapRequest& request : requests_of(pair.recording)) {
         expected.push_back(pair.made.error[expected.size()] + offset_at(request.elapsed));
         const Contact& contact = pair.recording.taps[expected.size() - 1].contact;
         const double off = contact.height - pair.scene->height(request.target.x, request.target.y);
-        if (contact.outcome != Outcome::contact || std::abs(off - expected.back()) > Twin::kFarOff) continue;
+        if (contact.outcome != Outcome::contact || std::abs(off - expected.back()) > SimulatedRerun::kFarOff) continue;
         error += off;
         ++near;
       }
-      twin_error += pair.twin.make(effects, expected).mean_error / static_cast<double>(pairs_.size());
+      rerun_error += pair.rerun.make(effects, expected).mean_error / static_cast<double>(runs_.size());
       runs +=
           fmt::format("#   {} ({})\n", pair.recording.directory.string(), pair.recording.config.options.backend.type);
     }
@@ -235,10 +235,10 @@ class Calibrated {
         "intervals; assumed values cannot be estimated\n# from these taps. Heights are off by {:.2f} mm on average, in "
         "the simulator with these effects by {:.2f} mm.\n",
         sums_.taps, runs, sums_.on_desk, sums_.contacts - sums_.on_desk, error / std::max(1.0, near) / kMillimetre,
-        twin_error / kMillimetre);
+        rerun_error / kMillimetre);
   }
 
-  std::vector<Pair> pairs_;
+  std::vector<CalibrationRun> runs_;
   std::vector<KnownContact> contacts_;
   Sums sums_;
   ContactFit fit_;

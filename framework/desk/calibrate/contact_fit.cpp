@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calibrate/contacts.hpp"
+#include "calibrate/contact_fit.hpp"
 
 #include <Eigen/Core>
 
@@ -37,16 +37,17 @@ Eigen::MatrixXd heights_around(const std::vector<KnownContact>& contacts, double
   return out;
 }
 
-struct Numbers {
+struct FitState {
   double offset = 0.0, drift = 0.0, noise = 0.003, false_share = 0.02;
   double log_likelihood = 0.0;
   double true_contacts = 0.0;
   double time_squares = 0.0;  ///< of the true ones, about their mean
 };
 
-class Maximisation {
+class ExpectationMaximisation {
  public:
-  Maximisation(const std::vector<KnownContact>& contacts, Eigen::MatrixXd heights, double mean_elapsed, double range)
+  ExpectationMaximisation(const std::vector<KnownContact>& contacts, Eigen::MatrixXd heights, double mean_elapsed,
+                          double range)
       : heights_(std::move(heights)), log_false_(-std::log(range)) {
     const auto n = static_cast<Eigen::Index>(contacts.size());
     measured_.resize(n);
@@ -57,10 +58,10 @@ class Maximisation {
     }
   }
 
-  Numbers run(bool drifts) const {
+  FitState run(bool drifts) const {
     constexpr int kRounds = 200;
     constexpr double kSettled = 1e-9;
-    Numbers now;
+    FitState now;
     now.offset = start();
     double before = -1e300;
     for (int round = 0; round < kRounds; ++round) {
@@ -80,7 +81,7 @@ class Maximisation {
     return *middle;
   }
 
-  void step(Numbers& now, bool drifts) const {
+  void step(FitState& now, bool drifts) const {
     const double share = (1.0 - now.false_share) / static_cast<double>(heights_.cols());
     const double density = share / (now.noise * std::sqrt(2.0 * kPi));
     const double lying = now.false_share * std::exp(log_false_);
@@ -152,13 +153,13 @@ ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range)
   for (const KnownContact& one : contacts) out.mean_elapsed += one.elapsed / static_cast<double>(contacts.size());
   struct Fitted {
     double lateral;
-    Numbers numbers;
+    FitState numbers;
   };
   std::vector<Fitted> profile;
   for (double lateral = 0.0; lateral <= kFarthestPlace; lateral += kFinestPlace) {
-    const Maximisation fit(contacts, heights_around(contacts, lateral), out.mean_elapsed, range);
-    Numbers steady = fit.run(false);
-    const Numbers drifting = fit.run(true);
+    const ExpectationMaximisation fit(contacts, heights_around(contacts, lateral), out.mean_elapsed, range);
+    FitState steady = fit.run(false);
+    const FitState drifting = fit.run(true);
     const bool drifts = 2.0 * (drifting.log_likelihood - steady.log_likelihood) > kChiSquare95;
     profile.push_back({lateral, drifts ? drifting : steady});
   }
@@ -166,7 +167,7 @@ ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range)
     return a.numbers.log_likelihood < b.numbers.log_likelihood;
   };
   const Fitted& best = *std::max_element(profile.begin(), profile.end(), better);
-  const Numbers& numbers = best.numbers;
+  const FitState& numbers = best.numbers;
   const double half = kNormal975 * numbers.noise / std::sqrt(numbers.true_contacts);
   out.offset = {numbers.offset, numbers.offset - half, numbers.offset + half};
   if (numbers.drift != 0.0) {

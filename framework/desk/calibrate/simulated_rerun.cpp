@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "calibrate/twin.hpp"
+#include "calibrate/simulated_rerun.hpp"
 
 #include "scene/scene_options.hpp"
 
@@ -24,14 +24,14 @@ double median(std::vector<double> values) {
 }
 
 /// All taps over all draws of the effects.
-struct Drawn {
+struct RerunErrors {
   std::vector<std::vector<double>> errors;  ///< of the heights of each tap, metres, over the draws with a contact
   double failed = 0.0;                      ///< number of taps without a contact
 };
 
-Drawn draw_taps(const Workshop& workshop, const Scene& scene, const PluginChoice& choice,
-                const std::vector<TapRequest>& requests) {
-  Drawn out;
+RerunErrors draw_taps(const Workshop& workshop, const Scene& scene, const PluginChoice& choice,
+                      const std::vector<TapRequest>& requests) {
+  RerunErrors out;
   out.errors.resize(requests.size());
   for (std::uint64_t draw = 1; draw <= kDraws; ++draw) {
     const Context context{workshop.host, scene, draw, nullptr};
@@ -66,7 +66,7 @@ std::vector<TapRequest> requests_of(const Recording& recording) {
   return out;
 }
 
-Twin::Twin(const Workshop& workshop, const Recording& recording)
+SimulatedRerun::SimulatedRerun(const Workshop& workshop, const Recording& recording)
     : workshop_(workshop), recording_(recording), config_(recording.config.tree) {
   if (config_.find("motion") == nullptr) {
     throw Error(recording.directory.string(),
@@ -77,14 +77,14 @@ Twin::Twin(const Workshop& workshop, const Recording& recording)
   config_.erase("expect");
 }
 
-Twin::Made Twin::make(const Tree& effects, const std::vector<double>& expected) const {
+SimulatedRerun::Result SimulatedRerun::make(const Tree& effects, const std::vector<double>& expected) const {
   Tree config = config_;
   config.at("scene").at("effects") = effects;
   const ResolvedConfig resolved = resolve_experiment(config, workshop_.host);
   const auto seed = static_cast<std::uint64_t>(resolved.options.seed);
   const std::unique_ptr<const Scene> scene = build_scene(resolved.options.scene, seed, workshop_.host);
-  const Drawn drawn = draw_taps(workshop_, *scene, resolved.options.backend, requests_of(recording_));
-  Made out;
+  const RerunErrors drawn = draw_taps(workshop_, *scene, resolved.options.backend, requests_of(recording_));
+  Result out;
   out.failed = drawn.failed / static_cast<double>(drawn.errors.size() * kDraws);
   double all = 0.0;
   double near = 0.0;

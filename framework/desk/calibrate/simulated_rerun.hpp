@@ -8,14 +8,14 @@
 
 namespace palpate {
 
-class Twin {
+class SimulatedRerun {
  public:
   /// `workshop` and `recording` must outlive it. Throws Error for a run whose backend has no `motion`, and for what the
   /// simulator refuses.
-  Twin(const Workshop& workshop, const Recording& recording);
+  SimulatedRerun(const Workshop& workshop, const Recording& recording);
 
   /// What became of the taps over some draws of the effects.
-  struct Made {
+  struct Result {
     std::vector<double> error;     ///< of each tap: median of height less that of the scene there; 0 without a contact
     std::vector<double> variance;  ///< of it, square metres, by the median deviation
     double failed = 0.0;           ///< share of the taps
@@ -24,7 +24,7 @@ class Twin {
   };
   /// `effects`: as `scene.effects` has them; the same draws for all. `expected`: what each tap is thought to be off;
   /// its median where it is empty.
-  Made make(const Tree& effects, const std::vector<double>& expected = {}) const;
+  Result make(const Tree& effects, const std::vector<double>& expected = {}) const;
 
   static constexpr double kFarOff = 0.01;  ///< metres
 
