@@ -5,7 +5,7 @@
 #include "record/recording.hpp"
 #include "report/history.hpp"
 #include "watch/growing_log.hpp"
-#include "watch/watched.hpp"
+#include "watch/live_record.hpp"
 
 #include <deque>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace palpate {
 ///
 /// A run that is killed and carried on goes on here. Where the record is another one than before (--force), pages begin
 /// anew.
-class RunFollower final : public Watched {
+class RunFollower final : public LiveRecord {
  public:
   /// `workshop` must outlive it.
   RunFollower(const Workshop& workshop, std::filesystem::path directory);

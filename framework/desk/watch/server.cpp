@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only door to Boost.Beast and Boost.Asio.
+// The only acceptor to Boost.Beast and Boost.Asio.
 #include "watch/server.hpp"
 
 #include "record/build_info.hpp"
@@ -45,11 +45,12 @@ using std::chrono::seconds;
 constexpr milliseconds kLookEvery(100);  ///< a tap is to be seen within half a second
 constexpr double kLookFor = 0.05;        ///< seconds; who asks meanwhile waits as long
 constexpr double kFirstLook = 1.0;       ///< before a page is made: most then begin with all there is
-constexpr seconds kAnswerWithin(25);     ///< a question for news, where there are none
-constexpr seconds kMostSilence(10);      ///< of a caller who is to ask or to read
-constexpr seconds kTokenWithin(5);       ///< of a caller who is to show the token
-constexpr std::size_t kMostCallers = 64;
-constexpr std::size_t kMostStrangers = 16;  ///< of them without the token; the oldest of more makes way for the next
+constexpr seconds kAnswerWithin(25);     ///< a page_request for news, where there are none
+constexpr seconds kMostSilence(10);      ///< of a connection who is to ask or to read
+constexpr seconds kTokenWithin(5);       ///< of a connection who is to show the token
+constexpr std::size_t kMaxConnections = 64;
+constexpr std::size_t kMaxUnauthenticated =
+    16;  ///< of them without the token; the oldest of more makes way for the next
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 
 /// 128 bits that nobody can guess.
@@ -80,15 +81,15 @@ std::string host_of(std::string_view text) {
   return boost::algorithm::to_lower_copy(std::string(host), std::locale::classic());
 }
 
-struct Question {
+struct PageRequest {
   std::string place;              ///< as Site::find() has it
   std::optional<std::string> at;  ///< of a page that asks for news
   bool now = false;
 };
 
 /// What stands behind the token.
-Question question_of(std::string_view rest) {
-  Question out;
+PageRequest parse_request(std::string_view rest) {
+  PageRequest out;
   std::string_view query;
   if (const auto mark = rest.find('?'); mark != std::string_view::npos) {
     query = rest.substr(mark + 1);
@@ -113,13 +114,13 @@ Question question_of(std::string_view rest) {
 }  // namespace
 
 /// All that is there while the server is.
-struct Server::Room {
-  class Caller;
+struct Server::Impl {
+  class Connection;
 
-  Room(Site& pages, const ServerOptions& wishes) : site(pages), options(wishes) {}
+  Impl(Site& pages, const ServerOptions& wishes) : site(pages), options(wishes) {}
 
   void accept();
-  void make_way();
+  void drop_oldest_unauthenticated();
   bool is_own_name(const std::string& host) const;
   void look();
   void look_again_after(Clock::duration wait);
@@ -129,39 +130,39 @@ struct Server::Room {
   ServerOptions options;
   std::string token = random_token();
   asio::io_context context{1};
-  tcp::acceptor door{context};
+  tcp::acceptor acceptor{context};
   asio::signal_set signals{context};
   asio::steady_timer opening{context};
   asio::steady_timer looking{context};
   asio::steady_timer leaving{context};
-  std::set<std::shared_ptr<Caller>> callers;
+  std::set<std::shared_ptr<Connection>> connections;
   Clock::time_point last_asked = Clock::now();
 };
 
 /// One connection: it asks once, is answered, and goes.
-class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
+class Server::Impl::Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Caller(Room& room, tcp::socket socket) : room_(room), stream_(std::move(socket)) {}
+  Connection(Impl& impl, tcp::socket socket) : impl_(impl), stream_(std::move(socket)) {}
 
   void begin() {
     parser_.header_limit(kMostHeader);
     stream_.expires_after(kTokenWithin);
     // The header alone: nothing that somebody sends is of interest.
     http::async_read_header(stream_, buffer_, parser_, [self = shared_from_this()](beast::error_code trouble, auto) {
-      if (trouble) return self->leave();
+      if (trouble) return self->close();
       self->answer(self->parser_.get());
     });
   }
 
   /// Whether it has not shown the token.
-  bool is_stranger() const { return !has_token_; }
+  bool is_unauthenticated() const { return !has_token_; }
   Clock::time_point begun() const { return begun_; }
 
   /// What it waits for news of; null if it does not.
-  const std::shared_ptr<Watched>& waits_for() const { return waits_for_; }
+  const std::shared_ptr<LiveRecord>& waits_for() const { return waits_for_; }
 
   /// Tells the news, if there are any, or that there are none, if that takes too long.
-  void tell_news() {
+  void send_news() {
     if (std::optional<std::string> news = waits_for_->news(at_)) {
       reply(http::status::ok, "application/json", std::move(*news));
     } else if (Clock::now() >= until_) {
@@ -169,39 +170,39 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
     }
   }
 
-  void leave() {
+  void close() {
     waits_for_.reset();
     stream_.close();
-    room_.callers.erase(shared_from_this());
+    impl_.connections.erase(shared_from_this());
   }
 
  private:
   void answer(const http::request<http::empty_body>& request) {
     const auto text = [](auto view) { return std::string_view(view.data(), view.size()); };
     if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed);
-    if (request.count(http::field::host) != 1 || !room_.is_own_name(host_of(text(request[http::field::host]))))
+    if (request.count(http::field::host) != 1 || !impl_.is_own_name(host_of(text(request[http::field::host]))))
       return refuse(http::status::forbidden);
     std::string_view target = text(request.target());
     target.remove_prefix(!target.empty() && target.front() == '/' ? 1 : 0);
     const std::string_view said = target.substr(0, target.find_first_of("/?"));
-    if (!same_in_constant_time(said, room_.token)) return refuse(http::status::forbidden);
+    if (!same_in_constant_time(said, impl_.token)) return refuse(http::status::forbidden);
     has_token_ = true;
     target.remove_prefix(said.size());
     if (target.empty() || target.front() != '/') return refuse(http::status::not_found);
-    const Question question = question_of(target.substr(1));
-    const std::shared_ptr<Watched> watched = room_.site.find(question.place);
+    const PageRequest page_request = parse_request(target.substr(1));
+    const std::shared_ptr<LiveRecord> watched = impl_.site.find(page_request.place);
     if (!watched) return refuse(http::status::not_found);
-    room_.last_asked = Clock::now();
-    if (!question.at) {
+    impl_.last_asked = Clock::now();
+    if (!page_request.at) {
       watched->look(kFirstLook);
       return reply(http::status::ok, "text/html; charset=utf-8", watched->page());
     }
-    at_ = *question.at;
+    at_ = *page_request.at;
     waits_for_ = watched;
-    until_ = question.now ? Clock::time_point() : Clock::now() + kAnswerWithin;
+    until_ = page_request.now ? Clock::time_point() : Clock::now() + kAnswerWithin;
     stream_.expires_never();
-    hear();
-    room_.look_again_after({});
+    await_close();
+    impl_.look_again_after({});
   }
 
   void refuse(http::status status) { reply(status, "", ""); }
@@ -222,42 +223,42 @@ class Server::Room::Caller : public std::enable_shared_from_this<Caller> {
     if (status != http::status::no_content) response_.prepare_payload();
     stream_.expires_after(kMostSilence);
     http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code trouble, auto) {
-      if (trouble || self->hears_) return self->leave();
+      if (trouble || self->awaits_close_) return self->close();
       // What was sent and not read, as of a POST, would have the answer lost with the connection.
       beast::error_code none;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, none);
       self->stream_.expires_after(kMostSilence);
-      self->hear();
+      self->await_close();
     });
   }
 
   /// Waits for the end of the connection, whatever is said before. One that waits for news is given up then.
-  void hear() {
-    if (hears_) return;
-    hears_ = true;
+  void await_close() {
+    if (awaits_close_) return;
+    awaits_close_ = true;
     stream_.async_read_some(asio::buffer(ignored_), [self = shared_from_this()](beast::error_code trouble, auto) {
-      self->hears_ = false;
-      if (trouble) return self->leave();
-      self->hear();
+      self->awaits_close_ = false;
+      if (trouble) return self->close();
+      self->await_close();
     });
   }
 
-  Room& room_;
+  Impl& impl_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kMostHeader};
   http::request_parser<http::empty_body> parser_;
   http::response<http::string_body> response_;
   std::array<char, 1024> ignored_{};
-  bool hears_ = false;
+  bool awaits_close_ = false;
   bool has_token_ = false;
   Clock::time_point begun_ = Clock::now();
   std::string at_;
-  std::shared_ptr<Watched> waits_for_;
+  std::shared_ptr<LiveRecord> waits_for_;
   Clock::time_point until_;
 };
 
-void Server::Room::accept() {
-  door.async_accept([this](beast::error_code trouble, tcp::socket socket) {
+void Server::Impl::accept() {
+  acceptor.async_accept([this](beast::error_code trouble, tcp::socket socket) {
     if (trouble) {  // too many open files, above all, which pass
       opening.expires_after(kLookEvery);
       opening.async_wait([this](beast::error_code ended) {
@@ -265,59 +266,59 @@ void Server::Room::accept() {
       });
       return;
     }
-    make_way();
-    if (callers.size() < kMostCallers) {
-      const auto caller = std::make_shared<Caller>(*this, std::move(socket));
-      callers.insert(caller);
-      caller->begin();
+    drop_oldest_unauthenticated();
+    if (connections.size() < kMaxConnections) {
+      const auto connection = std::make_shared<Connection>(*this, std::move(socket));
+      connections.insert(connection);
+      connection->begin();
     }
     accept();
   });
 }
 
 /// Connections without the token, however many are opened and left open, shut nobody out who has it.
-void Server::Room::make_way() {
-  std::shared_ptr<Caller> oldest;
-  std::size_t strangers = 0;
-  for (const auto& caller : callers) {
-    if (!caller->is_stranger()) continue;
-    ++strangers;
-    if (!oldest || caller->begun() < oldest->begun()) oldest = caller;
+void Server::Impl::drop_oldest_unauthenticated() {
+  std::shared_ptr<Connection> oldest;
+  std::size_t unauthenticated = 0;
+  for (const auto& connection : connections) {
+    if (!connection->is_unauthenticated()) continue;
+    ++unauthenticated;
+    if (!oldest || connection->begun() < oldest->begun()) oldest = connection;
   }
-  if (oldest && (strangers >= kMostStrangers || callers.size() >= kMostCallers)) oldest->leave();
+  if (oldest && (unauthenticated >= kMaxUnauthenticated || connections.size() >= kMaxConnections)) oldest->close();
 }
 
-bool Server::Room::is_own_name(const std::string& host) const {
+bool Server::Impl::is_own_name(const std::string& host) const {
   beast::error_code none;
   const auto number = asio::ip::make_address(host, none);
-  if (none) return host == "localhost" || (!door.local_endpoint().address().is_loopback() && host == host_name());
+  if (none) return host == "localhost" || (!acceptor.local_endpoint().address().is_loopback() && host == host_name());
   // A name that points here is no number, whoever had it point here.
-  return number.is_loopback() || !door.local_endpoint().address().is_loopback();
+  return number.is_loopback() || !acceptor.local_endpoint().address().is_loopback();
 }
 
-void Server::Room::look() {
-  std::set<std::shared_ptr<Watched>> watched;
-  for (const auto& caller : callers) {
-    if (caller->waits_for()) watched.insert(caller->waits_for());
+void Server::Impl::look() {
+  std::set<std::shared_ptr<LiveRecord>> watched;
+  for (const auto& connection : connections) {
+    if (connection->waits_for()) watched.insert(connection->waits_for());
   }
   if (watched.empty()) return;
   last_asked = Clock::now();
   bool more = false;
   for (const auto& one : watched) more = one->look(kLookFor) || more;
-  for (const auto& caller : std::set<std::shared_ptr<Caller>>(callers)) {
-    if (caller->waits_for()) caller->tell_news();
+  for (const auto& connection : std::set<std::shared_ptr<Connection>>(connections)) {
+    if (connection->waits_for()) connection->send_news();
   }
   look_again_after(more ? Clock::duration() : kLookEvery);
 }
 
-void Server::Room::look_again_after(Clock::duration wait) {
+void Server::Impl::look_again_after(Clock::duration wait) {
   looking.expires_after(wait);
   looking.async_wait([this](beast::error_code trouble) {
     if (!trouble) look();
   });
 }
 
-void Server::Room::check_patience() {
+void Server::Impl::check_patience() {
   leaving.expires_after(std::min(seconds(5), seconds(options.patience)));
   leaving.async_wait([this](beast::error_code trouble) {
     if (trouble) return;
@@ -327,17 +328,17 @@ void Server::Room::check_patience() {
   });
 }
 
-Server::Server(Site& site, const ServerOptions& options) : room_(std::make_unique<Room>(site, options)) {
+Server::Server(Site& site, const ServerOptions& options) : impl_(std::make_unique<Impl>(site, options)) {
   beast::error_code trouble;
   const auto address = asio::ip::make_address(options.address, trouble);
   if (trouble)
     throw Error("--bind", fmt::format("'{}' is not an address", options.address),
                 "write a numeric address, such as 127.0.0.1 or ::1");
   const tcp::endpoint place(address, static_cast<std::uint16_t>(options.port));
-  room_->door.open(place.protocol(), trouble);
-  if (!trouble) room_->door.set_option(tcp::acceptor::reuse_address(true), trouble);
-  if (!trouble) room_->door.bind(place, trouble);
-  if (!trouble) room_->door.listen(tcp::acceptor::max_listen_connections, trouble);
+  impl_->acceptor.open(place.protocol(), trouble);
+  if (!trouble) impl_->acceptor.set_option(tcp::acceptor::reuse_address(true), trouble);
+  if (!trouble) impl_->acceptor.bind(place, trouble);
+  if (!trouble) impl_->acceptor.listen(tcp::acceptor::max_listen_connections, trouble);
   if (trouble)
     throw Error(fmt::format("{} port {}", options.address, options.port),
                 "cannot be opened for listening: " + trouble.message(),
@@ -347,30 +348,30 @@ Server::Server(Site& site, const ServerOptions& options) : room_(std::make_uniqu
 Server::~Server() = default;
 
 std::string Server::url() const {
-  const tcp::endpoint place = room_->door.local_endpoint();
+  const tcp::endpoint place = impl_->acceptor.local_endpoint();
   const std::string name = place.address().is_unspecified() && !host_name().empty() ? host_name()
                            : place.address().is_v6() ? "[" + place.address().to_string() + "]"
                                                      : place.address().to_string();
-  return fmt::format("http://{}:{}/{}/", name, place.port(), room_->token);
+  return fmt::format("http://{}:{}/{}/", name, place.port(), impl_->token);
 }
 
-bool Server::is_open_to_others() const { return !room_->door.local_endpoint().address().is_loopback(); }
+bool Server::is_open_to_others() const { return !impl_->acceptor.local_endpoint().address().is_loopback(); }
 
 void Server::run() {
-  Room& room = *room_;
+  Impl& impl = *impl_;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (signal == SIGHUP && std::signal(SIGHUP, SIG_DFL) == SIG_IGN) {
       std::signal(SIGHUP, SIG_IGN);  // nohup
     } else {
-      room.signals.add(signal);
+      impl.signals.add(signal);
     }
   }
-  room.signals.async_wait([&room](beast::error_code trouble, int) {
-    if (!trouble) room.context.stop();
+  impl.signals.async_wait([&impl](beast::error_code trouble, int) {
+    if (!trouble) impl.context.stop();
   });
-  room.accept();
-  if (room.options.patience > 0) room.check_patience();
-  room.context.run();
+  impl.accept();
+  if (impl.options.patience > 0) impl.check_patience();
+  impl.context.run();
 }
 
 }  // namespace palpate

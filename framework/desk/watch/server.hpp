@@ -4,9 +4,9 @@
 // An address is http://HOST:PORT/TOKEN/PLACE, with a token that nobody can guess. Below it lie the page itself and
 // `news?at=WHERE`, which is answered once there is something that a page at WHERE lacks, or, after a while, by 204;
 // with
-// `&now` at once. Pages ask one question at a time (long polling): an open stream of events would take one of the six
-// connections that a browser has for a server for as long as its page is open somewhere, and would fill up with what a
-// page that draws slowly has no use for.
+// `&now` at once. Pages ask one page_request at a time (long polling): an open stream of events would take one of the
+// six connections that a browser has for a server for as long as its page is open somewhere, and would fill up with
+// what a page that draws slowly has no use for.
 //
 // Answered with an empty 403 is who has not the token, or calls the server by a name that is not its own, as a page of
 // another site does that has had its own name point here; with 404 what is not there, with 405 all but GET. Nothing is
@@ -46,8 +46,8 @@ class Server {
   void run();
 
  private:
-  struct Room;
-  std::unique_ptr<Room> room_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace palpate

@@ -19,15 +19,15 @@ Site::Site(const Workshop& workshop, const std::filesystem::path& directory) : w
   }
 }
 
-std::shared_ptr<Watched> Site::find(std::string_view place) {
+std::shared_ptr<LiveRecord> Site::find(std::string_view place) {
   constexpr std::size_t kMostKept = 8;
   if (place.empty()) return whole_;
   if (!sweep_) return nullptr;
   const auto job = std::find_if(sweep_->jobs.begin(), sweep_->jobs.end(),
                                 [&](const Job& one) { return place == "jobs/" + one.id + "/"; });
   if (job == sweep_->jobs.end()) return nullptr;
-  std::weak_ptr<Watched>& known = jobs_[job->index];
-  std::shared_ptr<Watched> out = known.lock();
+  std::weak_ptr<LiveRecord>& known = jobs_[job->index];
+  std::shared_ptr<LiveRecord> out = known.lock();
   if (!out) known = out = std::make_shared<RunFollower>(workshop_, job_directory(*sweep_, *job));
   recent_.erase(std::remove(recent_.begin(), recent_.end(), out), recent_.end());
   recent_.push_back(out);

@@ -4,7 +4,7 @@
 
 #include "record/session.hpp"
 #include "sweep/sweep.hpp"
-#include "watch/watched.hpp"
+#include "watch/live_record.hpp"
 
 #include <deque>
 #include <filesystem>
@@ -25,7 +25,7 @@ class Site {
 
   /// What is at `place`: "" for the directory itself, "jobs/ID/" for a job of a sweep. Null for any other. A job that
   /// nobody holds on to is let go of once eight others were asked for.
-  std::shared_ptr<Watched> find(std::string_view place);
+  std::shared_ptr<LiveRecord> find(std::string_view place);
 
   /// Whether somebody works on the record.
   bool goes_on() const { return whole_->goes_on(); }
@@ -33,9 +33,9 @@ class Site {
  private:
   const Workshop& workshop_;
   std::optional<Sweep> sweep_;
-  std::shared_ptr<Watched> whole_;
-  std::map<int, std::weak_ptr<Watched>> jobs_;
-  std::deque<std::shared_ptr<Watched>> recent_;
+  std::shared_ptr<LiveRecord> whole_;
+  std::map<int, std::weak_ptr<LiveRecord>> jobs_;
+  std::deque<std::shared_ptr<LiveRecord>> recent_;
 };
 
 }  // namespace palpate

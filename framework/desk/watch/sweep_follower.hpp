@@ -4,7 +4,7 @@
 
 #include "report/page/json.hpp"
 #include "sweep/sweep.hpp"
-#include "watch/watched.hpp"
+#include "watch/live_record.hpp"
 
 #include <chrono>
 #include <string>
@@ -13,7 +13,7 @@ namespace palpate {
 
 /// Follows a sweep by what its jobs have written: looked at every two seconds, or, where they are so many that this
 /// takes its time, so seldom that it takes a twentieth of it.
-class SweepFollower final : public Watched {
+class SweepFollower final : public LiveRecord {
  public:
   explicit SweepFollower(Sweep sweep) : sweep_(std::move(sweep)) {}
 

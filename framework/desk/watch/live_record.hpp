@@ -10,9 +10,9 @@ namespace palpate {
 /// A run or a sweep that is looked at. A page begins with page() and asks for news() again and again: it says how far
 /// it is, in letters, digits and dots that only this object understands. No member throws Error: what is wrong with a
 /// record is told on its page.
-class Watched {
+class LiveRecord {
  public:
-  virtual ~Watched() = default;
+  virtual ~LiveRecord() = default;
 
   /// Looks whether the record has changed, and takes in what is new for about as many seconds; a single tap may take
   /// longer. Returns whether there is more to be taken in at once.
