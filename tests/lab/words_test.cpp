@@ -35,12 +35,12 @@ TEST(Words, OfARecordAreNoneWhereItHasNoNumber) {
 }
 
 TEST(Page, BreaksLinesBetweenWordsAndLosesNone) {
-  Page page;
+  TextSections page;
   page.heading("Of\na tap");
   std::string said;
   for (int i = 0; i < 60; ++i) said += (i == 0 ? "" : " ") + std::to_string(i * i * i);
-  page.say(said);
-  page.say(std::string(150, 'x') + "\ny");
+  page.add(said);
+  page.add(std::string(150, 'x') + "\ny");
   std::istringstream lines(page.text());
   std::string line;
   std::getline(lines, line);

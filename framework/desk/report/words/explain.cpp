@@ -20,7 +20,7 @@ namespace {
 
 /// What the maps say of the place of the tap: u, and w and e or the probability of `footprint`, whichever the record of
 /// the tap has.
-void explain_place(Page& page, const Row& row, const std::string& footprint) {
+void explain_place(TextSections& page, const Row& row, const std::string& footprint) {
   std::vector<std::string> said;
   const auto say = [&](const char* name, const std::string& before, const std::string& meaning) {
     if (row.number(name)) said.push_back(fmt::format("{}{} ({})", before, number_words(row, name), meaning));
@@ -29,7 +29,7 @@ void explain_place(Page& page, const Row& row, const std::string& footprint) {
   say("p", "p = ", "probability of an object there, by footprint/" + footprint);
   say("w", "w = ", "mean of the label GP: 0 desk, 1 object");
   if (row.number("w") && row.number("e")) said.push_back("e = u w = " + number_words(row, "e"));
-  if (!said.empty()) page.say(fmt::format("There {}.", fmt::join(said, ", ")));
+  if (!said.empty()) page.add(fmt::format("There {}.", fmt::join(said, ", ")));
 }
 
 class FromAboveExplained final : public Explanation {
@@ -42,17 +42,17 @@ class FromAboveExplained final : public Explanation {
     // What the choice read, and the height, which was expected whoever read it.
     experiment.ask(recorded_quantities(row_) | Quantity::height);
 
-    page_.heading(heading(place_words(tap_.target.x, tap_.target.y)));
-    page_.heading("Why there");
+    text_.heading(heading(place_words(tap_.target.x, tap_.target.y)));
+    text_.heading("Why there");
     explain_choice();
-    page_.heading(fmt::format("The models used for the choice, from {}, {} of them on an object",
+    text_.heading(fmt::format("The models used for the choice, from {}, {} of them on an object",
                               counted(hits_before() + before().desk_taps, "contact"), hits_before()));
-    if (recorded_quantities(row_) == Quantities()) page_.say("This choice used no model.");
-    explain_models(page_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
-    page_.heading("Expected and found");
+    if (recorded_quantities(row_) == Quantities()) text_.add("This choice used no model.");
+    explain_models(text_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
+    text_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
-    page_.heading("Effect of the tap");
+    text_.heading("Effect of the tap");
     // The errors after the tap are recorded with the next one, or at the end of the run.
     const bool last = number_ == static_cast<int>(recording_.rows.size());
     explain_errors(row_,
@@ -77,7 +77,7 @@ class FromAboveExplained final : public Explanation {
         explain_design();
         break;
       case Source::acquisition:
-        page_.say(fmt::format("The acquisition chose it: {}.", acquisition_words()));
+        text_.add(fmt::format("The acquisition chose it: {}.", acquisition_words()));
         explain_score(acquisition_scale());
         break;
       case Source::fallback:
@@ -85,14 +85,14 @@ class FromAboveExplained final : public Explanation {
         explain_score(1.0);  // that of u
         break;
       case Source::caller:
-        page_.say("The caller chose it, by scores of its own.");
+        text_.add("The caller chose it, by scores of its own.");
         explain_score(0.0);
         break;
     }
-    explain_place(page_, row_, options_.footprint.type);
+    explain_place(text_, row_, options_.footprint.type);
     explain_repeats();
     if (const std::optional<double> seconds = row_.number("expected_seconds")) {
-      page_.say(
+      text_.add(
           fmt::format("It was made by motion {} of motion.of, which was expected to give the most information per "
                       "second here, in {}.",
                       tap_.motion, seconds_words(*seconds)));
@@ -101,7 +101,7 @@ class FromAboveExplained final : public Explanation {
 
   void explain_design() {
     if (options_.initial.searches()) {
-      page_.say(
+      text_.add(
           fmt::format("It is tap {} of the search for an object, which uses no model: it taps where an object could "
                       "hide in most of the unexplored area, or in the middle of the widest gap (seed {}).",
                       number_, options_.seed));
@@ -111,7 +111,7 @@ class FromAboveExplained final : public Explanation {
     constexpr const char* kHow[] = {"random: drawn from the candidates by the seed alone",
                                     "sobol: a sequence that spreads evenly, shifted by the seed",
                                     "grid: a lattice over the area"};
-    page_.say(fmt::format("It is initial tap {} of {}, placed by the initial design without a model ({}, seed {}).",
+    text_.add(fmt::format("It is initial tap {} of {}, placed by the initial design without a model ({}, seed {}).",
                           number_, options_.initial.count, kHow[static_cast<std::size_t>(options_.initial.design)],
                           options_.seed));
   }
@@ -126,17 +126,17 @@ class FromAboveExplained final : public Explanation {
     std::string why = row_.text("why");
     const bool of_caller = why.rfind(kOfCaller, 0) == 0;
     if (of_caller) why.erase(0, std::string(kOfCaller).size());
-    page_.say(
+    text_.add(
         fmt::format("{} gave no usable scores: {}.",
                     of_caller ? "The scores of the caller" : fmt::format("The acquisition, {},", acquisition_words()),
                     why.empty() ? "its scores do not distinguish the candidates" : why));
     const double greatest = row_.number("max_weight").value_or(1.0);
     if (hits_before() == 0)
-      page_.say("No tap has hit an object yet" +
+      text_.add("No tap has hit an object yet" +
                 (greatest > 0.0 ? "."
                                 : fmt::format(": every label is 0, and so the weight w is nowhere above {}.",
                                               plain_words(greatest))));
-    page_.say(
+    text_.add(
         "So the fallback chose it (fallback: uncertainty), which taps where the height is least certain: its score is "
         "u.");
   }
@@ -154,7 +154,7 @@ class FromAboveExplained final : public Explanation {
 
   void explain_score(double scale) {
     const auto score = row_.number("score");
-    if (!score) return page_.say("The record holds no score.");
+    if (!score) return text_.add("The record holds no score.");
     const int out = left_out();
     const int allowed = playback_.from_above().candidates().size() - out;
     const double ties = row_.number("ties").value_or(1.0);
@@ -173,12 +173,12 @@ class FromAboveExplained final : public Explanation {
           "with the lowest index is taken (candidates are counted along x, row by row).",
           ties == allowed ? "All" : fmt::format("{}", ties), counted(allowed, "candidate"), bound);
     }
-    page_.say(text);
+    text_.add(text);
     if (tap_.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
     const char* why = options_.repeat == ExperimentOptions::Repeat::forbid
                           ? "because tapped before (repeat: forbid)"
                           : "because a tap failed there; others may be tapped again (repeat: allow)";
-    page_.say(out == 0 ? std::string("No candidate is left out.")
+    text_.add(out == 0 ? std::string("No candidate is left out.")
                        : fmt::format("{} {} left out, {}.", counted(out, "candidate"), out == 1 ? "is" : "are", why));
     explain_second(*score);
   }
@@ -187,11 +187,11 @@ class FromAboveExplained final : public Explanation {
   void explain_flatness(double best, double bound, bool equal) {
     if (options_.fallback == ExperimentOptions::Fallback::none) {
       if (best > 0.0 && !equal) return;
-      page_.say(fmt::format(
+      text_.add(fmt::format(
           "{}: such scores do not distinguish candidates, but the config uses no fallback (fallback: none).",
           best > 0.0 ? "Every score is equal" : "No score is positive"));
     } else if (best > 0.0 && best <= bound) {
-      page_.say(fmt::format("The best score, {}, is nearly 0 but positive, so the fallback was not used.",
+      text_.add(fmt::format("The best score, {}, is nearly 0 but positive, so the fallback was not used.",
                             plain_words(best)));
     }
   }
@@ -200,7 +200,7 @@ class FromAboveExplained final : public Explanation {
     const auto x = row_.number("runner_up.x");
     const auto y = row_.number("runner_up.y");
     const auto second = row_.number("runner_up.score");
-    if (!x || !y || !second) return page_.say("There is no runner-up.");
+    if (!x || !y || !second) return text_.add("There is no runner-up.");
     explain_runner_up(place_words(*x, *y), score, *second);
   }
 
@@ -210,7 +210,7 @@ class FromAboveExplained final : public Explanation {
       if (candidate_of(recording_.taps[static_cast<std::size_t>(i - 1)]) == candidate_of(tap_)) earlier.push_back(i);
     }
     if (!earlier.empty())
-      page_.say(fmt::format("This place was tapped before: {} {}.", earlier.size() == 1 ? "tap" : "taps",
+      text_.add(fmt::format("This place was tapped before: {} {}.", earlier.size() == 1 ? "tap" : "taps",
                             fmt::join(earlier, ", ")));
   }
 
@@ -219,10 +219,10 @@ class FromAboveExplained final : public Explanation {
   void explain_expectation() {
     const TapBelief& belief = playback_.from_above().belief();
     const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
-    if (two_part && hits_before() == 0) return page_.say("Expected: nothing, no tap has been on an object yet.");
+    if (two_part && hits_before() == 0) return text_.add("Expected: nothing, no tap has been on an object yet.");
     const int candidate = candidate_of(tap_);
     const double height = belief.height_mean()(candidate);
-    page_.say(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
+    text_.add(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
                           length_words(height), length_words(std::sqrt(belief.height_variance()(candidate))),
                           two_part ? ", if an object is there (the surface GP)" : ""));
     if (!two_part || on_object()) expected_ = height;
@@ -231,7 +231,7 @@ class FromAboveExplained final : public Explanation {
   void explain_outcome() {
     const Contact& contact = tap_.contact;
     if (contact.outcome != Outcome::contact) {
-      page_.say(
+      text_.add(
           fmt::format("Found: nothing, the tap failed: {}{}. It took {} of robot time. No model uses it, and its "
                       "position is excluded afterwards.",
                       outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason,
@@ -257,13 +257,13 @@ class FromAboveExplained final : public Explanation {
                         seconds_words(contact.seconds));
     if (row_.flag("true_on_object").value_or(on) != on)
       text += fmt::format(" In truth {} is there: the label is wrong.", on ? "the desk" : "an object");
-    page_.say(text);
+    text_.add(text);
   }
 
   /// Whether the tap is believed, right after it and by all that came later.
   void explain_doubt() {
     if (!options_.height.outlier_probability || tap_.contact.outcome != Outcome::contact) return;
-    page_.heading("Is it an outlier?");
+    text_.heading("Is it an outlier?");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
       playback_.from_above().choose_next();  // which has the models take in all taps
@@ -273,8 +273,8 @@ class FromAboveExplained final : public Explanation {
       return std::string("is not suspected");
     };
     const auto all = static_cast<int>(recording_.rows.size());
-    page_.say(fmt::format("Right after the tap, it {}.", said(number_)));
-    if (all > number_) page_.say(fmt::format("After all {} taps, it {}.", all, said(all)));
+    text_.add(fmt::format("Right after the tap, it {}.", said(number_)));
+    if (all > number_) text_.add(fmt::format("After all {} taps, it {}.", all, said(all)));
   }
 
   std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk

@@ -47,17 +47,17 @@ class ApproachExplained final : public Explanation {
 
  private:
   void explain() override {
-    page_.heading(heading(line_words(approach_.line)));
-    page_.heading("Why there");
+    text_.heading(heading(line_words(approach_.line)));
+    text_.heading("Why there");
     explain_choice();
     explain_place();
-    page_.heading(fmt::format("The belief after {}, {} of them on an object", counted(number_ - 1, "tap"),
+    text_.heading(fmt::format("The belief after {}, {} of them on an object", counted(number_ - 1, "tap"),
                               experiment_.counts().object_taps));
     explain_belief();
-    page_.heading("Expected and found");
+    text_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
-    page_.heading("Effect of the tap");
+    text_.heading("Effect of the tap");
     Row before;
     add_errors(before, experiment_.errors());
     playback_.advance_to(number_);
@@ -69,7 +69,7 @@ class ApproachExplained final : public Explanation {
   void explain_choice() {
     const std::optional<TapRecord> now = experiment_.choose_next();
     if (tap_.source == Source::initial) {
-      page_.say(
+      text_.add(
           number_ <= options_.initial.count
               ? fmt::format("It is initial tap {} of {}, along a random line through the region (seed {}).", number_,
                             options_.initial.count, options_.seed)
@@ -77,10 +77,10 @@ class ApproachExplained final : public Explanation {
                             options_.seed));
       return;
     }
-    page_.say(fmt::format("The acquisition chose it: {}.", acquisition_words()));
+    text_.add(fmt::format("The acquisition chose it: {}.", acquisition_words()));
     if (!experiment_.has_scores()) return explain_score();
     if (!now || !now->approach || now->approach->line.origin != approach_.line.origin)
-      return page_.say(
+      return text_.add(
           "From the same earlier taps, this build would choose another line: the run used another build or instruction "
           "set, so the other scores are unknown.");
     const Eigen::VectorXd scores = experiment_.scores();
@@ -89,7 +89,7 @@ class ApproachExplained final : public Explanation {
         fmt::format("Its score is {}, the best of {}", plain_words(score), fmt::format("{} approaches", scores.size()));
     if (now->ties.value_or(1) > 1)
       text += fmt::format("; {} are tied with it (tie_tolerance), and the first of them is taken", *now->ties - 1);
-    page_.say(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
+    text_.add(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
     explain_gains(scores.size(), now->candidate);
     explain_second(scores, now->candidate);
   }
@@ -98,14 +98,14 @@ class ApproachExplained final : public Explanation {
   void explain_gains(Eigen::Index approaches, int chosen) {
     const Eigen::VectorXd& expected_discovery = experiment_.belief().expected_discovery();
     if (expected_discovery.size() == approaches) {
-      page_.say(
+      text_.add(
           fmt::format("Of one further solid that no contact contradicts, this line is expected to find {} (mean over "
                       "lines from all sides); the best line finds {}.",
                       length_words(expected_discovery(chosen)), length_words(expected_discovery.maxCoeff())));
     }
     const Eigen::VectorXd& std_reduction = experiment_.belief().std_reduction();
     if (std_reduction.size() == approaches) {
-      page_.say(
+      text_.add(
           fmt::format("A contact there is expected to reduce the mean standard deviation of the surface by {}; the "
                       "best line reduces it by {}.",
                       length_words(std_reduction(chosen)), length_words(std_reduction.maxCoeff())));
@@ -124,7 +124,7 @@ class ApproachExplained final : public Explanation {
   /// What the record has of a score, where a program gave it.
   void explain_score() {
     if (const auto score = row_.number("score"))
-      page_.say(fmt::format("Its score is {}; the program's scores of the other lines are not recorded.",
+      text_.add(fmt::format("Its score is {}; the program's scores of the other lines are not recorded.",
                             plain_words(*score)));
   }
 
@@ -138,12 +138,12 @@ class ApproachExplained final : public Explanation {
   /// What rules read of the place where the surface is met.
   void explain_place() {
     const double along = experiment_.belief().meeting(approach_, best());
-    if (!met(along)) return page_.say("According to the most probable particle, no object is there.");
+    if (!met(along)) return text_.add("According to the most probable particle, no object is there.");
     const Vector3d at =
         approach_.line.origin + along * approach_.line.direction - Vector3d(0.0, 0.0, experiment_.scene().desk());
     const Vector3d normal = Skin::normal(best(), at);
     const double deviation = std::sqrt(experiment_.belief().skin().variance({at, normal}));
-    page_.say(fmt::format(
+    text_.add(fmt::format(
         "Where the line meets the surface, the standard deviation along the surface normal is {}; far from all "
         "contacts it is {}. The cosine between line and normal is {:.3f} (1: perpendicular to the surface).",
         length_words(deviation), length_words(experiment_.belief().skin().signal()),
@@ -159,7 +159,7 @@ class ApproachExplained final : public Explanation {
     for (const Composition::Part& part : best().parts) pieces += (pieces.empty() ? "" : ", ") + piece_words(part.piece);
     const std::string most_words = counted(static_cast<long>(most->parts.size()), "solid");
     const bool alike = least->parts.size() == most->parts.size();
-    page_.say(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all.size()), "particle"),
+    text_.add(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all.size()), "particle"),
                           alike ? most_words : fmt::format("{} to {}", least->parts.size(), most_words), pieces));
   }
 
@@ -186,7 +186,7 @@ class ApproachExplained final : public Explanation {
           fmt::format("{} of {} {} an object there, after {} with a standard deviation of {}.", hits.size(), all.size(),
                       hits.size() == 1 ? "has" : "have", length_words(mean), length_words(std::sqrt(squares / count)));
     }
-    page_.say(text);
+    text_.add(text);
     if (met(along)) expected_ = along;
   }
 
@@ -195,9 +195,9 @@ class ApproachExplained final : public Explanation {
     const double along = contact.along.value_or(approach_.length);
     const std::string robot = fmt::format("{} of robot time", seconds_words(contact.seconds));
     if (contact.outcome == Outcome::no_contact) {
-      page_.say(fmt::format("Found: nothing in {}; the whole path is free. {}.", length_words(along), robot));
+      text_.add(fmt::format("Found: nothing in {}; the whole path is free. {}.", length_words(along), robot));
     } else if (contact.outcome != Outcome::contact) {
-      page_.say(fmt::format("Found: nothing, the tap failed: {}{}. {}. No model uses it.",
+      text_.add(fmt::format("Found: nothing, the tap failed: {}{}. {}. No model uses it.",
                             outcome_name(contact.outcome), contact.reason.empty() ? "" : ", " + contact.reason, robot));
     } else {
       const bool on = row_.flag("on_object").value_or(false);
@@ -209,7 +209,7 @@ class ApproachExplained final : public Explanation {
       text += fmt::format("; greatest force {}, {}.", readable(contact.force, Unit::newton), robot);
       if (row_.flag("true_on_object").value_or(on) != on)
         text += fmt::format(" In truth {} is there.", on ? "no object" : "an object");
-      page_.say(text);
+      text_.add(text);
       explain_label();
     }
     explain_failure();

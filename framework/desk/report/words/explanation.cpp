@@ -15,7 +15,7 @@ namespace palpate {
 std::string Explanation::text() {
   playback_.advance_to(number_ - 1);
   explain();
-  return page_.text();
+  return text_.text();
 }
 
 std::string Explanation::heading(const std::string& where) const {
@@ -35,14 +35,14 @@ void Explanation::explain_runner_up(const std::string& where, double score, doub
   const double less = score - second;
   const std::string by =
       score == 0.0 ? fmt::format("{:.3g}", std::abs(less)) : fmt::format("{:.3g} %", 100.0 * std::abs(less / score));
-  page_.say(fmt::format("Runner-up: {} with a score of {}, {}.", where, plain_words(second),
+  text_.add(fmt::format("Runner-up: {} with a score of {}, {}.", where, plain_words(second),
                         less == 0.0 ? "the same" : by + (less > 0.0 ? " less" : " more, which is a tie")));
 }
 
 void Explanation::explain_label() {
   for (const Relabelled& one : relabelled_in(recording_.summary.value_or(Row{}))) {
     if (one.tap != number_) continue;
-    page_.say(fmt::format(
+    text_.add(fmt::format(
         "After all {} taps it is read as a contact {}, because the offset of motion and arm is known better by then.",
         recording_.rows.size(), one.on_object ? "with an object" : "with the desk"));
   }
@@ -51,11 +51,11 @@ void Explanation::explain_label() {
 void Explanation::explain_failure() {
   if (!recording_.failed() || number_ != static_cast<int>(recording_.rows.size())) return;
   const std::string reason = recording_.summary->text("stop_reason");
-  page_.say(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
+  text_.add(fmt::format("The run failed at this tap{}.", reason.empty() ? "" : ": " + reason));
 }
 
 void Explanation::explain_errors(const Row& before, const Row& after) {
-  if (!recording_.truth_known()) return page_.say("The truth is not known, so neither is the error of the surface.");
+  if (!recording_.truth_known()) return text_.add("The truth is not known, so neither is the error of the surface.");
   std::vector<std::string> lengths;
   std::vector<std::string> others;
   for (const RecordField& error : error_fields()) {
@@ -69,10 +69,10 @@ void Explanation::explain_errors(const Row& before, const Row& after) {
     if (length) lengths.push_back(fmt::format("{} {}{}", error.label, same ? "still " : "", change));
     if (!length) others.push_back(fmt::format("The {} {} {}.", error.label, same ? "stays" : "goes", change));
   }
-  if (!lengths.empty()) page_.say(fmt::format("{}: {}.", surface_error_title(options_), fmt::join(lengths, ", ")));
-  for (const std::string& one : others) page_.say(one);
+  if (!lengths.empty()) text_.add(fmt::format("{}: {}.", surface_error_title(options_), fmt::join(lengths, ", ")));
+  for (const std::string& one : others) text_.add(one);
   if (lengths.empty() && others.empty())
-    page_.say("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
+    text_.add("The record has no errors from before and after it; 'palpate report' computes those of every tap.");
 }
 
 }  // namespace palpate

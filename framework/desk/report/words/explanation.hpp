@@ -42,7 +42,7 @@ class Explanation {
   const Row& row_ = recording_.rows[static_cast<std::size_t>(number_ - 1)];
   const PastTap& tap_ = recording_.taps[static_cast<std::size_t>(number_ - 1)];
   Playback playback_{workshop_, recording_};
-  Page page_;
+  TextSections text_;
 };
 
 /// Of a run from any side, what explain_tap() is of one from above.

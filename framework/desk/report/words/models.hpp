@@ -9,6 +9,6 @@ namespace palpate {
 
 /// A paragraph for each process that the record of the tap has: hyperparameters and their fit, likelihood, condition,
 /// engine, jitter, and how far its map goes. `now` is the choice as computed now, which knows the units of kernels.
-void explain_models(Page& page, const Row& row, const ExperimentOptions& options, const TapRecord& now);
+void explain_models(TextSections& page, const Row& row, const ExperimentOptions& options, const TapRecord& now);
 
 }  // namespace palpate

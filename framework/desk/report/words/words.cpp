@@ -41,12 +41,12 @@ std::string counted(long count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-void Page::heading(const std::string& text) {
+void TextSections::heading(const std::string& text) {
   if (!text_.empty()) text_ += "\n";
   text_ += one_line(text) + "\n";
 }
 
-void Page::say(const std::string& text) {
+void TextSections::add(const std::string& text) {
   constexpr std::size_t kWidth = 96;  // beside the dash
   text_ += fmt::format("  - {}\n", fmt::join(wrapped(one_line(text), kWidth), "\n    "));
 }

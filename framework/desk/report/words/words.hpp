@@ -41,11 +41,11 @@ std::string truth_lost_words(const Error& lost);
 std::string counted(long count, const std::string& noun);
 
 /// Text in sections: headings, and sentences below them, broken into lines of at most 100 letters.
-class Page {
+class TextSections {
  public:
   void heading(const std::string& text);
   /// A sentence or two that begin on a line of their own; control characters become blanks.
-  void say(const std::string& text);
+  void add(const std::string& text);
   const std::string& text() const { return text_; }
 
  private:
