@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a run from any side in a browser: the surface is the program's, taps are arrows, and it grows with its
-// run.
+// The page of a run from any side in a browser: surface, taps as arrows, text.
 #include "record/files.hpp"
 #include "record/recording.hpp"
 #include "report/browser.hpp"
@@ -19,7 +18,7 @@ using ::testing::HasSubstr;
 
 constexpr int kTaps = 10;
 
-/// A run from any side; the meshes of its scene are in the folder that it names.
+/// Makes a run from any side. The meshes of its scene are relative to `folder`. Returns the run directory.
 fs::path touched(const test::TemporaryFolder& folder) {
   fs::create_directory_symlink(test::source_folder() / "configs", folder.path() / "configs");
   const test::Ended ran =
@@ -32,7 +31,7 @@ fs::path touched(const test::TemporaryFolder& folder) {
 
 class AnySidePage : public test::ReportsInBoth {};
 
-/// Of the mesh that is drawn: vertices, triangles, and its volume.
+/// Returns vertices, triangles and volume of the drawn mesh.
 const std::string kMesh =
     "const {x, y, z, i, j, k} = document.getElementById('surface').data[0]; const at = (v) => [x[v], y[v], z[v]]; "
     "let volume = 0; for (let t = 0; t < i.length; t += 1) { const [a, b, c] = [at(i[t]), at(j[t]), at(k[t])]; "
@@ -44,7 +43,7 @@ const std::string kStory = "return document.getElementById('story').textContent"
 TEST_P(AnySidePage, DrawsTheSurfaceAfterEachTapAndTheTapsAsArrows) {
   const fs::path directory = touched(folder_);
   const fs::path here = fs::current_path();
-  fs::current_path(folder_.path());  // from where the mesh of the scene is named
+  fs::current_path(folder_.path());  // the scene's mesh file is relative to this folder
   report(directory);
   const Browsed seen = browse(
       directory, {drawn(kTaps), kMesh, kNames, kStory, "key ARROW_LEFT", drawn(kTaps - 1), kMesh,

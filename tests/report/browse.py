@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Opens a page in headless Chromium and does there what it is told.
+"""Opens a page in headless Chromium and performs steps on it.
 
     browse.py FILE|URL [--no-webgl] STEP...
 
 A step is `return ...` or other JavaScript, whose value is printed as a line of JSON; `await CONDITION`, which waits until that
-JavaScript is true; `key NAME`, which presses a key (ARROW_LEFT); `picture FILE`, a screenshot of all of the page, and `view FILE`,
-of what the window shows; `size W H`, of the window; `reload`; `open URL`; `shell COMMAND`, which does something outside of it;
-`devtools METHOD ARGUMENTS`, JSON, what Chromium's own tools can: a turn of the wheel, another screen, another wish of the system's.
-The last line is a list of what the browser's console holds at level SEVERE. Status 0 unless a step failed.
+JavaScript is true; `key NAME`, which presses a key (ARROW_LEFT); `picture FILE`, a screenshot of the whole page; `view FILE`, of the
+window; `size W H` of the window; `reload`; `open URL`; `shell COMMAND`;
+`devtools METHOD ARGUMENTS`, JSON, a command of Chromium's DevTools protocol.
+The last line lists the messages of the console at level SEVERE. The exit status is 0 unless a step fails.
 """
 
 import json
@@ -24,19 +24,19 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
-PATIENCE = 120  # seconds: machines that run many tests are slow
+PATIENCE = 120  # seconds, for machines that run many tests
 
 
 def open_browser(profile, webgl):
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
-    # Without the last few the browser would look for servers of its maker.
+    # The last flags keep the browser from contacting its maker's servers.
     for flag in ("--headless=new", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update",
                  "--disable-sync", "--disable-quic", "--disable-dev-shm-usage", "--window-size=1400,1000",
                  f"--user-data-dir={profile}"):
         options.add_argument(flag)
     if webgl:
-        options.add_argument("--enable-unsafe-swiftshader")  # WebGL in software, wherever it runs
+        options.add_argument("--enable-unsafe-swiftshader")  # WebGL in software, on any machine
     else:
         options.add_argument("--disable-3d-apis")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
@@ -47,7 +47,7 @@ def picture(browser, file):
     width = browser.execute_script("return document.documentElement.clientWidth")
     height = browser.execute_script("return document.documentElement.scrollHeight")
     browser.set_window_size(width, height + 100)
-    browser.execute_script("return new Promise((done) => setTimeout(done, 1000))")  # plots follow a moment later
+    browser.execute_script("return new Promise((done) => setTimeout(done, 1000))")  # plots adapt with a delay
     pathlib.Path(file).write_bytes(browser.get_screenshot_as_png())
 
 
@@ -80,10 +80,10 @@ def main():
     arguments = sys.argv[1:]
     webgl = "--no-webgl" not in arguments
     page, *steps = [one for one in arguments if one != "--no-webgl"]
-    os.environ.setdefault("HOME", tempfile.gettempdir())  # Chromium wants one to write to
+    os.environ.setdefault("HOME", tempfile.gettempdir())  # Chromium needs a writable home
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = open_browser(profile, webgl)
-        browser.set_script_timeout(PATIENCE)  # a step may draw in software, and answers with what it drew
+        browser.set_script_timeout(PATIENCE)  # a step may draw in software
         try:
             browser.get(page if page.startswith("http://") else pathlib.Path(page).absolute().as_uri())
             for step in steps:

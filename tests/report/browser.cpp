@@ -10,13 +10,13 @@
 namespace palpate::test {
 
 Browsed browse(const std::filesystem::path& page, const std::vector<std::string>& steps, bool webgl) {
-  // The interpreter for which Debian's selenium is installed.
+  // This interpreter has Debian's selenium.
   std::vector<std::string> words{"/usr/bin/python3", (source_folder() / "tests/report/browse.py").string(),
                                  page.string()};
   if (!webgl) words.emplace_back("--no-webgl");
   words.insert(words.end(), steps.begin(), steps.end());
   const TemporaryFolder folder;
-  // What a sanitizer needs of the program under test is nothing to the browser.
+  // The browser must not run under the sanitizer of the program under test.
   const Ended ended = run_program(words, folder.path(), {"ASAN_OPTIONS", "TSAN_OPTIONS", "LD_PRELOAD"});
   Browsed out;
   if (ended.status != 0) out.trouble = ended.err.substr(ended.err.size() > 2000 ? ended.err.size() - 2000 : 0);
@@ -31,7 +31,7 @@ Browsed browse(const std::filesystem::path& page, const std::vector<std::string>
 
 namespace {
 
-/// Why nothing is tested with a browser here, "" if it is.
+/// Returns the reason why pages cannot be tested here; "" if they can.
 std::string browser_missing() {
   if (kSanitized) return "what a browser makes of a page is the same in every build";
   for (const char* file : {"/usr/bin/chromium", "/usr/bin/chromedriver"}) {
@@ -58,7 +58,7 @@ void Reports::report(const std::filesystem::path& directory) const {
 
 Browsed ReportsInBoth::browse(const std::filesystem::path& directory, const std::vector<std::string>& steps) const {
   Browsed seen = test::browse(directory / "report.html", steps, GetParam());
-  EXPECT_EQ(seen.trouble, "");  // a dialog of the page would be one
+  EXPECT_EQ(seen.trouble, "");  // also if the page opened a dialog
   EXPECT_THAT(seen.severe, ::testing::IsEmpty());
   return seen;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A page in a real browser: headless Chromium, driven by tests/report/browse.py.
+// Test fixture: a page in headless Chromium, driven by tests/report/browse.py.
 #pragma once
 
 #include "report/page/json.hpp"
@@ -14,31 +14,31 @@
 
 namespace palpate::test {
 
-/// What a page said to the steps that it was put through.
+/// Results of the steps on a page.
 struct Browsed {
-  std::vector<nlohmann::json> values;  ///< one for each step that has a value
-  std::vector<std::string> severe;     ///< what the console holds at level SEVERE
-  std::string trouble;                 ///< why the browser or a step failed, "" if none did
+  std::vector<nlohmann::json> values;  ///< one per step with a value
+  std::vector<std::string> severe;     ///< messages of the console at level SEVERE
+  std::string trouble;                 ///< error of the browser or of a step; "" for none
 };
 
-/// Opens `page`, a file or an address, and does the steps, each as browse.py describes it.
+/// Opens `page`, a file or an address, and performs the steps described in browse.py.
 Browsed browse(const std::filesystem::path& page, const std::vector<std::string>& steps, bool webgl);
 
-/// Waits until the page says that it has drawn this: the tap of a run, or how often for a sweep.
+/// Returns a step that waits until the page has drawn this tap of a run, or this often for a sweep.
 std::string drawn(int what);
 
-/// Tests of pages, skipped where there is no browser.
+/// Tests of pages, which are skipped without a browser.
 class Reports : public ::testing::Test {
  protected:
   void SetUp() override;
-  /// Writes the page of a run or a sweep.
+  /// Writes the page of a run or sweep.
   void report(const std::filesystem::path& directory) const;
 
   const std::string paper_ = (source_folder() / "configs/paper/object_i.yaml").string();
   const TemporaryFolder folder_;
 };
 
-/// The same with WebGL and without.
+/// Tests with and without WebGL.
 class ReportsInBoth : public Reports, public ::testing::WithParamInterface<bool> {
  protected:
   Browsed browse(const std::filesystem::path& directory, const std::vector<std::string>& steps) const;

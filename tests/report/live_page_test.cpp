@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page that `palpate watch` serves, in a browser, while its record grows.
+// Pages of `palpate watch` in a browser while their record grows.
 #include "report/browser.hpp"
 #include "support/parts.hpp"
 #include "support/programs.hpp"
@@ -17,7 +17,7 @@ using ::testing::IsEmpty;
 
 class LivePage : public test::Reports {
  protected:
-  /// A run of 17 taps of which the first `taps` are recorded.
+  /// Makes a run of 17 taps with a record of the first `taps`. Returns its directory.
   fs::path under_way(std::size_t taps) {
     const test::Ended ran = test::palpate({"run", paper_, "--quiet", "seed=4"}, folder_.path());
     EXPECT_EQ(ran.status, 0) << ran.err;
@@ -30,7 +30,7 @@ class LivePage : public test::Reports {
         << test::record_until(test::text_of(whole_ / "record.jsonl"), static_cast<int>(taps));
     return directory_;
   }
-  /// The step that records taps from one number up to another.
+  /// Returns a step that appends taps `first` to `last` to the record.
   std::string grow(std::size_t first, std::size_t last) const {
     std::string patterns;
     for (std::size_t tap = first; tap <= last; ++tap) patterns += fmt::format(" -e '^.\"t[a-z]*\": {},'", tap);
@@ -50,7 +50,7 @@ class LivePage : public test::Reports {
   std::unique_ptr<test::Child> server_;
 };
 
-/// Would be gone after a reload.
+/// A reload would remove the mark.
 const std::string kMark = "window.mark = 'still here'; return window.mark";
 const std::string kMarked = "return window.mark";
 const std::string kAt = "return [document.getElementById('at').textContent, document.getElementById('slider').max]";

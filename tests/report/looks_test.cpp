@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How pages look and behave before anybody reads them: light and dark, on a phone, under the wheel; and what they do
-// not draw because it says nothing.
+// Appearance of pages: themes, a phone, the wheel, and panels that are left out.
 #include "report/sweep_pages.hpp"
 
 #include <algorithm>
@@ -12,7 +11,7 @@ using ::testing::Not;
 
 class Looks : public test::SweepPages {
  protected:
-  /// A run of the paper's experiment with its page. Returns its directory.
+  /// Makes a run of the paper's experiment with its page. Returns its directory.
   fs::path run_with_page(std::vector<std::string> words) const {
     words.insert(words.begin(), {"run", paper_, "--quiet", "--runs", "runs"});
     const test::Ended ran = test::palpate(words, folder_.path());
@@ -23,7 +22,7 @@ class Looks : public test::SweepPages {
   }
 };
 
-/// The lightness, 0 to 255, of the page, of its text, of the map's frame, of the text in it, and of its axes' lines.
+/// Returns the lightness, 0 to 255, of the page, its text, a plot, the plot's text, and its grid lines.
 const std::string kLightness =
     "const light = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map(Number); return (r + g + b) / 3; };"
     "const e = document.getElementById(document.getElementById('map_u') ? 'map_u' : 'front'); const l = e.layout;"
@@ -40,7 +39,7 @@ const std::string kClickTheme = "document.getElementById('theme').click()";
 std::string plots_are(const std::string& theme) {
   return "await light_of_plots() " + std::string(theme == "dark" ? "< 80" : "> 200");
 }
-/// Lets the page itself tell how light its plots are, so that one can wait for it.
+/// Defines a function of the page that returns the lightness of its plots, so that steps can wait for a change.
 const std::string kWatchPlots =
     "window.light_of_plots = () => document.getElementById(document.getElementById('map_u') ? 'map_u' : 'front')"
     ".layout.plot_bgcolor.match(/[\\d.]+/g).map(Number)[0]";
@@ -63,12 +62,13 @@ void expect_dark(const json& seen) {
 
 TEST_P(Looks, OfARunAreDarkWithTheSystemUntilSomebodySwitchesAndThePageRemembersIt) {
   const fs::path directory = run_with_page({"taps=4", "candidates.count=12"});
-  const Browsed seen = browse(directory, {drawn(4), kWatchPlots, kLightness,                     // light
-                                          system_is("dark"), plots_are("dark"), kLightness,      // goes along
-                                          kClickTheme, plots_are("light"), kLightness,           // says no
-                                          "reload", drawn(4), kWatchPlots, kLightness,           // remembers
-                                          kClickTheme, plots_are("dark"), kLightness,            // says yes
-                                          system_is("light"), plots_are("light"), kLightness});  // goes along
+  const Browsed seen = browse(directory, {drawn(4), kWatchPlots, kLightness,                 // light at first
+                                          system_is("dark"), plots_are("dark"), kLightness,  // follows the system
+                                          kClickTheme, plots_are("light"), kLightness,       // the reader switches
+                                          "reload", drawn(4), kWatchPlots, kLightness,  // the page remembers the choice
+                                          kClickTheme, plots_are("dark"), kLightness,   // the reader switches back
+                                          // follows the system again
+                                          system_is("light"), plots_are("light"), kLightness});
   std::vector<json> shown;
   std::copy_if(seen.values.begin(), seen.values.end(), std::back_inserter(shown),
                [](const json& one) { return one.is_array(); });
@@ -83,13 +83,13 @@ TEST_P(Looks, OfARunAreDarkWithTheSystemUntilSomebodySwitchesAndThePageRemembers
 
 const char* const kPhone =
     R"(devtools Emulation.setDeviceMetricsOverride {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": true})";
-/// The width of the page, and of the widest plot that does not scroll within a frame of its own.
+/// Returns the widths of the window and of the page, and the right edge of plots that do not scroll on their own.
 const std::string kWidths =
     "return [innerWidth, document.documentElement.scrollWidth, Math.max(...[...document.querySelectorAll('.plot')]"
     ".filter((p) => getComputedStyle(p.closest('figure')).overflowX !== 'auto' && p.offsetParent)"
     ".map((p) => p.getBoundingClientRect().right))]";
 
-/// Where the second cells of tables begin, the one that lies farthest to the right, and as much as a word.
+/// Returns the rightmost begin of the tables' second column, plus the width of a word.
 const std::string kTables =
     "return Math.max(...[...document.querySelectorAll('tr td:nth-child(2) .foreign')]"
     ".map((cell) => cell.getBoundingClientRect().left + 20))";
@@ -126,14 +126,14 @@ TEST_P(Looks, OfASweepAreDarkAndItsJobsLinkToNothingButPagesThatAreThere) {
   report(directory);
   const std::string links = "return [...document.querySelectorAll('a')].map((a) => a.getAttribute('href'))";
   const std::string how = "return document.getElementById('how_to_report')?.textContent ?? ''";
-  // The page counts its drawings, and where it is slow there are two before anybody looks: in light, and in dark.
+  // A slow page may have drawn twice, in light and in dark.
   const std::string drawn_at_all = "await Number(document.body.dataset.drawn) >= 1";
   const Browsed seen =
       browse(directory, {system_is("dark"), drawn_at_all, kWatchPlots, plots_are("dark"), kLightness, links, how});
   const std::size_t at = seen.values.size() - 3;
   expect_dark(seen.values.at(at));
   EXPECT_EQ(seen.values.at(at + 1), json({"jobs/" + rows.at(4).at("id") + "/report.html"}));
-  // What the page tells to do works; done for all of them, there is nothing more to tell.
+  // The command on the page works; with it done for all jobs, the page has no more commands.
   const auto told = seen.values.at(at + 2).get<std::string>();
   const auto begin = told.find("palpate report ") + 15;
   const std::string place = told.substr(begin, told.find(" makes it") - begin);
@@ -147,7 +147,7 @@ TEST_P(Looks, OfASweepAreDarkAndItsJobsLinkToNothingButPagesThatAreThere) {
   EXPECT_EQ(again.values.at(1), "") << "the job without a folder has nothing to be reported";
 }
 
-/// Turns the wheel in the middle of the surface; `keys` are 0, or 2 for Ctrl.
+/// Returns a step that turns the wheel in the middle of the surface; `keys` is 0, or 2 for Ctrl.
 std::string wheel(int keys) {
   return fmt::format(
       R"(devtools Input.dispatchMouseEvent {{"type": "mouseWheel", "x": 600, "y": 300, "deltaX": 0, "deltaY": 240, "modifiers": {}}})",
@@ -177,13 +177,13 @@ TEST_P(Looks, TheWheelScrollsThePageOverEveryPlotAndWithCtrlItZoomsTheSurface) {
   EXPECT_THAT(seen.values.back().get<std::string>(), testing::StartsWith("map_"));
 }
 
-/// The titles of all panels, and the lines about what is none.
+/// Returns the titles of all panels, and the lines about constants.
 const std::string kPanels =
     "const text = (s) => [...document.querySelectorAll(s)].map((e) => e.textContent); return [text('figcaption'), "
     "text('.constants').join(' ')]";
 
 TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
-  const fs::path missed = run_with_page({"taps=3", "candidates.count=12"});  // nothing is hit
+  const fs::path missed = run_with_page({"taps=3", "candidates.count=12"});  // no tap hits the object
   const Browsed seen = browse(missed, {drawn(3), kPanels, "return document.getElementById('map_w') === null"});
   EXPECT_THAT(seen.values.at(0).at(1).get<std::string>(),
               HasSubstr("Weight w: 1 on an object, 0 on the desk: 0 everywhere"));
@@ -201,7 +201,7 @@ TEST_P(Looks, MapsThatAreTheSameEverywhereAndErrorsThatNobodyKnowsAreNoPanels) {
   }
 }
 
-// Without WebGL a page lacks its surface, and looks the same but for it: run_page_test.cpp has both.
+// run_page_test.cpp tests pages without WebGL, which lack the surface alone.
 INSTANTIATE_TEST_SUITE_P(InABrowser, Looks, ::testing::Values(true), test::webgl_name);
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a run in a browser: it draws, moves, shows what the record says, and takes text for text.
+// The page of a run in a browser: drawing, slider, numbers of the record, and texts.
 #include "report/browser.hpp"
 #include "support/parts.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Runs the paper's experiment with `words`. Returns the run directory.
+/// Makes a run of the paper's experiment with `words`. Returns the run directory.
 fs::path made(const test::TemporaryFolder& folder, std::vector<std::string> words) {
   words.insert(words.begin(), {"run", (test::source_folder() / "configs/paper/object_i.yaml").string(), "--quiet"});
   const test::Ended ran = test::palpate(words, folder.path());
@@ -25,7 +25,7 @@ fs::path made(const test::TemporaryFolder& folder, std::vector<std::string> word
 class ReportedRun : public test::Reports {};
 class RunPage : public test::ReportsInBoth {};
 
-/// The picture of a heat map and of the surface, as the browser has painted them.
+/// Returns pictures of a map and of the surface as the browser paints them.
 const std::string kPainted =
     "return Promise.all(['map_e', 'surface'].map((id) => Plotly.toImage(id, {format: 'png', width: 400, height: "
     "300})))";
@@ -60,7 +60,7 @@ TEST_P(RunPage, DrawsEveryTapAndMovesByKeyAndSliderWithoutAComplaint) {
 }
 
 TEST_F(ReportedRun, MarksTapsAsTheyAreReadAtTheMomentThatIsShown) {
-  // Tap 1, 1.5 cm high, is taken for the desk until others have told where that is.
+  // Tap 1, at a height of 1.5 cm, counts as on the desk until other taps reveal the height of the desk.
   const test::Ended ran = test::palpate(
       {"run", (test::source_folder() / "configs/default.yaml").string(), "--quiet", "scene=mug", "taps=9"},
       folder_.path());
@@ -118,7 +118,7 @@ TEST_F(ReportedRun, ShowsTheExpectedErrorAndQuantitiesInTheirUnitsWithTheDigitsT
 }
 
 TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
-  // The oracle of the maps is the run itself, which writes them while it goes on.
+  // The run itself writes its maps, as an oracle.
   const fs::path directory =
       made(folder_, {"seed=4", "log.maps=true", "scene.effects={missed_contacts: {probability: 0.2}}"});
   report(directory);
@@ -149,7 +149,7 @@ TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
     }
     EXPECT_TRUE(marks.at(0) == expected[0]) << made;
     EXPECT_TRUE(marks.at(1) == expected[1]) << made;
-    EXPECT_TRUE(marks.at(2) == expected[1]) << made;  // each cross has an edge in white
+    EXPECT_TRUE(marks.at(2) == expected[1]) << made;  // white edges of the crosses
     EXPECT_TRUE(marks.at(3) == expected[2]) << made;
     failed_taps = static_cast<int>(expected[2].size());
     ASSERT_EQ(marks.at(4).size(), 1U);
@@ -164,11 +164,11 @@ TEST_F(ReportedRun, HasTheTapsOfTheRecordAndTheMapsThatItsModelsHadOnItsPage) {
   EXPECT_EQ(seen.values.at(0).at(0).size(), summary.at("object_taps"));
   EXPECT_EQ(seen.values.at(0).at(1).size(), summary.at("desk_taps"));
 
-  // Maps are rounded to 1 / 131070 of their range.
+  // The page stores maps in 65536 steps, so values are off by at most 1 / 131070 of the range.
   int maps = 0;
   for (std::size_t made = 3; made < 17; ++made) {
-    const fs::path file = directory / fmt::format("maps/tap_{:03}.csv", made + 1);  // at the next choice
-    if (!fs::exists(file)) continue;                                                // the loop had no models yet
+    const fs::path file = directory / fmt::format("maps/tap_{:03}.csv", made + 1);  // maps of the next choice
+    if (!fs::exists(file)) continue;                                                // before the first model
     const std::vector<Cells> cells = csv_rows(text_of(file));
     ++maps;
     const json& shown = seen.values.at(2 * (17 - made) + 1);
@@ -191,7 +191,7 @@ TEST_F(ReportedRun, KeepsToItsAxesNamesAllHyperparametersAndTakesTimesByTheirTap
   report(directory);
   std::string record = test::text_of(directory / "record.jsonl");
   const auto line = record.find("{\"timing\": 6,");
-  record.erase(line, record.find('\n', line) + 1 - line);  // the program was killed during this tap
+  record.erase(line, record.find('\n', line) + 1 - line);  // as if the program had been killed during this tap
   folder_.write(fs::relative(directory / "record.jsonl", folder_.path()).string(), record);
   report(directory);
   const Browsed seen = test::browse(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs side by side on one page: what it says of them is what their records say.
+// The page of several runs: its numbers are those of the records.
 #include "report/browser.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@ using ::testing::IsEmpty;
 
 class RunsPage : public test::Reports {
  protected:
-  /// Runs the paper's experiment with `words`. Returns the run directory.
+  /// Makes a run of the paper's experiment with `words`. Returns the run directory.
   fs::path made(const std::string& runs, std::vector<std::string> words) const {
     words.insert(words.begin(), {"run", paper_, "--quiet", "--runs", runs});
     const test::Ended ran = test::palpate(words, folder_.path());
@@ -30,7 +30,7 @@ class RunsPage : public test::Reports {
   }
 };
 
-/// The names and the ends of the curves in a plot.
+/// Returns the names and last points of the curves in a plot.
 std::string ends_of(const std::string& plot) {
   return "return document.getElementById('" + plot +
          "').data.map((curve) => [curve.name, curve.x.at(-1), curve.y.at(-1)])";
@@ -69,7 +69,7 @@ TEST_F(RunsPage, SubtractsTheFirstSurfaceAndFollowsTheSlider) {
   EXPECT_LT(seen.values.at(0).get<double>(), 1e-9);
   EXPECT_LT(seen.values.at(3).get<double>(), 1e-9);
   EXPECT_EQ(seen.values.at(4), 0) << "before the first tap there is none to mark";
-  // The record of the second has the surface that the page shows behind its last tap.
+  // The second run's record has the surface after its last tap.
   const std::vector<Cells> recorded = csv_rows(text_of(second / "surface.csv"));
   const json& shown = seen.values.at(1);
   ASSERT_EQ(recorded.size(), shown.size() * shown.at(0).size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a sweep in a browser: what it plots are the numbers of results.csv, and it follows its controls.
+// The page of a sweep in a browser: its plots have the numbers of results.csv and follow the controls.
 #include "report/sweep_pages.hpp"
 #include "support/parts.hpp"
 
@@ -27,7 +27,7 @@ double deviation_of(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-/// Means and spreads of all cells, against the rows.
+/// Compares means and spreads of all cells with the rows.
 void expect_cells(const json& seen, const std::vector<Cells>& rows, const std::string& across, const std::string& up,
                   const std::string& metric, double factor) {
   ASSERT_EQ(seen.at("mean").size(), seen.at("y").size());
@@ -50,7 +50,7 @@ void expect_cells(const json& seen, const std::vector<Cells>& rows, const std::s
   }
 }
 
-/// The front that the page joins, against the one that `palpate pareto` wrote.
+/// Compares the drawn front with that of `palpate pareto`.
 void expect_front(const json& seen, const fs::path& directory, const std::string& cost, double cost_factor,
                   const std::string& error, double error_factor) {
   struct Place {
@@ -62,7 +62,7 @@ void expect_front(const json& seen, const fs::path& directory, const std::string
     if (row.at("front").empty()) continue;
     const auto number = [&](const std::string& name) { return std::stod(row.at(name)); };
     const auto half = [&](const std::string& name) {
-      if (row.at(name + ".high_95").empty()) return 0.0;  // equal values: no bar
+      if (row.at(name + ".high_95").empty()) return 0.0;  // equal values have no interval
       return (number(name + ".high_95") - number(name + ".low_95")) / 2;
     };
     front.push_back({std::stoi(row.at("front")),
@@ -204,12 +204,12 @@ TEST_P(SweepNumbers, PlotsWhatResultsCsvSaysAndFollowsItsControls) {
   for (const json& place : seen.values.at(22)) EXPECT_TRUE(fs::is_directory(directory / place.get<std::string>()));
   for (const json& picture : seen.values.at(23)) EXPECT_GT(picture.get<std::string>().size(), 5000U) << "painted";
 
-  // A setting of the front that lacks one of its jobs is no longer compared, and what it beat may be on the front.
+  // A setting on the front that loses a job is no longer compared, so settings that it dominated may be on the front.
   const auto front_of = [&] { return csv_rows(text_of(directory / "pareto_robot_seconds_rmse_m.csv")); };
   const std::vector<Cells> before = front_of();
   const auto beaten =
       std::find_if(before.begin(), before.end(), [](const Cells& row) { return row.at("front") == "1"; });
-  // The last of them in the order of cost: without it the setting is cheaper still.
+  // The most expensive job, without which the setting would even be cheaper.
   const auto lost =
       std::find_if(by_time.rbegin(), by_time.rend(), [&](const Cells& row) { return of(row) == of(*beaten); });
   test::forget_end(directory / "jobs" / lost->at("id"));
@@ -276,7 +276,7 @@ TEST_P(SweepNumbers, HaveCurvesOfGroupsWithBandsForEachSceneAndNoFrontOfTwo) {
               AllOf(HasSubstr("sceneobject_i, object_ii"), HasSubstr("seed0, 1, 2, 3, 4")));
 }
 
-// sweep_trouble_test.cpp has pages without WebGL, too.
+// sweep_trouble_test.cpp tests pages without WebGL.
 INSTANTIATE_TEST_SUITE_P(InABrowser, SweepNumbers, ::testing::Values(true), test::webgl_name);
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tests of a sweep's page share: sweeps that are run and reported, steps in the browser, numbers of
-// results.csv.
+// Fixture and steps for tests of a sweep's page.
 #pragma once
 
 #include "report/browser.hpp"
@@ -15,7 +14,7 @@
 
 namespace palpate::test {
 
-/// The sorted numbers of a column, times `factor`, over the rows of which `wanted` holds.
+/// Returns the sorted numbers of a column, times `factor`, over the rows that satisfy `wanted`.
 inline std::vector<double> column(const std::vector<Cells>& rows, const std::string& name, double factor,
                                   const std::function<bool(const Cells&)>& wanted) {
   std::vector<double> out;
@@ -38,7 +37,7 @@ inline void expect_near(const std::vector<double>& seen, const std::vector<doubl
     EXPECT_NEAR(seen[i], expected[i], 1e-12 * (1.0 + std::abs(expected[i])));
 }
 
-/// Chooses a value of a control.
+/// Returns a step that chooses a value of a control.
 inline std::string choose(const std::string& id, const std::string& value) {
   return fmt::format(
       "const s = document.getElementById('{}'); s.value = '{}'; s.dispatchEvent(new Event('change')); return s.value;",
@@ -57,7 +56,7 @@ inline const std::string kCells =
 
 class SweepPages : public ReportsInBoth {
  protected:
-  /// Runs the sweep and returns its directory.
+  /// Runs a sweep and returns its directory.
   fs::path swept(std::vector<std::string> words, const std::vector<std::string>& environment = {}) const {
     words.insert(words.begin(), "sweep");
     words.insert(words.end(), {"--quiet", "--runs", "runs", "-j", "2"});

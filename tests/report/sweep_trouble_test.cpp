@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a sweep in a browser: it shows what failed, takes text for text, and stays small.
+// The page of a sweep with failures, with hostile texts, and with a thousand jobs.
 #include "report/page/sweep_page.hpp"
 #include "report/sweep_pages.hpp"
 #include "support/large_sweep.hpp"
@@ -17,7 +17,7 @@ using ::testing::StartsWith;
 class SweepTrouble : public test::SweepPages {};
 
 TEST_P(SweepTrouble, OffersWhatParetoTakesAndShowsFailedAndMissingJobs) {
-  // Done; failed with a cost and no error; crashed without either.
+  // Jobs that succeed, jobs that fail with a cost but no error, and jobs that crash without either.
   const std::string plugins = "PALPATE_PLUGIN_PATH=" + test::bad_plugin_folder("throws_in_score").string() + ":" +
                               test::bad_plugin_folder("dies").string();
   const fs::path directory = swept({paper_, "backend=simulator,dies", "backend.way=crash",
@@ -76,7 +76,7 @@ TEST_P(SweepTrouble, OffersWhatParetoTakesAndShowsFailedAndMissingJobs) {
   EXPECT_TRUE(cells.at("mean").at(1).at(1).is_null()) << "all failed";
   EXPECT_THAT(cells.at("hover").at(1).at(1).get<std::string>(), HasSubstr("no value<br>0 of 8 done, 8 failed"));
 
-  // What the page offers `palpate pareto` takes, and the other way round.
+  // The page offers exactly the columns that `palpate pareto` accepts.
   const auto takes = [&](const std::string& cost, const std::string& error) {
     return test::palpate({"pareto", directory.string(), "--cost", cost, "--error", error}, folder_.path()).status == 0;
   };
@@ -102,7 +102,7 @@ TEST_P(SweepTrouble, TakesTextOfNamesValuesAndReasonsForTextAndNothingElse) {
   const std::string good = "<b onmouseover=alert(3)>good\u202E.py";
   const std::string bad = "</script><script>alert(4)</script>.py";
   folder_.write(good, test::python("for ask in asks(): contact(ask)"));
-  // On the desk: where all jobs came to the same there would be no panels to look at.
+  // Its contacts are on the desk: with equal results of all jobs, the page would have no panels.
   folder_.write(bad, test::python("for ask in asks(): tell(ask, outcome='contact', height=0.0, force=1, seconds=5.5)"));
   const std::vector<std::string> commands{"python3 '" + good + "'", "python3 '" + good + "' \"<i>&lt;\n %{y}</i>\"",
                                           "python3 '" + bad + "'"};
@@ -121,7 +121,7 @@ TEST_P(SweepTrouble, TakesTextOfNamesValuesAndReasonsForTextAndNothingElse) {
   const auto hover = [](const std::string& id, const std::string& where) {
     return fmt::format("Plotly.Fx.hover('{}', {})", id, where);
   };
-  const auto hovered = [](const std::string& id) {  // which shows a little later
+  const auto hovered = [](const std::string& id) {  // hovers appear with a delay
     return fmt::format("document.querySelector('#{} .hoverlayer').textContent", id);
   };
   const Browsed seen = browse(
@@ -157,7 +157,7 @@ TEST_P(SweepTrouble, TakesTextOfNamesValuesAndReasonsForTextAndNothingElse) {
   EXPECT_EQ(seen.values.at(4).size(), 3U);
   EXPECT_TRUE(seen.values.at(4) == json(commands)) << seen.values.at(4);
   const std::string ticks = seen.values.at(8).dump();
-  // Cut where they are too long, but so that they differ.
+  // Shortened names still differ.
   for (const char* part : {"\"python3 '<b onmouse", "good.py'\"", "%{y}</i>\\\"\"", "</script><script>"})
     EXPECT_THAT(ticks, HasSubstr(part));
   EXPECT_THAT(seen.values.at(9).get<std::string>(),

@@ -11,20 +11,21 @@
 namespace palpate {
 namespace {
 
-/// A cluster: how far it pulls the mean, and how many values it has over the average number.
-using Pull = std::pair<double, double>;
+/// Influence of a cluster on the mean, and the cluster's size divided by the average size.
+using ClusterInfluence = std::pair<double, double>;
 
-/// The pulls of all clusters in units of the largest, in an order that depends on neither the order of the clusters nor
-/// their sign; `mirrored` if they are those of the negatives.
-struct Centred {
-  std::vector<Pull> pulls;
+/// The influences of all clusters, divided by the largest one and sorted. If the negated influences sort before them,
+/// `influences` has these and `mirrored` is set: neither the order of the clusters nor the sign of the values changes
+/// the draws.
+struct ScaledInfluences {
+  std::vector<ClusterInfluence> influences;
   double unit = 0.0;
   bool mirrored = false;
-  bool same_size = true;  ///< all clusters
+  bool same_size = true;  ///< whether all clusters have the same size
 };
 
-Centred centre(const Clusters& clusters, double mean) {
-  Centred out;
+ScaledInfluences scale_influences(const Clusters& clusters, double mean) {
+  ScaledInfluences out;
   std::size_t count = 0;
   for (const std::vector<double>& one : clusters) {
     count += one.size();
@@ -33,35 +34,35 @@ Centred centre(const Clusters& clusters, double mean) {
   const double average = static_cast<double>(count) / static_cast<double>(clusters.size());
   const std::vector<double> influences = cluster_influences(clusters, mean);
   for (std::size_t i = 0; i < clusters.size(); ++i) {
-    out.pulls.emplace_back(influences[i], static_cast<double>(clusters[i].size()) / average);
+    out.influences.emplace_back(influences[i], static_cast<double>(clusters[i].size()) / average);
     out.unit = std::max(out.unit, std::abs(influences[i]));
   }
   if (out.unit == 0.0 || !std::isfinite(out.unit)) return out;
-  std::vector<Pull> mirror;
-  for (auto& [pull, weight] : out.pulls) {
-    pull /= out.unit;
-    mirror.emplace_back(-pull, weight);
+  std::vector<ClusterInfluence> mirror;
+  for (auto& [influence, weight] : out.influences) {
+    influence /= out.unit;
+    mirror.emplace_back(-influence, weight);
   }
-  std::sort(out.pulls.begin(), out.pulls.end());
+  std::sort(out.influences.begin(), out.influences.end());
   std::sort(mirror.begin(), mirror.end());
-  out.mirrored = mirror < out.pulls;
-  if (out.mirrored) out.pulls = mirror;
+  out.mirrored = mirror < out.influences;
+  if (out.mirrored) out.influences = mirror;
   return out;
 }
 
-/// The ends of a small sample's interval lie far out among its means, where draws are few: it is drawn anew more often,
-/// which costs no more than a large one does. Of a very large one, whose mean is as good as normal, fewer place the
-/// ends well enough: of 2000 within 3 % of half the interval.
+/// Returns the number of resamples for this number of clusters. The interval of a small sample ends far out in the
+/// distribution of its means, where draws are few, so it gets more resamples. Very large samples get fewer: 2000
+/// determine the ends within 3 % of half the interval.
 std::size_t resamples_of(std::size_t count) {
   constexpr std::size_t kMostDraws = 100'000'000;
   if (count > kMostDraws / kResamples) return std::max(kMostDraws / count, kResamples / 5);
   return std::clamp(10'000'000 / count, kResamples, 10 * kResamples);
 }
 
-/// Calls `take` with the place of each of `count` draws with replacement.
+/// Calls `take` with the index of each of `count` draws with replacement.
 template <class Take>
 void draw(Random& random, std::uint64_t count, const Take& take) {
-  // 32 bits an index: it favours none by more than count / 2^32, and two come from one draw.
+  // Each index takes 32 bits, two per random number. The probability of an index is off by at most count / 2^32.
   const auto at = [&](std::uint64_t bits) { take(static_cast<std::size_t>((bits * count) >> 32)); };
   for (std::uint64_t i = 0; i + 1 < count; i += 2) {
     const std::uint64_t bits = random.bits();
@@ -73,8 +74,8 @@ void draw(Random& random, std::uint64_t count, const Take& take) {
 
 double normal_share(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-/// How far the median of resampled values is from their centre, in standard deviations. Those within `rounding` of it
-/// count as half below.
+/// Returns how far the median of the resampled values is from `centre`, in standard deviations (the bias correction of
+/// BCa). Values within `rounding` of the centre count as half below.
 double bias_of(const std::vector<double>& values, double centre, double rounding) {
   const auto below = std::count_if(values.begin(), values.end(), [&](double one) { return one < centre - rounding; });
   const auto above = std::count_if(values.begin(), values.end(), [&](double one) { return one > centre + rounding; });
@@ -84,7 +85,7 @@ double bias_of(const std::vector<double>& values, double centre, double rounding
   return normal_quantile(std::clamp(share, least, 1.0 - least));
 }
 
-/// The skewness of the influence of each value on what is estimated, as BCa takes it in.
+/// Returns the skewness of the influences, the acceleration of BCa.
 double acceleration_of(const std::vector<double>& influences) {
   double squares = 0.0;
   double cubes = 0.0;
@@ -95,7 +96,7 @@ double acceleration_of(const std::vector<double>& influences) {
   return cubes / (6.0 * squares * std::sqrt(squares));
 }
 
-/// BCa of resampled values, which it reorders, about what was estimated.
+/// Returns the BCa interval of resampled values about the estimate `centre`. Reorders `values`.
 MeanInterval interval_of(std::vector<double>& values, double centre, double rounding,
                          const std::vector<double>& influences) {
   const double bias = bias_of(values, centre, rounding);
@@ -105,7 +106,7 @@ MeanInterval interval_of(std::vector<double>& values, double centre, double roun
   const auto end = [&](double place) {
     const double shifted = bias + place;
     const double share = normal_share(bias + shifted / (1.0 - acceleration * shifted));
-    // The two values that the quantile lies between; a whole order costs more than all draws.
+    // Finds the two values around the quantile: sorting all values would take longer than all draws.
     const auto below = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + below, values.end());
     if (below + 1 < static_cast<std::ptrdiff_t>(values.size()))
@@ -129,38 +130,38 @@ MeanEstimate bootstrap_mean(const Clusters& clusters, double scale) {
   const bool has_spread = out.interval.has_value();
   out.interval.reset();
   if (!has_spread || clusters.size() < kLeastForInterval) return out;
-  const Centred centred = centre(clusters, out.mean);
-  if (centred.unit == 0.0 || !std::isfinite(centred.unit)) return out;
-  const std::vector<Pull>& pulls = centred.pulls;
+  const ScaledInfluences scaled = scale_influences(clusters, out.mean);
+  if (scaled.unit == 0.0 || !std::isfinite(scaled.unit)) return out;
+  const std::vector<ClusterInfluence>& pairs = scaled.influences;
   std::vector<double> influences;
-  for (const Pull& one : pulls) influences.push_back(one.first);
+  for (const ClusterInfluence& one : pairs) influences.push_back(one.first);
   Random random(0, "bootstrap");
-  std::vector<double> means(resamples_of(pulls.size()));
+  std::vector<double> means(resamples_of(influences.size()));
   for (double& mean : means) {
     double sum = 0.0;
-    double weight = centred.same_size ? static_cast<double>(pulls.size()) : 0.0;
-    if (centred.same_size) {
-      draw(random, pulls.size(), [&](std::size_t i) { sum += influences[i]; });
+    double weight = scaled.same_size ? static_cast<double>(influences.size()) : 0.0;
+    if (scaled.same_size) {
+      draw(random, influences.size(), [&](std::size_t i) { sum += influences[i]; });
     } else {
-      draw(random, pulls.size(), [&](std::size_t i) {
-        sum += pulls[i].first;
-        weight += pulls[i].second;
+      draw(random, influences.size(), [&](std::size_t i) {
+        sum += pairs[i].first;
+        weight += pairs[i].second;
       });
     }
     mean = sum / weight;
   }
   const MeanInterval ends = interval_of(means, 0.0, 1e-12, influences);
-  const double low = ends.low * centred.unit;
-  const double high = ends.high * centred.unit;
+  const double low = ends.low * scaled.unit;
+  const double high = ends.high * scaled.unit;
   out.interval =
-      centred.mirrored ? MeanInterval{out.mean - high, out.mean - low} : MeanInterval{out.mean + low, out.mean + high};
+      scaled.mirrored ? MeanInterval{out.mean - high, out.mean - low} : MeanInterval{out.mean + low, out.mean + high};
   return out;
 }
 
 std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, const std::vector<double>& below) {
   std::vector<std::pair<double, double>> pairs;
   for (std::size_t i = 0; i < above.size(); ++i) pairs.emplace_back(above[i], below[i]);
-  // Sorted: the order of the pairs decides nothing, neither draws nor rounding.
+  // Sorts the pairs, so that their order changes neither draws nor rounding.
   std::sort(pairs.begin(), pairs.end());
   double top = 0.0;
   double bottom = 0.0;
@@ -186,7 +187,7 @@ std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, c
       a += pairs[i].first;
       b += pairs[i].second;
     });
-    // 0 over 0 says no more of how large the ratio may be than a positive number over 0.
+    // A resample without a positive value below, also 0 / 0, counts as an infinite ratio.
     ratio = b > 0.0 ? a / b : std::numeric_limits<double>::infinity();
   }
   out.interval = interval_of(ratios, out.ratio, kRounding * out.ratio, influences);

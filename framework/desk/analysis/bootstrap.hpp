@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The mean of a sample of unknown shape with an interval that need not lie evenly about it: counts, times and errors
-// of runs are skewed, bounded and often of two kinds. Clusters are drawn anew, each with all of its values.
+// Means and ratios with bootstrap intervals, for samples whose distribution may be skewed, bounded or a mixture of two.
 #pragma once
 
 #include "analysis/statistics.hpp"
@@ -11,56 +10,56 @@
 
 namespace palpate {
 
-/// How often a sample is drawn anew, one of less than a thousand values up to ten times as often: the ends of its
-/// interval then move by about 1 % of the width from one stream of random numbers to another. More than 10000 values
-/// are drawn anew less often, 2000 times at least.
+/// Number of resamples. Samples of fewer than 1000 values get up to ten times as many, samples of more than 10000
+/// values fewer, at least 2000. Another stream of random numbers then moves the ends of an interval by about 1 % of its
+/// width.
 inline constexpr std::size_t kResamples = 10000;
 
-/// A sample of fewer clusters has no interval: resampled means never leave the range of the values, which of four draws
-/// misses the mean once in eight.
+/// Least number of clusters for an interval. With four clusters, resampled means stay within the range of the values,
+/// which misses the true mean once in eight samples.
 inline constexpr std::size_t kLeastForInterval = 5;
 
-/// From so many clusters on the interval of the bootstrap contains the mean as often as Student's does, and leans as
-/// the values do. Of fewer clusters Student's is nearer to 95 %: of 5 to 10 the bootstrap contains the mean less often,
-/// and of 10 values of two kinds in 99 of 100 cases (docs/comparing.md has the figures).
+/// Least number of clusters for a bootstrap interval. From 20 clusters on, its coverage equals that of Student's t, and
+/// its shape follows the skewness of the values. With 5 to 10 clusters it contains the mean too rarely, with 10 values
+/// of two kinds in 99 of 100 cases (table in docs/comparing.md).
 inline constexpr std::size_t kLeastForBootstrap = 20;
 
-/// The mean of finite values, and the interval whose coverage is nearer to 95 % for so many clusters: Student's below
-/// kLeastForBootstrap clusters, else that of bootstrap_mean(). None of fewer than kLeastForInterval clusters, nor of
-/// clusters that are all_equal(), to which `scale` belongs.
+/// Returns the mean of finite values with the 95 % interval whose coverage is better: Student's t below
+/// kLeastForBootstrap clusters, else bootstrap_mean(). Fewer than kLeastForInterval clusters, or clusters that are
+/// all_equal() with this `scale`, have no interval.
 MeanEstimate mean_of_sample(const Clusters& clusters, double scale = 0.0);
 
-/// The mean of finite values and its two-sided 95 % interval by the bootstrap: bias-corrected and accelerated (BCa;
-/// DiCiccio and Efron 1996, Bootstrap confidence intervals, Statistical Science 11, section 2), with the levels
-/// widened for small samples as Student's t is against the normal distribution (Hesterberg 2015, What teachers should
-/// know about the bootstrap, The American Statistician 69). Of 5 to 20 normal or exponential values it
-/// covers the mean in 88 to 95 of 100 cases, where the plain percentile interval does in 78 to 93.
+/// Returns the mean of finite values with a two-sided 95 % bootstrap interval: bias-corrected and accelerated (BCa;
+/// DiCiccio and Efron 1996, Bootstrap confidence intervals, Statistical Science 11, section 2). For small samples the
+/// levels are widened by the ratio of Student's t to the normal quantile (Hesterberg 2015, What teachers should know
+/// about the bootstrap, The American Statistician 69). With 5 to 20 normal or exponential values, the interval contains
+/// the mean in 88 to 95 of 100 cases; the percentile interval does in 78 to 93.
 ///
-/// Clusters are drawn with all of their values, and the mean is that of all values drawn (Davison and Hinkley 1997,
-/// Bootstrap methods and their application, section 3.8): where each cluster has as many, the means of the clusters are
-/// drawn.
+/// Each resample draws whole clusters, and its mean is the mean of all drawn values (Davison and Hinkley 1997,
+/// Bootstrap methods and their application, section 3.8). If all clusters have the same size, this is the mean of their
+/// means.
 ///
-/// No interval of fewer than kLeastForInterval clusters, nor of clusters that are all_equal(). The same clusters give
-/// the same interval in any order, and their negatives its negative. About 15 ms for up to a thousand clusters.
+/// Fewer than kLeastForInterval clusters, or clusters that are all_equal(), have no interval. The order of the clusters
+/// does not change the interval; negated values give the negated interval. Time: about 15 ms for up to a thousand
+/// clusters.
 MeanEstimate bootstrap_mean(const Clusters& clusters, double scale = 0.0);
 
-/// A ratio of two means, and the two-sided 95 % interval of what it estimates.
+/// Ratio of two means with its two-sided 95 % interval.
 struct RatioEstimate {
-  std::size_t count = 0;  ///< of pairs of sums
+  std::size_t count = 0;  ///< number of pairs of sums
   double ratio = 0.0;
   std::optional<MeanInterval> interval;
 };
 
-/// The mean of `above` over the mean of `below`, of pairs at the same places, and its interval by the bootstrap over
-/// the pairs, which do not depend on each other (of clusters these are their sums): whole pairs are drawn, so that what
-/// makes both values of a pair large is no spread. BCa and widened as bootstrap_mean() is; the acceleration from the
-/// influence of each pair, (above - ratio below) / mean below (Efron and Tibshirani 1993, An Introduction to the
-/// Bootstrap, sections 14.3 and 22.5).
+/// Returns the mean of `above` divided by the mean of `below`, whose values with the same index form a pair. The pairs
+/// are independent of each other; values of clusters enter as sums. The interval resamples whole pairs, so a cause that
+/// raises both values of a pair does not widen it. It is BCa and widened like that of bootstrap_mean(). The
+/// acceleration uses the influence of each pair, (above - ratio below) / mean below (Efron and Tibshirani 1993, An
+/// Introduction to the Bootstrap, sections 14.3 and 22.5).
 ///
-/// None unless all values are finite, none is negative and some value below is positive: of other quantities a ratio
-/// says nothing. No interval of fewer than kLeastForInterval pairs, nor of pairs that all have the same ratio. An end
-/// is infinite where so many values below are 0 that a sample like this one may have no other. The order of the pairs
-/// does not matter.
+/// Returns nullopt if a value is negative or not finite, or if no value below is positive. Fewer than kLeastForInterval
+/// pairs, or pairs with equal ratios, have no interval. An end is infinite if many values below are 0. The order of the
+/// pairs does not matter.
 std::optional<RatioEstimate> bootstrap_ratio(const std::vector<double>& above, const std::vector<double>& below);
 
 }  // namespace palpate

@@ -18,7 +18,7 @@ namespace palpate {
 std::string Column::words() const {
   const RecordField* field = find_summary_field(name);
   if (field == nullptr || field->label.empty()) return name;
-  // Those of lengths stand below a heading on pages: "over the scene".
+  // Labels of lengths stand below a heading on pages: "over the scene".
   if (unit != Unit::metre) return field->label;
   return (name.find("rmse") != std::string::npos ? "RMSE " : "distance ") + field->label;
 }

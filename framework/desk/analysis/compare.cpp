@@ -22,26 +22,26 @@ namespace {
 
 using Values = std::vector<std::string>;
 
-/// What a job came to, and the unit of statistics that it belongs to.
+/// Value of a job and its unit of statistics.
 struct JobOutcome {
   JobValue value;
   std::string unit;
 };
 
-/// The jobs of a group by the values that make pairs. Sorted: the order of the jobs decides nothing.
+/// The jobs of a group by the values of the pairing keys, sorted: the order of the jobs changes nothing.
 using JobOutcomes = std::map<Values, JobOutcome>;
 
 struct Collected {
   Values values;
   JobOutcomes outcomes;
-  int never = 0;  ///< of those that count, the ones that never got where they were to be looked at
+  int never = 0;  ///< counted jobs that never reached the goal of the occasion
 };
 
 bool contains(const Values& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// All but those in `without`.
+/// Returns `names` except those in `without`.
 Values others(const Values& names, const Values& without) {
   Values out;
   for (const std::string& name : names) {
@@ -50,9 +50,9 @@ Values others(const Values& names, const Values& without) {
   return out;
 }
 
-/// The groups in the order of their keys: by the first, then the second, each in the order of the sweep.
+/// Sorts the groups by the first key, then the second; values in the order of the sweep.
 std::vector<JobGroup> by_keys(std::vector<JobGroup> groups) {
-  std::vector<std::map<std::string, std::size_t>> ranks;  // of the values of each key
+  std::vector<std::map<std::string, std::size_t>> ranks;  // ranks of the values of each key
   for (const JobGroup& group : groups) {
     ranks.resize(group.values.size());
     for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i].emplace(group.values[i], ranks[i].size());
@@ -67,7 +67,7 @@ std::vector<JobGroup> by_keys(std::vector<JobGroup> groups) {
   return groups;
 }
 
-/// Sorts the jobs into groups and counts those that are left out.
+/// Sorts the jobs into groups and counts the jobs that the condition leaves out.
 std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& results, const Values& columns,
                                const CompareQuery& query, const JobUnits& units, Comparison& out) {
   const JobCondition where(sweep, columns, query.where);
@@ -85,7 +85,7 @@ std::vector<Collected> collect(const Sweep& sweep, const std::vector<Row>& resul
       if (outcome.value.status == ValueStatus::counted && row->flag(kReached) == false) ++groups.back().never;
       Values pairing;
       for (const std::string& key : paired) pairing.push_back(value_of(sweep, *job, key));
-      // A list may hold the same job more than once: each is the counterpart of its like.
+      // A list may hold the same job several times: the first copy pairs with the first of the other group, and so on.
       pairing.emplace_back();
       JobOutcomes& outcomes = groups.back().outcomes;
       for (int repeat = 1; !outcomes.emplace(pairing, outcome).second; ++repeat)
@@ -137,7 +137,7 @@ ComparedPair compare_pair(const std::vector<Collected>& groups, std::size_t firs
   const auto add = [&](const JobOutcome& one, const JobOutcome& other) {
     const ValueStatus status = std::min(one.value.status, other.value.status);
     if (status == ValueStatus::counted) {
-      // The same seed, or copies of one pair.
+      // Both jobs have the same seed, or are copies of one pair.
       const std::string unit = one.unit + "-" + other.unit;
       of_a.add(unit, one.value.value);
       of_b.add(unit, other.value.value);
@@ -174,17 +174,17 @@ void adjust(std::vector<ComparedPair>& pairs) {
   }
 }
 
-/// "weighted,rbf" names the group "weighted, rbf", too.
+/// Returns a name without blanks, since "weighted,rbf" also names the group "weighted, rbf".
 std::string without_blanks(const std::string& name) { return boost::algorithm::erase_all_copy(name, " "); }
 
-/// Groups that are compared with each other. Results on one scene say nothing about another, so these are the groups of
-/// one scene, unless nothing but the scene makes the groups.
+/// Groups that are compared with each other: the groups of one scene, since results on different scenes are not
+/// comparable. If all keys belong to the scene, it is all groups.
 struct ComparedBlock {
   std::vector<std::size_t> groups;
   std::size_t baseline = 0;
 };
 
-/// Whether the value at each place of a group's values is one of the scene, and others are not.
+/// Returns for each key whether it belongs to the scene; false for all keys if all of them do.
 std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   const Values scenes = scene_keys(sweep);
   std::vector<bool> out;
@@ -193,7 +193,7 @@ std::vector<bool> scene_places(const Sweep& sweep, const Values& by) {
   return out;
 }
 
-/// The values of a group at the places that are `wanted`.
+/// Returns the values of a group whose places have this flag, joined by commas.
 std::string values_at(const Values& values, const std::vector<bool>& places, bool wanted) {
   Values out;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -202,7 +202,8 @@ std::string values_at(const Values& values, const std::vector<bool>& places, boo
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// `kept`: indices of the groups that have jobs. The baseline of a block is its first group.
+/// Returns the blocks of the groups in `kept`, indices of the groups with jobs. The baseline of a block is its first
+/// group.
 std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, const std::vector<std::size_t>& kept,
                                      const std::vector<bool>& scenes) {
   std::vector<ComparedBlock> out;
@@ -215,8 +216,8 @@ std::vector<ComparedBlock> blocks_of(const std::vector<ComparedGroup>& groups, c
   return out;
 }
 
-/// Sets the baselines to what --baseline names: a group, or the group of each scene with these other values. Blocks
-/// without such a group go.
+/// Sets the baselines to the group that --baseline names, or to the group of each scene with these other values.
+/// Removes blocks without such a group.
 void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<ComparedGroup>& groups,
                       const std::vector<bool>& scenes, const std::string& name) {
   const std::string wanted = without_blanks(name);
@@ -242,9 +243,9 @@ void choose_baselines(std::vector<ComparedBlock>& blocks, const std::vector<Comp
   throw Error("command line", fmt::format("--baseline: there is no group '{}'", name), suggestion(name, names));
 }
 
-/// Adds to `apart` the places in the pairing of which the two groups have no value in common.
+/// Adds to `apart` the indices of pairing keys for which the two groups have no value in common.
 void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t>& apart) {
-  const std::size_t places = a.begin()->first.size() - 1;  // the last one tells equal jobs apart
+  const std::size_t places = a.begin()->first.size() - 1;  // without the last one, which separates equal jobs
   for (std::size_t place = 0; place < places; ++place) {
     std::set<std::string> values;
     for (const auto& [pairing, outcome] : a) values.insert(pairing[place]);
@@ -253,7 +254,7 @@ void find_apart(const JobOutcomes& a, const JobOutcomes& b, std::set<std::size_t
   }
 }
 
-/// Adds the pairs of each block: all, or with many groups those with the baseline.
+/// Adds the pairs of each block: all pairs, or with many groups the pairs with the baseline.
 void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<Collected>& groups,
                const CompareQuery& query, Comparison& out) {
   for (const ComparedBlock& block : blocks) {
@@ -269,7 +270,7 @@ void add_pairs(const std::vector<ComparedBlock>& blocks, const std::vector<Colle
   adjust(out.pairs);
 }
 
-/// Throws Error if nothing is left to compare, with the reason.
+/// Throws Error with the reason if no group has a value.
 void check_values(const Comparison& made, const Sweep& sweep) {
   int without_value = 0;
   for (const ComparedGroup& group : made.groups) {

@@ -23,7 +23,7 @@ std::string keys_text(const std::vector<std::string>& keys) {
   return one_line(fmt::format("{}", fmt::join(keys, ", ")));
 }
 
-/// In the unit of the groups, but fine enough for two digits of the narrowest interval.
+/// Returns the scale of the groups, with enough decimals for two digits of the narrowest interval.
 Scale difference_scale(const Comparison& comparison, const Scale& groups) {
   std::vector<double> widths;
   for (const ComparedPair& pair : comparison.pairs) {
@@ -35,20 +35,20 @@ Scale difference_scale(const Comparison& comparison, const Scale& groups) {
   return scale;
 }
 
-/// Of quantiles, which are mostly values themselves: whole numbers stay whole.
+/// Returns a quantile. Whole numbers stay without decimals: quantiles mostly equal one of the values.
 std::string short_number(const Scale& scale, double value) {
   const double shown = value / scale.factor;
   return shown == std::round(shown) && std::abs(shown) < 1e6 ? fmt::format("{:.0f}", shown) : scale.number(value);
 }
 
-/// Long names would make lines too long to read where two stand side by side: numbers stand for them then.
+/// Returns whether numbers replace the names of groups in pairs, because long names would make the lines too long.
 bool numbered(const Comparison& comparison) {
   constexpr std::size_t kLongest = 16;
   return std::any_of(comparison.groups.begin(), comparison.groups.end(),
                      [](const ComparedGroup& group) { return group.name.size() > kLongest; });
 }
 
-/// Title of the column with the number of units: "" where each job is one.
+/// Returns the title of the column with the number of units; "" if each job is a unit.
 std::string units_title(const Comparison& comparison) {
   return comparison.by_seed ? "seeds" : comparison.has_copies() ? "units" : "";
 }
@@ -62,7 +62,7 @@ std::string pair_name(const Comparison& comparison, const ComparedPair& pair) {
   return fmt::format("{} - {}", comparison.groups[pair.first].name, comparison.groups[pair.second].name);
 }
 
-/// Begins the row of a group or of a pair with the fields that both have.
+/// Begins the row of a group or pair with the fields that both have.
 void begin_row(Table& table, const Comparison& comparison, const std::string& where, const char* kind) {
   table.add_row();
   table.store("kind", kind);
@@ -118,7 +118,7 @@ std::string p_text(const std::optional<double>& p) {
   return *p < 1e-3 ? fmt::format("{:.0e}", *p) : fmt::format("{:.3f}", *p);
 }
 
-/// What a difference is called, of a metric of which it is known which way is better or of another.
+/// Words for the sign of a difference.
 struct Words {
   const char* up;
   const char* down;
@@ -128,13 +128,14 @@ Words words_of(const Column& metric) {
   return metric.better == Better::neither ? Words{"higher", "lower"} : Words{"better", "worse"};
 }
 
-/// The units in which the first has the better, or else the higher, mean, and those in which it has the other.
+/// Returns the numbers of units in which the first group has the better mean, and the worse one. For metrics without a
+/// better direction: the higher mean, and the lower one.
 std::pair<std::size_t, std::size_t> sides(const Comparison& comparison, const SignedRank& test) {
   if (comparison.metric.better == Better::less) return {test.lower, test.higher};
   return {test.higher, test.lower};
 }
 
-/// "0.85 [0.79, 0.91]"
+/// Returns "0.85 [0.79, 0.91]".
 std::string ratio_text(const ComparedPair& pair) {
   if (!pair.ratio) return "-";
   return with_interval(pair.ratio->ratio, pair.ratio->interval, [](double one) { return fmt::format("{:.3f}", one); });
@@ -192,7 +193,7 @@ Table pair_table(const Comparison& comparison, const Scale& scale, const std::st
   return table;
 }
 
-/// Where the mean and the majority of the units point in different directions, neither is the answer.
+/// Returns a remark if mean and majority of the units disagree on the better group.
 std::string contrary_note(const Comparison& comparison, const ComparedPair& pair) {
   const auto& ends = pair.difference.interval;
   if (!ends || (ends->low <= 0.0 && ends->high >= 0.0)) return {};
@@ -212,7 +213,7 @@ std::string lost_note(const Comparison& comparison, const ComparedPair& pair) {
   return reasons.empty() ? "" : fmt::format("{}: pairs lost: {}\n", pair_name(comparison, pair), reasons);
 }
 
-/// How few units there are, in words, where that matters.
+/// Returns a remark if there are few units.
 std::string few_note(const Comparison& comparison) {
   std::size_t fewest = kEnoughUnits;
   for (const ComparedGroup& one : comparison.groups) {
@@ -224,7 +225,8 @@ std::string few_note(const Comparison& comparison) {
   return few_words(fewest, comparison.by_seed, kLeastForInterval);
 }
 
-/// Which groups hold copies of runs, and which have no interval because their units are equal.
+/// Returns remarks on groups that hold copies of runs, and on groups and pairs without an interval because their values
+/// are equal.
 std::string units_note(const Comparison& comparison) {
   std::string out;
   const auto equal = [&](const std::string& name, const MeanEstimate& mean, bool difference) {
@@ -241,7 +243,7 @@ std::string units_note(const Comparison& comparison) {
   return out;
 }
 
-/// The swept keys of which some compared groups have no value in common, and what to do about it.
+/// Returns a remark on keys for which some compared groups have no value in common, with the remedy.
 std::string apart_note(const Comparison& comparison) {
   std::vector<std::string> keys = comparison.apart;
   const auto seed = std::find(keys.begin(), keys.end(), "seed");
@@ -256,7 +258,7 @@ std::string apart_note(const Comparison& comparison) {
                            one_line(fmt::format("{}", fmt::join(keys, ","))));
 }
 
-/// How many groups with jobs are in no pair.
+/// Returns the number of groups with jobs that are in no pair.
 std::size_t groups_without_pair(const Comparison& comparison) {
   std::set<std::size_t> paired;
   for (const ComparedPair& one : comparison.pairs) paired.insert({one.first, one.second});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A comparison for people, as tables with a word on how to read them or one of the means alone, and for programs, as
-// rows.
+// Output of comparisons: text tables with remarks, tables of means in Markdown and LaTeX, and rows for programs.
 #pragma once
 
 #include "analysis/compare.hpp"
@@ -10,23 +9,21 @@
 
 namespace palpate {
 
-/// The groups, a line each, and below them the pairs, in readable units; then what needs a remark.
+/// Returns a table with one line per group, a table with one line per pair, and remarks, in readable units.
 std::string compare_tables(const Comparison& comparison);
 
-/// What the intervals, p and effects of such tables mean.
+/// Returns the explanation of intervals, p and effects for such tables.
 std::string compare_legend(const std::vector<Comparison>& comparisons);
 
-/// Means of several metrics in one table, what a paper or a README shows of a sweep: a row a group and number of taps,
-/// a column a metric, in one readable unit each. `comparisons` have the same groups; those at the same occasion stand
-/// together, each with the same metrics in the same order.
-///
-/// As Markdown, the means alone; below it, what is not in them.
+/// Returns a Markdown table of means for a paper or README: one row per group and number of taps, one column per metric
+/// with its unit. Remarks on missing values follow the table. The comparisons have the same groups; comparisons at the
+/// same occasion stand together, each occasion with the same metrics in the same order.
 std::string means_table(const std::vector<Comparison>& comparisons);
-/// As LaTeX for the package booktabs: means with their intervals and n, jobs with a value; before it, as comments, what
-/// these are, and what is not in them.
+/// Returns the same as LaTeX for the package booktabs: means with intervals, and n, the number of jobs with a value.
+/// LaTeX comments before the table explain the numbers and list missing values.
 std::string latex_table(const std::vector<Comparison>& comparisons);
 
-/// A row a group, then a row a pair, in SI units. `where` is the condition as it was written, "" for none.
+/// Returns one row per group, then one row per pair, in SI units. `where` is the text of the condition, "" for none.
 std::vector<Row> compare_rows(const Comparison& comparison, const std::string& where);
 
 }  // namespace palpate

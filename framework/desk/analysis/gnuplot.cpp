@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr double kPointsPerInch = 72.0;
 constexpr double kSvgDpi = 96.0;
 
-/// gnuplot points at the place with lines of blanks and a caret; its words come behind them.
+/// Returns the first line with words: gnuplot's messages begin with lines of blanks and a caret below the script.
 std::string first_words(const std::string& text) {
   std::istringstream lines(text);
   std::string line;
@@ -45,7 +45,7 @@ std::string picture_header(int width, int height, const fs::path& file, const st
   std::string terminal;
   double mark = 0.4;
   if (extension == ".pdf") {
-    // gnuplot's points of letters are 4/3 of those of a PDF, and its lines half a point wide.
+    // A point of gnuplot's fonts is 4/3 points of a PDF; a line is half a point wide.
     terminal = fmt::format("pdfcairo noenhanced fontscale {} size {:.3f}in,{:.3f}in",
                            is_print ? "0.75 linewidth 2" : "0.8", width / kPointsPerInch, height / kPointsPerInch);
   } else {
@@ -53,7 +53,7 @@ std::string picture_header(int width, int height, const fs::path& file, const st
     const double pixels = !is_print ? 1.0 : (is_svg ? kSvgDpi : kPrintDpi) / kPointsPerInch;
     terminal =
         fmt::format("{} noenhanced size {:.0f},{:.0f}", is_svg ? "svg" : "pngcairo", width * pixels, height * pixels);
-    // A point of a letter is one pixel of an SVG and 4/3 of a PNG, a line one pixel wide.
+    // A point of gnuplot's fonts is one pixel of an SVG and 4/3 pixels of a PNG; a line is one pixel wide.
     if (is_print)
       terminal += fmt::format(" fontscale {:.4g} linewidth {:.4g}", is_svg ? pixels : 0.75 * pixels, pixels);
     mark = is_svg ? 0.65 : 0.95;  // as large as in a PDF
@@ -66,8 +66,8 @@ std::string picture_header(int width, int height, const fs::path& file, const st
 
 std::string draw_picture(const std::string& script, int width, int height, const fs::path& file, PictureUnit unit) {
   TemporaryFile picture(file);
-  Program program{{"gnuplot", "--default-settings"}};  // a user's own settings would give another picture
-  program.own_group = false;                           // whoever presses Ctrl-C wants no picture either
+  Program program{{"gnuplot", "--default-settings"}};  // ignores the user's settings of gnuplot
+  program.own_group = false;                           // Ctrl-C ends gnuplot, too
   const std::string output = fs::absolute(picture.path()).string();
   const std::unique_ptr<ChildProcess> gnuplot =
       ChildProcess::start(program, picture_header(width, height, file, output, unit) + script);

@@ -17,15 +17,15 @@
 namespace palpate {
 namespace {
 
-constexpr int kTimes = 60;  ///< points of a curve against time
+constexpr int kTimes = 60;  ///< number of points of a curve against time
 
-/// One job that counts, and the unit of statistics that it belongs to.
+/// A counted job and its unit of statistics.
 struct JobCurve {
   const std::vector<double>* metric = nullptr;
-  const std::vector<double>* seconds = nullptr;  ///< at the end of each tap; null against taps
+  const std::vector<double>* seconds = nullptr;  ///< robot time at the end of each tap; null for curves against taps
   std::string unit;
 
-  /// The value as of `at` taps, or seconds: that after the last tap by then.
+  /// Returns the value after the last tap up to `at` (taps or seconds); NaN before the first tap.
   double value(double at) const {
     std::size_t taps = std::min(static_cast<std::size_t>(std::max(at, 0.0)), metric->size());
     if (seconds != nullptr)
@@ -34,7 +34,7 @@ struct JobCurve {
   }
 };
 
-/// Where the curve of these jobs has points.
+/// Returns the positions of the points of a group's curve.
 std::vector<double> points_of(const std::vector<JobCurve>& jobs) {
   std::vector<double> out;
   if (jobs.empty()) return out;
@@ -72,7 +72,7 @@ bool has_value(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double one) { return std::isfinite(one); });
 }
 
-/// Returns what becomes of a job in the curves of its group; `metric` has its values after each tap, null for none.
+/// Returns the status of a job in the curve of its group. `metric` has the job's values after each tap, null for none.
 ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, const JobCondition& where,
                       const CurvesQuery& query) {
   const ValueStatus status = value_of_job(job.row, query.metric, "--metric").status;
@@ -81,7 +81,7 @@ ValueStatus status_of(const JobResult& job, const std::vector<double>* metric, c
   return metric != nullptr && has_value(*metric) ? ValueStatus::counted : ValueStatus::without_value;
 }
 
-/// Makes the curve of a group, whose first `scenes` values are those of the scene.
+/// Makes the curve of a group, whose first `scenes` values belong to the scene.
 GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vector<TapValues>& values,
                       const JobUnits& units, const JobCondition& where, const CurvesQuery& query) {
   const auto split = group.values.begin() + static_cast<std::ptrdiff_t>(scenes);
@@ -105,7 +105,7 @@ GroupCurve make_curve(const JobGroup& group, std::size_t scenes, const std::vect
   return curve;
 }
 
-/// Throws Error if there is nothing to draw, with the reason.
+/// Throws Error with the reason if there is nothing to draw.
 void check_points(const GroupCurves& made, const Sweep& sweep) {
   if (made.curves.empty())
     throw Error("command line", fmt::format("--where: matches none of the {} jobs", made.jobs),
@@ -182,7 +182,7 @@ GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& result
   const std::vector<std::string> columns = names_of(results);
   GroupCurves out;
   out.metric = find_metric(sweep, query.metric, columns);
-  // `taps` may be swept: then it is a key, and still what was made.
+  // If `taps` is swept, it is both a key and the number of taps made.
   out.against = query.against == kAgainstTaps ? Column{kAgainstTaps} : find_column(query.against, columns, "--against");
   out.by = query.by;
   out.jobs = static_cast<int>(sweep.jobs.size());

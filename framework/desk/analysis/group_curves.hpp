@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Groups of a sweep's jobs over their taps: any number of the summary against taps or robot time, as a mean with its
-// 95 % interval at each point. Command, figures, CSV, page and Python all show these numbers.
+// Curves of groups over their taps: the mean of a summary field with its 95 % interval, against taps or robot time. The
+// command, figures, CSV, pages and Python show these numbers.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -16,66 +16,68 @@
 
 namespace palpate {
 
-/// The columns that curves may be drawn against.
+/// Columns against which curves can be drawn.
 inline constexpr const char* kAgainstTaps = "taps";
 inline constexpr const char* kAgainstTime = "robot_seconds";
 
-/// The values of some columns in one job after 1, 2, ... taps; NaN where there is none.
+/// Values of some columns of one job after 1, 2, ... taps; NaN for no value.
 using TapValues = std::map<std::string, std::vector<double>>;
 
-/// Whether a job has a value in that column after some tap.
+/// Returns whether any job has a value of the column after some tap.
 bool any_has(const std::vector<TapValues>& jobs, const std::string& column);
 
-/// Returns what puts them into `values`, which has a place for each job: empty for a job without kept summaries.
-/// `values` must outlive it.
+/// Returns a function that stores the columns of each job in `values`, which has an element per job. Jobs without kept
+/// summaries leave their element empty. `values` must outlive the function.
 TapSummaries::Use keep_values(std::vector<TapValues>& values, std::vector<std::string> columns);
 
 struct CurvesQuery {
-  std::vector<std::string> by;  ///< swept keys; jobs that have the same values of them, and of the scene, are a group
-  std::string metric;           ///< a column of results.csv
+  std::vector<std::string> by;         ///< swept keys; jobs with equal values of them and of the scene form a group
+  std::string metric;                  ///< column of results.csv
   std::string against = kAgainstTaps;  ///< kAgainstTaps or kAgainstTime
-  const Condition* where = nullptr;    ///< on the columns of results.csv: other jobs are left out; null for none
-  bool students = false;               ///< intervals by Student's t alone, as the page has them, which takes no time
+  const Condition* where = nullptr;    ///< condition on columns of results.csv; other jobs are left out; null for none
+  bool students = false;  ///< whether all intervals are Student's t, as on pages, which is fast; else as in
+                          ///< mean_of_sample()
 };
 
 struct CurvePoint {
-  double at = 0.0;    ///< taps, or seconds
-  MeanEstimate mean;  ///< over the jobs that have a value there; clusters: JobUnits
+  double at = 0.0;    ///< taps or seconds
+  MeanEstimate mean;  ///< over the jobs with a value at this point; clusters: JobUnits
 };
 
 struct GroupCurve {
-  std::vector<std::string> scene;   ///< its values of GroupCurves::scenes
-  std::vector<std::string> values;  ///< of GroupCurves::by
-  StatusCounts counts;              ///< of its jobs; without a value: at no point
-  int ended = 0;                    ///< of those that count, the ones that made fewer taps than others of the group
-  std::vector<CurvePoint> points;   ///< at ascending `at`; none where no job has a value
+  std::vector<std::string> scene;   ///< values of GroupCurves::scenes
+  std::vector<std::string> values;  ///< values of GroupCurves::by
+  StatusCounts counts;              ///< counts of the group's jobs; without_value: no value at any point
+  int ended = 0;                    ///< counted jobs with fewer taps than others of the group
+  std::vector<CurvePoint> points;   ///< with ascending `at`; empty if no job has a value
 
-  std::string name() const;        ///< "weighted, rbf"; "all jobs" where no key makes groups
-  std::string scene_name() const;  ///< "ring"; "" where the sweep has one scene, or the scene is a key of the groups
+  std::string name() const;        ///< returns "weighted, rbf"; "all jobs" if no key forms groups
+  std::string scene_name() const;  ///< returns "ring"; "" if the sweep has one scene or the scene is in `by`
 };
 
 struct GroupCurves {
   Column metric;
   Column against;
-  std::vector<std::string> scenes;  ///< scene_keys() that are not in `by`: each of their values has curves of its own
+  std::vector<std::string> scenes;  ///< scene_keys() that are not in `by`; each of their values has its own curves
   std::vector<std::string> by;
-  bool by_seed = false;            ///< seeds are the units: see JobUnits
-  int jobs = 0;                    ///< of the sweep
-  std::vector<GroupCurve> curves;  ///< in the order of the sweep, those of a scene together
+  bool by_seed = false;            ///< whether seeds are the units (JobUnits)
+  int jobs = 0;                    ///< number of jobs of the sweep
+  std::vector<GroupCurve> curves;  ///< in the order of the sweep, scene by scene
 
-  /// Returns the names of the scenes that have curves, in their order; one "" where the sweep has one.
+  /// Returns the names of the scenes with curves, in their order; one "" for a sweep with one scene.
   std::vector<std::string> scene_names() const;
 };
 
-/// Returns the keys that make groups where nobody names any: all that vary, but for the seed and the scene's.
+/// Returns the default keys of groups: all keys that vary except the seed and the keys of the scene.
 std::vector<std::string> curve_keys(const Sweep& sweep);
 
-/// Makes the curves of the jobs of `sweep`, whose rows of results.csv are `results` and whose `values` hold at least
-/// the metric and the axis. Of taps a group has a point after each tap up to the most that one of its jobs made. Of
-/// robot time it has 60 from the time at which all its jobs have made a tap to the end of its last job; a job then
-/// counts as it was after its last tap by then. A job that has ended counts as it ended, as in `compare --at`; jobs
-/// that failed or have not ended are in no point. Throws Error, of the command line, as compare() does, and where there
-/// is nothing to draw.
+/// Makes the curves of the jobs of `sweep`, whose rows of results.csv are `results`. `values` hold at least the metric
+/// and the axis.
+///
+/// Against taps, a group has one point per tap up to the longest of its jobs. Against robot time, it has 60 points,
+/// from the time at which all its jobs have made a tap to the end of its last job; a job counts with its value after
+/// its last tap by then. A job that has ended counts with its final value, as in `compare --at`. Jobs that failed or
+/// have not ended are left out. Throws Error of the command line as compare() does, and if there is nothing to draw.
 GroupCurves make_group_curves(const Sweep& sweep, const std::vector<Row>& results, const std::vector<TapValues>& values,
                               const CurvesQuery& query);
 

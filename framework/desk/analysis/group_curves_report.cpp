@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kShownPlaces = 4;
 
-/// The least and the largest number of units of all points.
+/// Returns the least and the largest number of units over all points.
 std::pair<std::size_t, std::size_t> units_at_points(const GroupCurves& curves) {
   std::pair<std::size_t, std::size_t> out{SIZE_MAX, 0};
   for (const GroupCurve& curve : curves.curves) {
@@ -29,7 +29,7 @@ std::pair<std::size_t, std::size_t> units_at_points(const GroupCurves& curves) {
   return out;
 }
 
-/// Points of the longest curve, evenly along it; the last one is its end.
+/// Returns positions of points spread evenly along the longest curve; the last one is the curve's end.
 std::vector<double> shown_places(const GroupCurves& curves) {
   const auto longest =
       std::max_element(curves.curves.begin(), curves.curves.end(),
@@ -43,7 +43,7 @@ std::vector<double> shown_places(const GroupCurves& curves) {
   return out;
 }
 
-/// The last point up to `at`; null before the first one and behind the last.
+/// Returns the last point up to `at`; null before the first point and after the last.
 const CurvePoint* point_at(const GroupCurve& curve, double at) {
   const CurvePoint* out = nullptr;
   for (const CurvePoint& point : curve.points) {

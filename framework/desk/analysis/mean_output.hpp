@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tables for people, whose numbers are formatted by config/scale.hpp, with columns that stand under each other; and
-// those for programs, as rows.
+// Means with their intervals as text (numbers by config/scale.hpp) and as fields of rows.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -18,7 +17,7 @@
 
 namespace palpate {
 
-/// "3.21 [3.02, 3.40]" of numbers that `number` writes, "3.21 [-]" where there is no interval.
+/// Returns "3.21 [3.02, 3.40]" with numbers formatted by `number`; "3.21 [-]" without an interval.
 std::string with_interval(double value, const std::optional<MeanInterval>& ends,
                           const std::function<std::string(double)>& number);
 
@@ -28,26 +27,27 @@ std::string Scale::estimate(const Mean& mean) const {
   return with_interval(mean.mean, mean.interval, [&](double value) { return number(value); });
 }
 
-/// "5 seeds", "1 job": units of statistics.
+/// Returns the number of units of statistics: "5 seeds", "1 job".
 std::string units_words(std::size_t units, bool seeds);
-/// "3 to 5 seeds" where not all means have as many.
+/// Returns "3 to 5 seeds" if the numbers differ.
 std::string units_words(std::size_t least, std::size_t most, bool seeds);
 
-/// Fewer seeds, or jobs, are called few: their intervals miss the true mean clearly more often than 5 times in 100.
+/// Number of seeds, or jobs, below which a remark says that there are few. Intervals of fewer units miss the true mean
+/// clearly more often than 5 times in 100.
 inline constexpr std::size_t kEnoughUnits = 10;
 
-/// A line that says how few seeds, or jobs, a mean is over and what that means for its interval; "" where they are not
-/// few. `least`: from so many on there is an interval.
+/// Returns a remark on a mean over few seeds or jobs; "" from kEnoughUnits on. `least` is the least number of units for
+/// an interval.
 std::string few_words(std::size_t units, bool seeds, std::size_t least);
 
-/// A line that tells how many of a group's jobs are copies of a run, where jobs are the units.
+/// Returns a remark with the number of a group's jobs that are copies of another run, if jobs are the units.
 std::string copies_words(const std::string& name, std::size_t jobs, std::size_t units);
 
-/// Adds `prefix`mean and the ends of its interval, null where there are none.
+/// Adds the fields `prefix`mean, `prefix`low_95 and `prefix`high_95; null for no value.
 void add_mean(Row& row, const std::string& prefix, const MeanEstimate& estimate);
-/// The same of the ends alone.
+/// Adds the two ends of the interval alone.
 void add_interval(Row& row, const std::string& prefix, const std::optional<MeanInterval>& ends);
-/// Adds how many jobs there are and what became of them, on request with those that a condition leaves out.
+/// Adds the number of jobs and the numbers per status; `left_out` adds the jobs that a condition leaves out.
 void add_counts(Row& row, const StatusCounts& counts, bool left_out = false);
 
 }  // namespace palpate

@@ -13,14 +13,14 @@
 namespace palpate {
 namespace {
 
-/// Means alone have two digits of the least: tens and hundreds then have no decimals that nobody reads.
+/// Significant digits of the least mean in a table of means alone: tens and hundreds then have no decimals.
 constexpr int kDigits = 2;
 
-/// Means beside their intervals: those that have none, as in the tables of text.
+/// Significant digits of the least mean beside intervals, for means without one; the same as in text tables.
 constexpr int kDigitsBesideIntervals = 3;
 
-/// Of a metric in all rows, so that a column has one unit: `first` is its first comparison, the next ones are `step`
-/// behind each other.
+/// Returns the scale of a metric over all rows. `first` is its first comparison, the next ones follow at distances of
+/// `step`.
 Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, std::size_t step, int digits) {
   std::vector<double> means;
   for (std::size_t i = first; i < comparisons.size(); i += step) {
@@ -30,14 +30,14 @@ Scale scale_of(const std::vector<Comparison>& comparisons, std::size_t first, st
   return readable_scale(comparisons[first].metric.unit, means, digits);
 }
 
-/// The decimals by which half the width of an interval has two significant digits, 0 to 9.
+/// Returns the number of decimals, 0 to 9, for two significant digits of half the interval's width.
 int decimals_of(const MeanInterval& ends, double factor) {
   const double half = 0.5 * (ends.high - ends.low) / factor;
   return half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9) : 0;
 }
 
-/// "$3.21\ [3.02, 3.40]$": as mathematics, so that a minus is one. The digits follow from the interval, and mean and
-/// bounds have as many decimals.
+/// Returns "$3.21\ [3.02, 3.40]$" in math mode, in which a hyphen is a minus sign. Mean and bounds have the same number
+/// of decimals, which follows from the interval.
 std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
   if (mean.count == 0) return "--";
   if (!mean.interval || scale.scientific || !(mean.interval->high > mean.interval->low))
@@ -52,10 +52,10 @@ std::string latex_estimate(const Scale& scale, const MeanEstimate& mean) {
 
 bool has_taps(const Comparison& one) { return one.occasion && one.occasion->taps(); }
 
-/// The comparisons of a table: `metrics` at an occasion, then as many at the next one.
+/// Layout of the comparisons: `metrics` comparisons for the first occasion, then as many for the next.
 struct MeansLayout {
   std::size_t metrics = 0;
-  std::vector<Scale> scales;  ///< of each metric
+  std::vector<Scale> scales;  ///< one per metric
 
   std::string title(const std::vector<Comparison>& comparisons, std::size_t metric) const {
     return scales[metric].title(comparisons[metric].metric.name);
@@ -73,7 +73,7 @@ MeansLayout layout_of(const std::vector<Comparison>& comparisons, int digits) {
   return out;
 }
 
-/// Adds a row per group and occasion, first its names, then what `show` adds for the group of each metric.
+/// Adds a row per group and occasion: its names, then the cells that `show` adds for the means of each metric.
 template <class ShowMeans>
 Table table_of(const std::vector<Comparison>& comparisons, const MeansLayout& layout, const ShowMeans& show) {
   Table out;
@@ -94,7 +94,7 @@ Table table_of(const std::vector<Comparison>& comparisons, const MeansLayout& la
   return out;
 }
 
-/// What is in no mean, or not in all: a metric that some runs lack, jobs that failed or have not ended.
+/// Returns remarks on missing values: metrics that some runs lack, jobs that failed or have not ended.
 std::string remarks(const std::vector<Comparison>& comparisons, std::size_t metrics) {
   std::string out;
   for (std::size_t metric = 0; metric < metrics; ++metric) {
@@ -138,7 +138,7 @@ std::string means_table(const std::vector<Comparison>& comparisons) {
 
 std::string latex_table(const std::vector<Comparison>& comparisons) {
   const MeansLayout layout = layout_of(comparisons, kDigitsBesideIntervals);
-  // One column with n where it is the same for all metrics.
+  // One column with n is enough if n is equal for all metrics.
   bool same = true;
   std::size_t least = SIZE_MAX;
   std::size_t most = 0;

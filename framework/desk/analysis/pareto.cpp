@@ -25,7 +25,7 @@ Column make_key(const std::string& name, const std::vector<std::string>& columns
   return column;
 }
 
-/// The jobs of one setting, counted, and their means.
+/// Counts the jobs of a setting and computes its means.
 Setting make_setting(const JobGroup& group, const JobUnits& units, const JobCondition& where, const Pareto& pareto) {
   Setting out;
   out.values = group.values;
@@ -48,10 +48,10 @@ Setting make_setting(const JobGroup& group, const JobUnits& units, const JobCond
   return out;
 }
 
-/// As a quantity of which less is better.
+/// Returns the value, or its negative if more is better: less loss is better.
 double loss(const Pareto& pareto, double value) { return pareto.more_is_better() ? -value : value; }
 
-/// The loss that a setting with an interval keeps to: at its upper end, or at the lower one where more is better.
+/// Returns the loss at the worse end of the setting's interval.
 double cautious_loss(const Pareto& pareto, const Setting& setting) {
   return loss(pareto, pareto.more_is_better() ? setting.error.interval->low : setting.error.interval->high);
 }
@@ -127,7 +127,7 @@ Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const st
 
 std::vector<std::size_t> front_of(const std::vector<FrontPoint>& points) {
   std::vector<std::size_t> out;
-  const FrontPoint* last = nullptr;  // on the front
+  const FrontPoint* last = nullptr;  // the last group's best point on the front
   for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
     end = std::find_if(begin, points.end(), [&](const FrontPoint& one) {
       return std::tie(one.scene, one.cost) != std::tie(begin->scene, begin->cost);
@@ -160,7 +160,7 @@ double read_bound(const Pareto& pareto, const std::string& within) {
 }
 
 const Setting* cheapest_within(const Pareto& pareto, double bound) {
-  // They stand in the order of cost, and of error where costs are equal.
+  // The settings are sorted by cost, then error.
   const auto found = std::find_if(pareto.settings.begin(), pareto.settings.end(), [&](const Setting& one) {
     return one.complete() && one.error.interval &&
            satisfies(cautious_loss(pareto, one), Relation::at_most, loss(pareto, bound));

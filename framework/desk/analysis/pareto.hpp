@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What accuracy costs: the settings of a sweep, each over its seeds, and those that no other beats in both cost and
-// error. analysis/pareto_report.hpp shows them.
+// The Pareto front of cost and error over the settings of a sweep, each averaged over its seeds. For output see
+// analysis/pareto_report.hpp.
 #pragma once
 
 #include "analysis/column.hpp"
@@ -14,44 +14,44 @@
 
 namespace palpate {
 
-/// All jobs that differ in nothing but the seed.
+/// All jobs that differ in the seed alone.
 struct Setting {
-  std::vector<std::string> values;  ///< one for each of Pareto::keys
-  std::string name;                 ///< "acquisition=weighted, taps=17": the keys that differ within the sweep
+  std::vector<std::string> values;  ///< one per key of Pareto::keys
+  std::string name;                 ///< "acquisition=weighted, taps=17": values of the keys that vary within the sweep
   std::size_t first_job = 0;        ///< index in Sweep::jobs
   std::size_t scene = 0;            ///< index in Pareto::scenes
-  StatusCounts counts;              ///< without a value: of cost or error
-  MeanEstimate cost;                ///< over the jobs that are done and have both values; clusters: their units
+  StatusCounts counts;              ///< without_value: lacks cost or error
+  MeanEstimate cost;                ///< over the done jobs with both values; clusters: units (JobUnits)
   MeanEstimate error;
-  /// Its number on the front of its scene, from 1 in the order of cost; 0 if it is not on it: another complete one of
-  /// this scene is at least as good in both and better in one. Equal ones are on it together or not at all.
+  /// Number on the front of its scene, from 1 in the order of cost; 0 if another complete setting of this scene
+  /// dominates it. Settings with equal values are all on the front or all off it.
   int front = 0;
 
-  /// Whether every job has both values. Others are shown, but the front is made, and the cheapest chosen, without them:
-  /// the mean of the jobs that went well says nothing about those that did not.
+  /// Returns whether every job has both values. Incomplete settings are shown, but neither compared nor chosen: the
+  /// mean over successful jobs ignores the failures.
   bool complete() const { return counts.all_are(ValueStatus::counted); }
 };
 
 struct Pareto {
   Column cost;
   Column error;
-  std::vector<std::string> keys;    ///< the swept ones but the seed
-  std::vector<std::string> scenes;  ///< "scene=ring"; one "" where the sweep has one: see scene_keys()
-  std::vector<Setting> settings;    ///< of each scene in the order of cost, those without a value last
+  std::vector<std::string> keys;    ///< swept keys except the seed
+  std::vector<std::string> scenes;  ///< "scene=ring"; one "" if the sweep has one scene (see scene_keys())
+  std::vector<Setting> settings;    ///< sorted by scene and cost; settings without a value come last
   int jobs = 0;
   int unfinished = 0;
-  bool by_seed = false;  ///< seeds are the units: see JobUnits
+  bool by_seed = false;  ///< whether seeds are the units (JobUnits)
 
   bool more_is_better() const { return error.better == RecordField::Better::more; }
 };
 
-/// Groups the results of `sweep` by all keys but the seed. Jobs of which `where` (may be null) does not hold belong to
-/// no setting. Throws Error, of the command line, for a column that does not exist, holds no numbers, is best neither
-/// small nor large (coverage_95), or, as cost, is better when it is more.
+/// Groups the results of `sweep` by all keys except the seed. Jobs that do not satisfy `where` (null for no condition)
+/// are left out. Throws Error of the command line for a column that does not exist, holds no numbers, or cannot be a
+/// cost or an error.
 Pareto make_pareto(const Sweep& sweep, const std::vector<Row>& results, const std::string& cost,
                    const std::string& error, const Condition* where = nullptr);
 
-/// One of the points among which front_of() finds those that are not dominated.
+/// A point of cost and loss, as an argument of front_of().
 struct FrontPoint {
   std::size_t index = 0;
   std::size_t scene = 0;
@@ -64,22 +64,23 @@ struct FrontPoint {
 /// sorted by scene, then cost; the result keeps their order.
 std::vector<std::size_t> front_of(const std::vector<FrontPoint>& points);
 
-/// Returns whether a column can be the error of a front: its best value is the least or the greatest one, which for a
-/// coverage of 95 % intervals is 0.95.
+/// Returns whether a column can be the error of a front. Coverages of 95 % intervals cannot: they are best at 0.95,
+/// neither at their least nor at their greatest value.
 bool can_be_error(const Column& column);
-/// Returns whether a column can be the cost of a front: less of it is better, or neither.
+/// Returns whether a column can be the cost of a front, which excludes columns of which more is better.
 bool can_be_cost(const Column& column);
 
-/// Reads what `--within` says, in the unit of the error. Throws Error, also where there are several scenes: what is
-/// best on one is not what is best on another.
+/// Returns the number in the text of `--within`, in the unit of the error. Throws Error for an invalid text, and for
+/// several scenes, whose best settings may differ.
 double read_bound(const Pareto& pareto, const std::string& within);
 
-/// The complete setting of the least mean cost whose interval keeps to `bound` at its cautious end: the upper one, or
-/// the lower where more is better. Of equal costs the one with the better error. Null if there is none. A setting of
-/// one seed, or of equal values, has no interval and is never chosen.
+/// Returns the complete setting with the least mean cost whose interval of the error satisfies `bound` at its worse
+/// end: the upper end, or the lower end if more is better. Of settings with equal cost it takes the one with the better
+/// error. Returns null if there is none; settings without an interval (one seed, equal values) are never chosen.
 const Setting* cheapest_within(const Pareto& pareto, double bound);
 
-/// The complete setting whose interval ends best, whatever it costs. Null if none has an interval.
+/// Returns the complete setting whose interval of the error has the best worse end, at any cost; null if none has an
+/// interval.
 const Setting* best_bounded(const Pareto& pareto);
 
 }  // namespace palpate

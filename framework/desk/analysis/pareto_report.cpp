@@ -24,7 +24,7 @@ Scale scale_of(const Pareto& pareto, const Column& key, Field field) {
   return readable_scale(key.unit, means);
 }
 
-/// The fewest and the most units that a setting with a value has.
+/// Returns the least and the largest number of units of the settings with a value.
 std::pair<std::size_t, std::size_t> seeds_of(const Pareto& pareto) {
   std::size_t fewest = kEnoughUnits;
   std::size_t most = 0;
@@ -43,14 +43,14 @@ std::string cost_text(const Setting& setting, const Scale& scale) {
   return fmt::format("{} +- {}", scale.number(cost.mean), half);
 }
 
-/// An axis with its ends in its unit, and whether it is logarithmic.
+/// An axis with its range in its unit.
 struct PlotAxis {
   Scale scale;
   double low = 0.0;
   double high = 1.0;
   bool logarithmic = false;
 
-  /// "mean low high". A bar may begin at or below 0, which a logarithmic axis has not.
+  /// Returns "mean low high". Ends at or below 0 are clipped on a logarithmic axis.
   std::string columns(const MeanEstimate& estimate) const {
     const MeanInterval ends = interval_or_mean(estimate);
     const auto clipped = [&](double value) { return logarithmic ? std::max(value, low) : value; };
@@ -93,17 +93,17 @@ PlotAxis plot_axis(const Pareto& pareto, const Column& key, Field field, const s
   return axis;
 }
 
-constexpr double kKeyLeft = 0.635;  // of the picture's width
+constexpr double kKeyLeft = 0.635;  // share of the picture's width
 
-/// Of the fronts, one a scene.
+/// Colours of the fronts, one per scene.
 constexpr std::array<const char*, 5> kFrontColours{"#0b5394", "#00795a", "#7a3e9d", "#8c6d46", "#404040"};
 constexpr const char* kChosenColour = "#c1440e";
 
 const char* front_colour(const Setting& setting) { return kFrontColours[setting.scene % kFrontColours.size()]; }
 
-/// Clauses for entries of the key: the numbered settings, and the chosen one, each with its colour and name.
+/// Returns clauses for the key: number and name of each setting on the front and of the chosen one.
 std::vector<std::string> named_settings(const Pareto& pareto, const Setting* chosen) {
-  constexpr std::size_t kLongest = 48;  // letters that fit beside the plot
+  constexpr std::size_t kLongest = 48;  // number of letters that fit beside the plot
   constexpr std::size_t kMostLines = 26;
   std::vector<std::string> out;
   int left_out = 0;
@@ -203,13 +203,13 @@ std::string bound_words(const Pareto& pareto, double bound) {
 
 namespace {
 
-/// A gnuplot script under construction: its data blocks, and the clauses of its one plot command.
+/// A gnuplot script under construction: data blocks, and the clauses of its single plot command.
 struct PlotScript {
   std::string text;
   std::string clauses;
 
   void plot(const std::string& clause) { clauses += (clauses.empty() ? "plot " : ", \\\n  ") + clause; }
-  /// Adds a block and the clauses that use it; nothing without lines.
+  /// Adds a data block and the clauses that use it; nothing if `lines` is empty.
   void draw(const std::string& name, const std::string& lines, const std::vector<std::string>& uses) {
     if (lines.empty()) return;
     text += fmt::format("${} << END\n{}END\n", name, lines);
@@ -217,7 +217,7 @@ struct PlotScript {
   }
 };
 
-/// Returns title, axes, margins and key.
+/// Returns the settings of title, axes, margins and key.
 std::string frame_settings(const Pareto& pareto, const std::string& title, const PlotAxis& x, const PlotAxis& y) {
   std::string out = fmt::format("set title {} font ',14'\n", gnuplot_text(title));
   out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),

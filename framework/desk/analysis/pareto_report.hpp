@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The front of speed against accuracy for people: a table, the same as CSV, a picture, and the setting that was asked
-// for as a config.
+// Output of a Pareto front: a table, rows for programs, a gnuplot script, and texts about one setting.
 #pragma once
 
 #include "analysis/pareto.hpp"
@@ -10,29 +9,29 @@
 
 namespace palpate {
 
-/// "20 seeds", "18 to 20 seeds", or jobs where the seed is not swept: the units that the means of a setting are over.
+/// Returns the number of units of the settings: "20 seeds", "18 to 20 seeds"; jobs if the seed is not swept.
 std::string seeds_words(const Pareto& pareto);
 
-/// One line a setting under a header, in readable units, with the number of those on the front.
+/// Returns a table with one line per setting in readable units, numbers of the front, and remarks.
 std::string pareto_table(const Pareto& pareto);
 
-/// One row a setting: number on the front, keys, counts of jobs, means and ends of the intervals in SI units.
+/// Returns one row per setting: number on the front, keys, counts of jobs, means and ends of the intervals in SI units.
 std::vector<Row> pareto_rows(const Pareto& pareto);
 
-/// A gnuplot script without terminal and output: every setting with its intervals, the front as a numbered step line
-/// with a list of names, `bound` (if any) as a line, `chosen` (may be null) marked.
+/// Returns a gnuplot script without terminal and output: every setting with its intervals, the front as a numbered step
+/// line, the names of its settings, `bound` (optional) as a line, and `chosen` (may be null) as a mark.
 std::string pareto_script(const Pareto& pareto, const std::string& title, const std::optional<double>& bound,
                           const Setting* chosen);
 
-/// The width and height in pixels that the script is made for.
+/// Width and height of the picture, pixels.
 inline constexpr int kParetoWidth = 1300;
 inline constexpr int kParetoHeight = 760;
 
-/// Of one setting in words: "nlpd 4.31 [4.02, 4.60]".
+/// Returns the error or the cost of a setting: "nlpd 4.31 [4.02, 4.60]".
 std::string error_words(const Pareto& pareto, const Setting& setting);
 std::string cost_words(const Pareto& pareto, const Setting& setting);
 
-/// "5 mm" of an error of this sweep.
+/// Returns "5 mm" for a value of the error.
 std::string bound_words(const Pareto& pareto, double bound);
 
 }  // namespace palpate

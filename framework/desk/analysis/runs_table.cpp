@@ -29,7 +29,7 @@ using State = RunStatus::State;
 
 constexpr const char* kOutline = "footprint_iou";
 
-/// Up to three of them, each once, else how many there are.
+/// Returns up to three different names, else "N `noun`".
 std::string in_short(const std::vector<std::string>& names, const char* noun) {
   constexpr std::size_t kShown = 3;
   std::vector<std::string> out;
@@ -55,7 +55,7 @@ std::string shapes_in(const Row& config) {
   }
 }
 
-/// What a sweep does with a key: its values, where it is swept.
+/// Returns the values of a swept key; "" if the key is not swept.
 std::string swept_at(const Sweep& sweep, const char* key) {
   const auto found = std::find(sweep.keys.begin(), sweep.keys.end(), key);
   if (found == sweep.keys.end()) return {};
@@ -74,7 +74,7 @@ std::string scene_of(const Origins& origins, const Row& config) {
   return first_of({recorded_group(origins, "scene.", "scene"), shapes_in(config)});
 }
 
-/// "seed (30), acquisition (2)": the swept keys, each with how many values it has.
+/// Returns the swept keys with their numbers of values: "seed (30), acquisition (2)".
 std::string swept_words(const Sweep& sweep) {
   std::vector<std::string> out;
   for (const std::string& key : varying_keys(sweep, sweep.keys))
@@ -82,14 +82,14 @@ std::string swept_words(const Sweep& sweep) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// Whether scores that a caller gave, and not the acquisition of the config, chose a tap.
+/// Returns whether scores of a caller chose a tap, instead of the config's acquisition.
 bool by_callers_scores(const fs::path& directory, const Row& config) {
   if (config.text("backend.type") != "caller") return false;
   const std::vector<Row> taps = read_run_record(directory).taps;
   return std::any_of(taps.begin(), taps.end(), [](const Row& tap) { return tap.text("source") == "caller"; });
 }
 
-/// A text, null if there is none.
+/// Returns the text as a scalar; null for "".
 Scalar text_or_null(const std::string& text) { return text.empty() ? Scalar() : Scalar(text); }
 
 void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
@@ -102,7 +102,7 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   row.add("strategy", text_or_null(first_of({config.text("backend.label"), by_caller, strategy_of(origins, config)})));
   row.add("scene", text_or_null(scene_of(origins, config)));
   const std::optional<Row> summary = read_summary(directory);
-  // Only the taps of what has not ended are counted: of the rest the summary tells their number.
+  // Taps are counted only for runs that have not ended: a summary has their number.
   const RunStatus status = summary ? read_ending(directory) : read_status(directory);
   row.add("taps", summary ? summary->number("taps").value_or(0.0) : status.taps);
   const auto add_error = [&](const std::string& field) {
@@ -120,7 +120,7 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
   Row& row = out.row;
   row.add("name", text_or_null(sweep_name(sweep)));
   row.add("begun", text_or_null(begun_text(directory)));
-  // What is not swept is in all jobs as in the first.
+  // Keys that are not swept have the same values in all jobs, so the first job stands for all.
   const fs::path first = job_directory(sweep, sweep.jobs.front());
   const Origins origins = recorded_origins(first);
   const Row job = is_there(first / "config.yaml") ? read_settings(first) : config;
@@ -134,7 +134,7 @@ void add_sweep(ListedRecord& out, const fs::path& directory, const Row& config) 
     row.add(fmt::format("jobs_{}", state_name(state)), now.counts[state]);
 }
 
-/// "done", "7 of 8 jobs done, 1 failed"
+/// Returns "done" or "7 of 8 jobs done, 1 failed".
 std::string state_words(const Row& row) {
   if (row.find("jobs") == nullptr) return row.text("state");
   std::string out = fmt::format("{} of {} jobs done", row.cell("jobs_done"), row.cell("jobs"));
@@ -153,7 +153,7 @@ ListedRecord list_record(const fs::path& directory) {
   (is_sweep(directory) ? add_sweep : add_run)(out, directory, config);
   out.row.add("directory", directory.string());
   out.config.values = config;
-  // Of the hundred thousand values that a config may have none is looked for one by one.
+  // A config may have a hundred thousand values, so names are looked up in a set.
   std::unordered_set<std::string> known;
   for (const auto& field : out.beside.fields) known.insert(field.first);
   for (const auto& field : config.fields) {
@@ -169,7 +169,7 @@ std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Cond
       for (const auto& field : part->fields) known.push_back(field.first);
     }
   }
-  // What a run that has not ended will know, it may be asked.
+  // Fields of the summary are known names, also for runs that have not ended.
   for (const RecordField& field : summary_fields()) known.push_back(field.name);
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
@@ -209,7 +209,7 @@ void tell_apart(std::vector<ListedRecord>& records) {
 std::string runs_table(const std::vector<Row>& rows) {
   if (rows.empty()) return {};
   std::vector<double> errors;
-  std::set<std::string> metrics;  // both where some runs are from above and some from any side
+  std::set<std::string> metrics;  // two if some runs tap from above and others from any side
   for (const Row& row : rows) {
     const std::string metric = main_error({row});
     const std::optional<double> error = row.number(metric);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What runs and sweeps come to at a glance, a line each: the table of `palpate list`. Of a run that has ended config
-// and summary are read, and no tap: there may be hundreds.
+// The table of `palpate list`: runs and sweeps, one line each. For a run that has ended, config and summary are read,
+// but no taps: a folder may hold hundreds of runs.
 #pragma once
 
 #include "record/distinctions.hpp"
@@ -13,30 +13,30 @@
 
 namespace palpate {
 
-/// A run or a sweep as it is listed.
+/// A run or a sweep in the list.
 struct ListedRecord {
-  /// `name`, `begun`, `strategy`, `scene`, of a run `taps`, errors and `state`; of a sweep `jobs` and how many are
-  /// `jobs_done`, `jobs_failed` and `jobs_running`; `directory`. Null is what is not known.
+  /// Fields `name`, `begun`, `strategy`, `scene` and `directory`; for a run `taps`, errors and `state`; for a sweep
+  /// `jobs`, `jobs_done`, `jobs_failed` and `jobs_running`. Unknown values are null.
   Row row;
-  Row beside;  ///< what else a condition may name: fields of the summary, then keys of the config
+  Row beside;  ///< further names for conditions: fields of the summary, then keys of the config
   RecordedSettings config;
-  std::string swept;  ///< of a sweep, the swept keys: "seed (30), acquisition (2)"
+  std::string swept;  ///< swept keys of a sweep: "seed (30), acquisition (2)"
 };
 
-/// Reads the one in `directory`. A strategy and a scene are called as the group is that a config named, else by what
-/// they are made of: the type of the acquisition, the shapes of the objects. Throws Error for a damaged one.
+/// Reads the run or sweep in `directory`. Strategy and scene have the name of the group in the config; otherwise the
+/// type of the acquisition and the shapes of the objects. Throws Error for a damaged record.
 ListedRecord list_record(const std::filesystem::path& directory);
 
-/// Gives each row `apart`, what sets it apart from those of its name: what is swept, then distinguishing_settings()
-/// among runs, or among sweeps, as the config of a sweep has no defaults; null where there is nothing. Takes the
-/// configs away.
+/// Adds to each row `apart`, the differences from other rows with the same name: swept keys, then
+/// distinguishing_settings(), among runs or among sweeps (configs of sweeps have no defaults); null for no difference.
+/// Moves the configs out of `records`.
 void tell_apart(std::vector<ListedRecord>& records);
 
-/// The rows of those of which `where` holds. A name that only others have is null, as everywhere in conditions. Throws
-/// Error for a name that none has.
+/// Returns the rows of the records that satisfy `where`. A name that only other records have is null. Throws Error for
+/// a name that no record has.
 std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Condition& where);
 
-/// The rows under a header; "" if there are none.
+/// Returns the rows below a line of titles; "" without rows.
 std::string runs_table(const std::vector<Row>& rows);
 
 }  // namespace palpate

@@ -13,11 +13,11 @@ namespace {
 struct Difference {
   double size = 0.0;
   bool higher = false;
-  double rounding = 0.0;         ///< as much of the size is not to be trusted
-  std::size_t doubled_rank = 0;  ///< whole even where equal sizes share their mean rank
+  double rounding = 0.0;         ///< possible rounding error of the size
+  std::size_t doubled_rank = 0;  ///< twice the rank, a whole number also for ties, which share their mean rank
 };
 
-/// Gives the differences, sorted by size, their ranks. Returns the sum of t^3 - t over the sets of t equal ones.
+/// Sets the ranks of differences that are sorted by size. Returns the sum of t^3 - t over the sets of t ties.
 double rank(std::vector<Difference>& sorted) {
   double ties = 0.0;
   for (std::size_t begin = 0; begin < sorted.size();) {
@@ -34,8 +34,8 @@ double rank(std::vector<Difference>& sorted) {
   return ties;
 }
 
-/// The probability that a rank sum, were every sign a fair coin, is at most `doubled_sum` / 2: the distribution grows
-/// rank by rank.
+/// Returns the probability that a rank sum is at most `doubled_sum` / 2 if every sign is random. The distribution is
+/// built up rank by rank.
 double share_at_most(const std::vector<Difference>& ranked, std::size_t doubled_sum) {
   std::vector<double> share(doubled_sum + 1, 0.0);
   share[0] = 1.0;
@@ -75,7 +75,7 @@ SignedRank signed_rank_test(const std::vector<double>& first, const std::vector<
   out.effect = (out.rank_sum_higher - out.rank_sum_lower) / sum;
   out.exact = ranked.size() <= kExactSignedRanks;
   if (out.exact) {
-    // The distribution is symmetric: both tails are equal, and of a sum in the middle they overlap.
+    // Both tails of the symmetric distribution are equal; at a sum in the middle they overlap.
     out.p = std::min(1.0, 2.0 * share_at_most(ranked, std::min(higher, lower)));
     return out;
   }

@@ -12,7 +12,7 @@ namespace palpate {
 
 namespace {
 
-/// In double precision: long doubles make no interval better, and not every machine has them.
+/// Computes in double precision: long double would not improve an interval, and some machines lack it.
 using Doubles = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 std::size_t count_of(const Clusters& clusters) {
@@ -20,10 +20,10 @@ std::size_t count_of(const Clusters& clusters) {
                          [](std::size_t sum, const std::vector<double>& one) { return sum + one.size(); });
 }
 
-/// Of all values.
+/// Returns the mean of all values.
 double mean_of_clusters(const Clusters& clusters) {
   const std::vector<double> means = cluster_means(clusters);
-  // Of clusters of one size, and of equal ones, rounding leads nowhere else.
+  // Avoids rounding for clusters of one size and for equal means.
   const auto same_size = [&](const std::vector<double>& one) { return one.size() == clusters.front().size(); };
   const auto equal = [&](double one) { return one == means.front(); };
   if (std::all_of(clusters.begin(), clusters.end(), same_size) || std::all_of(means.begin(), means.end(), equal))

@@ -20,22 +20,22 @@
 namespace palpate {
 namespace {
 
-/// A row of the table before it is written.
+/// Numbers of a group before they are formatted.
 struct SweepTableRow {
   std::string name;
-  std::size_t scene = 0;  ///< place of its scene in the sweep
+  std::size_t scene = 0;  ///< index of its scene
   int runs = 0;
   int without_contact = 0;
   int found = 0;
   int failed = 0;
   bool is_initial_known = false;
-  std::vector<double> object_taps_rest, object_taps_all, rmse, iou;  ///< of the jobs that are done, ascending
+  std::vector<double> object_taps_rest, object_taps_all, rmse, iou;  ///< of the done jobs, ascending
 
-  /// By which the rows of a scene are sorted: of what has no error it is more than any.
+  /// Returns the sorting key within a scene: the median error, infinite for a group without an error.
   double median_rmse() const { return rmse.empty() ? std::numeric_limits<double>::infinity() : quantile(rmse, 0.5); }
 };
 
-/// "5.4 (4.5-6.3)": median, and the values that 10 % and 90 % stay below.
+/// Returns "5.4 (4.5-6.3)": median, 10 % and 90 % quantile.
 std::string spread(const std::vector<double>& values, const Scale& scale) {
   if (values.empty()) return "-";
   return fmt::format("{} ({}-{})", scale.number(quantile(values, 0.5)), scale.number(quantile(values, 0.1)),
@@ -45,8 +45,8 @@ std::string spread(const std::vector<double>& values, const Scale& scale) {
 SweepTableRow row_of(const JobGroup& group, const std::string& error,
                      const std::function<std::optional<int>(std::size_t job)>& initial_taps) {
   SweepTableRow out;
-  constexpr std::size_t kMostAsked = 3;  // a config may be damaged
-  std::optional<int> initial;            // taps: the jobs of a group have as many
+  constexpr std::size_t kMostAsked = 3;  // jobs that are tried, as a config may be damaged
+  std::optional<int> initial;            // number of initial taps, equal for all jobs of a group
   for (std::size_t i = 0; i < std::min(kMostAsked, group.jobs.size()) && !initial; ++i)
     initial = initial_taps(static_cast<std::size_t>(group.jobs[i].job->index));
   for (const auto& [job, row] : group.jobs) {
@@ -86,7 +86,7 @@ Table table_of(const std::vector<SweepTableRow>& rows, const std::string& metric
   const Scale error = readable_scale(unit_of_column(metric), medians, 2);
   const Scale share{"", 1.0, 2};
   const Scale count{"", 1.0, 0};
-  // Long names stand at the end of their lines, so that the numbers keep to the width of a screen.
+  // Long names move to the end of the lines, so that the numbers fit a screen.
   constexpr std::size_t kLongest = 32;
   Table table;
   for (const SweepTableRow& row : rows) {
@@ -122,7 +122,7 @@ std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
     const Job& first = *group.jobs.front().job;
     row.scene = places.emplace(key_words(sweep, first, scenes, true), places.size()).first->second;
     row.name = key_words(sweep, first, keys, keys.size() > 1);
-    // Where no key but the seed has several values there is but one group.
+    // If only the seed varies, there is one group.
     if (row.name.empty()) row.name = keys.empty() ? "all jobs" : "(none)";
     rows.push_back(std::move(row));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a sweep comes to at a glance: the table at its end.
+// The table at the end of a sweep.
 #pragma once
 
 #include "sweep/sweep.hpp"
@@ -11,10 +11,9 @@
 
 namespace palpate {
 
-/// Medians and spreads of taps on the object, RMSE and IoU, and starts without contact, by group: all
-/// keys that vary but the seed.
-/// One line per group under a header; those of a scene stand together, the least median RMSE first. How many taps of a
-/// job are initial may be swept, so it is asked of the first jobs of each group, until one tells.
+/// Returns one line per group of all keys that vary except the seed: starts without contact, medians and spreads of
+/// taps on the object, RMSE and IoU. Groups of a scene stand together, sorted by median RMSE. `initial_taps` returns
+/// the number of initial taps of a job, which may be swept; nullopt if unknown. Returns "" if no job has ended.
 std::string sweep_table(const Sweep& sweep, const std::vector<Row>& results,
                         const std::function<std::optional<int>(std::size_t job)>& initial_taps);
 

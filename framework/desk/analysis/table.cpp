@@ -45,7 +45,7 @@ std::string Table::text() const {
 
 std::string Table::markdown() const {
   std::string out;
-  // A '|' would end the cell.
+  // A '|' would end a cell.
   for (const auto& cells : lines([](const std::string& text) { return boost::replace_all_copy(text, "|", "\\|"); })) {
     const std::string rule = out.empty() ? "|" + sides("---|", "---:|") + "\n" : "";
     out += fmt::format("| {} |\n{}", fmt::join(cells, " | "), rule);

@@ -11,13 +11,12 @@
 
 namespace palpate {
 
-/// A table with cells for people, each under a title, and fields for programs, each with a name.
+/// A table with cells for people, each under a title, and fields for programs, each with a name. All rows show the same
+/// titles in the same order.
 ///
-///     table.add_row();
-///     table.show("failed", "2", Table::Kind::count);
-///     table.store("failed", 2);
-///
-/// All rows show the same titles in the same order.
+///       table.add_row();
+///       table.show("failed", "2", Table::Kind::count);
+///       table.store("failed", 2);
 class Table {
  public:
   enum class Kind {
@@ -57,7 +56,7 @@ class Table {
   bool is_hidden(const Column& column) const;
   /// Returns the titles, then the cells of each row, both after `escape`, without hidden columns.
   std::vector<std::vector<std::string>> lines(std::string (*escape)(const std::string&)) const;
-  /// Returns `left` or `right` for each column that is not hidden, one after the other.
+  /// Returns `left` or `right` for each column that is not hidden, as one string.
   std::string sides(const std::string& left, const std::string& right) const;
 
   std::vector<Column> columns_;

@@ -16,23 +16,23 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kFewest = 10;  // contacts
+constexpr std::size_t kFewest = 10;  // least number of contacts
 constexpr double kMillimetre = 1e-3;
 constexpr double kMillimetrePerMinute = 1e-3 / 60.0;
-/// Metres above the highest thing that a jerk may be felt in.
+/// Height above the highest object, metres, from which a false contact can be reported.
 constexpr double kAbove = 0.1;
-/// Of the contacts of a run whose scene stands as its config says, at most one in so many is nowhere near it: more
-/// false ones are no arm that taps.
+/// At most one in this many contacts of a run may be far from its scene. More false contacts would be implausible: the
+/// scene does not stand as its config says.
 constexpr std::size_t kFar = 5;
-/// And at most one in so many is below it, where the arm would have gone through an object: false contacts are above.
+/// At most one in this many contacts may be below the surface, within an object: false contacts occur above.
 constexpr std::size_t kThrough = 20;
-/// Metres of offset beyond what is assumed: an arm whose heights err by more stands over another desk. An arm that is
-/// perfect is off by 14 mm then, where its motion is that of the paper.
+/// Largest offset beyond the assumed effects, metres; a larger one means another height of the desk. With the paper's
+/// motion, the offset of a perfect arm is 14 mm.
 constexpr double kMostOffset = 0.03;
-/// A rate cannot be told by motions that show fewer than one in so many.
+/// Least share of events that the motions must reveal, so that a rate can be estimated.
 constexpr double kShown = 0.1;
 
-/// What these taps do not tell, at the values of an arm of Baxter's class: those that the effects have by themselves.
+/// Effects that these taps cannot estimate, at their default values: those of an arm of Baxter's class.
 constexpr std::pair<const char*, const char*> kAssumed[] = {{"force_noise", "{deviation: 1.5 N}"},
                                                             {"force_drift", "{per_metre: 10 N/m}"},
                                                             {"stiffness", "{object: 1500 N/m}"},
@@ -55,12 +55,12 @@ std::string words(const Estimated& one, double unit, const char* name) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}] {}", one.value / unit, one.low / unit, one.high / unit, name);
 }
 
-/// A run, its rerun, and what both come to.
+/// A recorded run, its simulated rerun, and the result of the rerun.
 struct CalibrationRun {
   const Recording& recording;
   std::unique_ptr<const Scene> scene;
   SimulatedRerun rerun;
-  SimulatedRerun::Result made;  ///< by what is assumed
+  SimulatedRerun::Result made;  ///< with the assumed effects
   std::size_t contacts = 0;
 
   CalibrationRun(const Workshop& workshop, const Recording& from)
@@ -71,7 +71,7 @@ struct CalibrationRun {
         made(rerun.make(assumed())) {}
 };
 
-/// All taps of all runs, as counts and sums.
+/// Counts over all taps of all runs.
 struct Sums {
   double taps = 0.0, failed = 0.0, contacts = 0.0;
   double on_desk = 0.0;
@@ -102,7 +102,7 @@ class Calibrated {
       lines += fmt::format("  {}: {}  # {}\n", effect, value, what);
       effects.at(effect) = parse_yaml(value, "calibrate");
     };
-    // The effect's offset is that of the first tap.
+    // The effect's offset is the offset of the first tap.
     const double drift = fit_.drift ? fit_.drift->value : 0.0;
     line("height_offset",
          fmt::format("{{constant: {:.4g} mm, drift: {:.4g} mm/min}}",
@@ -186,7 +186,8 @@ class Calibrated {
         (variance / static_cast<double>(requests.size()) - simulated_variance_) / static_cast<double>(runs_.size());
   }
 
-  /// The rate at which the simulator shows as many: none and all of the taps being so, it shows so many.
+  /// Adds the rate with which the simulator reveals as many events as were recorded. The revealed share is linear in
+  /// the rate, between its values at rates 0 and 1.
   template <class Line, class Shown>
   void rate(const Line& line, const char* effect, const Estimated& seen, const std::string& what, const Shown& shown) {
     double none = 0.0;
@@ -206,7 +207,7 @@ class Calibrated {
                      100.0 * (all - none)));
   }
 
-  /// About what a tap is off, beyond what is assumed.
+  /// Returns the expected error of a height, metres, beyond the assumed effects.
   double offset_at(double elapsed) const {
     return fit_.offset.value + (fit_.drift ? fit_.drift->value * (elapsed - fit_.mean_elapsed) : 0.0);
   }
@@ -242,7 +243,7 @@ class Calibrated {
   std::vector<KnownContact> contacts_;
   Sums sums_;
   ContactFit fit_;
-  double simulated_variance_ = 0.0;  ///< of the errors of a tap, by what is assumed
+  double simulated_variance_ = 0.0;  ///< variance of a tap's error due to the assumed effects
 };
 
 }  // namespace

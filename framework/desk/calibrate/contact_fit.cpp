@@ -11,14 +11,16 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kNormal975 = 1.95996398454005423552;
-/// Twice the difference of log likelihoods that an interval of 95 % leaves room for (chi square, one degree).
+/// Largest value of twice the difference of log likelihoods within a 95 % interval (chi square with one degree of
+/// freedom).
 constexpr double kChiSquare95 = 3.84145882069412447634;
 
-constexpr double kLeastNoise = 5e-5;  // metres: below, a likelihood has no end
+constexpr double kLeastNoise = 5e-5;  // metres; bounds the likelihood, which would be infinite at 0
 constexpr double kFinestPlace = 2.5e-4;
 constexpr double kFarthestPlace = 0.01;
 
-/// Heights around each contact: rows are contacts, columns places of equal probability about them.
+/// Returns the heights of the scene around each contact: one row per contact, one column per position. The positions
+/// have equal probability under the lateral deviation.
 Eigen::MatrixXd heights_around(const std::vector<KnownContact>& contacts, double lateral) {
   constexpr int kRings = 8;
   constexpr int kSpokes = 16;
@@ -26,7 +28,7 @@ Eigen::MatrixXd heights_around(const std::vector<KnownContact>& contacts, double
   Eigen::MatrixXd out(static_cast<Eigen::Index>(contacts.size()), places);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (int k = 0; k < places; ++k) {
-      // The distance of two normal numbers has its quantiles in closed form.
+      // The distance from the centre is Rayleigh distributed, with quantiles in closed form.
       const int ring = k / kSpokes;
       const double radius = lateral * std::sqrt(-2.0 * std::log(1.0 - (ring + 0.5) / kRings));
       const double angle = 2.0 * kPi * ((k % kSpokes) + 0.5 * (ring % 2)) / kSpokes;
@@ -41,7 +43,7 @@ struct FitState {
   double offset = 0.0, drift = 0.0, noise = 0.003, false_share = 0.02;
   double log_likelihood = 0.0;
   double true_contacts = 0.0;
-  double time_squares = 0.0;  ///< of the true ones, about their mean
+  double time_squares = 0.0;  ///< sum of squared times of the true contacts about their mean
 };
 
 class ExpectationMaximisation {
@@ -73,7 +75,7 @@ class ExpectationMaximisation {
   }
 
  private:
-  /// The median of what they are off by.
+  /// Returns the median error of the heights.
   double start() const {
     Eigen::VectorXd off = measured_ - heights_.rowwise().mean();
     const auto middle = off.data() + off.size() / 2;
@@ -110,7 +112,7 @@ class ExpectationMaximisation {
     const double squares = ee - 2.0 * now.offset * e - 2.0 * now.drift * te + n * now.offset * now.offset +
                            2.0 * now.offset * now.drift * t + now.drift * now.drift * tt;
     now.noise = std::max(kLeastNoise, std::sqrt(std::max(0.0, squares) / n));
-    // As if one in a thousand were known to lie: without one, none would ever be.
+    // One in a thousand contacts counts as false, because a share of 0 would stay 0.
     now.false_share =
         (static_cast<double>(measured_.size()) - n + 1e-3) / (static_cast<double>(measured_.size()) + 1.0);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What contacts with a scene that is known say of the arm: where they lie beside what they should have met.
+// Fit of an arm's errors to contacts with a known scene.
 //
-// A contact is a true one, e = h(p + q) + b + d t + noise, q normal along x and y alike, or false, anywhere on the way
-// down. Offset, drift, noise and the share of false ones are found by expectation maximisation (Dempster, Laird and
-// Rubin 1977) for each deviation of the place on a grid, of which the likeliest is taken; its interval is that of the
-// profile likelihood. Only where heights differ beside a tap does anything tell of the place.
+// The error of a true contact is e = h(p + q) + b + d t + noise, where q is normal with equal deviations along x and y;
+// a false contact is anywhere on the way down. Expectation maximisation (Dempster, Laird and Rubin 1977) finds offset
+// b, drift d, noise and the share of false contacts for each lateral deviation on a grid. The most likely one is taken,
+// with the interval of the profile likelihood. Only taps beside steps determine the lateral deviation.
 #pragma once
 
 #include <palpate/scene.hpp>
@@ -15,35 +15,36 @@
 
 namespace palpate {
 
-/// A value, and an interval of 95 %.
+/// A value with its 95 % interval.
 struct Estimated {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
 struct KnownContact {
-  const Scene* scene = nullptr;  ///< as it stands
-  Target place;                  ///< where it was asked for
-  double elapsed = 0.0;          ///< seconds of the arm's time before it
-  double height = 0.0;           ///< metres, less what is known to be added to it
+  const Scene* scene = nullptr;  ///< with its objects as they stand
+  Target place;                  ///< requested position
+  double elapsed = 0.0;          ///< arm time before the contact, seconds
+  double height = 0.0;           ///< measured height, metres, minus the known error
 };
 
 struct ContactFit {
-  Estimated offset;                  ///< metres; at the middle of the time where there is a drift
-  std::optional<Estimated> drift;    ///< metres a second; none where it cannot be told from 0
-  Estimated noise;                   ///< of a height, standard deviation, metres
-  std::optional<Estimated> lateral;  ///< of the place, likewise; none where these taps do not tell
-  Estimated false_share;             ///< of the contacts
-  double mean_elapsed = 0.0;         ///< of the contacts, seconds
+  Estimated offset;                  ///< metres; halfway through the taps if there is a drift
+  std::optional<Estimated> drift;    ///< metres per second; nullopt if not significantly different from 0
+  Estimated noise;                   ///< standard deviation of a height, metres
+  std::optional<Estimated> lateral;  ///< standard deviation of the position along x and y, metres; nullopt if these
+                                     ///< taps do not determine it
+  Estimated false_share;             ///< share of the contacts
+  double mean_elapsed = 0.0;         ///< mean time of the contacts, seconds
 };
 
-/// False contacts lie anywhere over `range` metres. At least 3 contacts.
+/// Fits at least 3 contacts. False contacts are uniform over `range` metres of height.
 ContactFit fit_contacts(const std::vector<KnownContact>& contacts, double range);
 
-/// Returns how far a contact is above (positive) or below (negative) all heights of its scene within 1 cm of its place,
-/// metres, once `offset` is taken off its height; 0 for one among them.
+/// Returns how far a contact's height minus `offset` is above (positive) or below (negative) all heights of its scene
+/// within 1 cm of its position, in metres; 0 between them.
 double beyond_surface(const KnownContact& contact, double offset);
 
-/// Of `count` among `all`, both of which may be fractions of taps (Wilson 1927).
+/// Returns the share `count` / `all` with Wilson's interval (1927); both may be fractions of taps.
 Estimated share_of(double count, double all);
 
 }  // namespace palpate

@@ -12,10 +12,10 @@ namespace palpate {
 namespace {
 
 constexpr int kDraws = 24;
-/// A normal number's standard deviation over its median deviation.
+/// Standard deviation of a normal variable divided by its median absolute deviation.
 constexpr double kOfNormal = 1.4826;
 
-/// 0 of none.
+/// Returns the median; 0 for no values.
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -23,9 +23,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// All taps over all draws of the effects.
+/// Errors of all taps over all draws of the effects.
 struct RerunErrors {
-  std::vector<std::vector<double>> errors;  ///< of the heights of each tap, metres, over the draws with a contact
+  std::vector<std::vector<double>> errors;  ///< of the heights of each tap, metres, one per draw with a contact
   double failed = 0.0;                      ///< number of taps without a contact
 };
 

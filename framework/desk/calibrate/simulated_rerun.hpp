@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The recorded taps of a run, made again by the simulator: what its arm adds to their heights, and how often they fail.
+// Simulation of a run's recorded taps: the errors of their heights, and the share of failures.
 #pragma once
 
 #include "record/recording.hpp"
@@ -10,20 +10,20 @@ namespace palpate {
 
 class SimulatedRerun {
  public:
-  /// `workshop` and `recording` must outlive it. Throws Error for a run whose backend has no `motion`, and for what the
-  /// simulator refuses.
+  /// `workshop` and `recording` must outlive the object. Throws Error for a run whose backend has no `motion`, and for
+  /// a config that the simulator rejects.
   SimulatedRerun(const Workshop& workshop, const Recording& recording);
 
-  /// What became of the taps over some draws of the effects.
+  /// Errors of the taps over several draws of the effects.
   struct Result {
-    std::vector<double> error;     ///< of each tap: median of height less that of the scene there; 0 without a contact
-    std::vector<double> variance;  ///< of it, square metres, by the median deviation
+    std::vector<double> error;     ///< per tap: median error of the height, metres; 0 without a contact
+    std::vector<double> variance;  ///< per tap: variance of the error by the median absolute deviation, square metres
     double failed = 0.0;           ///< share of the taps
-    double far_off = 0.0;          ///< share of the contacts that are kFarOff from what is expected
-    double mean_error = 0.0;       ///< of all that are not
+    double far_off = 0.0;          ///< share of the contacts whose error differs from `expected` by more than kFarOff
+    double mean_error = 0.0;       ///< mean error of the other contacts
   };
-  /// `effects`: as `scene.effects` has them; the same draws for all. `expected`: what each tap is thought to be off;
-  /// its median where it is empty.
+  /// Simulates the taps with `effects`, in the format of `scene.effects`; every call uses the same draws. `expected`
+  /// has the expected error of each tap, by default its median.
   Result make(const Tree& effects, const std::vector<double>& expected = {}) const;
 
   static constexpr double kFarOff = 0.01;  ///< metres
@@ -34,7 +34,7 @@ class SimulatedRerun {
   Tree config_;
 };
 
-/// The taps of a recording as they were asked for.
+/// Returns the requests of a recording's taps.
 std::vector<TapRequest> requests_of(const Recording& recording);
 
 }  // namespace palpate

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 
-/// What `get` has of every moment.
+/// Returns a curve with the value of `get` at every moment.
 template <class Get>
 Curve curve_of(const History& history, const std::string& name, const Get& get) {
   Curve curve{name, {}};
@@ -24,7 +24,7 @@ Curve curve_of(const History& history, const std::string& name, const Get& get) 
   return curve;
 }
 
-/// A curve for each name that the last moment has.
+/// Returns a curve for each name that the row of the last moment has.
 template <class RowAt>
 std::vector<Curve> named_curves(const History& history, const RowAt& row_at) {
   std::vector<Curve> out;
@@ -68,7 +68,7 @@ Row numbers_of(const std::optional<FootprintState>& state) {
   return out;
 }
 
-/// Milliseconds by phase. Not every tap has a line: one during which the program was killed has none.
+/// Returns the milliseconds of each tap by phase. A tap during which the program was killed has no values.
 std::vector<Curve> times(const Recording& recording, const History& history) {
   std::vector<Curve> out;
   for (const char* phase : kPhaseNames)
@@ -81,7 +81,8 @@ std::vector<Curve> times(const Recording& recording, const History& history) {
   return out;
 }
 
-/// Leaves out what the axis cannot show, and takes a linear one where a logarithmic one is not needed.
+/// Removes values that the axis cannot show and curves without a value. A logarithmic axis becomes linear if all values
+/// lie within a factor of 20.
 void fit_axis(CurvePanel& panel) {
   if (panel.axis == CurveAxis::logarithmic) {
     double least = std::numeric_limits<double>::infinity();
@@ -102,8 +103,8 @@ void fit_axis(CurvePanel& panel) {
   panel.curves.erase(std::remove_if(panel.curves.begin(), panel.curves.end(), empty), panel.curves.end());
 }
 
-/// The value that a curve has wherever it has one; none if one sees it change. On an axis from 0, or with ratios, that
-/// is a thousandth of its largest value; a free one shows any change.
+/// Returns the constant value of a curve; nullopt if the curve visibly changes. On an axis from 0 or with a logarithmic
+/// scale, a change is visible from a thousandth of the largest value on; on a free axis, any change is.
 std::optional<double> constant_value(const Curve& curve, CurveAxis axis) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
@@ -115,7 +116,7 @@ std::optional<double> constant_value(const Curve& curve, CurveAxis axis) {
   return most - least <= visible ? std::optional(most) : std::nullopt;
 }
 
-/// The panel as words if none of its curves ever changes, else "".
+/// Returns title and values of a panel whose curves are all constant; "" for other panels.
 std::string constant_words(const CurvePanel& panel) {
   std::string out = panel.title + ":";
   for (const Curve& curve : panel.curves) {

@@ -24,13 +24,13 @@ TapMark mark_of(const Recording& recording, std::size_t index, double desk, cons
   return mark;
 }
 
-/// Whether the scores are a map of their own, beside those that are shown anyhow.
+/// Returns whether the scores differ from all other maps that are shown.
 bool own_scores(const MapsAtTap& now) {
   if (!now.has_scores || now.scores == now.uncertainty) return false;
   return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
 }
 
-/// The run as `playback` has it now, after as many of the taps of `recording`.
+/// Returns the maps after the taps that `playback` has replayed, the first ones of `recording`.
 MapsAtTap maps_of(Playback& playback, const Recording& recording) {
   FromAbove& experiment = playback.from_above();
   const TapBelief& belief = experiment.belief();
@@ -102,7 +102,7 @@ void HistoryBuilder::advance() {
 
 void HistoryBuilder::add_surface() {
   FromAnySide& experiment = *any_side_;
-  constexpr double kSide = 0.0025;  // walls of 3 mm are whole, most pages have all moments
+  constexpr double kSide = 0.0025;  // cell width, metres; walls of 3 mm are complete at this width
   RunAtTap now;
   now.taps = playback_.taps();
   now.next = experiment.choose_next();
@@ -116,7 +116,7 @@ void HistoryBuilder::add_surface() {
     history_.true_contours = experiment.true_contours();
   history_.shown.push_back(now.taps);
   history_.moments.push_back(now);
-  // More than a page can carry; of a thousand taps they would take gigabytes.
+  // Largest number of values: more than a page can carry, and for a thousand taps gigabytes.
   constexpr std::size_t kMost = 10'000'000;
   thin(kMost);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A run looked at from each of its taps: what was believed then, how wrong it was, where the next tap would go. All of
-// it is computed again from the recorded taps, so that runs need not store their maps.
+// History of a run: belief, errors and next choice after each of its taps. All of it is computed from the recorded
+// taps, so runs need not store their maps.
 #pragma once
 
 #include "record/recording.hpp"
@@ -15,99 +15,100 @@
 
 namespace palpate {
 
-/// A tap as it is drawn.
+/// A tap as figures mark it.
 struct TapMark {
   enum class Kind { on, off, failed };
   int tap = 1;
-  Kind kind = Kind::failed;  ///< as the contact is read at that moment
-  double x = 0.0;            ///< metres, as `y`
+  Kind kind = Kind::failed;  ///< by the label that the contact has at that moment
+  double x = 0.0;            ///< metres, as is `y`
   double y = 0.0;
-  double height = 0.0;  ///< metres; the desk's where nothing was touched
+  double height = 0.0;  ///< metres; the height of the desk for a tap without a contact
 };
 
-/// A run after its first `taps` taps.
+/// State of a run after its first `taps` taps.
 struct RunAtTap {
   int taps = 0;
-  RunResult result;                  ///< what summary.json would say if the run had ended here
-  std::optional<TapRecord> next;     ///< what would be tapped next; absent if no candidate is left, or if nobody says
-  bool is_next_known = true;         ///< false where a program chooses, which is not started for a record
-  std::optional<double> next_along;  ///< of it, from any side: how far it would come by the most probable composition
-  double largest_deviation = 0.0;  ///< of the candidates' heights, all taps seen, metres; from any side of the surface
-  /// Of the candidates, as the label GP has it; absent where the footprint is not the weight.
+  RunResult result;                  ///< the result if the run had ended here
+  std::optional<TapRecord> next;     ///< the next tap; nullopt if no candidate is left, or if its choice is unknown
+  bool is_next_known = true;         ///< false if a program chooses: reports do not start programs
+  std::optional<double> next_along;  ///< from any side: path length of the next tap up to the surface of the most
+                                     ///< probable composition
+  double largest_deviation = 0.0;  ///< greatest standard deviation, metres: of the candidates' heights given all taps;
+                                   ///< from any side of the surface
+  /// Range of the label GP's mean over the candidates; nullopt if the footprint is not the weight.
   std::optional<double> least_weight, most_weight;
 };
 
-/// The same with what was believed. The maps have one value for each candidate.
+/// The same with the maps of the belief, one value per candidate.
 struct MapsAtTap : RunAtTap {
-  std::vector<TapMark> marks;   ///< of these taps, in their order
-  Eigen::VectorXd surface;      ///< as reconstructed, metres
+  std::vector<TapMark> marks;   ///< these taps in their order
+  Eigen::VectorXd surface;      ///< reconstructed heights, metres
   Eigen::VectorXd deviation;    ///< standard deviation of the height, metres
   Eigen::VectorXd uncertainty;  ///< u
-  /// What speaks for an object, one of the two: w, as the strategy reads it, where the footprint is the weight, or
-  /// else the footprint's p. The other is empty.
+  /// Either w, as the strategy reads it, if the footprint is the weight, or the footprint's p. The other vector is
+  /// empty.
   Eigen::VectorXd weight;
   Eigen::VectorXd probability;
-  bool has_scores = true;  ///< whether the strategy could be asked
-  Eigen::VectorXd scores;  ///< what the strategy gives each candidate; else 0
+  bool has_scores = true;  ///< whether the strategy gives scores
+  Eigen::VectorXd scores;  ///< scores of the candidates; 0 without scores
   bool has_weight() const { return weight.size() > 0; }
-  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, where there is w
+  Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, defined if there is a w
 };
 
-/// The run after each of these numbers of taps, which ascend and lie between 1 and all.
+/// Returns the maps after each of these numbers of taps, which ascend from 1 to the number of all taps.
 std::vector<MapsAtTap> maps_at_taps(Playback& playback, const Recording& recording, const std::vector<int>& taps);
 
-/// "7 on the object, 10 on the desk, 1 failed"; what there is none of but the first two is left out.
+/// Returns "7 on the object, 10 on the desk, 1 failed"; without failed taps the last part is missing.
 std::string count_words(const RunResult& result);
 
-/// One quantity over the candidates at several moments; all frames have the same number of cells.
+/// A quantity over the candidates at several moments; all frames have the same number of cells.
 struct MapSeries {
   std::string name;
   std::vector<Eigen::VectorXf> frames;
 };
 
 struct History {
-  std::vector<RunAtTap> moments;  ///< before the first tap, and after each
-  std::vector<int> shown;         ///< the moments of which there are maps, ascending
-  /// "height" (of the reconstruction, metres), "deviation" (its standard deviation, metres, at most
-  /// the largest that the height GP has at any moment: that of an object's level before it is touched means
-  /// nothing), "u", "w" or, where the footprint is not the weight, "p", and "score" where the acquisition's is none of
-  /// these nor u w: a frame for each moment that is shown.
-  /// Last, where truth is known, "truth" in one frame, metres.
+  std::vector<RunAtTap> moments;  ///< before the first tap and after each tap
+  std::vector<int> shown;         ///< indices of the moments with maps, ascending
+  /// Maps with a frame per shown moment. "height" is the reconstruction, metres. "deviation" is the standard deviation
+  /// of the height, metres, at most the largest of the height GP at any moment; the surface GP has a meaningless value
+  /// before the first contact with an object. "u"; "w", or "p" if the footprint is not the weight; "score" if the
+  /// scores equal neither these nor u w. Last, if the truth is known, "truth" in one frame, metres.
   std::vector<MapSeries> maps;
-  Eigen::VectorXd x, y;  ///< of the columns and rows of the maps, metres; a map has row after row
-  /// Of a run from any side, in the place of maps: the surface at each moment that is shown, which of a long run are
-  /// not all; none before a tap has hit an object, when it is anywhere. And lines on the true one as it is at the last
-  /// moment, where it is known.
+  Eigen::VectorXd x, y;  ///< coordinates of the maps' columns and rows, metres; maps are stored row by row
+  /// From any side, instead of maps: the surface at each shown moment, empty before the first contact with an object.
+  /// The contours of the true surface are those at the last moment; empty if the truth is unknown.
   std::vector<Crossings> surfaces;
   std::vector<Ring> true_contours;
-  /// Why the truth is not known any more, see Playback::truth_lost(); the errors are those of the record then.
+  /// Reason why the truth is no longer known (Playback::truth_lost()); the errors are then those of the record.
   std::optional<Error> truth_lost;
 };
 
-/// Tells how many of all taps are done.
+/// Callback with the number of taps done and the number of all taps.
 using OnProgress = std::function<void(int done, int all)>;
 
-/// Maps of more columns or rows than this have only every second, third, ... of them.
+/// Largest number of columns or rows of a map; larger grids are shown with every second, third, ... cell.
 inline constexpr int kMostCellsAcross = 128;
 
-/// A history that is lived through tap by tap, and may be looked at in between: of a run that goes on.
+/// Builds a history tap by tap. The history so far can be read while the run goes on.
 class HistoryBuilder {
  public:
-  /// At the moment before the first tap. `workshop` and `recording` must outlive it; `recording`, which has a tap, may
-  /// get more of them. Throws Error as Playback does.
+  /// Begins before the first tap. `workshop` and `recording` must outlive the object; `recording` has at least one tap
+  /// and may grow. Throws Error as Playback does.
   HistoryBuilder(const Workshop& workshop, const Recording& recording);
 
-  /// As many as there are moments so far, less one.
+  /// Returns the number of taps that were added.
   int taps() const { return playback_.taps(); }
   bool has_own_scores() const { return own_scores_; }
-  /// Takes in the next recorded tap, which must be there.
+  /// Adds the next recorded tap, which must exist.
   void advance();
-  /// Where its maps, or surfaces, hold more numbers than that, drops every second moment's but never the last one's.
+  /// If maps or surfaces hold more numbers than `most`, drops those of every second moment, but never those of the
+  /// last.
   void thin(std::size_t most);
 
-  /// The history so far, with the maps of the moments from `moment` on; equal to that of a run that ends here.
+  /// Returns the history so far, with maps of the moments from `moment` on: the history of a run that ends here.
   History since(int moment) const;
-  /// All of it. Nothing may be asked afterwards.
+  /// Returns the whole history. The object must not be used afterwards.
   History take();
 
  private:
@@ -118,15 +119,15 @@ class HistoryBuilder {
 
   const Recording& recording_;
   Playback playback_;
-  FromAnySide* any_side_;  ///< what is played; null where it taps from above
-  int stride_ = 1;         ///< shown is every so-many-th column and row
+  FromAnySide* any_side_;  ///< the experiment, if it taps from any side; else null
+  int stride_ = 1;         ///< maps show every stride_-th column and row
   bool own_scores_ = false;
-  std::optional<Eigen::VectorXf> truth_;  ///< as of now: what is pushed moves it
-  double largest_ = 0.0;                  ///< standard deviation of the height GP, of all moments
-  History history_;                       ///< maps as they are: finished() has the last word on them
+  std::optional<Eigen::VectorXf> truth_;  ///< after the taps so far; pushed objects change it
+  double largest_ = 0.0;                  ///< greatest standard deviation of the height GP at any moment
+  History history_;                       ///< with unlimited deviations; finished() limits them
 };
 
-/// Lives through the taps of a recorded run again. Throws Error as Playback does.
+/// Builds the history of a whole recorded run. Throws Error as Playback does.
 History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress);
 
 }  // namespace palpate

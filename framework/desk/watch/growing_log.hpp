@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The record of a run, read while somebody else writes it.
+// A run's record that another process writes.
 #pragma once
 
 #include "record/record_reader.hpp"
@@ -12,28 +12,28 @@
 
 namespace palpate {
 
-/// The lines of a record as they grow. A line counts once it has its end, so half a line, which a kill leaves behind
-/// and `palpate resume` cuts off, is never seen.
+/// The lines of a growing record. A line without its line end is ignored: a kill leaves such a line behind, and
+/// `palpate resume` removes it.
 class GrowingLog {
  public:
   explicit GrowingLog(std::filesystem::path file) : reader_(std::move(file)) {}
 
   const std::filesystem::path& file() const { return reader_.file(); }
 
-  /// The lines that were recorded since the last call. `anew` becomes true where the file no longer begins with what
-  /// was read before, or is gone: then the lines are all that it has now. Throws Error as RecordReader does; once the
-  /// file has changed, the next call begins at the beginning.
+  /// Returns the lines that were added since the last call. If the file is gone or no longer begins with the known
+  /// lines, sets `anew` and returns all its lines. Throws Error as RecordReader does; after a change of the file, the
+  /// next call then begins at its start.
   std::vector<RecordLine> read(bool& anew);
 
-  /// Has the next read() begin at the beginning.
+  /// Makes the next read() begin at the start of the file.
   void forget() { stamp_ = {}, known_.clear(); }
 
  private:
-  using Stamp = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;  ///< file, size, time
+  using Stamp = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;  ///< inode, size, time
 
   RecordReader reader_;
   Stamp stamp_{};
-  std::string known_;  ///< all lines so far: what was rewritten must be noticed, however it was
+  std::string known_;  ///< all lines so far, to detect any rewriting of the file
 };
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a page that is served shows while it goes on.
+// Interface of records whose pages are served while they grow.
 #pragma once
 
 #include <optional>
@@ -7,25 +7,25 @@
 
 namespace palpate {
 
-/// A run or a sweep that is looked at. A page begins with page() and asks for news() again and again: it says how far
-/// it is, in letters, digits and dots that only this object understands. No member throws Error: what is wrong with a
-/// record is told on its page.
+/// A run or a sweep with a page. The page begins with page() and asks for news() again and again, with its position in
+/// the record: letters, digits and dots that only this object interprets. No member throws Error; its page shows what
+/// is wrong with a record.
 class LiveRecord {
  public:
   virtual ~LiveRecord() = default;
 
-  /// Looks whether the record has changed, and takes in what is new for about as many seconds; a single tap may take
-  /// longer. Returns whether there is more to be taken in at once.
+  /// Reads changes of the record for about this many seconds; a single tap may take longer. Returns whether more can be
+  /// read at once.
   virtual bool look(double seconds) = 0;
 
-  /// The page as of the last look: HTML.
+  /// Returns the HTML page as of the last look().
   virtual std::string page() = 0;
 
-  /// What a page that is at `at` lacks, as of the last look: JSON on one line, with "at", where the page is then. None
-  /// where it lacks nothing. A page of something else than what is there now is told to begin anew.
+  /// Returns an update for a page at position `at` as of the last look(): JSON on one line with the new position "at";
+  /// nullopt if the page is up to date. If the record was replaced, the update tells the page to reload.
   virtual std::optional<std::string> news(const std::string& at) = 0;
 
-  /// Whether somebody works on the record.
+  /// Returns whether a process works on the record.
   virtual bool goes_on() const = 0;
 };
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Numbers in all maps that are kept: what a browser can hold several times over, and a page carries in some 10 MB.
+/// Largest number of values in all kept maps: about 10 MB in a page, and little for a browser.
 constexpr std::size_t kMostNumbers = 4'000'000;
 
 struct Position {
@@ -30,7 +30,7 @@ struct Position {
   int revision = 0;
 };
 
-/// Zeros for what is none: three numbers of digits alone, as RunFollower::at() writes them.
+/// Parses a position of RunFollower::at(): three numbers. Returns zeros for any other text.
 Position parse_position(const std::string& at) {
   static const std::regex form("([0-9]{1,9})\\.([0-9]{1,9})\\.([0-9]{1,9})");
   std::smatch parts;
@@ -72,13 +72,13 @@ bool RunFollower::look(double seconds) {
 }
 
 void RunFollower::read_record() {
-  // How it stands is looked at first: who ends in between has recorded all taps by then.
+  // Reads the lock before the record: a process that ends in between has recorded all its taps.
   const bool held = is_running(directory_);
   const std::optional<Row> summary = read_outcome(directory_);
   const std::string standing = (held ? "held " : "") + (summary ? to_json(*summary) : "");
   bool anew = false;
   std::vector<RecordLine> lines = log_.read(anew);
-  if (!lines.empty() && !trouble_.empty()) {  // what could not be lived through may be another record by now
+  if (!lines.empty() && !trouble_.empty()) {  // A record that failed to replay may have been replaced.
     log_.forget();
     lines = log_.read(anew);
     anew = true;
@@ -97,7 +97,7 @@ void RunFollower::read_record() {
   if (recording_ && pending_.empty()) recording_->summary = summary;
 }
 
-/// The times of a tap are written after it.
+/// Adds the times of taps, which are written after the taps.
 void RunFollower::take_times() {
   std::vector<TapTimes>& known = recording_->timings;
   if (known.size() == timings_.size()) return;
@@ -118,7 +118,7 @@ void RunFollower::take_in() {
   const bool own_scores = builder_->has_own_scores();
   builder_->advance();
   builder_->thin(kMostNumbers);
-  // There is one map more, which pages lack.
+  // Pages lack the new map of scores, so they begin again.
   if (builder_->has_own_scores() != own_scores) ++generation_;
   if (pending_.empty()) recording_->summary = read_outcome(directory_);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A run that goes on, lived through again tap by tap as its record grows. It reads and writes nothing else.
+// A run that goes on, replayed tap by tap while its record grows.
 #pragma once
 
 #include "record/recording.hpp"
@@ -14,14 +14,13 @@
 
 namespace palpate {
 
-/// Follows the run in a directory, which may have no tap yet. What is computed for it is what its report would show,
-/// but a tap at a time; of a long run the maps of some moments are let go of.
+/// Follows the run in a directory, which may have no tap yet, and only reads. Its page equals the run's report, except
+/// that long runs lose the maps of some moments.
 ///
-/// A run that is killed and carried on goes on here. Where the record is another one than before (--force), pages begin
-/// anew.
+/// A run that is killed and resumed goes on. If another record replaces it (--force), pages begin again.
 class RunFollower final : public LiveRecord {
  public:
-  /// `workshop` must outlive it.
+  /// `workshop` must outlive the object.
   RunFollower(const Workshop& workshop, std::filesystem::path directory);
 
   bool look(double seconds) override;
@@ -42,13 +41,13 @@ class RunFollower final : public LiveRecord {
   GrowingLog log_;
   std::optional<Tree> manifest_;
   std::vector<TapTimes> timings_;
-  std::deque<Row> pending_;                  ///< recorded, and not yet in recording_
+  std::deque<Row> pending_;                  ///< recorded taps that are not yet in recording_
   std::unique_ptr<Recording> recording_;     ///< null before the first tap
-  std::unique_ptr<HistoryBuilder> builder_;  ///< of as many taps as recording_ has
-  std::string trouble_;                      ///< with the record as it is, "" for none
-  std::string standing_;                     ///< how the run stood at the last look
-  int generation_ = 1;                       ///< of pages: those of another one begin anew
-  int revision_ = 0;                         ///< counts what changed without a tap
+  std::unique_ptr<HistoryBuilder> builder_;  ///< has as many taps as recording_
+  std::string trouble_;                      ///< error of the present record, "" for none
+  std::string standing_;                     ///< lock and summary at the last look
+  int generation_ = 1;  ///< counts replacements of the record; pages of another generation begin again
+  int revision_ = 0;    ///< counts changes without a new tap
 };
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only acceptor to Boost.Beast and Boost.Asio.
+// The only file that uses Boost.Beast and Boost.Asio.
 #include "watch/server.hpp"
 
 #include "record/build_info.hpp"
@@ -42,18 +42,17 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kLookEvery(100);  ///< a tap is to be seen within half a second
-constexpr double kLookFor = 0.05;        ///< seconds; who asks meanwhile waits as long
-constexpr double kFirstLook = 1.0;       ///< before a page is made: most then begin with all there is
-constexpr seconds kAnswerWithin(25);     ///< a page_request for news, where there are none
-constexpr seconds kMostSilence(10);      ///< of a connection who is to ask or to read
-constexpr seconds kTokenWithin(5);       ///< of a connection who is to show the token
+constexpr milliseconds kLookEvery(100);  ///< between looks at a record, so that a tap is shown within half a second
+constexpr double kLookFor = 0.05;        ///< seconds per look, during which requests wait
+constexpr double kFirstLook = 1.0;       ///< seconds of the look before a page is made, enough for most runs
+constexpr seconds kAnswerWithin(25);     ///< longest wait of a request for news
+constexpr seconds kMostSilence(10);      ///< longest silence of a connection that asks or reads
+constexpr seconds kTokenWithin(5);       ///< time for a connection to present the token
 constexpr std::size_t kMaxConnections = 64;
-constexpr std::size_t kMaxUnauthenticated =
-    16;  ///< of them without the token; the oldest of more makes way for the next
+constexpr std::size_t kMaxUnauthenticated = 16;  ///< of them without the token; the oldest one is closed for a new one
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 
-/// 128 bits that nobody can guess.
+/// Returns 128 random bits as hex digits.
 std::string random_token() {
   try {
     std::random_device random("/dev/urandom");
@@ -63,7 +62,7 @@ std::string random_token() {
   }
 }
 
-/// Takes as long wherever they differ, so that nobody finds a token digit by digit.
+/// Compares in constant time, so that the time reveals no digit of the token.
 bool same_in_constant_time(std::string_view said, std::string_view token) {
   if (said.size() != token.size()) return false;
   volatile unsigned char differ = 0;
@@ -72,7 +71,7 @@ bool same_in_constant_time(std::string_view said, std::string_view token) {
   return differ == 0;
 }
 
-/// A Host without its port: that of a tunnel is another one. "" for what is none.
+/// Returns a Host without its port, which differs behind a tunnel; "" for an invalid one.
 std::string host_of(std::string_view text) {
   const auto end = text.rfind(':');
   const bool bare = end == std::string_view::npos || text.find(']', end) != std::string_view::npos;
@@ -82,12 +81,12 @@ std::string host_of(std::string_view text) {
 }
 
 struct PageRequest {
-  std::string place;              ///< as Site::find() has it
-  std::optional<std::string> at;  ///< of a page that asks for news
+  std::string place;              ///< as in Site::find()
+  std::optional<std::string> at;  ///< position of a page that asks for news
   bool now = false;
 };
 
-/// What stands behind the token.
+/// Parses the part of an address after the token.
 PageRequest parse_request(std::string_view rest) {
   PageRequest out;
   std::string_view query;
@@ -113,7 +112,7 @@ PageRequest parse_request(std::string_view rest) {
 
 }  // namespace
 
-/// All that is there while the server is.
+/// State of the server.
 struct Server::Impl {
   class Connection;
 
@@ -139,7 +138,7 @@ struct Server::Impl {
   Clock::time_point last_asked = Clock::now();
 };
 
-/// One connection: it asks once, is answered, and goes.
+/// A connection with one request and one response.
 class Server::Impl::Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Impl& impl, tcp::socket socket) : impl_(impl), stream_(std::move(socket)) {}
@@ -147,21 +146,21 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
   void begin() {
     parser_.header_limit(kMostHeader);
     stream_.expires_after(kTokenWithin);
-    // The header alone: nothing that somebody sends is of interest.
+    // Only the header is read; bodies have no use.
     http::async_read_header(stream_, buffer_, parser_, [self = shared_from_this()](beast::error_code trouble, auto) {
       if (trouble) return self->close();
       self->answer(self->parser_.get());
     });
   }
 
-  /// Whether it has not shown the token.
+  /// Returns whether the connection has not presented the token.
   bool is_unauthenticated() const { return !has_token_; }
   Clock::time_point begun() const { return begun_; }
 
-  /// What it waits for news of; null if it does not.
+  /// Returns the record whose news the connection waits for; null if it does not wait.
   const std::shared_ptr<LiveRecord>& waits_for() const { return waits_for_; }
 
-  /// Tells the news, if there are any, or that there are none, if that takes too long.
+  /// Sends the news, or 204 if there were none for kAnswerWithin.
   void send_news() {
     if (std::optional<std::string> news = waits_for_->news(at_)) {
       reply(http::status::ok, "application/json", std::move(*news));
@@ -224,7 +223,7 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
     stream_.expires_after(kMostSilence);
     http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code trouble, auto) {
       if (trouble || self->awaits_close_) return self->close();
-      // What was sent and not read, as of a POST, would have the answer lost with the connection.
+      // Unread data, such as the body of a POST, would reset the connection before the response is read.
       beast::error_code none;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, none);
       self->stream_.expires_after(kMostSilence);
@@ -232,7 +231,8 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
     });
   }
 
-  /// Waits for the end of the connection, whatever is said before. One that waits for news is given up then.
+  /// Waits until the client closes the connection, and ignores what it sends. A connection that waits for news is
+  /// closed then.
   void await_close() {
     if (awaits_close_) return;
     awaits_close_ = true;
@@ -259,7 +259,7 @@ class Server::Impl::Connection : public std::enable_shared_from_this<Connection>
 
 void Server::Impl::accept() {
   acceptor.async_accept([this](beast::error_code trouble, tcp::socket socket) {
-    if (trouble) {  // too many open files, above all, which pass
+    if (trouble) {  // mostly too many open files, which is temporary
       opening.expires_after(kLookEvery);
       opening.async_wait([this](beast::error_code ended) {
         if (!ended) accept();
@@ -276,7 +276,7 @@ void Server::Impl::accept() {
   });
 }
 
-/// Connections without the token, however many are opened and left open, shut nobody out who has it.
+/// Keeps connections without the token, however many, from excluding clients with the token.
 void Server::Impl::drop_oldest_unauthenticated() {
   std::shared_ptr<Connection> oldest;
   std::size_t unauthenticated = 0;
@@ -292,7 +292,7 @@ bool Server::Impl::is_own_name(const std::string& host) const {
   beast::error_code none;
   const auto number = asio::ip::make_address(host, none);
   if (none) return host == "localhost" || (!acceptor.local_endpoint().address().is_loopback() && host == host_name());
-  // A name that points here is no number, whoever had it point here.
+  // A website cannot ask for a numeric address under its own name.
   return number.is_loopback() || !acceptor.local_endpoint().address().is_loopback();
 }
 
@@ -361,7 +361,7 @@ void Server::run() {
   Impl& impl = *impl_;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (signal == SIGHUP && std::signal(SIGHUP, SIG_DFL) == SIG_IGN) {
-      std::signal(SIGHUP, SIG_IGN);  // nohup
+      std::signal(SIGHUP, SIG_IGN);  // under nohup
     } else {
       impl.signals.add(signal);
     }

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Serves the pages of a Site over HTTP: to who has the address, and nothing but reading.
+// HTTP server for the pages of a Site, which only reads.
 //
-// An address is http://HOST:PORT/TOKEN/PLACE, with a token that nobody can guess. Below it lie the page itself and
-// `news?at=WHERE`, which is answered once there is something that a page at WHERE lacks, or, after a while, by 204;
-// with
-// `&now` at once. Pages ask one page_request at a time (long polling): an open stream of events would take one of the
-// six connections that a browser has for a server for as long as its page is open somewhere, and would fill up with
-// what a page that draws slowly has no use for.
+// An address is http://HOST:PORT/TOKEN/PLACE, with a random token. Below it are the page and `news?at=POSITION`. The
+// latter is answered when there is an update for a page at this position, or after a while by 204; with `&now` at once.
+// Pages ask one request at a time (long polling). An open stream of events would occupy one of a browser's six
+// connections to a server, and would fill up while a page draws slowly.
 //
-// Answered with an empty 403 is who has not the token, or calls the server by a name that is not its own, as a page of
-// another site does that has had its own name point here; with 404 what is not there, with 405 all but GET. Nothing is
-// kept by caches, framed, or told to other sites.
+// The server answers with an empty 403 to requests without the token, and to requests that call the server by another
+// name, such as those of a website whose name points to this machine. Unknown places get 404, methods other than GET
+// 405. Headers forbid caches, frames and referrers.
 //
-// One thread does everything, because a tap that is lived through takes milliseconds, and the run that is watched needs
-// the other cores.
+// One thread suffices: replaying a tap takes milliseconds, and the other cores are for the run.
 #pragma once
 
 #include "watch/site.hpp"
@@ -24,25 +21,25 @@
 namespace palpate {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";  ///< numeric; who can reach it can reach the server
-  int port = 0;                       ///< 0: any that is free
-  /// Ends once nobody works on the record and no page has asked for this long, seconds; 0: never by itself. It is
-  /// longer than a browser lets a page in the background sleep.
+  std::string address = "127.0.0.1";  ///< numeric; any machine that reaches this address reaches the server
+  int port = 0;                       ///< 0: any free port
+  /// Seconds without a working process and without requests after which the server ends; 0: never. Longer than a
+  /// browser suspends a page in the background.
   int patience = 0;
 };
 
 class Server {
  public:
-  /// Takes the port. `site` must outlive it. Throws Error where the address is none or the port is taken.
+  /// Opens the port. `site` must outlive the object. Throws Error for an invalid address, and if the port is taken.
   Server(Site& site, const ServerOptions& options);
   ~Server();
 
-  /// Where the first page is, with the token.
+  /// Returns the address of the first page, with the token.
   std::string url() const;
-  /// Whether others than this machine can reach it.
+  /// Returns whether other machines can reach the server.
   bool is_open_to_others() const;
 
-  /// Serves until a signal asks it to end (SIGINT, SIGTERM, SIGHUP where that is not ignored), or patience does.
+  /// Serves until SIGINT, SIGTERM or SIGHUP (unless ignored), or until patience ends.
   void run();
 
  private:

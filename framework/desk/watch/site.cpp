@@ -14,7 +14,7 @@ Site::Site(const Workshop& workshop, const std::filesystem::path& directory) : w
     sweep_ = read_sweep(directory);
     whole_ = std::make_shared<SweepFollower>(*sweep_);
   } else {
-    read_run_config(directory);  // throws where there is none
+    read_run_config(directory);  // throws if there is no run
     whole_ = std::make_shared<RunFollower>(workshop, directory);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which pages there are: that of the run or the sweep, and of a sweep one of each job.
+// The pages of a directory: that of a run, or those of a sweep and its jobs.
 #pragma once
 
 #include "record/session.hpp"
@@ -16,18 +16,17 @@
 
 namespace palpate {
 
-/// The pages of one directory. Nothing but what its manifest lists is ever looked for: no part of an address becomes
-/// part of a path.
+/// Pages of one directory. Only jobs in the manifest have pages; no part of an address becomes part of a path.
 class Site {
  public:
-  /// Throws Error for what is neither a run nor a sweep, and for a sweep that is damaged. `workshop` must outlive it.
+  /// Throws Error for a directory without a run or sweep, and for a damaged sweep. `workshop` must outlive the object.
   Site(const Workshop& workshop, const std::filesystem::path& directory);
 
-  /// What is at `place`: "" for the directory itself, "jobs/ID/" for a job of a sweep. Null for any other. A job that
-  /// nobody holds on to is let go of once eight others were asked for.
+  /// Returns the record at `place`: "" for the directory itself, "jobs/ID/" for a job of a sweep; null for any other
+  /// place. The last eight jobs stay in memory.
   std::shared_ptr<LiveRecord> find(std::string_view place);
 
-  /// Whether somebody works on the record.
+  /// Returns whether a process works on the record.
   bool goes_on() const { return whole_->goes_on(); }
 
  private:

@@ -37,7 +37,8 @@ std::string SweepFollower::page() {
 std::optional<std::string> SweepFollower::news(const std::string& at) {
   const std::string now = std::to_string(revision_);
   if (at == now) return std::nullopt;
-  return "{\"at\": \"" + now + "\", \"sweep\": " + line_of(data_) + "}";  // a sweep of many jobs has megabytes
+  // avoids copying the data of a sweep, which may have megabytes
+  return "{\"at\": \"" + now + "\", \"sweep\": " + line_of(data_) + "}";
 }
 
 bool SweepFollower::goes_on() const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sweep that goes on, and the runs in it.
+// A sweep that goes on.
 #pragma once
 
 #include "report/page/json.hpp"
@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-/// Follows a sweep by what its jobs have written: looked at every two seconds, or, where they are so many that this
-/// takes its time, so seldom that it takes a twentieth of it.
+/// Follows a sweep by the records of its jobs. It reads them every two seconds; in large sweeps more rarely, so that
+/// reading takes at most a twentieth of the time.
 class SweepFollower final : public LiveRecord {
  public:
   explicit SweepFollower(Sweep sweep) : sweep_(std::move(sweep)) {}
@@ -24,9 +24,9 @@ class SweepFollower final : public LiveRecord {
 
  private:
   Sweep sweep_;
-  Json data_;  ///< of the page
+  Json data_;  ///< data of the page
   int revision_ = 0;
-  std::chrono::steady_clock::time_point next_{};  ///< when it is looked at again
+  std::chrono::steady_clock::time_point next_{};  ///< time of the next reading
 };
 
 }  // namespace palpate

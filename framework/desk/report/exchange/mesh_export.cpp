@@ -11,7 +11,8 @@
 namespace palpate {
 namespace {
 
-/// How fast the heights fall along one axis, at position `at` of `count`, whose neighbours are `step` apart.
+/// Returns the descent of the heights along one axis by central differences, one-sided at the edges. `at` is the
+/// position among `count`, and neighbours are `step` indices apart.
 double fall(const VectorView& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
   const int before = std::max(at - 1, 0);
   const int behind = std::min(at + 1, count - 1);
@@ -22,7 +23,7 @@ double fall(const VectorView& heights, const Eigen::VectorXd& places, int index,
 
 }  // namespace
 
-// Views go by value, as in the interfaces. NOLINTNEXTLINE(performance-unnecessary-value-param)
+// Views are passed by value, as in the interfaces. NOLINTNEXTLINE(performance-unnecessary-value-param)
 SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights) {
   const int columns = candidates.columns;
   const int rows = candidates.rows;
@@ -46,7 +47,7 @@ SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights
 
 std::string header_text(const std::string& text) {
   constexpr std::size_t kLongest = 200;
-  static const std::string end = "end_header";  // some readers look for it anywhere in a line
+  static const std::string end = "end_header";  // some readers find it anywhere in a line
   std::string out = text.substr(0, kLongest);
   for (char& c : out) {
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
@@ -74,7 +75,7 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
       "property float quality\nproperty float object_probability\n",
       header_text(run), mesh.points.rows());
   if (surface.true_height) out += "property float true_height\n";
-  if (!mesh.triangles.empty())  // a list of none is more than some readers expect
+  if (!mesh.triangles.empty())  // some readers reject an empty list of faces
     out += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.triangles.size());
   out += "end_header\n";
   for (Eigen::Index i = 0; i < mesh.points.rows(); ++i) {

@@ -23,15 +23,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostScenes = 12;
-constexpr std::size_t kMostCurves = 16;  ///< of a panel
+constexpr std::size_t kMostCurves = 16;  ///< per panel
 
-// Lengths are points in print.
-constexpr double kAxisRoom = 40;         ///< of the first panel: numbers and title of its axis
-constexpr double kPanelGap = 14;         ///< between panels, of which only the first has numbers
-constexpr double kNumbersRoom = 14;      ///< numbers below a panel
-constexpr double kLeastPanelWidth = 85;  ///< else panels go into one more row
+// Lengths in points of print.
+constexpr double kAxisRoom = 40;         ///< left of the first panel: numbers and title of the axis
+constexpr double kPanelGap = 14;         ///< between panels; only the first panel of a row has numbers
+constexpr double kNumbersRoom = 14;      ///< below a panel, for numbers
+constexpr double kLeastPanelWidth = 85;  ///< narrower panels move to another row
 
-/// The names of the groups, in the order of the sweep: a group has one style in all panels.
+/// Returns the names of the groups in the order of the sweep; a group has the same style in all panels.
 std::vector<std::string> group_names(const GroupCurves& curves) {
   std::vector<std::string> out;
   for (const GroupCurve& curve : curves.curves) {
@@ -41,26 +41,26 @@ std::vector<std::string> group_names(const GroupCurves& curves) {
   return out;
 }
 
-/// The interval that is drawn at a point. Values that are all equal have none; the band then closes to the mean.
+/// Returns the interval to draw at a point. Equal values have no interval; the band then shrinks to the mean.
 std::optional<MeanInterval> drawn_interval(const MeanEstimate& mean) {
   if (mean.interval || mean.count == 0 || mean.clusters < kLeastForInterval) return mean.interval;
   return MeanInterval{mean.mean, mean.mean};
 }
 
-/// An axis from `low` to `high`: from 0 where that is near, for then nothing else has to be read off it.
+/// Range of an axis. It begins at 0 if 0 is near.
 struct AxisRange {
   double low = 0.0;
   double high = 0.0;
 
   AxisRange(double least, double most) {
-    constexpr double kNear = 0.25;  // of the range
+    constexpr double kNear = 0.25;  // share of the range
     constexpr double kRoom = 0.04;
     const double room = std::max(most - least, std::max(1e-9, 1e-3 * std::abs(most)));
     low = least >= 0.0 && least <= kNear * room ? 0.0 : least - kRoom * room;
     high = most + kRoom * room;
   }
 
-  /// gnuplot's commands for axis `name`, which is so many points long.
+  /// Returns gnuplot's commands for the axis `name` of this length in points; `whole` allows whole numbers only.
   std::string settings(char name, double length, bool whole) const {
     constexpr double kPerTic = 18;
     double step = tic_step(high - low, std::max(2.0, length / kPerTic));
@@ -70,8 +70,8 @@ struct AxisRange {
   }
 };
 
-/// The axis of the values of all curves, so that panels can be compared. It keeps near the means, for the intervals of
-/// the first taps may be wider than all else, and to positive values where all means are: errors and shares are.
+/// Returns the range of the values of all curves, the same for all panels. It stays near the means, because intervals
+/// of the first taps may be very wide, and excludes negative values if no mean is negative.
 AxisRange value_range(const std::vector<const GroupCurve*>& curves, double factor) {
   std::vector<double> means;
   std::vector<double> ends;
@@ -92,7 +92,7 @@ AxisRange value_range(const std::vector<const GroupCurve*>& curves, double facto
   return {*low >= 0.0 ? std::max(below, 0.0) : below, std::min(*most, *high + room)};
 }
 
-/// "at mean low high" of each point, in the units of the axes; NaN where there is none.
+/// Returns lines "at mean low high" of the points in the units of the axes; NaN for no value.
 std::string block_of(const GroupCurve& curve, double axis, double factor) {
   std::string out;
   const auto number = [&](double value) { return fmt::format("{:.6g}", value / factor); };
@@ -104,14 +104,14 @@ std::string block_of(const GroupCurve& curve, double axis, double factor) {
   return out;
 }
 
-/// The panel's name: "scene: ring", without the keys where there is no room for them, in as many lines as it takes.
+/// Returns the title of a panel, "scene: ring", or without the keys if they do not fit, in lines.
 std::vector<std::string> panel_title(const GroupCurves& curves, const std::string& scene, double width) {
   if (scene.empty()) return {};
   const std::string whole = fmt::format("{}: {}", fmt::join(curves.scenes, ", "), scene);
   return lines_within(width_of_line(whole) <= width ? whole : scene, width);
 }
 
-/// What the figure does not say and its caption has to, as comments of the script.
+/// Returns comments of the script with the text for a caption.
 std::string caption_of(const GroupCurves& curves, const std::string& title) {
   const std::string better = curves.metric.better_words();
   return fmt::format(
@@ -121,7 +121,7 @@ std::string caption_of(const GroupCurves& curves, const std::string& title) {
       curve_units_words(curves));
 }
 
-/// The header for `file`, and for the other formats as comments.
+/// Returns the header of the script for `file`, and the headers for the other formats as comments.
 std::string headers_of(const FigureLayout& layout, const fs::path& file) {
   const auto header = [&](const fs::path& one) {
     const fs::path name = one.filename();
@@ -136,20 +136,20 @@ std::string headers_of(const FigureLayout& layout, const fs::path& file) {
   return out;
 }
 
-/// Which curves are drawn, and where everything stands.
+/// The groups and scenes of a figure, and the positions of its panels.
 struct PanelGrid {
-  std::vector<std::string> names;   ///< of the groups that are drawn
-  std::vector<std::string> scenes;  ///< whose panels are drawn
-  std::string left_out;             ///< what is not, in words
+  std::vector<std::string> names;   ///< drawn groups
+  std::vector<std::string> scenes;  ///< drawn scenes, one panel each
+  std::string left_out;             ///< text about groups and scenes that are not drawn
   std::vector<LegendEntry> legend;
   std::vector<std::string> y_title;
   double left = 0.0;       ///< of the first panel
-  std::size_t across = 1;  ///< panels side by side
-  double top = 0.0;        ///< of the first panel, with its name
-  double head = 0.0;       ///< a panel's name
+  std::size_t across = 1;  ///< number of panels side by side
+  double top = 0.0;        ///< of the first panel with its title
+  double head = 0.0;       ///< height of a panel's title
   double panel_width = 0.0;
   double panel_height = 0.0;
-  double pitch = 0.0;  ///< from row to row
+  double pitch = 0.0;  ///< distance between rows
   double width = 0.0;
   double height = 0.0;
 
@@ -173,8 +173,8 @@ PanelGrid grid_of(const GroupCurves& curves, const std::string& y_title, double 
   if (more_scenes > 0) out.left_out += fmt::format("{}{} more scenes", more_groups > 0 ? " and " : "", more_scenes);
   if (!out.left_out.empty()) out.left_out += " are not drawn: the CSV has them";
 
-  // Rows of about as many panels each. The title of the axis stands beside all rows, in lines where they are short.
-  const double pairs = width - kAxisRoom - kEndRoom + kPanelGap;  // panels with the gap behind each
+  // Fills rows evenly. The title of the axis stands left of all rows, in several lines if the rows are short.
+  const double pairs = width - kAxisRoom - kEndRoom + kPanelGap;  // width of all panels of a row, each with a gap
   const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(pairs / (kLeastPanelWidth + kPanelGap)));
   const std::size_t down = (out.scenes.size() + most - 1) / most;
   out.across = (out.scenes.size() + down - 1) / down;
@@ -196,7 +196,7 @@ PanelGrid grid_of(const GroupCurves& curves, const std::string& y_title, double 
   return out;
 }
 
-/// Clauses of a plot with the band and the line of a curve.
+/// Clauses that draw bands and lines.
 struct CurveClauses {
   std::vector<std::string> bands;
   std::vector<std::string> lines;
@@ -209,14 +209,14 @@ struct CurveClauses {
                                 (points + kMarksOfALine - 1) / kMarksOfALine));
   }
 
-  /// All bands, then all lines.
+  /// Returns a plot command that draws all bands, then all lines.
   std::string plot() const {
     if (bands.empty()) return "plot NaN";
     return fmt::format("plot {}, \\\n  {}", fmt::join(bands, ", \\\n  "), fmt::join(lines, ", \\\n  "));
   }
 };
 
-/// The curves of a figure with their units and axes, which all panels share.
+/// The drawn curves with the units and axes of all panels.
 struct DrawnCurves {
   std::vector<const GroupCurve*> curves;
   Scale axis;
@@ -245,7 +245,7 @@ DrawnCurves drawn_curves(const GroupCurves& curves, const PanelGrid& grid) {
   return {drawn, axis, value, AxisRange(*first / axis.factor, *last / axis.factor), value_range(drawn, value.factor)};
 }
 
-/// Returns the labels of a panel: its scene, and on the panels at the edges the titles of the axes.
+/// Returns the labels of a panel: its title, and the titles of axes on panels at the edges.
 std::string panel_labels(const FigureLayout& layout, const GroupCurves& curves, const DrawnCurves& drawn,
                          const PanelGrid& grid, std::size_t panel) {
   const Box box = grid.box(panel);

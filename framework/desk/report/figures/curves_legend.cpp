@@ -11,10 +11,10 @@ namespace palpate {
 namespace {
 
 constexpr double kSampleLength = 22;  ///< length of the line before a name
-constexpr double kNameGap = 5;        ///< between a sample and its name
+constexpr double kNameGap = 5;        ///< between line and name
 constexpr double kBetweenNames = 16;
 
-// Advances of DejaVu Sans, of each class of letters the widest, in parts of the font's size: no line is wider.
+// Upper bounds of letter widths in DejaVu Sans by class of letters, in units of the font size.
 constexpr double kFont = 8;
 struct LetterClass {
   const char* letters;
@@ -28,9 +28,10 @@ constexpr double kOtherLetters = 0.65;
 
 LineStyle line_style(std::size_t curve) {
   constexpr std::array<const char*, 4> kDashes{"solid", "(7,2.5)", "(2,2)", "(8,2,2,2)"};
-  constexpr std::array<int, 8> kMarks{7, 9, 5, 13, 6, 8, 4, 12};  // disc, triangle, square, diamond; then open ones
+  // disc, triangle, square, diamond, then the open marks
+  constexpr std::array<int, 8> kMarks{7, 9, 5, 13, 6, 8, 4, 12};
   const std::string colour = kLineColours[curve % kLineColours.size()];
-  // From the ninth group on a colour returns with another dash.
+  // The ninth group has the first colour again, with another dash.
   return {
       colour,
       fmt::format("lw 1 dt {} lc rgb '{}'", kDashes[(curve + curve / kLineColours.size()) % kDashes.size()], colour),
@@ -55,7 +56,8 @@ std::vector<std::string> lines_within(const std::string& text, double width) {
     while (end < text.size() && width_of_line(text.substr(begin, end + 1 - begin)) <= width) ++end;
     const std::size_t blank = text.rfind(' ', end);
     if (end < text.size() && blank != std::string::npos && blank > begin) end = blank + 1;
-    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) ++end;  // within a letter
+    // keeps UTF-8 sequences together
+    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) ++end;
     out.push_back(text.substr(begin, end - begin));
     begin = end;
   }

@@ -11,9 +11,9 @@
 namespace palpate {
 
 inline constexpr double kLineHeight = 11;
-inline constexpr double kEndRoom = 9;  ///< at the right edge of the figure
+inline constexpr double kEndRoom = 9;  ///< free width at the right edge of the figure
 
-/// How a group is drawn. Dashes and marks distinguish groups in grey.
+/// Style of a group's curve. Dashes and marks distinguish groups in grey.
 struct LineStyle {
   std::string colour;
   std::string line;   ///< gnuplot's style of the line, with its colour

@@ -18,12 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kMostDrawn = 128;  ///< along a side: a panel has about twice as many pixels
+constexpr int kMostDrawn = 128;  ///< along a side; a panel has about twice as many pixels
 
 constexpr const char* kStar = "#e6007e";
 
-/// A star of five rays of this length about (next_x, next_y). It is drawn, not written: no font is asked for it; and
-/// whole where it reaches over the edge of a map.
+/// Returns gnuplot's command for a star with five rays of this length about (next_x, next_y). It is a polygon, because
+/// letters depend on the font, and it may reach over the edge of a map.
 std::string star_at(double ray) {
   std::string out = "set object 1 polygon";
   for (int i = 0; i <= 10; ++i) {
@@ -48,10 +48,10 @@ std::string colour_range(const Colours& colours) {
                                                         colours.logarithmic ? "set logscale cb\n" : "");
 }
 
-/// How many of `count` cells along a side are drawn; gnuplot's images have two at least.
+/// Returns the number of drawn cells along a side; gnuplot's images need at least two.
 int drawn(int count) { return std::clamp(count, 2, kMostDrawn); }
 
-/// What `cell` makes of each cell that is drawn, by its candidate, column and row, a line end behind each row.
+/// Concatenates `cell`(candidate, column, row) over the drawn cells, with a line end after each row.
 template <class Cell>
 std::string rows_of(const SceneFrame& frame, const Cell& cell) {
   const Candidates& all = frame.candidates;
@@ -67,7 +67,7 @@ std::string rows_of(const SceneFrame& frame, const Cell& cell) {
   return out;
 }
 
-// How surfaces are seen: from so far above, turned so far.
+// View of surfaces: tilt from the vertical and turn about it.
 constexpr double kTiltDegrees = 60.0;
 constexpr double kTurnDegrees = 32.0;
 constexpr double kTilt = kTiltDegrees * kPi / 180.0;
@@ -101,7 +101,7 @@ Box map_box(const Area& area, double left, double top, double side) {
 }
 
 ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& frame) {
-  // Upwards in the picture, from the middle of the desk, gnuplot's projection being a parallel one.
+  // Returns the position upwards in the picture from the middle of the desk, in gnuplot's parallel projection.
   const auto up = [&](double x, double y, double height) {
     const double back = (y - 0.5 * frame.area.depth) * std::cos(kTurn) - (x - 0.5 * frame.area.width) * std::sin(kTurn);
     return back * std::cos(kTilt) + (height - frame.desk) * std::sin(kTilt);
@@ -126,7 +126,7 @@ MapsAtTap in_sight(const MapsAtTap& snapshot, const SceneFrame& frame) {
   const Area& area = frame.area;
   const Candidates& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
-  // A tap lies on the surface, and its mark reaches above it: what is higher by less hides nothing.
+  // Ignores what is less than the margin higher than a tap, as the tap's mark reaches above the surface.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
   const double margin = 0.06 * height;
   const auto hidden = [&](const TapMark& mark) {
@@ -251,10 +251,10 @@ void FigureLayout::surface(const Box& box, const SceneFrame& frame, const std::s
                            const Colours& colours, const ZRange& z_range) {
   const Area& area = frame.area;
   const double wide = area.width * std::cos(kTurn) + area.depth * std::sin(kTurn);
-  const double scale = std::min(box.width / wide, box.height / (z_range.above + z_range.below));     // pixels a metre
+  const double scale = std::min(box.width / wide, box.height / (z_range.above + z_range.below));     // pixels per metre
   const double middle = box.top + 0.5 * box.height + 0.5 * scale * (z_range.above - z_range.below);  // of the desk
   const double lift = scale * (0.5 * (z_range.low + z_range.top) - frame.desk) * std::sin(kTilt);
-  // gnuplot puts the longer side of the area to the shorter one of the margins, and the middle of all into theirs.
+  // gnuplot fits the longer side of the area to the shorter side of the margins, and centres both.
   const double side = scale * std::max(area.width, area.depth);
   const Box inner{box.left + 0.5 * (box.width - side), middle - lift - 0.5 * side, side, side};
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
@@ -305,7 +305,7 @@ std::string FigureLayout::script() const {
   const bool has_bar = panels_.find("$bar ") != std::string::npos;
   const std::string out = (has_bar ? fmt::format("$bar << END\n{}END\n", bar) : "") + data_ + "set multiplot\n" +
                           panels_ + "unset multiplot\nset output\n";
-  // Where the locale is C, gnuplot warns of an encoding that it was told, so it is told none in vain.
+  // In the C locale, gnuplot warns about any encoding, so ASCII scripts set none.
   const bool is_ascii =
       std::all_of(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   return (is_ascii ? "" : "set encoding utf8\n") + out;
@@ -315,7 +315,7 @@ std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Fi
   make_inner_folder(folder);
   std::error_code failed;
   for (const auto& [name, layout] : figures) {
-    // An older picture would be that of another script.
+    // Removes an older picture, which would not belong to this script.
     fs::remove(folder / (name + ".png"), failed);
     write_file(folder / (name + ".gnuplot"),
                picture_header(layout.width(), layout.height(), name + ".png", name + ".png") + layout.script());

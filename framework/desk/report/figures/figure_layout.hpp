@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A picture of several panels as a gnuplot script with its data inside: panels are placed in pixels, data stands in
-// named blocks before them.
+// A picture of several panels as a gnuplot script. Panels have positions in pixels; their data stands in named blocks
+// at the beginning of the script.
 #pragma once
 
 #include "experiment/from_above.hpp"
@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-/// What all snapshots of a run share.
+/// Candidates, area and desk, which are the same for all taps of a run.
 struct SceneFrame {
   Candidates candidates;
   Area area;
@@ -22,7 +22,7 @@ struct SceneFrame {
 
 SceneFrame scene_frame_of(const FromAbove& experiment);
 
-/// A rectangle of the picture, pixels from its upper left corner.
+/// A rectangle of the picture, in pixels from its upper left corner.
 struct Box {
   double left = 0.0;
   double top = 0.0;
@@ -30,31 +30,31 @@ struct Box {
   double height = 0.0;
 };
 
-/// gnuplot's `set palette`, one line.
+/// Returns gnuplot's command `set palette`, one line.
 std::string gnuplot_palette(Palette palette);
 
-/// The snapshot without the marks that the surface hides when it is seen from the side.
+/// Returns the maps without the marks of taps that the surface hides in the view from the side.
 MapsAtTap in_sight(const MapsAtTap& snapshot, const SceneFrame& frame);
 
-/// Rows of `values`, one for each candidate, the lowest y first: every cell once unless there are more than a picture
-/// can show.
+/// Returns `values`, one per candidate, as rows of a matrix from the lowest y on. Grids with more cells than a picture
+/// can show are thinned out.
 std::string matrix_of(const SceneFrame& frame, const Eigen::VectorXd& values);
 
-/// gnuplot's columns that place such a matrix, in centimetres.
+/// Returns gnuplot's columns that place such a matrix, in centimetres.
 std::string matrix_columns(const SceneFrame& frame);
 
-/// "x y height deviation" of the same cells in centimetres, a blank line behind each row.
+/// Returns lines "x y height deviation" of the same cells, in centimetres, with a blank line after each row.
 std::string surface_of(const SceneFrame& frame, const Eigen::VectorXd& height, const Eigen::VectorXd& deviation);
 
-/// The room that surfaces take when they are seen from the side, metres.
+/// Extent of surfaces in the view from the side, metres.
 struct ZRange {
-  double low = 0.0;  ///< least and largest height; the desk lies between them
+  double low = 0.0;  ///< least and largest height, below and above the desk
   double top = 0.0;
-  double above = 0.0;  ///< in the picture, from the middle of the desk to the upper edge, and to the lower one
+  double above = 0.0;  ///< distance in the picture from the middle of the desk to the upper edge
   double below = 0.0;
 };
 
-/// What these snapshots of one experiment need to be drawn alike.
+/// Returns the common extent of these surfaces of one experiment, so that their panels have the same scale.
 ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& frame);
 
 class FigureLayout {
@@ -63,43 +63,44 @@ class FigureLayout {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Without terminal and output.
+  /// Returns the script without terminal and output.
   std::string script() const;
 
-  /// gnuplot's `screen` for a point, pixels from the upper left corner.
+  /// Returns gnuplot's `screen` coordinates of a point in pixels from the upper left corner.
   std::string at(double x, double y) const;
-  /// gnuplot's label with its middle at a height of `y`; `style` is the rest of the command.
+  /// Returns gnuplot's command for a label centred vertically at `y`; `style` is the rest of the command.
   std::string label(const std::string& words, double x, double y, const std::string& style) const;
 
-  /// A named block of lines; "" makes none.
+  /// Adds a named block of data; nothing for "".
   void data(const std::string& name, const std::string& lines);
-  /// The taps of a snapshot as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number") and the next one as
+  /// Adds the taps as blocks `on_NAME`, `off_NAME` and `failed_NAME` ("x y height number"), and the next tap as
   /// `next_NAME` ("x y"), in centimetres.
   void taps(const std::string& name, const MapsAtTap& snapshot);
 
-  /// Text whose upper edge is at `top`; `x` is its left end or its middle. May have several lines.
+  /// Adds text of one or more lines with its upper edge at `top`; `x` is its left end or its middle.
   enum class Align { left, centre };
   void text(const std::string& words, double x, double top, int points, Align align = Align::left);
-  /// One line along the left side of a row, its middle at `middle`.
+  /// Adds one vertical line of text with its middle at `middle`, left of a row of panels.
   void upright(const std::string& words, double x, double middle, int points);
 
-  /// The block `map` seen from above, with the taps NAME over it. The box has the aspect of the area.
+  /// Adds the block `map` as a map seen from above, with the taps `taps` on it. The box has the aspect ratio of the
+  /// area.
   void map(const Box& box, const SceneFrame& frame, const std::string& map, const std::string& taps,
            const Colours& colours);
-  /// The block `surface` in three dimensions, with the taps NAME on it, in the middle of the box.
+  /// Adds the block `surface` in three dimensions, with the taps `taps` on it, in the middle of the box.
   void surface(const Box& box, const SceneFrame& frame, const std::string& surface, const std::string& taps,
                const Colours& colours, const ZRange& z_range);
-  /// The scale of the colours.
+  /// Adds the scale of the colours.
   void bar(const Box& box, const Colours& colours);
-  /// What the marks mean, from `x` on, its middle at `y`.
+  /// Adds the legend of the marks, from `x` on, with its middle at `y`.
   void legend(double x, double y, bool failed, bool next = true);
 
-  /// A plot of any kind: lines of settings, then the clauses of one plot command.
+  /// Adds any plot: lines of settings, then one plot command.
   void plot(const Box& box, const std::string& settings, const std::string& clauses);
 
  private:
   std::string place(const Box& box) const;
-  /// Marks over a panel, as clauses; `columns` "1:2" or "1:2:3".
+  /// Returns the clauses that draw marks of taps over a panel; `columns` is "1:2" or "1:2:3".
   std::string marks(const std::string& taps, const std::string& columns) const;
   bool has(const std::string& block) const;
 
@@ -110,13 +111,14 @@ class FigureLayout {
   std::string panels_;
 };
 
-/// The step of 1, 2, 5, 10, ... by which a range of width `spread` has at most `most` tics and one more.
+/// Returns the least step of 1, 2, 5, 10, ... with which a range of width `spread` has at most `most` + 1 tics.
 double tic_step(double spread, double most);
 
-/// `value` metres as centimetres, as it stands in a block.
+/// Returns a length in metres as centimetres, for a block of data.
 std::string centimetres(double value);
 
-/// The box of a map: as wide or as high as `side`, in the aspect of the area, its upper left corner at (left, top).
+/// Returns the box of a map with its upper left corner at (left, top). Its longer side is `side`; its aspect ratio is
+/// that of the area.
 Box map_box(const Area& area, double left, double top, double side);
 
 /// A picture before it is drawn.
@@ -125,7 +127,7 @@ struct Figure {
   FigureLayout layout;
 };
 
-/// Writes all scripts to `folder`, then draws them. Throws Error.
+/// Writes all scripts to `folder`, then draws them. Throws Error if a picture cannot be drawn.
 std::vector<std::filesystem::path> write_gallery(const std::filesystem::path& folder,
                                                  const std::vector<Figure>& figures);
 

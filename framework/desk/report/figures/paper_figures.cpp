@@ -15,27 +15,27 @@
 namespace palpate {
 namespace {
 
-/// What a figure of the paper shows of one run.
+/// The snapshots of one run in a figure of the paper.
 struct Progress {
   std::string strategy;
   std::vector<int> iterations;
-  std::vector<MapsAtTap> snapshots;  ///< one for each iteration
+  std::vector<MapsAtTap> snapshots;  ///< one per iteration
   SceneFrame frame;
 };
 
-/// A panel for each of the run's snapshots: the surface seen from the side, or the map of the scores or of u.
+/// A row of panels, one per snapshot of a run: surfaces seen from the side, or maps of the scores or of u.
 struct PanelRow {
   const Progress& run;
   Eigen::VectorXd MapsAtTap::*map;
 };
-constexpr double kLeft = 70;    // of the first panel: room for an axis
-constexpr double kRight = 150;  // of the last one: room for a scale
+constexpr double kLeft = 70;    // left of the first panel, for an axis
+constexpr double kRight = 150;  // right of the last panel, for a scale
 constexpr double kMap = 225;    // longer side of a map, pixels
-constexpr double kStep = 312;   // from panel to panel
+constexpr double kStep = 312;   // distance between panels
 constexpr double kHead = 48;    // for the title
 constexpr double kSurface = 200;
 
-/// The least and the largest value of a map over the snapshots of a run.
+/// Returns the least and the greatest value of a map over the snapshots of a run.
 std::pair<double, double> extent(const PanelRow& row) {
   std::pair<double, double> out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const MapsAtTap& one : row.run.snapshots) {
@@ -54,18 +54,18 @@ Colours colours_of(const PanelRow& row) {
     return deviation_colours(least, most);
   }
   if (!is_scores(row)) return {Palette::cividis, 0.0, 1.0, "u"};
-  const double high = extent(row).second;  // from 0, where nobody would tap
+  const double high = extent(row).second;  // the scale begins at 0
   return {Palette::viridis, 0.0, high > 0.0 ? high : 1.0, fmt::format("score ({})", row.run.strategy)};
 }
 
-/// "" where no score is below 0.
+/// Returns a note on scores below 0; "" if there are none.
 std::string below_zero_words(const std::vector<PanelRow>& rows) {
   double least = 0.0;
   for (const PanelRow& row : rows) least = is_scores(row) ? std::min(least, extent(row).first) : least;
   return least < -0.005 ? fmt::format("scores below 0, to {:.2f}, have the colour of 0", least) : "";
 }
 
-/// The name of a panel in those of its blocks, for which gnuplot takes letters, digits and '_'.
+/// Returns the suffix of a panel's blocks. gnuplot allows letters, digits and '_' in names.
 std::string key_of(const Progress& progress, std::size_t column) {
   std::string out = fmt::format("{}_{}", progress.strategy, progress.iterations[column]);
   const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0; };
@@ -75,7 +75,7 @@ std::string key_of(const Progress& progress, std::size_t column) {
 
 double height_of(const PanelRow& row, const Box& map) { return is_surface(row) ? kSurface : map.height; }
 
-/// The panels of a row below `top`, and the scale of their colours; `map` is the box of the first map.
+/// Draws the panels of a row below `top` and the scale of their colours. `map` is the box of the first map.
 void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& map) {
   const Progress& run = row.run;
   const Colours colours = colours_of(row);
@@ -87,7 +87,7 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
     if (is_surface(row)) {
       layout.data("surface_" + key, surface_of(run.frame, snapshot.surface, snapshot.deviation));
       MapsAtTap seen = in_sight(snapshot, run.frame);
-      seen.next.reset();  // it stands in the map
+      seen.next.reset();  // the map shows it
       layout.taps("seen_" + key, seen);
       layout.surface({left - 4, top, map.width + 26, kSurface}, run.frame, "surface_" + key, "seen_" + key, colours,
                      z_range);
@@ -98,12 +98,12 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
       layout.map({left, top, map.width, map.height}, run.frame, block, key, colours);
     }
   }
-  const double gap = is_surface(row) ? 48 : 22;  // the axis of heights stands out
+  const double gap = is_surface(row) ? 48 : 22;  // leaves room for the axis of heights
   layout.bar({left - kStep + map.width + gap, top, 14, height_of(row, map)}, colours);
 }
 
-/// The run after these iterations of the paper: k is the state after k taps beyond the initial ones but one. The first
-/// that lies beyond the run's end shows its last tap, those after it are left out.
+/// Returns the run after these iterations of the paper. Iteration k is the state after k - 1 taps beyond the initial
+/// ones. The first iteration beyond the run's end shows the last tap; later ones are left out.
 Progress progress_of(const Workshop& workshop, const Recording& recording, const std::vector<int>& iterations) {
   const int all = static_cast<int>(recording.taps.size());
   const auto initial = static_cast<int>(std::count_if(
@@ -112,9 +112,9 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
   std::vector<int> shown;
   std::vector<int> taps;
   for (const int one : iterations) {
-    // The paper's iteration 1 is the state that its first chosen tap comes from, with the initial taps alone.
+    // Iteration 1 of the paper is the state after the initial taps.
     const int at = std::clamp(one + initial - 1, 1, all);
-    if (!taps.empty() && at == taps.back()) break;  // beyond the end there is but one last tap
+    if (!taps.empty() && at == taps.back()) break;  // the last tap is shown once
     shown.push_back(one);
     taps.push_back(at);
   }
@@ -122,10 +122,11 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
           scene_frame_of(playback.from_above())};
 }
 
-/// Rows below each other, of one run or of several with as many snapshots; `rows` is not empty.
+/// Draws rows of panels below each other, of one run or of several runs with equally many snapshots. `rows` is not
+/// empty.
 Figure panels_figure(const std::string& name, const std::string& title, const std::vector<PanelRow>& rows) {
   constexpr double kWords = 60;  // above the first row of a run
-  constexpr double kBelow = 54;  // a row
+  constexpr double kBelow = 54;  // below a row
   const std::size_t columns = rows.front().run.snapshots.size();
   const bool several = &rows.front().run != &rows.back().run;
   const Box map = map_box(rows.front().run.frame.area, several ? kLeft + 24 : kLeft, 0, kMap);
@@ -157,14 +158,14 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
   return {name, std::move(layout)};
 }
 
-/// Surfaces above, the strategy's suggestion function below: figures 2 and 3.
+/// Draws surfaces above, the strategy's scores below: figures 2 and 3.
 Figure progress_figure(const std::string& name, const std::string& title, const Progress& progress) {
   return panels_figure(name, title, {{progress, &MapsAtTap::surface}, {progress, &MapsAtTap::scores}});
 }
 
 constexpr const char* kAllOfThem = "run configs/paper/figures.yaml, which has all of them";
 
-/// The jobs of this scene and strategy that ended well, in the order of the sweep.
+/// Returns the jobs of this scene and strategy that ended without a failure, in the order of the sweep.
 std::vector<const Job*> finished_jobs(const Sweep& sweep, const std::string& scene, const std::string& acquisition) {
   std::vector<const Job*> out;
   for (const Job& job : sweep.jobs) {
@@ -175,7 +176,7 @@ std::vector<const Job*> finished_jobs(const Sweep& sweep, const std::string& sce
   return out;
 }
 
-/// A title with the seed, where one is swept.
+/// Adds the seed to a title, if seeds are swept.
 std::string titled(const std::string& title, const Sweep& sweep, const Job& job) {
   const std::string seed = value_of(sweep, job, "seed");
   return title + (seed.empty() ? "" : ", seed " + seed);

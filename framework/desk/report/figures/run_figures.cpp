@@ -54,7 +54,7 @@ std::vector<MapPanel> map_panels(const MapsAtTap& last) {
     if (values.minCoeff() >= -5e-4 && values.maxCoeff() <= high + 5e-4) return std::string();
     return fmt::format("\nrange: {:.2f} to {:.2f}", values.minCoeff(), values.maxCoeff());
   };
-  // The strategy's score is u w only where there is a w.
+  // With a w, the figure shows e = u w instead of the score.
   const Eigen::VectorXd e = last.has_weight() ? last.exploration() : last.scores;
   const double most = e.maxCoeff() > 0.0 ? e.maxCoeff() : 1.0;
   std::vector<MapPanel> panels{{"u", last.uncertainty, Palette::cividis, 1.0, ""}};
@@ -98,14 +98,14 @@ Figure maps_figure(const ExperimentOptions& options, const SceneFrame& frame, co
 
 constexpr double kNameHeight = 17;
 
-/// Names of curves side by side.
+/// Returns the number of curve names side by side.
 std::size_t columns_of(const CurvePanel& panel) {
   constexpr std::size_t kLongestOfTwo = 22;
   const auto is_short = [](const Curve& one) { return one.name.size() <= kLongestOfTwo; };
   return std::all_of(panel.curves.begin(), panel.curves.end(), is_short) ? 2 : 1;
 }
 
-/// Lines of names above the panel: over the curves they would hide them.
+/// Returns the number of lines of names above the panel, where they hide no curves.
 std::size_t name_lines(const CurvePanel& panel) {
   if (panel.curves.front().name.empty()) return 0;
   return (panel.curves.size() + columns_of(panel) - 1) / columns_of(panel);
@@ -115,7 +115,7 @@ void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePa
   std::string settings =
       "set border 3 lc rgb '#555555'\nset tics nomirror out scale 0.5 font ',10'\nset grid lc rgb '#e4e4e4' lt 1\n";
   settings += fmt::format("set xrange [0:{}]\nset xlabel 'taps' font ',10' offset 0,0.6\n", std::max(1, taps));
-  // By CurveAxis.
+  // by CurveAxis
   constexpr const char* kAxes[] = {"", "set yrange [0:*]\n", "set yrange [0:1]\n",
                                    "set logscale y\nset format y '%g'\n"};
   settings += kAxes[static_cast<std::size_t>(panel.axis)];
@@ -139,7 +139,7 @@ void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePa
   layout.plot(box, settings, clauses);
 }
 
-/// Curves over the taps. What the run has not is left out.
+/// Draws the curves over the taps.
 Figure curves_figure(const Recording& recording, const History& history) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
@@ -148,7 +148,7 @@ Figure curves_figure(const Recording& recording, const History& history) {
   const auto [panels, constants] = curves_of(recording, history);
   const int count = static_cast<int>(panels.size());
   const int columns = std::clamp(count, 1, kColumns);
-  std::vector<double> title_tops;  // of each row of panels
+  std::vector<double> title_tops;  // one per row of panels
   std::vector<double> tops;
   double bottom = 70;
   for (int first = 0; first < count; first += kColumns) {
@@ -159,7 +159,7 @@ Figure curves_figure(const Recording& recording, const History& history) {
     tops.push_back(bottom + 42 + kNameHeight * static_cast<double>(lines));
     bottom = tops.back() + kHeight + 60;
   }
-  // What never changes is no panel, but a line below them.
+  // Constants are lines below the panels.
   const int width = 70 + columns * 365;
   std::vector<std::string> words;
   if (!constants.empty()) words.emplace_back("Constant over all taps:");

@@ -20,12 +20,12 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMostGroups = 24;
-constexpr std::size_t kMostValues = 24;  ///< of a key, in a heat map
-constexpr std::size_t kMostDots = 200;   ///< of a group
+constexpr std::size_t kMostValues = 24;  ///< per key of a heat map
+constexpr std::size_t kMostDots = 200;   ///< per group
 constexpr std::size_t kLongestName = 44;
 constexpr const char* kOption = "--figures";
 
-/// Jobs of which some ended well, under one name.
+/// Named jobs, at least one of which ended without a failure.
 struct Group {
   std::string name;
   JobGroup jobs;
@@ -44,7 +44,7 @@ std::vector<Group> groups_of(const Sweep& sweep, const std::vector<Row>& results
   return groups;
 }
 
-/// An axis for these values, with few enough tics for their numbers.
+/// Returns the settings of an axis for these values, with few enough tics for their numbers.
 std::string value_axis(const std::vector<double>& values, double factor) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double spread = *most > *least ? (*most - *least) / factor : std::max(1e-9, std::abs(*most / factor));
@@ -54,7 +54,7 @@ std::string value_axis(const std::vector<double>& values, double factor) {
   return fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low, high, tic_step(spread, 5.0));
 }
 
-/// A panel of lying boxes, a group a line, the first on top.
+/// Draws a panel of horizontal boxes, one line per group, the first at the top.
 void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
                 const std::vector<std::vector<double>>& groups) {
   std::vector<double> all;
@@ -71,7 +71,7 @@ void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
     boxes += "\n";
     if (values.size() > kMostDots) continue;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      // Steps of the golden ratio: neighbours in value stand far from each other.
+      // Spreads dots by steps of the golden ratio, so that neighbours in value lie apart.
       const double shift = 0.5 * (std::fmod(0.6180339887 * static_cast<double>(i), 1.0) - 0.5);
       dots += fmt::format("{:.10g} {:.3f}\n", values[i] / scale.factor, static_cast<double>(g + 1) + shift);
     }
@@ -150,7 +150,7 @@ Figure distributions_figure(const Sweep& sweep, const std::vector<Row>& results)
   return {"distributions", std::move(layout)};
 }
 
-/// A swept key and its values, in the order of the sweep, as many as are shown.
+/// A swept key and its shown values, in the order of the sweep.
 struct Axis {
   std::string key;
   std::vector<std::string> values;
@@ -169,7 +169,7 @@ Axis axis_of(const Sweep& sweep, const std::string& key) {
   return axis;
 }
 
-/// gnuplot's list of tics: a value at each whole number.
+/// Returns gnuplot's list of tics with one value at each whole number.
 std::string tics(const std::vector<std::string>& values) {
   std::string out;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -279,7 +279,8 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   return Figure{"heat_map", std::move(layout)};
 }
 
-/// The error over the taps, by all keys that vary: none unless its values after each tap are kept.
+/// Returns the error over the taps, in groups of all keys that vary; nullopt unless the values after each tap are
+/// stored.
 std::optional<GroupCurves> kept_curves(const Sweep& sweep, const std::vector<Row>& results) {
   if (!TapSummaries::any_kept(sweep)) return std::nullopt;
   std::vector<TapValues> values(sweep.jobs.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The files that a page is made of, byte for byte within the program: see page.hpp. The build passes their folder.
+// The assets of pages, embedded in the program (page.hpp). The build sets their folder.
         .globl palpate_asset_plotly, palpate_asset_plotly_end
         .globl palpate_asset_style, palpate_asset_common, palpate_asset_run, palpate_asset_runs, palpate_asset_sweep
 
@@ -7,7 +7,7 @@
 palpate_asset_plotly:
         .incbin "vendor/plotly/plotly.min.js.gz"
 palpate_asset_plotly_end:
-        # Texts, each with a 0 at its end.
+        # Zero-terminated texts.
 palpate_asset_style:
         .incbin "web/style.css"
         .byte 0

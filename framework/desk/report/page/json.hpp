@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The data of a page: what the JSON library makes of vectors, and here of what a value may lack and of rows.
+// Conversions to JSON that the library lacks: optional values, rows.
 #pragma once
 
 #include "record/row.hpp"
@@ -31,7 +31,7 @@ namespace palpate {
 
 using Json = nlohmann::json;
 
-/// An object whose names keep their dots.
+/// Converts a row to a flat object, whose names keep their dots.
 inline void to_json(Json& out, const Row& row) {
   out = Json::object();
   for (const auto& [name, value] : row.fields) out[name] = std::visit([](const auto& one) { return Json(one); }, value);

@@ -13,19 +13,19 @@
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
-// plotly.js as vendored, compressed by gzip; the style; what all pages use: unpacking, text that stays text, colours.
+// Assets of all pages: plotly.js as vendored, compressed by gzip; the style; the common script.
 extern "C" const char palpate_asset_plotly[], palpate_asset_plotly_end[];
 extern "C" const char palpate_asset_style[], palpate_asset_common[];
 
 namespace palpate {
 namespace {
 
-/// Bytes that a script of the page unpacks by their `format`: no browser takes these types for scripts of its own.
+/// Returns an element with bytes that a script unpacks by their `format`. Browsers do not execute scripts of this type.
 std::string packed(const char* name, const char* format, std::string_view bytes) {
   return fmt::format("<script type=\"application/{}\" id=\"{}\">{}</script>\n", format, name, base64(bytes));
 }
 
-/// The colours of colours.hpp, for scripts.
+/// Returns the colours of colours.hpp for scripts.
 Json json_of_colours() {
   const auto stops = [](Palette palette) {
     const std::vector<std::string>& all = palette_stops(palette);
@@ -71,7 +71,7 @@ std::string base64(std::string_view bytes) {
 std::string line_of(const Json& data) { return data.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::string make_page(std::string_view script, const Json& data, const std::string& maps, PageOf of) {
-  // plotly makes functions from texts of its own where it draws with WebGL: unsafe-eval.
+  // plotly needs unsafe-eval to draw with WebGL.
   constexpr const char* kPolicy =
       "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:";
   std::string out = fmt::format(
@@ -80,7 +80,7 @@ std::string make_page(std::string_view script, const Json& data, const std::stri
       "content=\"width=device-width\">\n<title>palpate</title>\n<style>\n{}</style>\n</head>\n<body>\n<noscript>This "
       "page needs JavaScript, which your browser does not run.</noscript>\n",
       kPolicy, of == PageOf::server ? "; connect-src 'self'" : "",
-      // Or the browser would ask for one.
+      // keeps browsers from asking for an icon
       of == PageOf::server ? "<link rel=\"icon\" href=\"data:,\">\n" : "", palpate_asset_style);
   static const std::string plotly =
       packed("plotly", "gzip",

@@ -45,7 +45,7 @@ Json json_of_run(const Recording& recording, const History& history) {
           {"any_side", options.scene.touch == SceneOptions::Touch::any}};
 }
 
-/// The config as lines of path, value and origin, which is the file behind config.yaml.
+/// Returns a table of the config with path, value and origin, the file that config.yaml was composed from.
 Json json_of_config(const Recording& recording) {
   const std::map<std::string, std::string> known = recorded_origins(recording.directory);
   Json lines;
@@ -73,7 +73,7 @@ Json json_of_build(const Tree& manifest) {
 
 }  // namespace
 
-/// The numbers of the taps whose contacts read otherwise at a moment than their rows say.
+/// Returns the numbers of the taps whose label at this moment differs from their rows.
 static std::vector<int> relabelled(const RunAtTap& moment) {
   std::vector<int> out;
   for (const Relabelled& one : moment.result.relabelled) out.push_back(one.tap);
@@ -131,7 +131,7 @@ static void to_json(Json& out, const CurvePanel& panel) {
 
 static void to_json(Json& out, const RecordField& error) { out = {error.name, error_title(error)}; }
 
-/// The errors that pages show: those against the truth, and the one that is expected, which needs none.
+/// Returns the errors that pages show: those against the truth, and the expected error.
 static std::vector<RecordField> page_errors() {
   std::vector<RecordField> out = error_fields();
   out.insert(out.begin() + 1, *find_summary_field(kExpectedError));
@@ -171,8 +171,7 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames) {
   return out;
 }
 
-/// What `get` has of each as whole numbers: the first in full, of the others what they differ by from the one before,
-/// because zlib makes least of small numbers.
+/// Returns `get` of each element, rounded: the first value, then differences between neighbours, which compress well.
 template <class List, class Get>
 static std::vector<long> steps_of(const List& list, const Get& get) {
   std::vector<long> out;
@@ -181,7 +180,7 @@ static std::vector<long> steps_of(const List& list, const Get& get) {
   return out;
 }
 
-/// The lines on the true surface, in tenths of a millimetre.
+/// Returns the contours of the true surface, in tenths of a millimetre.
 static Json true_contours_of(const History& history) {
   Json out = Json::array();
   for (const Ring& ring : history.true_contours) {
@@ -193,8 +192,8 @@ static Json true_contours_of(const History& history) {
   return out;
 }
 
-/// A mesh: its vertices in tenths of a millimetre, their standard deviations in hundredths of one, and the corners of
-/// its triangles.
+/// Returns the closed mesh: vertices in tenths of a millimetre, their standard deviations in hundredths of a
+/// millimetre, and the vertex indices of the triangles.
 static Json json_of_surface(const Crossings& surface) {
   const ClosedMesh mesh = close_mesh(surface);
   const auto along = [&](Eigen::Index axis) {
@@ -208,7 +207,7 @@ static Json json_of_surface(const Crossings& surface) {
           {"j", corners(1)}, {"k", corners(2)}, {"deviation", deviations}};
 }
 
-/// Where the run stood when it was read: one that has ended since is shown as it was, like all else on the page.
+/// Returns the status at the time of reading, as for all other data of the page.
 static RunStatus status_of(const Recording& recording) {
   if (recording.summary) {
     const auto state = recording.failed() ? RunStatus::State::failed : RunStatus::State::done;
@@ -218,7 +217,7 @@ static RunStatus status_of(const Recording& recording) {
   return {now.end ? RunStatus::State::running : now.state, 0, ""};
 }
 
-/// What may change with every tap; `history` has at least one moment.
+/// Returns the data that may change with every tap. `history` has at least one moment.
 static Json json_of_standing(const Recording& recording, const History& history) {
   const RunStatus status = status_of(recording);
   const Curves curves = curves_of(recording, history);
@@ -269,7 +268,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
   for (const MapSeries& one : history.maps) {
     if (!only.empty() && one.name != only) continue;
     std::vector<Eigen::VectorXf> frames;
-    if (one.name == "truth") frames = one.frames;  // of all moments
+    if (one.name == "truth") frames = one.frames;  // one frame for all moments
     for (std::size_t i = last % stride; i <= last && one.name != "truth"; i += stride) frames.push_back(one.frames[i]);
     const PackedMaps packed = pack_maps(frames);
     described.push_back(
@@ -286,7 +285,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
 std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
   Json data = run_data(recording, history);
   const int last = history.moments.back().taps;
-  // Maps never pack to a tenth of their bytes: with more than these the page would surely be too large.
+  // Maps never compress to a tenth: with more bytes the page would be too large.
   constexpr double kMostRaw = 19e6;
   double raw = 0.0;
   for (const MapSeries& one : history.maps)

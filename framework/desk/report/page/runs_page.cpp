@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-/// Lines of a key and its value in each run, "" where it has none.
+/// Returns lines of a key and its value in each run; "" if a run lacks it.
 Json json_of_differences(const std::vector<RunBeside>& runs) {
   std::vector<Row> configs;
   for (const RunBeside& run : runs) configs.push_back(read_settings(run.recording.directory));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The report of several runs side by side as one page: web/runs.js draws what is put together here.
+// The page that compares several runs: its data, which web/runs.js draws.
 #pragma once
 
 #include "report/history.hpp"
@@ -9,19 +9,18 @@
 
 namespace palpate {
 
-/// More than these are no longer told apart by their colours.
+/// Largest number of runs on a page, limited by distinct colours.
 inline constexpr std::size_t kMostRunsOnAPage = 8;
 
-/// A run among others.
+/// A run and its history.
 struct RunBeside {
   Recording recording;
   History history;
 };
 
-/// The page of 2 to kMostRunsOnAPage runs: their errors over taps and over robot time in one plot each, their surfaces
-/// as they were after a number of taps, how each differs from the first where both have the same candidates, and what
-/// differs in their configs. HTML, complete in itself, and as small as the page of a run. `progress` hears of the
-/// packing.
+/// Returns a page of 2 to kMostRunsOnAPage runs: errors over taps and over robot time, surfaces after a number of taps,
+/// differences from the first surface where the candidates are the same, and differences between the configs. It is at
+/// most as large as the page of a run. `progress` is called while maps are packed.
 std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& progress);
 
 }  // namespace palpate

@@ -18,9 +18,11 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostGroupsOfAScene = 2 * kLineColours.size();  ///< drawn solid, then dashed
+constexpr std::size_t kMostGroupsOfAScene = 2 * kLineColours.size();  ///< each colour is used for a solid and a dashed
+                                                                      ///< line
 
-/// The keys that a reader may group by: all at once, then each alone, as far as they make few enough groups.
+/// Returns the choices of keys for groups: all keys together, then each key alone. Choices with too many groups are
+/// left out.
 std::vector<std::vector<std::string>> choices_of_keys(const Sweep& sweep) {
   const std::vector<std::string> all = curve_keys(sweep);
   std::vector<std::vector<std::string>> out;

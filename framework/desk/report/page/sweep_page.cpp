@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A swept key: its values in the order in which they are shown, as numbers if all are of one dimension, else as in the
-/// sweep, what stands for no such option first; and for each of `jobs` which of them it has.
+/// Returns a swept key, its values, and the index of each job's value. Values of one dimension are sorted as numbers,
+/// others stay in the order of the sweep; "" for no such option comes first.
 Json json_of_key(const Sweep& sweep, const std::vector<JobResult>& jobs, const std::string& key) {
   std::vector<JobGroup> groups = group_jobs(sweep, {}, {key});
   std::map<std::string, double> numbers;
@@ -184,8 +184,8 @@ Json json_of_fronts(const std::vector<PageSetting>& settings, const std::vector<
   return out;
 }
 
-/// Which jobs are on the page: every one of so many, along the settings one after the other, so that each has its share
-/// and, where they have the same seeds, those of the same.
+/// Returns which jobs are on the page: every `step`-th along the settings, one after the other. Each setting has its
+/// share, and settings with the same seeds keep the same seeds.
 std::vector<bool> drawn_jobs(const Sweep& sweep, std::size_t step) {
   std::vector<bool> drawn(sweep.jobs.size(), true);
   if (step == 1) return drawn;
@@ -232,8 +232,8 @@ class Tally {
     std::size_t jobs;
   };
   std::map<std::string, std::size_t> counts_;  ///< by state
-  std::vector<Failure> failures_;              ///< one a reason
-  std::map<std::string, std::size_t> places_;  ///< of the reasons
+  std::vector<Failure> failures_;              ///< one per reason
+  std::map<std::string, std::size_t> places_;  ///< indices in `failures_` by reason
 };
 
 Json json_of_job(const Job& job, const RunStatus& standing, const fs::path& directory) {
@@ -289,7 +289,7 @@ void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& j
   data["fronts"] = json_of_fronts(settings, columns, estimates);
 }
 
-/// The fields that are worth a first look: the main error, and the others in the order of the summary.
+/// Returns the headline fields: the main error, then the others in the order of the summary.
 std::vector<std::string> first_looks(const std::vector<Row>& results) {
   std::vector<std::string> names{main_error(results)};
   for (const RecordField& field : summary_fields()) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The report of a sweep as one page: what became of every job, and the numbers of those that ended, from which
-// web/sweep.js draws what is asked for. Groups, means and the front are made there, so that they follow the choices
-// of whoever reads.
+// The page of a sweep: the state of every job, the numbers of ended jobs, means over settings, and Pareto fronts.
+// web/sweep.js draws the data. Its reader chooses keys of groups, so their means are formed there.
 #pragma once
 
 #include "report/history.hpp"
@@ -13,15 +12,15 @@
 
 namespace palpate {
 
-/// More than these are too many for a browser, and for a file that is sent to others: up to 700 bytes a job.
+/// Largest number of jobs on a page, for browsers and for files that are sent: a job takes up to 700 bytes.
 inline constexpr std::size_t kMostJobsOnAPage = 20000;
 
-/// The page of a sweep as it stands, under way or not: HTML, complete in itself but for the links to its jobs, which
-/// hold where the page lies in the sweep's directory. Of more than `most_jobs` it has every second, third, ..., and
-/// says so. `progress` counts jobs. Throws Error for a damaged record.
+/// Returns the page of a sweep, finished or not. Links to the pages of its jobs work if the page lies in the sweep's
+/// directory. With more than `most_jobs` jobs, it has every second, third, ... job and a note. `progress` counts jobs.
+/// Throws Error for a damaged record.
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs = kMostJobsOnAPage);
 
-/// What that page is drawn from.
+/// Returns the data of that page.
 Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs = kMostJobsOnAPage);
 
 }  // namespace palpate

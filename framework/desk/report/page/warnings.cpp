@@ -20,19 +20,19 @@ int diagnostics(const RunResult& result, const char* kind) {
   return found != result.diagnostics.end() ? found->second : 0;
 }
 
-/// "3 taps" and what became of them; nothing where there are none.
+/// Adds "3 taps" with `what` about them; nothing if `count` is 0.
 void tell(std::vector<std::string>& out, int count, const char* noun, const char* what) {
   if (count > 0) out.push_back(counted(count, noun) + what);
 }
 
-/// Whether of two taps at one place the tool came, or would have come, along another line.
+/// Returns whether two taps at the same position were made along different lines.
 bool other_way(const PastTap& one, const PastTap& other) {
   if (!one.approach || !other.approach) return one.approach.has_value() != other.approach.has_value();
   const auto& [a, b] = std::pair(one.approach->line, other.approach->line);
   return a.origin != b.origin || a.direction != b.direction;
 }
 
-/// The first tap that this build would have made elsewhere; 0 if there is none.
+/// Returns the first tap that this build would have made elsewhere; 0 if there is none.
 int first_drift(const Recording& recording, const History& history) {
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const std::optional<TapRecord>& next = history.moments[i].next;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What somebody who looks at a run should know before believing it, in plain words.
+// Warnings on the page of a run.
 #pragma once
 
 #include "report/history.hpp"
@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// One sentence or two each, the gravest first; empty for a run without trouble.
+/// Returns one or two sentences per warning, the gravest first; empty for a run without trouble.
 std::vector<std::string> warnings_of(const Recording& recording, const History& history);
 
 }  // namespace palpate

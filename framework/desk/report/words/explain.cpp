@@ -18,8 +18,7 @@
 namespace palpate {
 namespace {
 
-/// What the maps say of the place of the tap: u, and w and e or the probability of `footprint`, whichever the record of
-/// the tap has.
+/// Adds the values of the maps at the tap: u, and w with e or the probability of `footprint`, whichever the record has.
 void explain_place(TextSections& page, const Row& row, const std::string& footprint) {
   std::vector<std::string> said;
   const auto say = [&](const char* name, const std::string& before, const std::string& meaning) {
@@ -39,7 +38,7 @@ class FromAboveExplained final : public Explanation {
  private:
   void explain() override {
     FromAbove& experiment = playback_.from_above();
-    // What the choice read, and the height, which was expected whoever read it.
+    // The quantities that the choice read, and the expected height.
     experiment.ask(recorded_quantities(row_) | Quantity::height);
 
     text_.heading(heading(place_words(tap_.target.x, tap_.target.y)));
@@ -53,7 +52,7 @@ class FromAboveExplained final : public Explanation {
     explain_expectation();
     explain_outcome();
     text_.heading("Effect of the tap");
-    // The errors after the tap are recorded with the next one, or at the end of the run.
+    // The record of the next tap, or the summary, has the errors after this tap.
     const bool last = number_ == static_cast<int>(recording_.rows.size());
     explain_errors(row_,
                    !last ? recording_.rows[static_cast<std::size_t>(number_)] : recording_.summary.value_or(Row{}));
@@ -63,7 +62,7 @@ class FromAboveExplained final : public Explanation {
   const RunResult& before() { return playback_.from_above().counts(); }
   int hits_before() { return before().object_taps; }
 
-  /// The candidate at which a tap was made.
+  /// Returns the candidate of a tap.
   int candidate_of(const PastTap& tap) {
     const FromAbove& experiment = playback_.from_above();
     return experiment.candidates().nearest(tap.target.x, tap.target.y, experiment.scene().area());
@@ -82,7 +81,7 @@ class FromAboveExplained final : public Explanation {
         break;
       case Source::fallback:
         explain_fallback();
-        explain_score(1.0);  // that of u
+        explain_score(1.0);  // of u
         break;
       case Source::caller:
         text_.add("The caller chose it, by scores of its own.");
@@ -107,7 +106,7 @@ class FromAboveExplained final : public Explanation {
                       number_, options_.seed));
       return;
     }
-    // By InitialOptions::Design.
+    // by InitialOptions::Design
     constexpr const char* kHow[] = {"random: drawn from the candidates by the seed alone",
                                     "sobol: a sequence that spreads evenly, shifted by the seed",
                                     "grid: a lattice over the area"};
@@ -141,7 +140,7 @@ class FromAboveExplained final : public Explanation {
         "u.");
   }
 
-  /// How many candidates may not be tapped again, by the rule of the loop.
+  /// Returns the number of candidates that must not be tapped again.
   int left_out() {
     std::set<int> out;
     for (int i = 0; i < number_ - 1; ++i) {
@@ -183,7 +182,7 @@ class FromAboveExplained final : public Explanation {
     explain_second(*score);
   }
 
-  /// Of scores that tell candidates hardly apart: why the rule had its way all the same.
+  /// For scores that hardly distinguish the candidates: explains why the acquisition chose all the same.
   void explain_flatness(double best, double bound, bool equal) {
     if (options_.fallback == ExperimentOptions::Fallback::none) {
       if (best > 0.0 && !equal) return;
@@ -260,13 +259,13 @@ class FromAboveExplained final : public Explanation {
     text_.add(text);
   }
 
-  /// Whether the tap is believed, right after it and by all that came later.
+  /// Adds whether the tap is a suspected outlier, right after it and after all taps.
   void explain_doubt() {
     if (!options_.height.outlier_probability || tap_.contact.outcome != Outcome::contact) return;
     text_.heading("Is it an outlier?");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
-      playback_.from_above().choose_next();  // which has the models take in all taps
+      playback_.from_above().choose_next();  // makes the models include all taps
       for (const SuspectedOutlier& one : playback_.from_above().belief().suspected_outliers()) {
         if (one.tap == number_) return "may be an outlier: " + doubt_words(one);
       }
@@ -277,7 +276,7 @@ class FromAboveExplained final : public Explanation {
     if (all > number_) text_.add(fmt::format("After all {} taps, it {}.", all, said(all)));
   }
 
-  std::optional<double> expected_;  ///< height; what is expected of an object says nothing of the desk
+  std::optional<double> expected_;  ///< expected height; the height of an object says nothing about the desk
 };
 
 }  // namespace

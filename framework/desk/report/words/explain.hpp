@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Why a recorded run made a tap where it made it, in words.
+// Explanation of a recorded tap in words.
 #pragma once
 
 #include "record/recording.hpp"
@@ -8,9 +8,9 @@
 
 namespace palpate {
 
-/// Some twenty lines on tap `tap`, from 1, of a recorded run: who chose it and by how much, the state of the models
-/// that it was chosen from, what was expected and found, what it changed. All is what the record says, but for the
-/// height that was expected, which is computed from the taps before. Throws Error where there is no such tap.
+/// Returns about twenty lines on tap `tap` (from 1) of a recorded run: the reason of its choice, the models at that
+/// time, expectation and result, and the effect of the tap. All values are recorded, except the expected height, which
+/// is computed from the earlier taps. Throws Error if there is no such tap.
 std::string explain_tap(const Workshop& workshop, const Recording& recording, int tap);
 
 }  // namespace palpate

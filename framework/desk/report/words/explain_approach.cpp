@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Why a run from any side made a tap along the line where it made it.
+// Explanation of a tap from any side.
 #include "config/scale.hpp"
 #include "record/fields.hpp"
 #include "record/tap_row.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// "from (x 1.0, y 2.0, z 3.0) cm, coming down at 20 degrees"
+/// Returns "from x 1.00 cm, y 2.00 cm, z 3.00 cm, coming down at 20 degrees".
 std::string line_words(const Line& line) {
   const double degrees = 180.0 / kHalfTurn * std::asin(std::clamp(-line.direction.z(), -1.0, 1.0));
   const std::string slope = degrees > 85.0            ? "straight down"
@@ -94,7 +94,7 @@ class ApproachExplained final : public Explanation {
     explain_second(scores, now->candidate);
   }
 
-  /// Describes the expected effects of the tap that rules read, if they were computed for the scores.
+  /// Adds the expected effects of the tap, if the scores use them.
   void explain_gains(Eigen::Index approaches, int chosen) {
     const Eigen::VectorXd& expected_discovery = experiment_.belief().expected_discovery();
     if (expected_discovery.size() == approaches) {
@@ -121,7 +121,7 @@ class ApproachExplained final : public Explanation {
     explain_runner_up(line_words(line), scores(chosen), scores(second));
   }
 
-  /// What the record has of a score, where a program gave it.
+  /// Adds the recorded score of a program, which is not started for a report.
   void explain_score() {
     if (const auto score = row_.number("score"))
       text_.add(fmt::format("Its score is {}; the program's scores of the other lines are not recorded.",
@@ -130,12 +130,12 @@ class ApproachExplained final : public Explanation {
 
   const Composition& best() const { return experiment_.belief().solids().best(); }
 
-  /// Whether a tool that comes so far is held by an object, and not by the desk or by nothing.
+  /// Returns whether a tool stops after this path length at an object, and not at the desk or nowhere.
   bool met(double along) const {
     return along < std::min(approach_.length, distance_down_to(experiment_.scene().desk(), approach_.line));
   }
 
-  /// What rules read of the place where the surface is met.
+  /// Adds the belief's values where the line meets the surface.
   void explain_place() {
     const double along = experiment_.belief().meeting(approach_, best());
     if (!met(along)) return text_.add("According to the most probable particle, no object is there.");
@@ -217,7 +217,7 @@ class ApproachExplained final : public Explanation {
 
   FromAnySide& experiment_ = dynamic_cast<FromAnySide&>(playback_.experiment());
   const Approach approach_ = approach_of(tap_);
-  std::optional<double> expected_;  ///< how far to an object
+  std::optional<double> expected_;  ///< expected path length to an object
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What explanations of a tap have in common, whether it came from above or from any side.
+// Common parts of explanations of taps from above and from any side.
 #pragma once
 
 #include "record/recording.hpp"
@@ -11,7 +11,7 @@ namespace palpate {
 
 class Explanation {
  public:
-  /// `tap` is one of the recording's, from 1. `workshop` and `recording` must outlive it.
+  /// `tap` is the number of a recorded tap, from 1. `workshop` and `recording` must outlive the object.
   Explanation(const Workshop& workshop, const Recording& recording, int tap)
       : workshop_(workshop), recording_(recording), number_(tap) {}
   virtual ~Explanation() = default;
@@ -21,16 +21,16 @@ class Explanation {
   std::string text();
 
  protected:
-  /// Fills the page; the models are as they were before the tap.
+  /// Writes the text; the models are in their state before the tap.
   virtual void explain() = 0;
 
   std::string heading(const std::string& where) const;
   std::string acquisition_words() const;
-  /// The second best choice, at `where`, whose score is `second`.
+  /// Adds the second best choice, at `where`, with the score `second`.
   void explain_runner_up(const std::string& where, double score, double second);
-  /// If the contact has another label by all taps than it had when it was made.
+  /// Adds a remark if the contact's label changed after the tap.
   void explain_label();
-  /// If the run failed at this tap.
+  /// Adds a remark if the run failed at this tap.
   void explain_failure();
   /// Describes how the tap changed the errors, from the rows before and after it.
   void explain_errors(const Row& before, const Row& after);
@@ -45,7 +45,7 @@ class Explanation {
   TextSections text_;
 };
 
-/// Of a run from any side, what explain_tap() is of one from above.
+/// Returns the explanation of a tap from any side, as explain_tap() does for taps from above.
 std::string explain_approach(const Workshop& workshop, const Recording& recording, int tap);
 
 }  // namespace palpate

@@ -10,11 +10,11 @@
 namespace palpate {
 namespace {
 
-/// One process: whose fields, in what unit, and what the program holds of it now.
+/// A GP with its fields in the record, its units, and its present state.
 struct Subject {
   const char* title;
   std::string prefix;  ///< of its fields, with the dot
-  bool metric;         ///< targets are metres, not labels
+  bool metric;         ///< whether targets are metres, else labels
   const PluginChoice& kernel;
   const PluginChoice& fitting;
   const std::optional<GpState>& now;
@@ -29,7 +29,7 @@ struct Subject {
   std::string text(const char* name) const { return row.text(prefix + name); }
 };
 
-/// The fields with a number whose names begin with `prefix`, without it.
+/// Returns the names of the number fields that begin with `prefix`, without the prefix.
 std::vector<std::string> numbers_below(const Row& row, const std::string& prefix) {
   std::vector<std::string> out;
   for (const auto& [name, value] : row.fields) {
@@ -38,7 +38,7 @@ std::vector<std::string> numbers_below(const Row& row, const std::string& prefix
   return out;
 }
 
-/// "length_scale" is shown as "length scale", "kernels.0.length_scale" as "kernels.0: length scale".
+/// Returns "length scale" for "length_scale", "kernels.0: length scale" for "kernels.0.length_scale".
 std::string parameter_words(std::string name) {
   const auto dot = name.rfind('.');
   if (dot != std::string::npos) name.replace(dot, 1, ": ");
@@ -50,7 +50,7 @@ std::string kernel_words(const Subject& subject) {
   const std::string prefix = subject.prefix + "kernel.";
   std::string out = subject.kernel.type;
   for (const std::string& name : numbers_below(subject.row, prefix)) {
-    Unit unit = Unit::none;  // which unit a parameter has, no record says and no fit changes
+    Unit unit = Unit::none;  // the record has no units of parameters; the present model does
     if (subject.now) {
       for (const KernelParameter& one : subject.now->kernel) unit = one.name == name ? one.unit : unit;
     }
@@ -90,7 +90,7 @@ void explain_likelihood(TextSections& page, const Subject& subject) {
   if (!parts.empty()) page.add(fmt::format("{}.", fmt::join(parts, "; ")));
 }
 
-/// The engine, and what had to be done because numbers have sixteen digits.
+/// Returns the engine, and its measures against rounding errors.
 std::string rounding_words(const Subject& subject) {
   const double bound = subject.number("error_bound").value_or(0.0);
   const double jitter = subject.number("jitter").value_or(0.0);
@@ -129,7 +129,7 @@ void explain_range_of_weight(TextSections& page, const Row& row, bool clipped) {
   page.add(out + (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
 }
 
-/// Of a footprint that is not the weight: what it is, what it tells of itself, and its remark.
+/// Adds type, numbers and remark of a footprint that is not the weight.
 void explain_footprint(TextSections& page, const Row& row, const std::string& type) {
   const std::string prefix = "footprint.";
   std::vector<std::string> numbers = numbers_below(row, prefix);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the record of a tap says of the models that it was chosen from, in words.
+// The models of a recorded choice in words.
 #pragma once
 
 #include "experiment/from_above.hpp"
@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// A paragraph for each process that the record of the tap has: hyperparameters and their fit, likelihood, condition,
-/// engine, jitter, and how far its map goes. `now` is the choice as computed now, which knows the units of kernels.
+/// Adds a paragraph per GP in the record of the tap: hyperparameters with their fit, likelihood, condition, engine,
+/// jitter, and range of its map. `now` is the choice computed again, whose models have the units of kernel parameters.
 void explain_models(TextSections& page, const Row& row, const ExperimentOptions& options, const TapRecord& now);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the maps of a run are called, on its page and in its pictures alike.
+// Titles of maps and errors, for pages, figures and texts.
 #pragma once
 
 #include "experiment/experiment_options.hpp"
@@ -10,8 +10,8 @@
 
 namespace palpate {
 
-/// A line each, by the names of History::maps, and of `e` = u w: of all that may be drawn, whether this run has it or
-/// not. "p" and "score" name the plugins that they come from.
+/// Returns the titles of all possible maps by their names in History::maps, and of `e` = u w. The titles of "p" and
+/// "score" name the plugins.
 std::map<std::string, std::string> map_titles(const ExperimentOptions& options);
 
 /// Returns the title of an error: "error over the scene", "footprint IoU".

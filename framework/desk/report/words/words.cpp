@@ -47,7 +47,7 @@ void TextSections::heading(const std::string& text) {
 }
 
 void TextSections::add(const std::string& text) {
-  constexpr std::size_t kWidth = 96;  // beside the dash
+  constexpr std::size_t kWidth = 96;  // without the dash
   text_ += fmt::format("  - {}\n", fmt::join(wrapped(one_line(text), kWidth), "\n    "));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers in sentences: lengths in the unit that suits them, and lines that fit a terminal.
+// Numbers in sentences, and texts in sections for terminals.
 #pragma once
 
 #include "experiment/tap_belief.hpp"
@@ -10,41 +10,41 @@
 
 namespace palpate {
 
-/// Four digits at most: "0.3848", "-1.2e-05".
+/// Returns at most four digits: "0.3848", "-1.2e-05".
 std::string plain_words(double value);
 
-/// Metres in the unit that suits them: "0.1 mm", "9.07 cm", "1.2 m", "0 cm"; four digits at most.
+/// Returns a length in a suitable unit with at most four digits: "0.1 mm", "9.07 cm", "1.2 m", "0 cm".
 std::string length_words(double metres);
 
-/// An error in metres as people say it: "2.61 mm"; three digits at most.
+/// Returns an error with at most three digits: "2.61 mm".
 std::string error_words(double metres);
 
-/// A time as in the table of a run: "2.0 s".
+/// Returns a time as in the table of a run: "2.0 s".
 std::string seconds_words(double seconds);
 
-/// "x 12.97 cm, y 7.59 cm", as in the table of a run.
+/// Returns "x 12.97 cm, y 7.59 cm", as in the table of a run.
 std::string place_words(double x, double y);
-/// The height of one, or another coordinate: "3.00 cm".
+/// Returns a height or another coordinate: "3.00 cm".
 std::string place_words(double coordinate);
 
-/// The number at `field` of a record as `words` has it; "" where there is none.
+/// Returns the number in a field of a row, formatted by `words`; "" if there is none.
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double) = plain_words);
 
-/// What is thought of a contact that may lie, and why: "97 %, by its height", "80 %, by where it is: outlines that
-/// agree with the other taps have no object there".
+/// Returns probability and reason of a suspected outlier: "97 %, by its height, which does not fit the heights of the
+/// other taps".
 std::string doubt_words(const SuspectedOutlier& one);
 
-/// What is said once of a run whose truth is lost, see Playback::truth_lost(): a sentence without its full stop.
+/// Returns a sentence, without its full stop, for a run whose truth is no longer known (Playback::truth_lost()).
 std::string truth_lost_words(const Error& lost);
 
-/// "1 tap", "3 taps"
+/// Returns "1 tap", "3 taps".
 std::string counted(long count, const std::string& noun);
 
-/// Text in sections: headings, and sentences below them, broken into lines of at most 100 letters.
+/// Text in sections: headings, and items below them, in lines of at most 100 letters.
 class TextSections {
  public:
   void heading(const std::string& text);
-  /// A sentence or two that begin on a line of their own; control characters become blanks.
+  /// Adds an item of one or two sentences. Control characters become blanks.
   void add(const std::string& text);
   const std::string& text() const { return text_; }
 

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
-// What all pages use. Text of a config reaches the page in two ways only: as text of an element, or through plain()
-// into a plot, which would take some markup for its own.
+// Functions of all pages. Texts of a config reach a page only as the text of an element, or through plain() in a plot,
+// which interprets some markup.
 
-/// Bytes of a packed element of this page, decompressed, as a response to read.
+/// Decompresses the bytes of a packed element of this page. Returns a response to read.
 function unpack(id) {
   const { type, textContent } = document.getElementById(id);
   const bytes = Uint8Array.from(atob(textContent), (c) => c.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream(type.replace("application/", ""))));
 }
 
-/// Runs plotly, which then is the global Plotly.
+/// Runs plotly, which sets the global Plotly.
 async function loadPlotly() {
   document.head.append(element("script", {}, await unpack("plotly").text()));
 }
 
-/// Whether this browser can draw in three dimensions.
+/// Returns whether this browser can draw in three dimensions.
 function hasWebGL() {
   const canvas = document.createElement("canvas");
   return Boolean(canvas.getContext("webgl2") || canvas.getContext("webgl"));
 }
 
-/// An element with attributes; children that are no elements become text.
+/// Returns an element with attributes. Children that are not elements become text.
 function element(tag, attributes = {}, ...children) {
   const out = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) out.setAttribute(name, value);
@@ -28,54 +28,54 @@ function element(tag, attributes = {}, ...children) {
   return out;
 }
 
-/// Text that comes from a config, set apart, so that marks of direction in it turn nothing around it.
+/// Returns an element with text of a config, isolated so that marks of direction in it do not affect other text.
 function foreign(text) {
   return element("bdi", { class: "foreign" }, String(text));
 }
 
-/// Text on one line and without marks of direction.
+/// Returns text on one line and without marks of direction.
 function oneLine(text) {
   return String(text)
     .replace(/[\n\r\t]+/g, " ")
     .replace(/[\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, "");
 }
 
-/// Text for a title, a label or a hover of a plot, in which plotly would see tags and entities.
+/// Returns text for a title, label or hover of a plot, with the characters of tags and entities escaped.
 function plain(text) {
   return oneLine(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
 }
 
-/// A row of a table; the cells from the one behind the first `left` on are set to the right.
+/// Returns a row of a table; cells after the first `left` ones are right-aligned.
 function tableRow(tag, cells, left = cells.length) {
   return element("tr", {}, ...cells.map((cell, i) => element(tag, i < left ? {} : { class: "number" }, cell)));
 }
 
-/// A table whose cells are texts or elements.
+/// Returns a table; its cells are texts or elements.
 function table(header, rows, left) {
   const head = element("thead", {}, tableRow("th", header, left));
   const body = element("tbody", {}, ...rows.map((row) => tableRow("td", row, left)));
   return element("div", { class: "scroll" }, element("table", {}, head, body));
 }
 
-/// Numbers under their names, those first that are worth the first look.
+/// Returns a list of values with their names, the most important first.
 function factList(facts) {
   const items = facts.map(([value, name]) => element("li", {}, element("b", {}, String(value)), element("span", {}, name)));
   return element("ul", { class: "facts" }, ...items);
 }
 
-/// What is to be known before the rest, if there is anything; each a list of texts and elements.
+/// Returns a list of warnings, each a list of texts and elements; nothing without warnings.
 function warningList(warnings) {
   const items = warnings.map((words) => element("li", {}, ...words));
   return items.length > 0 ? [element("ul", { class: "warnings", id: "warnings" }, ...items)] : [];
 }
 
-/// A heading and what belongs to it.
+/// Returns a section with a heading.
 function section(title, ...children) {
   return element("section", {}, element("h2", {}, title), ...children);
 }
 
-/// A place for a plot, under its caption. The wheel scrolls the page, over plots as elsewhere: a plot, which may zoom by
-/// it, hears of it only while Ctrl is pressed.
+/// Returns a place for a plot with its caption. The wheel scrolls the page, also over plots: a plot receives its events
+/// only while Ctrl is pressed.
 function figure(id, caption) {
   const place = element("div", { id, class: "plot" });
   const scrolls = (event) => !event.ctrlKey && !event.metaKey;
@@ -83,10 +83,10 @@ function figure(id, caption) {
   return element("figure", {}, element("figcaption", {}, caption), place);
 }
 
-/// What stands where there is no value.
+/// Text for a missing value.
 const kNothing = "–";
 
-/// A number for people: `digits` significant ones.
+/// Returns a number with `digits` significant digits.
 function shown(value, digits = 4) {
   if (value === null || value === undefined) return kNothing;
   if (typeof value !== "number") return String(value);
@@ -94,12 +94,12 @@ function shown(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
-/// "1 setting", "3 settings"
+/// Returns "1 setting", "3 settings".
 function many(count, what) {
   return `${count} ${what}${count === 1 ? "" : "s"}`;
 }
 
-/// The least and the most of very many numbers.
+/// Returns the least and the greatest of any number of values.
 const extent = (values) => [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
 
 // Pages show positions, heights and their standard deviations in centimetres (config/scale.hpp).
@@ -109,13 +109,13 @@ const kCentimetres = 100;
 const kUnknown = kColours.cividis;
 const kWhere = kColours.viridis;
 
-/// The units of data.units, by column.
+/// data.units: units by column.
 let units = {};
 
-/// The unit in which a column of a record is shown; a value in SI times `factor` is in that unit.
+/// Returns the unit in which a column of a record is shown. A value in SI times `factor` is in that unit.
 const unitOf = (name) => units[name] ?? { unit: "", factor: 1 };
 
-/// A value of such a column with its unit: "2.61 mm".
+/// Returns a value of a column with its unit: "2.61 mm".
 function quantity(name, value, digits = 3) {
   const { unit, factor } = unitOf(name);
   const text = shown(typeof value === "number" ? value * factor : value, digits);
@@ -129,12 +129,12 @@ function withUnit(name) {
 
 const kGrey = "#9a9a9a";
 
-/// Whether the page is as narrow as on a phone: so it is in style.css.
+/// Whether the page is as narrow as on a phone, as in style.css.
 const kNarrow = matchMedia("(max-width: 640px)");
-/// Whether it is moved by fingers, which then do not draw frames on plots.
+/// Whether the pointer is a finger, which then scrolls instead of selecting areas of plots.
 const kFingers = matchMedia("(pointer: coarse)");
 
-/// What all plots have in common.
+/// Returns the layout of all plots, with changes.
 function layout(more = {}) {
   return {
     margin: { l: 54, r: 12, t: 8, b: 42 },
@@ -147,14 +147,14 @@ function layout(more = {}) {
   };
 }
 
-/// An axis of a plot, or of its scene.
+/// Returns an axis of a plot or of a scene.
 function axis(title, more = {}) {
   const [lines, grid] = ["soft", "grid"].map(themed);
   return { title: { text: title }, zeroline: false, gridcolor: grid, linecolor: lines, tickcolor: lines, ...more };
 }
 
-/// The layout of a plot that is turned. Its room is filled by the axes, not by what is drawn on them: else a flat surface
-/// would fill it.
+/// Returns the layout of a plot that can be turned. The axes decide its scale: a flat surface would otherwise be
+/// enlarged to fill the plot.
 function turntable(scene) {
   return {
     margin: { l: 0, r: 0, t: 0, b: kNarrow.matches ? 56 : 0 },
@@ -164,38 +164,38 @@ function turntable(scene) {
   };
 }
 
-/// The scale beside a plot whose colours are values.
+/// Returns the colour scale beside a plot.
 const colourBar = (title, more = {}) => ({ title: { text: title, side: "right" }, thickness: 12, outlinecolor: themed("line"), ...more });
 
-/// Points that say `text` to the pointer.
+/// Returns a trace of points with `text` as their hover.
 function points(name, x, y, text, marker, more = {}) {
   return { type: "scatter", mode: "markers", name, x, y, text, marker, hovertemplate: "%{text}<extra></extra>", ...more };
 }
 
-/// Draws into the figure `id`, where `more` is what its layout has beside what all have.
+/// Draws into the figure `id`; `more` changes the layout.
 function plot(id, traces, more = {}) {
   return Plotly.react(id, traces, layout(more), { responsive: true, displaylogo: false, displayModeBar: false });
 }
 
-/// Says on the page what went wrong; what comes next may still be drawn.
+/// Shows an error on the page; later drawings go on.
 function complain(trouble) {
   document.body.prepend(element("p", { class: "trouble" }, `A part of this page could not be drawn: ${trouble}`));
   console.error(trouble);
 }
 
-/// Begins a drawing when the one before it has ended.
+/// Starts a drawing after the previous one has ended.
 function inTurn(draw) {
   inTurn.last = (inTurn.last ?? Promise.resolve()).then(draw).catch(complain);
   return inTurn.last;
 }
 
-/// Tells whoever waits for the picture what is drawn.
+/// Publishes what is drawn, for tests that wait for it.
 function tellDrawn(what) {
   document.body.dataset.drawn = String(what);
 }
 
-/// Unpacks the page's data and lets `draw` fill it, which returns what draws all plots again, in other colours; what goes
-/// wrong is said on the page.
+/// Unpacks the page's data and passes it to `draw`, which fills the page and returns a function that redraws all plots
+/// in the current colours. Shows an error if it fails.
 async function openPage(draw) {
   try {
     const [data, maps] = await Promise.all([unpack("data").json(), unpack("maps").arrayBuffer(), loadPlotly()]);
@@ -212,7 +212,7 @@ async function openPage(draw) {
   }
 }
 
-/// The end of a page.
+/// Returns the footer of a page.
 function footer(data) {
   return element("footer", {}, `palpate ${data.version}; method: Sun and Min 2021, arXiv:2110.09593; drawn with plotly.js (MIT).`);
 }

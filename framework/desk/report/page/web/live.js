@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What makes a page that `palpate watch` serves follow what goes on. A page that lies in a file has no data.live, and
-// nothing here does anything.
+// Updates of pages that `palpate watch` serves. A page in a file has no data.live, and nothing here has an effect.
 
-/// Waits until `until` fires, or so many milliseconds.
+/// Waits for this many milliseconds, or until `until` fires.
 const pause = (milliseconds, until = new AbortController().signal) =>
   new Promise((done) => {
     setTimeout(done, milliseconds);
     until.addEventListener("abort", done, { once: true });
   });
 
-/// Says how the page stands to its server, where there is one.
+/// Returns an element for the state of the connection; nothing for a page in a file.
 function liveNote(data) {
   return data.live === undefined ? "" : element("span", { id: "live", class: "live" }, "live");
 }
@@ -19,8 +18,8 @@ function sayLive(words) {
   if (note) note.textContent = words;
 }
 
-/// Asks the server for what this page lacks, again and again, and has `take` put it into the page, between drawings. A
-/// page in the background asks once in a while, so that it holds no connection of the few that a browser has.
+/// Asks the server for updates, again and again, and lets `take` apply each between drawings. A page in the background
+/// asks rarely and holds no connection: a browser has few per server.
 async function follow(data, take) {
   const kSleep = 20000;
   const kAfterTrouble = 2000;
@@ -51,7 +50,7 @@ async function follow(data, take) {
   }
 }
 
-/// A page of a run or a sweep of which there is nothing to be shown yet.
+/// Draws the page of a run or sweep without anything to show yet.
 function drawWaiting(data) {
   const words = element("p", { id: "waiting" }, foreign(data.waiting));
   document.body.append(element("div", { class: "controls" }, liveNote(data)), words);
@@ -59,16 +58,16 @@ function drawWaiting(data) {
   return () => tellDrawn("waiting");
 }
 
-/// What cannot be followed any further is said on a page that has something to show, until that changes.
+/// Shows why the page cannot be updated, until that changes.
 function tellTrouble(trouble) {
   document.getElementById("standing").append(element("p", { class: "trouble" }, foreign(trouble)));
 }
 
-/// A page keeps at most so many numbers in its maps. With more it is loaded again, with the maps of fewer moments, which
-/// are all that the server keeps of a long run.
+/// Largest number of values in a page's maps. A page with more is reloaded, with maps of fewer moments: the server
+/// keeps no more of a long run.
 const kMostNumbers = 12e6;
 
-/// Puts further moments into the page of a run. Its slider goes along if it stood at the last tap.
+/// Adds moments to the page of a run. The slider follows if it stood at the last tap.
 async function growRun(slider, news) {
   if (news.trouble) return tellTrouble(news.trouble);
   const { data, input } = slider;
@@ -76,7 +75,7 @@ async function growRun(slider, news) {
   data.moments.push(...news.moments);
   data.taps.push(...news.taps);
   for (const name of ["state", "stop_reason", "summary", "curves", "constants", "warnings"]) data[name] = news[name];
-  data.true_contours = news.true_contours ?? data.true_contours;  // of what is pushed
+  data.true_contours = news.true_contours ?? data.true_contours;  // changes if objects are pushed
   if (news.bytes) {
     const bytes = Uint8Array.from(atob(news.bytes), (c) => c.charCodeAt(0));
     const plain = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")));
@@ -89,11 +88,10 @@ async function growRun(slider, news) {
   if (newest) input.value = input.max;
   document.getElementById("standing").replaceChildren(...standing(data));
   slider.stale = true;
-  slider.show();  // in its turn, which comes after this
+  slider.show();  // draws after this update
 }
 
-/// Puts what its jobs have come to into the page of a sweep, whose reader keeps what was chosen. With other columns it is
-/// laid out anew.
+/// Applies new results to the page of a sweep and keeps its reader's choices. Other columns need a new page.
 function growSweep(sweep, news) {
   const fresh = { ...news.sweep, live: news.at };
   if (fresh.trouble) return tellTrouble(fresh.trouble);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Goes through the taps of a run by itself.
+// Playback of a run's taps.
 
-/// A button beside a slider: begins at the slider's tap, or, from the last one, with the first, and ends at the last one,
-/// or when somebody moves the slider.
+/// A button that moves a slider through the taps. It starts at the slider's tap, or after the last tap at the first,
+/// and stops at the last tap or when the reader moves the slider.
 class Player {
   constructor(slider) {
     this.slider = slider;
@@ -25,9 +25,9 @@ class Player {
   }
 
   async play() {
-    const kLookAtEach = 400;  // milliseconds, beside what drawing takes
+    const kLookAtEach = 400;  // milliseconds between taps, without the time of drawing
     const { input } = this.slider;
-    const turn = {};  // of a later click there is another one
+    const turn = {};  // a later click has another object
     this.playing = turn;
     this.label("⏸", "pause");
     if (input.value === input.max) {

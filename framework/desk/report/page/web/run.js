@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The page of a run: a slider over its taps, the surface and the maps as they were believed then, curves over all taps.
+// The page of a run: a slider over its taps, surface and maps at that tap, curves over all taps.
 
-/// By the axis of a panel of curves.hpp.
+/// Layouts of axes, by `axis` of a panel (curves.hpp).
 const kAxes = {
   free: {},
   from_zero: { rangemode: "tozero" },
@@ -9,7 +9,7 @@ const kAxes = {
   logarithmic: { type: "log", dtick: 1 },
 };
 
-/// What is drawn over all taps: errors, likelihoods, hyperparameters, times.
+/// Draws a panel of curves over all taps.
 function drawCurves(id, panel, taps) {
   const traces = panel.curves.map(({ name, values }, i) => ({
     ...points(plain(name), taps, values, [], { size: 4, symbol: ["circle", "square", "diamond", "triangle-up", "x"][i % 5] }),
@@ -43,7 +43,7 @@ function facts(data) {
   return factList(items.filter(([value]) => value !== kNothing).map(([value, unit, name]) => [`${value}${unit}`, name]));
 }
 
-/// How the run stands: what changes with every tap of one that goes on.
+/// Returns the state of a run with its numbers and warnings, which may change with every tap.
 function standing(data) {
   const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.stop_reason ? `${data.state}: ${data.stop_reason}` : data.state;
   const footprint = data.any_side ? [] : [", footprint ", foreign(data.footprint)];
@@ -51,7 +51,7 @@ function standing(data) {
   return [strategy, facts(data), ...warningList(data.warnings.map((text) => [foreign(text)]))];
 }
 
-/// All curves; figures are made anew where there are others than before.
+/// Draws all curves; other titles than before need new figures.
 function drawAllCurves(data) {
   const row = document.getElementById("curves");
   const titles = JSON.stringify(data.curves.map(({ title }) => title));
@@ -61,12 +61,12 @@ function drawAllCurves(data) {
   return Promise.all(data.curves.map((one, i) => drawCurves(`curve_${i}`, one, data.moments.map((moment) => moment.taps))));
 }
 
-/// Where a tap went, as words.
+/// Returns the position or line of a tap in words.
 const whereTo = (tap) => (fromAnySide(tap) ? wayOf(tap) : `at ${place(tap)}`);
 
 const kChosenBy = { initial: "the initial design", acquisition: "the acquisition", fallback: "the fallback", caller: "the caller" };
 
-/// The moment in words.
+/// Returns the tap of a moment in words.
 function story(data, moment, drawn) {
   const out = [];
   const tap = data.taps[moment.taps - 1];
@@ -101,22 +101,22 @@ function story(data, moment, drawn) {
   return element("p", { class: "story", id: "story" }, foreign(out.join(" ")));
 }
 
-/// Everything that changes with the slider.
+/// The slider and all that it changes.
 class Slider {
   constructor(data, maps) {
     this.data = data;
     this.surface = data.any_side ? new SpaceView(data, maps) : new SurfaceView(data, maps);
     [this.panels, this.constant] = data.any_side ? [[], []] : mapPanels(data, maps);
-    // The surface shows it by its colours, where there is one.
+    // With WebGL, the colours of the surface show the deviation.
     if (!this.surface.spatial && !data.any_side) this.panels.unshift(this.surface.deviationPanel());
     this.input = element("input", { type: "range", id: "slider", min: 0, max: data.moments.length - 1, step: 1, value: data.moments.length - 1, "aria-label": "tap" });
     this.output = element("output", { id: "at", for: "slider" });
     this.truth = element("input", { type: "checkbox", id: "truth" });
     this.player = new Player(this);
-    this.stale = true;  // whether there are curves to be drawn
+    this.stale = true;  // whether curves need to be drawn
   }
 
-  /// Takes in the maps of further moments.
+  /// Adds the maps of further moments.
   grow(further) {
     this.surface.grow(further);
     for (const panel of this.panels) {
@@ -125,7 +125,7 @@ class Slider {
     }
   }
 
-  /// How many numbers the maps hold, or the surfaces, with as many maps as `news` tells of.
+  /// Returns the number of values in all maps or surfaces; `news` has the number of maps.
   numbers(news) {
     if (this.data.any_side) return 10 * this.surface.surfaces.reduce((sum, { x }) => sum + x.length, 0);
     return this.data.shown.length * news.maps.length * this.data.x.length * this.data.y.length;
@@ -143,7 +143,7 @@ class Slider {
       this.surface.withTruth = this.truth.checked;
       this.show();
     });
-    // Arrow keys move the slider wherever the focus is, but in what takes keys itself.
+    // Arrow keys move the slider from everywhere except controls that use keys themselves.
     document.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
       const busy = event.target !== this.input && event.target.closest?.("input:not([type=checkbox]), select, textarea");
@@ -155,13 +155,13 @@ class Slider {
     });
   }
 
-  /// Draws the moment of the slider: of several wishes during one drawing only the last is fulfilled.
+  /// Draws the moment of the slider. Of several requests during one drawing, the last one is drawn.
   show() {
     const wanted = this.input.value;
     return inTurn(() => (wanted === this.input.value ? this.draw(Number(wanted)) : undefined));
   }
 
-  /// Draws all plots, as the page does at first and when its colours have changed.
+  /// Draws all plots, at first and after changes of colours.
   redraw() {
     this.stale = true;
     return this.show();
@@ -169,7 +169,7 @@ class Slider {
 
   async draw(at) {
     const moment = this.data.moments[at];
-    // The latest maps that there are, and the first where there are none yet.
+    // The latest maps up to this moment, or the first ones.
     const frame = Math.max(0, this.data.shown.findLastIndex((one) => one <= at));
     const of = this.data.moments[this.data.shown[frame]];
     this.output.textContent = `after tap ${moment.taps} of ${this.data.taps.length}`;
@@ -187,10 +187,10 @@ class Slider {
   }
 }
 
-/// A line about what is no plot because it never changes.
+/// Returns a line with the quantities that never change.
 const constants = (texts) => (texts.length > 0 ? [element("p", { class: "sub constants" }, "Constant over all taps: ", foreign(texts.join("; ")), ".")] : []);
 
-/// The maps over the plane, of a run from above.
+/// Returns the section with the maps of a run from above.
 function mapSection(slider) {
   return [
     element("h2", {}, "Maps"),
@@ -199,7 +199,7 @@ function mapSection(slider) {
   ];
 }
 
-/// What is drawn of the moments that `described` tells of, out of their bytes.
+/// Unpacks the maps or surfaces of the moments in `described`.
 function unpackMoments(data, described, bytes) {
   if (data.any_side) return described.surfaces.map((one) => unpackSurface(one, data.desk));
   return unpackMaps(bytes, described.maps, data.x.length, data.y.length);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the page of a run draws of one moment: the surface, and the maps over the plane with the taps on them.
+// Surface and maps of a run at one moment, with its taps.
 
-/// The maps of the page by name, each a list of frames, each a list of rows.
+/// Returns the maps by name; a map is a list of frames, a frame a list of rows.
 function unpackMaps(bytes, described, columns, rows) {
   const out = {};
   const cells = columns * rows;
@@ -25,10 +25,10 @@ function unpackMaps(bytes, described, columns, rows) {
 const scaled = (lines, factor) => lines.map((line) => line.map((value) => value * factor));
 const product = (a, b) => a.map((line, row) => line.map((value, column) => value * b[row][column]));
 
-/// Whether the contact of a tap is one with an object as it is read at a moment; null of a tap without a contact.
+/// Returns whether the contact of a tap counts as on an object at a moment; null for a tap without a contact.
 const labelAt = (moment, tap) => (tap.on_object === null ? null : tap.on_object !== moment.relabelled.includes(tap.tap));
 
-/// The first `taps` taps of a run: those on the object, those on the desk, and those that failed, as they are read then.
+/// Returns the first `taps` taps of a run: on the object, on the desk, failed, by their labels after these taps.
 const tapsUntil = (run, taps) => [true, false, null].map((touched) => run.taps.slice(0, taps).filter((tap) => labelAt(run.moments[taps], tap) === touched));
 
 const centimetres = (...metres) => `(${metres.map((value) => shown(value * kCentimetres, 3)).join(", ")}) cm`;
@@ -39,10 +39,10 @@ function hover(tap) {
   return `tap ${tap.tap}: ${plain(found)}`;
 }
 
-/// What would be tapped next, as a list of one or none; with the word that is its hover.
+/// Returns a list with the next tap, or an empty one; `word` is its hover.
 const nextOf = (moment) => (moment.next ? [{ ...moment.next, word: `next, tap ${moment.taps + 1}` }] : []);
 
-/// Marks in the plane, of taps or of what has a `word` for its hover.
+/// Returns marks in the plane for taps; `word`, if any, is the hover.
 function markTrace(taps, name, marker, more = {}) {
   const along = (side) => taps.map((tap) => tap[side] * kCentimetres);
   return points(name, along("x"), along("y"), taps.map((tap) => tap.word ?? hover(tap)), marker, more);
@@ -51,18 +51,18 @@ function markTrace(taps, name, marker, more = {}) {
 const kNextColour = "#e6007e";
 const edge = (color, width) => ({ color, width });
 
-/// The suspected outliers of this moment; their hover says how much, and why.
+/// Returns the taps that are suspected outliers at this moment, with probability and reason as hover.
 const suspectedOf = (data, moment) =>
   (moment.suspected_outliers ?? []).map((one) => ({ ...data.taps[one.tap - 1], word: `tap ${one.tap} may be an outlier: ${one.words}` }));
 
-/// Crosses that are seen on dark and on light.
+/// Returns crosses that are visible on dark and on light.
 const deskMarks = (taps) => [
   markTrace(taps, "on the desk", { symbol: "x-thin", size: 9, line: edge("#ffffff", 4) }),
   markTrace(taps, "on the desk", { symbol: "x-thin", size: 8, line: edge("#000000", 1.8) }, { showlegend: false }),
 ];
 
-/// Taps as marks in the plane: discs on the object, crosses on the desk, squares where a tap failed, a ring around what is
-/// doubted; a star is next.
+/// Returns the marks of taps in the plane: discs on the object, crosses on the desk, squares for failed taps, rings
+/// around suspected outliers, a star for the next tap.
 function marks(data, moment) {
   const [on, off, failed] = tapsUntil(data, moment.taps);
   const suspected = suspectedOf(data, moment);
@@ -76,8 +76,8 @@ function marks(data, moment) {
   ];
 }
 
-/// The panels over the plane: what each shows of some maps, in which colours and range; and beside them those that would
-/// show one value everywhere at every moment, {title, value}. Of a run that goes on nobody knows that yet.
+/// Returns the panels of maps, and {title, value} of the maps that are constant over all cells and moments. A run that
+/// goes on has no constant maps.
 function mapPanels(data, maps) {
   const panel = (id, of, rangeOf = () => [0, 1], colours = kWhere) => {
     const frames = of(maps);
@@ -90,20 +90,20 @@ function mapPanels(data, maps) {
     const exploration = ({ u, w }) => u.map((lines, frame) => product(lines, w[frame]));
     const upTo = (frames) => {
       const largest = extent(frames.flat(2))[1];
-      return [0, largest > 1e-6 ? largest : 1];  // nothing but rounding needs no colours
+      return [0, largest > 1e-6 ? largest : 1];  // a map of rounding errors has the range 0 to 1
     };
     panels.push(panel("w", ({ w }) => w), panel("e", exploration, upTo));
   }
   if (maps.score) panels.push(panel("score", ({ score }) => score, (frames) => extent(frames.flat(2))));
   const varied = ({ frames }) => {
     const [least, most] = extent(frames.flat(2));
-    return data.live !== undefined || most - least > 1e-6;  // what differs by rounding alone needs no colours
+    return data.live !== undefined || most - least > 1e-6;  // rounding errors do not count as a change
   };
   const constant = panels.filter((one) => !varied(one)).map(({ title, frames }) => ({ title, value: frames[0][0][0] }));
   return [panels.filter(varied), constant];
 }
 
-/// The colours of standard deviations of the height, centimetres, by their scale in the page's data.
+/// Returns colours of standard deviations of the height, in centimetres, by the scale in the page's data.
 function deviationColours(lines, { low, high, logarithmic, label }) {
   const below = { title: { text: label, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
   const bar = colourBar(label, kNarrow.matches ? below : { len: 0.8 });
@@ -118,7 +118,7 @@ function deviationColours(lines, { low, high, logarithmic, label }) {
   };
 }
 
-/// The whole area, centimetres equally long in both directions.
+/// Returns axes over the whole area with the same scale in both directions.
 function planeAxes(data) {
   const range = (side) => [0, side * kCentimetres];
   return {
@@ -127,7 +127,7 @@ function planeAxes(data) {
   };
 }
 
-/// Where the cells of a map lie along an axis. Of a single one plotly would not know how wide it is.
+/// Returns the positions of a map's cells along an axis; plotly cannot infer the width of a single cell.
 function cells(name, centres, side) {
   if (centres.length > 1) return { [name]: centres.map((value) => value * kCentimetres) };
   return { [`${name}0`]: (side / 2) * kCentimetres, [`d${name}`]: side * kCentimetres };
@@ -147,11 +147,11 @@ function heatMap(data, lines, range, colours, title) {
   };
 }
 
-/// The surface in three dimensions, or as a map where the browser has no WebGL.
+/// The surface in three dimensions, or a map if the browser has no WebGL.
 class SurfaceView {
   constructor(data, maps) {
     this.data = data;
-    this.flat = data.x.length < 2 || data.y.length < 2;  // a single line of cells has no surface
+    this.flat = data.x.length < 2 || data.y.length < 2;  // one line of cells
     this.spatial = hasWebGL() && !this.flat;
     this.heights = [];
     this.deviations = [];
@@ -162,14 +162,14 @@ class SurfaceView {
     this.y = data.y.map((value) => value * kCentimetres);
   }
 
-  /// Takes in the maps of further moments, and the truth as it is now.
+  /// Adds the maps of further moments, and the present truth.
   grow(maps) {
     this.heights.push(...maps.height.map((lines) => scaled(lines, kCentimetres)));
     this.deviations.push(...maps.deviation.map((lines) => scaled(lines, kCentimetres)));
     this.colours.push(...maps.deviation_colours);
     this.truth = maps.truth ? scaled(maps.truth[0], kCentimetres) : null;
     this.range = extent([...this.heights, this.truth ?? []].flat(2));
-    // How far above their places the marks of taps are, or half of every mark would be inside of the surface.
+    // Lifts marks above the surface, which would hide their lower halves.
     this.lift = 0.06 * (this.range[1] - this.range[0]);
   }
 
@@ -190,13 +190,14 @@ class SurfaceView {
       x: this.x,
       y: this.y,
       z: this.heights[frame],
-      ...deviationColours(this.deviations[frame], this.colours[frame]),  // of this frame: a fit may change them a hundredfold
+      // per frame, because a fit may change them a hundredfold
+      ...deviationColours(this.deviations[frame], this.colours[frame]),
       colorscale: kUnknown,
       customdata: this.deviations[frame],
       hovertemplate: "x %{x:.1f} cm, y %{y:.1f} cm<br>height %{z:.4r} cm<br>standard deviation %{customdata:.3r} cm<extra></extra>",
     };
     const [on, off] = tapsUntil(this.data, moment.taps);
-    // Above everything, from where the arm comes down: in sight however the surface is turned.
+    // At the top, where the arm comes from, so that the surface never hides it.
     const above = this.range[1] / kCentimetres;
     const next = nextOf(moment).map((one) => ({ ...one, height: this.heightAt(frame, one) / kCentimetres, above }));
     const raised = (taps, name, marker) => markTrace(taps, name, marker, { type: "scatter3d", z: taps.map((tap) => this.pin(tap)[1]) });
@@ -205,7 +206,7 @@ class SurfaceView {
       this.pins([...on, ...off, ...next]),
       raised(on, "on the object", { symbol: "circle", size: kNarrow.matches ? 4 : 6, color: "#ffffff", line: edge("#000000", 2) }),
       raised(off, "on the desk", { symbol: "cross", size: 5, color: themed("ink") }),
-      // plotly has no star in three dimensions, but letters, which face whoever looks, however the surface is turned.
+      // plotly has letters but no stars in three dimensions; letters always face the viewer.
       {
         ...raised(next, "next", {}),
         mode: "text",
@@ -220,7 +221,7 @@ class SurfaceView {
     return out;
   }
 
-  /// The ends of a line from the place of a tap up to its mark.
+  /// Returns the ends of a line from the surface up to the mark of a tap.
   pin(tap) {
     const [foot, above] = [tap.height, tap.above ?? tap.height].map((height) => height * kCentimetres);
     return [foot, above + this.lift];
@@ -241,16 +242,16 @@ class SurfaceView {
     };
   }
 
-  /// The believed height at a place, centimetres.
+  /// Returns the reconstructed height at a position, in centimetres.
   heightAt(frame, { x, y }) {
     const nearest = (centres, at) => centres.reduce((best, centre, i) => (Math.abs(centre - at) < Math.abs(centres[best] - at) ? i : best), 0);
     return this.heights[frame][nearest(this.data.y, y)][nearest(this.data.x, x)];
   }
 
-  /// What the colours of the surface say, as a map over the plane.
+  /// Returns a panel with the deviations that the surface shows by colours.
   deviationPanel() {
     const rangeOf = (frames) => [0, extent(frames.flat(2))[1]];
-    const frames = this.deviations;  // which the surface makes more
+    const frames = this.deviations;  // grows with the surface
     return { id: "deviation", title: this.data.titles.deviation, bar: "cm", of: () => [], frames, rangeOf, range: rangeOf(frames), colours: kUnknown };
   }
 
@@ -274,7 +275,7 @@ class SurfaceView {
     const low = Math.min(this.range[0], this.data.desk * kCentimetres);
     const range = [low, this.range[1] + this.lift + 0.05 * (this.range[1] - low) + 0.1];
     const [width, depth] = [this.data.width, this.data.depth].map((metres) => metres * kCentimetres);
-    // Fills the room as the camera stands; what is as high as wide has the scale of the colours below it.
+    // Fills the plot in this view of the camera; a height equal to the width would reach the colour scale below.
     const side = Math.max(width, depth) / (kNarrow.matches ? 1.05 : 1.3);
     return turntable({
       aspectratio: { x: width / side, y: depth / side, z: Math.max((range[1] - range[0]) / side, 0.15) },

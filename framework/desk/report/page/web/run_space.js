@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What the page of a run from any side draws of one moment: the closed surface, and the taps as arrows.
+// Closed surface and taps of a run from any side at one moment.
 
-/// The numbers whose steps a page has, the first of which begins at `first`.
+/// Returns the values whose differences the page has, times `unit`, plus `first`.
 function summed(steps, unit, first = 0) {
   let sum = 0;
   return steps.map((step) => first + unit * (sum += step));
 }
 
-/// A mesh as plotly has it, centimetres, with the deviations of its vertices in millimetres.
+/// Returns a mesh for plotly, in centimetres, with the deviations of its vertices in millimetres.
 function unpackSurface({ x, y, z, i, j, k, deviation }, desk) {
   const corners = { i: summed(i, 1), j: summed(j, 1), k: summed(k, 1) };
   return { x: summed(x, 0.01), y: summed(y, 0.01), z: summed(z, 0.01, kCentimetres * desk), ...corners, deviation: summed(deviation, 0.01) };
@@ -16,10 +16,10 @@ function unpackSurface({ x, y, z, i, j, k, deviation }, desk) {
 const fromAnySide = (tap) => tap["direction.x"] !== undefined;
 const kAxes3 = ["x", "y", "z"];
 const directionOf = (tap) => kAxes3.map((side) => tap[`direction.${side}`]);
-/// The place so far along the way of a tap, metres.
+/// Returns the position after this path length of a tap, in metres.
 const along = (tap, way) => kAxes3.map((side, i) => tap[side] + way * directionOf(tap)[i]);
 
-/// How the tool came, in words.
+/// Returns the direction of a tap in words.
 function slant(tap) {
   const degrees = Math.round((Math.asin(-tap["direction.z"]) * 180) / Math.PI);
   if (degrees > 85) return "straight down";
@@ -29,7 +29,7 @@ function slant(tap) {
 
 const wayOf = (tap) => `from ${centimetres(...along(tap, 0))}, ${slant(tap)}`;
 
-/// The surface with taps as arrows, in three dimensions; nothing where the browser has no WebGL.
+/// The surface with taps as arrows in three dimensions; nothing without WebGL.
 class SpaceView {
   constructor(data, surfaces) {
     this.data = data;
@@ -39,7 +39,7 @@ class SpaceView {
     this.grow(surfaces);
   }
 
-  /// The truth as closed lines, with gaps between them, centimetres.
+  /// Returns the contours of the truth as closed lines with gaps between them, in centimetres.
   truth() {
     const out = { x: [], y: [], z: [] };
     for (const ring of this.data.true_contours) {
@@ -55,7 +55,7 @@ class SpaceView {
     this.surfaces.push(...surfaces);
     const taps = this.data.taps.filter((tap) => tap.on_object).map((tap) => along(tap, tap.along).map((value) => value * kCentimetres));
     const last = this.surfaces[this.surfaces.length - 1];
-    const kRoom = 2.5;  // for the arrows
+    const kRoom = 2.5;  // centimetres for the arrows
     this.range = kAxes3.map((side, i) => {
       const area = [0, kCentimetres * [this.data.width, this.data.depth][i]];
       const [low, high] = extent([...last[side], ...taps.map((at) => at[i])]);
@@ -69,9 +69,10 @@ class SpaceView {
     return this.spatial ? `${what} Drag to turn${kFingers.matches ? "." : ", Ctrl and wheel to zoom."}` : "The surface is not drawn, because this browser has no WebGL.";
   }
 
-  /// The end of the way of a tap, its last few centimetres, or, of one that met nothing, what of it crosses the picture.
+  /// Returns the last centimetres of a tap's path, or for a tap without a contact the part within the picture; null if
+  /// there is none.
   arrow(tap) {
-    const shaft = tap.word ? 0.06 : 0.03;  // the next one is to be seen
+    const shaft = tap.word ? 0.06 : 0.03;  // the next tap is longer
     if (tap.on_object !== null) return [along(tap, Math.max(0, tap.along - shaft)), along(tap, tap.along)];
     let [begin, end] = [0, tap.along ?? tap.length];
     const [from, direction] = [along(tap, 0), directionOf(tap)];
@@ -82,7 +83,7 @@ class SpaceView {
     return begin < end ? [along(tap, begin), along(tap, end)] : null;
   }
 
-  /// Taps as arrows of one colour.
+  /// Returns taps as arrows of one colour.
   arrows(taps, name, color, size = 0.7) {
     const drawn = taps.map((tap) => ({ ends: this.arrow(tap), tap })).filter(({ ends }) => ends);
     const words = ({ tap }) => tap.word ?? `${hover(tap)}<br>${slant(tap)}`;
@@ -101,7 +102,7 @@ class SpaceView {
   traces(frame, moment) {
     const surface = this.surfaces[frame];
     const [on, off, others] = tapsUntil(this.data, moment.taps);
-    const missed = others.filter((tap) => tap.outcome === "no_contact");  // of the others nothing is known of their way
+    const missed = others.filter((tap) => tap.outcome === "no_contact");  // the paths of other failed taps are unknown
     const most = Math.max(extent(surface.deviation)[1], 0);
     const title = "standard deviation [mm]";
     const below = { title: { text: title, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The page of several runs side by side: their errors over taps and over robot time, and their surfaces after as many
-// taps as a slider says.
+// The page of several runs: errors over taps and over robot time, and surfaces after a number of taps that a slider
+// sets.
 
-/// What a run is called on this page: a letter, which its plots have, and the name of its config.
+/// Returns the letter of a run, which its plots show.
 const letterOf = (index) => String.fromCharCode("A".charCodeAt(0) + index);
 const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
 
-/// The name of an error with its unit.
+/// Returns the title of an error with its unit.
 const errorTitle = ([name, title]) => (unitOf(name).unit ? `${title} [${unitOf(name).unit}]` : title);
 
-/// The latest moment of a run with at most so many taps.
+/// Returns the last moment of a run with at most this many taps.
 const momentAt = (run, taps) => run.moments[Math.min(taps, run.moments.length - 1)];
 
-/// The latest map of a run with at most so many taps, and the first where there are none yet.
+/// Returns the last map of a run with at most this many taps, or the first map.
 const frameAt = (run, taps) => Math.max(0, run.shown.findLastIndex((moment) => moment <= taps));
 
-/// The plots of one error over two costs: all runs in each.
+/// The plots of one error over two costs, with all runs in each.
 class ErrorPlots {
   constructor(data) {
     this.data = data;
@@ -53,7 +53,7 @@ class ErrorPlots {
   }
 }
 
-/// The surfaces after as many taps as the slider says, and each less the first.
+/// The surfaces after the slider's number of taps, and their differences from the first.
 class Surfaces {
   constructor(data, bytes) {
     this.data = data;
@@ -117,7 +117,7 @@ class Surfaces {
   }
 }
 
-/// A line for each run: how it ended and how good it was.
+/// Returns a table with state and errors of each run.
 function standings(data) {
   const errors = data.errors.filter(([name]) => data.runs.some((run) => typeof momentAt(run, Infinity)[name] === "number"));
   const header = ["run", "seed", "state", "taps", "robot time [s]", ...errors.map(errorTitle)];

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The page of a sweep: cost against error, the table of jobs, and how all panels follow the controls.
+// The page of a sweep: cost against error, the table of jobs, and the controls.
 
-/// An axis for values, logarithmic where they span much; `low` and `high` are its ends in the values' unit. It ends where
-/// `ends` do, as far as they keep near the values: a few settings seen in a few seeds have intervals far wider than
-/// anything measured.
+/// Returns an axis for values, logarithmic if they span a factor of 20; `low` and `high` are its ends. It includes
+/// `ends` up to half the range of the values beyond them: intervals of a few seeds may be much wider.
 function rangeOf(values, ends) {
   const [[least, most], [lowest, highest]] = [values, ends].map(extent);
   const room = Math.max(most - least, 1e-12) / 2;
@@ -19,7 +18,7 @@ function rangeOf(values, ends) {
   return { type: "linear", low: low - margin, high: high + margin, range: [low - margin, high + margin] };
 }
 
-/// Settings by mean cost and mean error, those on the front joined; runs behind them, failed ones grey.
+/// Draws settings by mean cost and error with a line along the front, and their runs, failed ones in grey.
 function drawFront(sweep, choice) {
   const settings = settingsOf(sweep, choice);
   const here = (jobs) => jobs.filter((job) => sweep.sceneOf(job) === choice.scene);
@@ -58,7 +57,7 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
       type: "data",
       symmetric: false,
       array: list.map((one) => one[kind].half ?? 0),
-      // A logarithmic axis has no 0 for a bar to reach.
+      // Bars end within a logarithmic axis.
       arrayminus: list.map((one) => Math.min(one[kind].half ?? 0, type === "log" ? one[kind].mean - low / 2 : Infinity)),
       thickness: 1,
       width: 2,
@@ -87,7 +86,7 @@ function frontTraces(sweep, settings, done, failed, x, y, edge) {
   ];
 }
 
-/// What the means are over, and what few seeds mean for their intervals.
+/// Returns remarks on the units of the means, and on few seeds.
 function meansWords(sweep, settings) {
   const kFew = 10;
   const rest = "numbered: no other setting is at least as good in both.";
@@ -127,7 +126,7 @@ function listFront(choice, front) {
   document.getElementById("front_list").replaceChildren(front.length > 0 ? table(header, rows, 2) : "");
 }
 
-/// All jobs in a table that is sorted by a click and filtered by a word.
+/// The table of jobs, with sorting and a filter.
 class JobTable {
   constructor(sweep) {
     this.sweep = sweep;
@@ -149,7 +148,7 @@ class JobTable {
     return section("Jobs", element("p", {}, this.filter), element("div", { class: "scroll" }, this.table), this.note, this.more, ...this.howToReport());
   }
 
-  /// The columns: a header, by what it is sorted, what is shown of a job; numbers are the last ones.
+  /// Sets the columns: title, sorting value and cell. Columns of numbers come last.
   choose(choice) {
     const wanted = [choice.metric, choice.cost, choice.error, ...mainColumns(this.sweep)];
     const names = [...new Set(wanted)].filter((name) => this.sweep.columns.has(name) && !this.sweep.key(name));
@@ -171,14 +170,14 @@ class JobTable {
     return job.reason && job.state === "failed" ? `failed: ${job.reason}` : job.state;
   }
 
-  /// The number of a job: a link where the job has a page of its own.
+  /// Returns the number of a job, as a link if the job has a page.
   link(job) {
-    const live = this.sweep.live !== undefined;  // then whoever serves this page makes theirs
+    const live = this.sweep.live !== undefined;  // the server makes the pages of jobs
     if (job.state === "missing" || !(live || job.reported)) return String(job.index);
     return element("a", { href: `jobs/${encodeURIComponent(job.id)}/${live ? "" : "report.html"}` }, String(job.index));
   }
 
-  /// How a job that has no page gets one; nothing where all have one that can.
+  /// Returns a note on making the page of a job; nothing if all jobs have one.
   howToReport() {
     const bare = this.sweep.jobs.find((job) => !job.reported && job.state !== "missing");
     if (!bare || this.sweep.live !== undefined) return [];
@@ -186,7 +185,7 @@ class JobTable {
     return [element("p", { class: "sub", id: "how_to_report" }, `A job's number links to its own page, if it exists. Job ${bare.index} has no page yet: `, command, " makes it. Make this page again to link to it.")];
   }
 
-  /// The jobs that the filter leaves, in the chosen order.
+  /// Returns the jobs that match the filter, in the chosen order.
   chosen() {
     const word = this.filter.value.trim().toLowerCase();
     const about = (job) => `${job.index} ${job.id} ${this.state(job)} ${this.sweep.words(job, this.sweep.all)}`.toLowerCase();
@@ -194,7 +193,7 @@ class JobTable {
     if (this.by === null || this.by >= this.columns.length) return jobs;
     const { get } = this.columns[this.by];
     const sign = this.down ? -1 : 1;
-    // What has no value stands last, whichever way.
+    // Jobs without a value come last in both orders.
     const compare = (a, b) => (a === null || b === null ? (a === null) - (b === null) : sign * (a < b ? -1 : a > b ? 1 : 0));
     return jobs.sort((a, b) => compare(get(a), get(b)));
   }
@@ -206,7 +205,7 @@ class JobTable {
       this.down = this.by === i && !this.down;
       this.by = i;
       this.show();
-      this.table.querySelectorAll("button")[i].focus();  // the one that took its place
+      this.table.querySelectorAll("button")[i].focus();  // the button of the new header
     });
     return button;
   }
@@ -229,7 +228,7 @@ class JobTable {
   }
 }
 
-/// What went wrong, in words: failures by their reason, and what has not ended.
+/// Returns warnings: failures by reason, and jobs that have not ended.
 function troubles(sweep) {
   const { failures, reasons, jobs: all } = sweep.tally;
   const out = failures.map(({ reason, jobs, first, words }) => [
@@ -249,21 +248,21 @@ function troubles(sweep) {
   return out;
 }
 
-/// Of very many jobs, which of them the page has.
+/// Returns a note if the page has a sample of the jobs.
 function sampleNote({ sampled, jobs }) {
   if (!sampled) return [];
   const words = `This page has ${jobs.length} of ${sampled.jobs} jobs, one of ${sampled.step}, taken evenly from all settings: plots, means and the table below show only these. Counts and failures cover all jobs, and so do results.csv, 'palpate compare' and 'palpate pareto'.`;
   return [element("p", { class: "sub", id: "sampled" }, words)];
 }
 
-/// What became of the jobs so far.
+/// Returns the numbers of jobs by state, with notes and warnings.
 function standingOfSweep(sweep) {
   const counts = sweep.counts();
   if (!counts.some(([, state]) => state === "done")) counts.unshift([0, "done"]);
   return [factList([[sweep.tally.jobs, "jobs"], ...counts]), ...sampleNote(sweep), ...warningList(troubles(sweep))];
 }
 
-/// The swept keys and their values, which stand in the place of those of the config.
+/// Returns a table of the swept keys and their values, which replace those of the config.
 function sweptValues({ keys }) {
   const kMost = 24;
   const words = ({ values }) => [...values.slice(0, kMost).map((value) => value || kNothing), ...(values.length > kMost ? ["…"] : [])].join(", ");
@@ -284,7 +283,7 @@ function drawSweep(data) {
   return redraw;
 }
 
-/// A sweep of which no job has ended.
+/// Draws the page of a sweep without an ended job.
 function noPanels(sweep) {
   const jobs = new JobTable(sweep);
   document.body.append(element("p", { id: "nothing" }, "No job has a result yet: there is nothing to draw."), jobs.place());
@@ -293,7 +292,7 @@ function noPanels(sweep) {
   return () => tellDrawn(1);
 }
 
-/// The panels with their controls, which `chooser` makes.
+/// Adds the panels with their controls, made by `chooser`.
 function placePanels(sweep, chooser) {
   const columns = [...sweep.columns.keys()];
   const [errors, costs] = ["is_error", "is_cost"].map((role) => columns.filter((name) => sweep.columns.get(name)[role]));
@@ -335,7 +334,7 @@ function drawPanels(sweep) {
       for (const panel of panels) await panel(sweep, choice);
       tellDrawn(++drawn);
     });
-  /// A choice among names that some panels follow.
+  /// Returns a control that sets a choice and redraws the panels that depend on it.
   const chooser = (id, label, names, panels, textOf = (name) => name) => {
     const options = names.map((name) => element("option", { value: name, ...(name === choice[id] ? { selected: "" } : {}) }, brief(textOf(name), 60)));
     const control = element("select", { id }, ...options);

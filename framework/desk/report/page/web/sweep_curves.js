@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The curves of groups over their taps: a plot per scene, in each a line with its band per group. The numbers are the
-// program's: analysis/group_curves.hpp.
+// Curves of groups over their taps, one plot per scene; the numbers are those of analysis/group_curves.hpp.
 
-/// The scenes that have curves.
+/// Returns the scenes that have curves.
 const scenesOfCurves = (sweep) => [...new Set(sweep.curves.sets[0].curves.map(({ scene }) => scene))];
 
-/// The section of the page.
+/// Returns the section with controls and plots.
 function placeCurves(sweep, chooser, choices) {
   const against = [...new Set(sweep.curves.sets.map((one) => one.against))];
   return section(
@@ -22,19 +21,19 @@ function placeCurves(sweep, chooser, choices) {
 
 const kOverTaps = "Over the taps";
 
-/// A command of palpate on a folder, as a shell takes it.
+/// Returns a command of palpate on a folder, quoted for a shell.
 function commandOn(name, folder) {
   const word = /^[\w./+:@=-]+$/.test(folder) ? folder : `'${folder.replace(/'/g, "'\\''")}'`;
   return element("code", {}, foreign(`palpate ${name} ${word}`));
 }
 
-/// How curves get onto the page; nothing where they cannot.
+/// Returns a section on how to get curves; nothing if the page cannot have them.
 function noCurves(sweep) {
   if (sweep.live !== undefined || sweep.sampled || sweep.done.length === 0) return [];
   return [section(kOverTaps, element("p", { class: "sub", id: "how_to_curves" }, commandOn("curves", sweep.folder), " computes the errors after each tap from the record. Make this page again to show them."))];
 }
 
-/// Band, then line, of a group; `place` is its number among the groups of all scenes.
+/// Returns band and line of a group; `place` is its index among the groups of all scenes.
 function curveTraces(curve, place, metric, against) {
   const [x, y] = [unitOf(against).factor, unitOf(metric).factor];
   const scaled = (values) => values.map((value) => (value === null ? null : value * y));
@@ -60,7 +59,7 @@ function drawCurves(sweep, { curve_of: metric, against, curves_by: by }) {
       const curves = set.curves.filter((one) => one.scene === scene);
       const traces = curves.flatMap((one) => curveTraces(one, names.indexOf(one.name), metric, against));
       const lines = curves.flatMap((one) => one.mean.filter((value) => value !== null).map((value) => value * unitOf(metric).factor));
-      // It keeps near the lines: the bands of the first taps may be wider than all else.
+      // The axis stays near the lines, as bands of the first taps may be very wide.
       const [least, most] = extent(lines);
       const room = Math.max(most - least, 1e-12);
       const highest = extent(traces.flatMap(({ y }) => y.filter((value) => value !== null)))[1];

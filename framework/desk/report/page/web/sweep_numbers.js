@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What the panels of a sweep's page are made of: columns, groups, means, the front. Nothing here draws.
+// Data of the panels on a sweep's page: columns, groups, means, the front.
 
-/// Text on one line, cut where it is long.
+/// Returns text on one line with at most `most` letters.
 function brief(text, most = 36) {
   const letters = Array.from(oneLine(text).replace(/\d*\.\d{5,}/g, (digits) => shown(Number(digits))));
   return letters.length > most ? `${letters.slice(0, most - 1).join("")}…` : letters.join("");
 }
 
-/// Names that stand side by side, each brief: cut at their ends, or in the middle where that leaves equal ones, and
-/// numbered where even those are equal.
+/// Returns brief names that differ: shortened at their ends, or in the middle, or with a number before them.
 function briefs(names, most = 36) {
   const alike = (texts) => new Set(texts).size < new Set(names).size;
   const ends = names.map((name) => brief(name, most));
@@ -23,7 +22,7 @@ function briefs(names, most = 36) {
 
 const kStates = ["done", "failed", "running", "unfinished", "missing"];
 
-/// The sweep as the panels ask for it.
+/// The data of a sweep, as panels read it.
 class SweepData {
   constructor(data) {
     Object.assign(this, data);  // jobs, keys, first_looks, tally
@@ -31,7 +30,7 @@ class SweepData {
     this.jobs.forEach((job, place) => Object.assign(job, { place }));
     [this.done, this.failed] = ["done", "failed"].map((state) => this.jobs.filter((job) => job.state === state));
     this.columns = new Map(data.columns.map((column) => [column.name, column]));
-    this.all = this.keys.filter((key) => key.values.length > 1);  // what tells jobs apart
+    this.all = this.keys.filter((key) => key.values.length > 1);  // keys that distinguish jobs
     this.seeds = this.all.find((key) => key.name === "seed");
     [this.settings, this.varying] = [this.keys, this.all].map((keys) => keys.filter((key) => key.name !== "seed"));
   }
@@ -40,7 +39,7 @@ class SweepData {
     return this.keys.find((key) => key.name === name);
   }
 
-  /// The states that jobs are in and their number, [[19, "done"], [1, "failed"]].
+  /// Returns the numbers of jobs by state: [[19, "done"], [1, "failed"]].
   counts() {
     return kStates.map((state) => [this.tally.counts[state] ?? 0, state]).filter(([count]) => count > 0);
   }
@@ -49,12 +48,12 @@ class SweepData {
     return this.columns.get(column)?.better === "more is better";
   }
 
-  /// The number of a job in SI units, or null.
+  /// Returns the number of a job in SI units, or null.
   raw(column, job) {
     return this.columns.get(column).numbers[job.place];
   }
 
-  /// That in the unit in which it is shown.
+  /// Returns the same number in its shown unit.
   number(column, job) {
     const value = this.raw(column, job);
     return value === null ? null : value * unitOf(column).factor;
@@ -64,40 +63,40 @@ class SweepData {
     return jobs.map((job) => this.number(column, job)).filter((value) => value !== null);
   }
 
-  /// The number of the unit that a job is, or belongs to, in statistics (JobUnits in analysis/groups.hpp).
+  /// Returns the unit of statistics of a job, as a number (JobUnits in analysis/groups.hpp).
   unit(job) {
     return this.units_of_jobs[job.place];
   }
 
-  /// "20 seeds"; where the seed is not swept "12 units, copies count once" of 24 jobs with copies, "" without any.
+  /// Returns "20 seeds"; if the seed is not swept, "12 units, copies count once" for jobs with copies, else "".
   unitWords(clusters, jobs) {
     if (this.seeds) return many(clusters, "seed");
     return clusters < jobs ? `${many(clusters, "unit")}, copies count once` : "";
   }
 
-  /// The value of a key as written; plugins without such an option have none.
+  /// Returns the value of a key as written, or a dash if the job's plugins lack the option.
   text(key, job) {
     return key.values[key.of_job[job.place]] || kNothing;
   }
 
-  /// "acquisition=weighted, taps=17": what a job's keys are, those without a value left out.
+  /// Returns the values of a job's keys: "acquisition=weighted, taps=17".
   words(job, keys = this.varying) {
     const said = keys.filter((key) => key.values[key.of_job[job.place]] !== "");
     return said.map((key) => `${key.name}=${this.text(key, job)}`).join(", ") || "the only setting";
   }
 
-  /// What a job taps: the values of the keys that say it, "" where the sweep has one scene.
+  /// Returns the scene of a job by the values of its keys; "" if the sweep has one scene.
   sceneOf(job) {
     return this.scene_keys.map((name) => this.text(this.key(name), job)).join(", ");
   }
 
-  /// The scenes in the order of the sweep.
+  /// Returns the scenes in the order of the sweep.
   scenes() {
     return [...new Set(this.jobs.map((job) => this.sceneOf(job)))];
   }
 
-  /// Jobs with equal values of `keys`, in the order of these: a list of {jobs, places}, the place of each value among
-  /// those of its key.
+  /// Returns the groups of jobs with equal values of `keys`, sorted by these values: a list of {jobs, places}, where
+  /// `places` are the indices of the values.
   groups(keys) {
     const found = new Map();
     for (const job of this.jobs) {
@@ -110,7 +109,7 @@ class SweepData {
     return [...found.values()].sort(compare);
   }
 
-  /// Some jobs by what became of them: "19 of 20 done, 1 failed".
+  /// Returns the numbers of some jobs by state: "19 of 20 done, 1 failed".
   ended(jobs) {
     const [done, failed] = ["done", "failed"].map((state) => jobs.filter((job) => job.state === state).length);
     const open = jobs.length - done - failed;
@@ -123,7 +122,7 @@ const meanOf = (values) => {
   return least === most ? least : values.reduce((sum, one) => sum + one / values.length, 0);
 };
 
-/// Mean and standard deviation (null for fewer than two values) of values, and the number of their units.
+/// Returns mean, standard deviation (null for fewer than two values), number of values and number of their units.
 function spread(values, units) {
   const count = values.length;
   const mean = count > 0 ? meanOf(values) : null;
@@ -131,8 +130,8 @@ function spread(values, units) {
   return { count, clusters: new Set(units).size, mean, deviation: count > 1 ? Math.sqrt(squares / (count - 1)) : null };
 }
 
-/// The mean of a column over the jobs of a setting, and half the width of its 95 % interval (null for none), as the
-/// program computed them. A setting with one job has its number.
+/// Returns the mean of a column over the jobs of a setting and half the width of its 95 % interval (null for none),
+/// computed by the program. A setting with one job has the job's number.
 function estimate(sweep, name, setting) {
   const { numbers, estimates } = sweep.columns.get(name);
   const { factor } = unitOf(name);
@@ -147,8 +146,8 @@ function estimate(sweep, name, setting) {
   return { count, clusters: count, mean: inUnit(mean), half: null };
 }
 
-/// The settings of a scene (a name of sweep.scenes()) that have a cost and an error: {words, jobs, cost, error, complete,
-/// front}. Those on the front come first, in its order; `front` counts from 1 and is 0 for the others.
+/// Returns the settings of a scene (a name of sweep.scenes()) that have cost and error: {words, jobs, cost, error,
+/// complete, front}. The settings on the front come first; `front` counts them from 1 and is 0 for the others.
 function settingsOf(sweep, { cost, error, scene }) {
   const keys = sweep.varying.filter((key) => !sweep.scene_keys.includes(key.name));
   const all = sweep.setting_jobs.map((places, i) => {
@@ -163,18 +162,18 @@ function settingsOf(sweep, { cost, error, scene }) {
   return [...front, ...all.filter((one) => ofScene(one) && one.front === 0 && one.cost.count > 0 && one.error.count > 0)];
 }
 
-/// Columns that are worth a first look, the best first, as far as they are there.
+/// Returns the headline columns that the page has, the most important first.
 function mainColumns(sweep) {
   return sweep.first_looks.filter((name) => sweep.columns.has(name));
 }
 
-/// Whether done jobs differ in a column.
+/// Returns whether done jobs differ in a column.
 function differs(sweep, name) {
   const values = sweep.numbers(name, sweep.done);
   return values.some((value) => value !== values[0]);
 }
 
-/// The two keys whose cells are filled best, the first such pair; of one key, or none, what there is.
+/// Returns the first pair of keys whose cells are most completely filled; with fewer than two keys, those there are.
 function bestPair(sweep) {
   const keys = sweep.varying;
   let best = [keys[0]?.name ?? sweep.keys[0]?.name ?? "", ""];
@@ -188,7 +187,7 @@ function bestPair(sweep) {
   return best;
 }
 
-/// What the controls say at first.
+/// Returns the initial choices of the controls.
 function firstChoices(sweep) {
   const names = [...sweep.columns.keys()];
   const error = [sweep.first_looks[0], "object_taps"].find((name) => sweep.columns.has(name)) ?? names[0];

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The panels over the jobs of a sweep that show one number of each: cells, groups, lines across all keys. Each is drawn
-// by a function of the sweep and of what its reader has chosen.
+// Panels of one number per job: cells, groups, lines across all keys. Each is drawn by a function of the sweep and the
+// reader's choices.
 
-/// An axis with room for its names.
+/// Returns an axis with room for its names.
 const roomyAxis = (title, more = {}) => axis(title, { automargin: true, ...more });
 
-/// An axis along the values of a key, or of groups: one place each, named as far as there is room.
+/// Returns an axis with one place per value of a key, or per group; with many, only some have names.
 function placesAxis(title, names, more = {}, most = 36, room = 25) {
   const texts = briefs(names, most);
   const step = Math.ceil(names.length / room);
@@ -29,7 +29,7 @@ function judged(sweep, column) {
   return way ? `${titleOf(column)},${kNarrow.matches ? "<br>" : " "}${way}` : titleOf(column);
 }
 
-/// Draws into a figure of that height.
+/// Draws into a figure of this height.
 function plotOfHeight(id, height, traces, more) {
   const place = document.getElementById(id);
   place.hidden = false;
@@ -37,7 +37,7 @@ function plotOfHeight(id, height, traces, more) {
   return plot(place, traces, { height, ...more });
 }
 
-/// No plot, where there is nothing to see in it; `words` in place of its caption say why.
+/// Hides the plot of a figure; `words`, if any, replace its caption.
 function plotNothing(id, words) {
   if (words) say(id, foreign(words));
   const place = document.getElementById(id);
@@ -45,7 +45,7 @@ function plotNothing(id, words) {
   place.hidden = true;
 }
 
-/// What a column says where it says the same of every job.
+/// Returns a text about a column that is the same in all jobs.
 function constantWords(sweep, column) {
   const values = sweep.numbers(column, sweep.done);
   if (values.length === 0) return `No finished job has a value of ${column}.`;
@@ -56,7 +56,7 @@ function say(id, ...text) {
   document.getElementById(id).closest("figure").querySelector("figcaption").replaceChildren(...text);
 }
 
-/// Means of jobs that agree in one or two keys, with their spread.
+/// Draws means and spreads of the jobs with equal values of one or two keys.
 function drawCells(sweep, { across, up, metric }) {
   const keys = [across, up].filter((name, i, all) => name && all.indexOf(name) === i).map((name) => sweep.key(name));
   const hover = (jobs, { count, clusters, mean, deviation }) => {
@@ -71,7 +71,7 @@ function drawCells(sweep, { across, up, metric }) {
     const found = spread(sweep.numbers(metric, valued), valued.map((job) => sweep.unit(job)));
     return { ...found, column: places[0], row: places[1], hover: hover(jobs, found) };
   });
-  // All other keys are taken together.
+  // The means are over all other keys.
   const rest = sweep.all.filter((key) => !keys.includes(key)).map((key) => brief(key.name));
   const over = foreign(rest.length > 0 ? `over ${rest.join(", ")} of the finished jobs` : "of the finished job");
   document.getElementById("cells_spread").closest("figure").hidden = keys.length < 2 || !differs(sweep, metric) || !hasSpread(cells);
@@ -79,10 +79,10 @@ function drawCells(sweep, { across, up, metric }) {
   return keys.length < 2 ? drawPoints(sweep, keys[0], metric, cells, over) : drawMaps(sweep, keys, metric, cells, over);
 }
 
-/// Whether any cell has two values.
+/// Returns whether any cell has two values.
 const hasSpread = (cells) => cells.some((one) => one.deviation !== null);
 
-/// With one key, means as points and their spread as bars.
+/// With one key, draws means as points with bars for the spread.
 function drawPoints(sweep, key, metric, cells, over) {
   const trace = points("", cells.map((one) => one.column), cells.map((one) => one.mean), cells.map((one) => one.hover), { size: 9, color: lineColour(0) }, {
     error_y: { type: "data", array: cells.map((one) => one.deviation ?? 0), color: themed("bars"), thickness: 2 },
@@ -91,10 +91,10 @@ function drawPoints(sweep, key, metric, cells, over) {
   return plotOfHeight("cells_mean", 380, [trace], { xaxis: keyAxis(key), yaxis: roomyAxis(judged(sweep, metric)) });
 }
 
-/// With two, means in cells, and beside them the spread.
+/// With two keys, draws means as cells of a map, and the spread as a second map.
 function drawMaps(sweep, [across, up], metric, cells, over) {
   const count = across.values.length * up.values.length;
-  // Cells of continuous keys are too many and nearly all empty: there each stands as a square.
+  // Continuous keys have many, mostly empty cells, so a square marks each filled one.
   const sparse = count > 400 && cells.filter((one) => one.mean !== null).length < count / 8;
   const trace = (get, title, colorscale) => {
     const colours = { colorscale, colorbar: colourBar(title) };
@@ -132,7 +132,7 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
   ]);
 }
 
-/// The values of some jobs as a lying box at place `i`.
+/// Returns a horizontal box of some jobs' values at place `i`.
 function boxTrace(sweep, metric, jobs, i, colour, withPoints) {
   const valued = jobs.filter((job) => job.state === "done" && sweep.raw(metric, job) !== null);
   return {
@@ -154,7 +154,7 @@ function boxTrace(sweep, metric, jobs, i, colour, withPoints) {
   };
 }
 
-/// The values of the jobs of each group as a box, with the jobs themselves as points.
+/// Draws a box per group, with the jobs as points.
 function drawGroups(sweep, { group, then, metric }) {
   const kMostGroups = 40;
   const kMostPoints = 4000;
@@ -183,8 +183,8 @@ function drawGroups(sweep, { group, then, metric }) {
   });
 }
 
-/// What is drawn across the keys and the main numbers: the jobs that have a value on each axis, and the axes, {title,
-/// values, least, most, ticks: [{at, text}]}.
+/// Returns the jobs with a value on each axis, and the axes of keys and main numbers: {title, values, least, most,
+/// ticks: [{at, text}]}.
 function parallelAxes(sweep, metric) {
   const kMostJobs = 20000;
   const numbers = mainColumns(sweep).filter((name) => name !== metric && differs(sweep, name) && !sweep.key(name));
@@ -206,7 +206,7 @@ function parallelAxes(sweep, metric) {
   return { axes: [...ofKeys, ...ofColumns], jobs, left: sweep.done.length - valued.length, step };
 }
 
-/// Lines across the keys and the main numbers, one a job.
+/// Draws a line per job across the keys and the main numbers.
 function drawParallel(sweep, { metric }) {
   if (!hasWebGL()) return plotNothing("parallel", "This browser has no WebGL, which this plot needs.");
   const { axes, jobs, left, step } = parallelAxes(sweep, metric);
@@ -226,7 +226,7 @@ function drawParallel(sweep, { metric }) {
   const trace = {
     type: "parcoords",
     line: { ...scale, color: axes[axes.length - 1].values },
-    // Ticks are set as text as they are, only the names go through what knows tags.
+    // plotly shows tick texts literally, but interprets tags in names.
     dimensions: axes.map(({ title, values, least, most, ticks }) => ({
       label: plain(brief(title, 24)),
       values,
@@ -234,7 +234,7 @@ function drawParallel(sweep, { metric }) {
       ...(least === 0 && ticks.every(({ at }) => Number.isInteger(at)) ? { tickvals: ticks.map(({ at }) => at), ticktext: ticks.map(({ text }) => text) } : {}),
     })),
     labelfont: { size: 11 },
-    labelangle: -16,  // names side by side would run into each other
+    labelangle: -16,  // keeps names side by side from overlapping
   };
   return plotOfHeight("parallel", 460, [trace], { margin: { l: 90, r: 60, t: 80, b: 24 } });
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Light or dark: as the system has it, until whoever reads switches. Colours stand in style.css, each under a name, for
-// both; the plots take theirs from there.
+// Light or dark theme: the system's, until the reader switches. style.css defines the colours of both by name; plots
+// use them, too.
 
 const kThemeKey = "palpate-theme";
 const kSystemDark = matchMedia("(prefers-color-scheme: dark)");
 
-/// What was chosen on a page before, "light" or "dark": null where nothing was, or the browser keeps nothing for pages.
+/// Returns the theme that the reader chose on an earlier page, "light" or "dark"; null if there is none, or if the
+/// browser stores nothing.
 function rememberedTheme() {
   try {
     return localStorage.getItem(kThemeKey);
@@ -14,26 +15,26 @@ function rememberedTheme() {
   }
 }
 
-/// Keeps the choice for all pages; null forgets it. Where nothing may be kept it holds as long as this page is open.
+/// Stores the choice for all pages; null removes it. Without storage the choice holds while the page is open.
 function rememberTheme(theme) {
   try {
     if (theme) localStorage.setItem(kThemeKey, theme);
     else localStorage.removeItem(kThemeKey);
   } catch {
-    // Nothing is lost but the memory.
+    // Only the memory of the choice is lost.
   }
 }
 
-/// The theme that is shown, "light" or "dark".
+/// Returns the shown theme, "light" or "dark".
 const theme = () => document.documentElement.dataset.theme ?? (kSystemDark.matches ? "dark" : "light");
 
-/// null goes with the system again.
+/// Sets the theme; null follows the system.
 function setTheme(chosen) {
   if (chosen) document.documentElement.dataset.theme = chosen;
   else delete document.documentElement.dataset.theme;
 }
 
-/// The colour that style.css has under `--name`, as it is now.
+/// Returns the present colour `--name` of style.css.
 function themed(name) {
   themed.probe ??= document.documentElement.appendChild(Object.assign(document.createElement("span"), { hidden: true }));
   themed.probe.style.color = `var(--${name})`;
@@ -42,7 +43,7 @@ function themed(name) {
 
 const lineColour = (i) => kColours.lines[theme()][i % kColours.lines.light.length];
 
-/// The switch; `redraw` is called whenever the colours have changed, by it or by the system.
+/// Returns the switch. `redraw` is called after every change of colours, by the switch or by the system.
 function themeSwitch(redraw) {
   const other = () => (theme() === "dark" ? "light" : "dark");
   const button = document.createElement("button");
@@ -53,7 +54,7 @@ function themeSwitch(redraw) {
     redraw();
   };
   button.addEventListener("click", () => {
-    // What the system has anyway need not be remembered: then the page goes on following it.
+    // A choice equal to the system's theme is not stored, so the page follows the system again.
     const chosen = (other() === "dark") === kSystemDark.matches ? null : other();
     rememberTheme(chosen);
     setTheme(chosen);
