@@ -11,6 +11,8 @@
 #include <memory>
 #include <sstream>
 
+extern "C" const char palpate_asset_figures[];
+
 namespace palpate {
 namespace {
 
@@ -37,6 +39,13 @@ std::string gnuplot_text(const std::string& text) {
     out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }
   return out + "'";
+}
+
+std::string_view template_text(std::string_view name) {
+  const std::string_view all = palpate_asset_figures;
+  const std::string title = fmt::format("\n#: {}\n", name);
+  const std::size_t begin = all.find(title) + title.size();
+  return all.substr(begin, all.find("\n#: ", begin) + 1 - begin);
 }
 
 std::string picture_header(int width, int height, const fs::path& file, const std::string& output, PictureUnit unit) {

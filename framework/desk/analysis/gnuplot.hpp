@@ -2,13 +2,25 @@
 // Pictures drawn by gnuplot, a child process that reads its script from an unnamed temporary file.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace palpate {
 
 /// Returns `text` as a string literal of gnuplot, in which nothing is a command, macro or format.
 std::string gnuplot_text(const std::string& text);
+
+/// Returns the text of a template in figure_templates.gnuplot.
+std::string_view template_text(std::string_view name);
+
+/// Returns the template with its placeholders replaced by the arguments.
+template <class... Arguments>
+std::string fill_template(std::string_view name, const Arguments&... arguments) {
+  return fmt::format(fmt::runtime(template_text(name)), arguments...);
+}
 
 /// Unit of the lengths in a picture's layout.
 enum class PictureUnit {

@@ -219,17 +219,12 @@ struct PlotScript {
 
 /// Returns the settings of title, axes, margins and key.
 std::string frame_settings(const Pareto& pareto, const std::string& title, const PlotAxis& x, const PlotAxis& y) {
-  std::string out = fmt::format("set title {} font ',14'\n", gnuplot_text(title));
-  out += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
-                     gnuplot_text(fmt::format("mean {}{}", y.scale.title(pareto.error.name),
-                                              pareto.more_is_better() ? " (more is better)" : "")));
-  if (x.logarithmic) out += "set logscale x\n";
-  if (y.logarithmic) out += "set logscale y\n";
-  out += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", x.low, x.high, y.low, y.high);
-  out += fmt::format("set lmargin at screen 0.075\nset rmargin at screen {}\n", kKeyLeft - 0.02);
-  out += "set border 3 lc rgb '#555555'\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1\n";
-  return out + fmt::format("set key at screen {}, screen 0.93 left top Left reverse samplen 1 spacing 1.3 font ',11'\n",
-                           kKeyLeft);
+  const std::string error =
+      fmt::format("mean {}{}", y.scale.title(pareto.error.name), pareto.more_is_better() ? " (more is better)" : "");
+  const std::string scales =
+      std::string(x.logarithmic ? "set logscale x\n" : "") + (y.logarithmic ? "set logscale y\n" : "");
+  return fill_template("pareto", gnuplot_text(title), gnuplot_text("mean " + x.scale.title(pareto.cost.name)),
+                       gnuplot_text(error), scales, x.low, x.high, y.low, y.high, kKeyLeft - 0.02, kKeyLeft);
 }
 
 void draw_fronts(PlotScript& script, const Pareto& pareto, const std::vector<std::string>& fronts) {

@@ -39,9 +39,11 @@ std::string Table::sides(const std::string& left, const std::string& right) cons
   return out;
 }
 
-std::string Table::text() const {
-  return aligned(lines([](const std::string& text) { return text; }), sides("l", "r"));
+std::vector<std::vector<std::string>> Table::cells() const {
+  return lines([](const std::string& text) { return text; });
 }
+
+std::string Table::text() const { return aligned(cells(), sides("l", "r")); }
 
 std::string Table::markdown() const {
   std::string out;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The table model of all outputs: text for terminals, Markdown, LaTeX, rows for CSV and JSON.
+// The table model of all outputs: text for terminals, Markdown, LaTeX, rows for CSV and JSON, cells for pages.
 #pragma once
 
 #include "record/row.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -39,6 +40,10 @@ class Table {
   const std::vector<Row>& rows() const { return rows_; }
   Row& last_row() { return rows_.back(); }
 
+  /// Returns the titles, then the cells of each row, without hidden columns.
+  std::vector<std::vector<std::string>> cells() const;
+  /// Returns the number of text columns before the first other column.
+  std::size_t text_columns() const { return std::min(sides("l", "r").find('r'), columns_.size()); }
   /// Returns a line of titles and one line per row, with aligned columns.
   std::string text() const;
   /// Returns a table in GitHub's Markdown.

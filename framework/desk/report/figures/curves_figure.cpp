@@ -65,8 +65,7 @@ struct AxisRange {
     constexpr double kPerTic = 18;
     double step = tic_step(high - low, std::max(2.0, length / kPerTic));
     if (whole) step = std::max(1.0, step);
-    return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics {3:.6g} nomirror out scale 0.5 format '%g'\n", name,
-                       low, high, step);
+    return fill_template("curves_axis", name, low, high, step);
   }
 };
 
@@ -277,8 +276,7 @@ void draw_panel(FigureLayout& layout, const GroupCurves& curves, const DrawnCurv
     layout.data(block, block_of(*curve, drawn.axis.factor, drawn.value.factor));
     clauses.add(block, line_style(group), curve->points.size());
   }
-  std::string settings = "set border 3 lc rgb '#555555' lw 0.5\nset grid y lc rgb '#e4e4e4' lt 1 lw 0.5\n";
-  settings += panel_labels(layout, curves, drawn, grid, panel);
+  std::string settings = fill_template("group_curves") + panel_labels(layout, curves, drawn, grid, panel);
   settings += drawn.x.settings('x', box.width, curves.against.name == kAgainstTaps);
   settings += drawn.y.settings('y', box.height, false);
   if (panel % grid.across > 0) settings += "set ytics format ''\n";

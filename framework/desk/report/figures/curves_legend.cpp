@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/figures/curves_legend.hpp"
 
+#include "analysis/gnuplot.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -86,7 +88,7 @@ std::vector<LegendEntry> place_names(const std::vector<std::string>& names, doub
 }
 
 void draw_legend(FigureLayout& layout, const std::vector<LegendEntry>& entries) {
-  std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
+  std::string settings = fill_template("frameless");
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const LegendEntry& entry = entries[i];
     const LineStyle style = line_style(i);

@@ -38,8 +38,7 @@ std::string star_at(double ray) {
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
 
 std::string axis(char name, double length) {
-  return fmt::format("set {0}range [0:{1}]\nset {0}tics {2} nomirror out scale 0.5 font ',9'\n", name, 100.0 * length,
-                     100.0 * length > 12.0 ? "5" : "autofreq");
+  return fill_template("map_axis", name, 100.0 * length, 100.0 * length > 12.0 ? "5" : "autofreq");
 }
 
 std::string colour_range(const Colours& colours) {
@@ -209,11 +208,8 @@ std::string FigureLayout::label(const std::string& words, double x, double y, co
 }
 
 std::string FigureLayout::place(const Box& box) const {
-  return fmt::format(
-      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {:.5f}\nset bmargin at "
-      "screen {:.5f}\n",
-      box.left / width_, (box.left + box.width) / width_, 1.0 - box.top / height_,
-      1.0 - (box.top + box.height) / height_);
+  return fill_template("margins", box.left / width_, (box.left + box.width) / width_, 1.0 - box.top / height_,
+                       1.0 - (box.top + box.height) / height_);
 }
 
 void FigureLayout::plot(const Box& box, const std::string& settings, const std::string& clauses) {
@@ -236,12 +232,9 @@ std::string FigureLayout::marks(const std::string& taps, const std::string& colu
 void FigureLayout::map(const Box& box, const SceneFrame& frame, const std::string& map, const std::string& taps,
                        const Colours& colours) {
   const Area& area = frame.area;
-  std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
-  settings += "unset colorbox\nset border lc rgb '#555555'\nset xlabel 'x [cm]' font ',10' offset 0,0.7\n";
-  settings += "set ylabel 'y [cm]' font ',10' offset 1.6,0\n";
+  std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours) + fill_template("map");
   if (const std::string next = "next_" + taps; has(next)) {
-    settings += fmt::format("next_x = real(word(${0}[1], 1))\nnext_y = real(word(${0}[1], 2))\n", next);
-    settings += star_at(100.0 * 0.042 * std::max(area.width, area.depth));
+    settings += fill_template("next_tap", next) + star_at(100.0 * 0.042 * std::max(area.width, area.depth));
   }
   plot(box, settings,
        fmt::format("plot ${} matrix using {} with image", map, matrix_columns(frame)) + marks(taps, "1:2"));
@@ -258,31 +251,21 @@ void FigureLayout::surface(const Box& box, const SceneFrame& frame, const std::s
   const double side = scale * std::max(area.width, area.depth);
   const Box inner{box.left + 0.5 * (box.width - side), middle - lift - 0.5 * side, side, side};
   std::string settings = axis('x', area.width) + axis('y', area.depth) + colour_range(colours);
-  settings += fmt::format("set zrange [{}:{}]\nset ztics 5 font ',9' offset 0.7,0\n", centimetres(z_range.low),
-                          centimetres(z_range.top));
-  settings +=
-      fmt::format("unset colorbox\nset border 31 lc rgb '#777777'\nset xyplane at {}\n", centimetres(frame.desk));
-  settings += "set xlabel 'x [cm]' font ',10' rotate parallel offset 1.2,-0.3\n";
-  settings += "set ylabel 'y [cm]' font ',10' rotate parallel offset -1.5,-0.3\n";
-  settings += "set zlabel 'height [cm]' font ',10' rotate by 90 offset 3.2,0\n";
-  settings += "set xtics offset -0.3,-0.3\nset ytics offset 0.4,-0.3\n";
-  settings += fmt::format("set view {}, {}\nset view equal xyz\n", kTiltDegrees, kTurnDegrees) +
-              "set pm3d scansautomatic lighting primary 0.35 specular 0\n";
+  settings += fill_template("surface", centimetres(z_range.low), centimetres(z_range.top), centimetres(frame.desk),
+                            kTiltDegrees, kTurnDegrees);
   plot(inner, settings, fmt::format("splot ${} using 1:2:3:4 with pm3d", surface) + marks(taps, "1:2:3"));
 }
 
 void FigureLayout::bar(const Box& box, const Colours& colours) {
-  std::string settings = gnuplot_palette(colours.palette) + "unset colorbox\nset border lc rgb '#555555'\n";
-  settings += fmt::format("unset xtics\nunset ytics\nset xrange [-0.5:1.5]\nset yrange [-0.5:{}]\n", kBarSteps - 0.5);
-  settings += fmt::format("set y2range [{}:{}]\nset y2tics nomirror out scale 0.5 font ',9'\n", number(colours.low),
-                          number(colours.high));
+  std::string settings = gnuplot_palette(colours.palette) +
+                         fill_template("colour_bar", kBarSteps - 0.5, number(colours.low), number(colours.high));
   if (colours.logarithmic) settings += "set logscale y2\n";
   if (!colours.label.empty()) upright(colours.label, box.left + box.width + 68, box.top + 0.5 * box.height, 10);
   plot(box, settings, "plot $bar matrix using 1:2:3 with image");
 }
 
 void FigureLayout::legend(double x, double y, bool failed, bool next) {
-  std::string settings = "unset border\nunset tics\nset xrange [-1:1]\nset yrange [-1:1]\n";
+  std::string settings = fill_template("frameless");
   const auto entry = [&](const std::string& style, const std::string& words, double width) {
     if (!style.empty()) settings += label("", x, y, "point " + style + " front");
     settings += label(words, x + 14, y, "left font ',11'");

@@ -112,16 +112,11 @@ std::size_t name_lines(const CurvePanel& panel) {
 }
 
 void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePanel& panel, int number, int taps) {
-  std::string settings =
-      "set border 3 lc rgb '#555555'\nset tics nomirror out scale 0.5 font ',10'\nset grid lc rgb '#e4e4e4' lt 1\n";
-  settings += fmt::format("set xrange [0:{}]\nset xlabel 'taps' font ',10' offset 0,0.6\n", std::max(1, taps));
   // by CurveAxis
   constexpr const char* kAxes[] = {"", "set yrange [0:*]\n", "set yrange [0:1]\n",
                                    "set logscale y\nset format y '%g'\n"};
-  settings += kAxes[static_cast<std::size_t>(panel.axis)];
-  settings += fmt::format(
-      "set key at graph 0, graph 1.03 left bottom Left reverse horizontal maxcols {} samplen 1 font ',10'\n",
-      columns_of(panel));
+  const std::string settings =
+      fill_template("run_curves", std::max(1, taps), kAxes[static_cast<std::size_t>(panel.axis)], columns_of(panel));
   std::string clauses = "plot ";
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     std::string lines;

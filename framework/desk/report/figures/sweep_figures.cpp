@@ -78,14 +78,10 @@ void draw_boxes(FigureLayout& layout, const Box& box, const std::string& metric,
   }
   layout.data("boxes_" + metric, boxes);
   layout.data("jobs_" + metric, dots);
-  std::string settings = "set border 1 lc rgb '#555555'\nset xtics nomirror out scale 0.5 font ',10'\nunset ytics\n";
-  settings +=
-      fmt::format("set yrange [{}:0.4]\nset grid x lc rgb '#e4e4e4' lt 1\n", static_cast<double>(groups.size()) + 0.6);
-  settings += value_axis(all, scale.factor);
-  settings += "set style fill transparent solid 0.35 noborder\n";
   const std::string better = find_column(metric, {metric}, kOption).better_words();
-  settings += fmt::format("set xlabel {} font ',11' offset 0,0.3\n",
-                          gnuplot_text(scale.title(metric) + (better.empty() ? "" : ", " + better)));
+  const std::string title = scale.title(metric) + (better.empty() ? "" : ", " + better);
+  const std::string settings = fill_template("boxes", static_cast<double>(groups.size()) + 0.6,
+                                             value_axis(all, scale.factor), gnuplot_text(title));
   const std::string block = "$boxes_" + metric;
   std::string clauses =
       fmt::format("plot {0} using 2:1:($6-$2):(0) with vectors nohead lw 1.5 lc rgb '#0072b2'", block);
@@ -227,16 +223,6 @@ std::string heat_map_words(const Sweep& sweep, const HeatMap& map, const std::ve
   return out + (map.x.cut || map.y.cut ? fmt::format("; the first {} values of a key", kMostValues) : "");
 }
 
-std::string heat_map_axes(const HeatMap& map, const Colours& colours, bool slanted) {
-  std::string out = gnuplot_palette(colours.palette) +
-                    fmt::format("set cbrange [{:.10g}:{:.10g}]\nunset colorbox\nset border lc rgb '#555555'\n",
-                                colours.low, colours.high);
-  out += fmt::format("set xrange [-0.5:{}]\nset yrange [{}:-0.5]\n", static_cast<double>(map.x.values.size()) - 0.5,
-                     static_cast<double>(map.y.values.size()) - 0.5);
-  return out + fmt::format("set xtics {} {} scale 0 font ',10'\nset ytics {} scale 0 font ',10'\n",
-                           slanted ? "rotate by -35 left" : "norotate", tics(map.x.values), tics(map.y.values));
-}
-
 std::size_t longest_of(const std::vector<std::string>& values) {
   std::size_t out = 0;
   for (const std::string& value : values) out = std::max(out, value.size());
@@ -268,10 +254,12 @@ std::optional<Figure> heat_map(const Sweep& sweep, const std::vector<Row>& resul
   layout.text(sweep_name(sweep), 24, 14, 15);
   layout.text(heat_map_words(sweep, map, keys), 24, 42, 11);
   layout.text(map.y.key, 24, box.top - 24, 11);
-  const std::string x_title =
-      fmt::format("set label {} at screen {:.5f}, screen {:.5f} center font ',11'\n", gnuplot_text(map.x.key),
-                  (box.left + 0.5 * box.width) / layout.width(), 14.0 / layout.height());
-  layout.plot(box, heat_map_axes(map, colours, slanted) + x_title,
+  const std::string settings =
+      fill_template("heat_map", least, most, static_cast<double>(map.x.values.size()) - 0.5,
+                    static_cast<double>(map.y.values.size()) - 0.5, slanted ? "rotate by -35 left" : "norotate",
+                    tics(map.x.values), tics(map.y.values), gnuplot_text(map.x.key),
+                    (box.left + 0.5 * box.width) / layout.width(), 14.0 / layout.height());
+  layout.plot(box, gnuplot_palette(colours.palette) + settings,
               "plot $mean_" + map.error +
                   " matrix using 1:2:3 with image pixels, \\\n"
                   "  $numbers using 1:2:(strcol(3)):4 with labels font ',10' tc rgb variable");

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The assets of pages, embedded in the program (page.hpp). The build sets their folder.
+// The assets of pages and figures, embedded in the program (page.hpp, gnuplot.hpp). The build sets their folders.
         .globl palpate_asset_plotly, palpate_asset_plotly_end
-        .globl palpate_asset_style, palpate_asset_common, palpate_asset_run, palpate_asset_runs, palpate_asset_sweep
+        .globl palpate_asset_figures, palpate_asset_style, palpate_asset_common, palpate_asset_run, palpate_asset_runs, palpate_asset_sweep
 
         .section .rodata
 palpate_asset_plotly:
         .incbin "vendor/plotly/plotly.min.js.gz"
 palpate_asset_plotly_end:
         # Zero-terminated texts.
+palpate_asset_figures:
+        .incbin "figure_templates.gnuplot"
+        .byte 0
 palpate_asset_style:
         .incbin "web/style.css"
         .byte 0

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Conversions to JSON that the library lacks: optional values, rows.
+// Conversions to JSON that the library lacks: optional values, rows, tables.
 #pragma once
 
+#include "analysis/table.hpp"
 #include "record/row.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 namespace nlohmann {
 
@@ -35,6 +38,14 @@ using Json = nlohmann::json;
 inline void to_json(Json& out, const Row& row) {
   out = Json::object();
   for (const auto& [name, value] : row.fields) out[name] = std::visit([](const auto& one) { return Json(one); }, value);
+}
+
+/// Converts a table to {titles, rows, left}, with `left` text columns before the numbers.
+inline void to_json(Json& out, const Table& table) {
+  auto rows = table.cells();
+  const std::vector<std::string> titles = rows.front();
+  rows.erase(rows.begin());
+  out = {{"titles", titles}, {"rows", rows}, {"left", table.text_columns()}};
 }
 
 }  // namespace palpate

@@ -45,30 +45,37 @@ Json json_of_run(const Recording& recording, const History& history) {
           {"any_side", options.scene.touch == SceneOptions::Touch::any}};
 }
 
-/// Returns a table of the config with path, value and origin, the file that config.yaml was composed from.
-Json json_of_config(const Recording& recording) {
+/// Returns the config as a table of paths, values and origins, the files that config.yaml was composed from.
+Table config_table(const Recording& recording) {
   const std::map<std::string, std::string> known = recorded_origins(recording.directory);
-  Json lines;
+  Table table;
   for (const ResolveNotes::Origin& one : recording.config.notes.origins) {
     const std::string text = to_yaml(*recording.config.tree.find_path(one.path));
     const auto place = known.find(one.path);
-    lines.push_back(
-        {one.path, text.substr(0, text.find_last_not_of('\n') + 1), place != known.end() ? place->second : one.place});
+    table.add_row();
+    table.show("key", one.path, Table::Kind::text);
+    table.show("value", text.substr(0, text.find_last_not_of('\n') + 1), Table::Kind::text);
+    table.show("source", place != known.end() ? place->second : one.place, Table::Kind::text);
   }
-  return lines;
+  return table;
 }
 
-Json json_of_build(const Tree& manifest) {
-  Json lines = Json::array();
+Table build_table(const Tree& manifest) {
+  Table table;
+  const auto add = [&](const char* key, const std::string& value) {
+    if (value.empty()) return;
+    table.add_row();
+    for (const std::string& cell : {std::string(key), value}) table.show("", cell, Table::Kind::text);
+  };
   for (const char* key : {"version", "commit", "dirty", "compiler", "instruction_path", "host"}) {
-    if (const Tree* value = manifest.find(key)) lines.push_back({key, value->text});
+    if (const Tree* value = manifest.find(key)) add(key, value->text);
   }
   if (const Tree* line = manifest.find("command_line")) {
     std::vector<std::string> words;
     for (const Tree& word : line->items) words.push_back(word.text);
-    lines.push_back({"command line", fmt::format("{}", fmt::join(words, " "))});
+    add("command line", fmt::format("{}", fmt::join(words, " ")));
   }
-  return lines;
+  return table;
 }
 
 }  // namespace
@@ -131,8 +138,7 @@ static void to_json(Json& out, const CurvePanel& panel) {
 
 static void to_json(Json& out, const RecordField& error) { out = {error.name, error_title(error)}; }
 
-/// Returns the errors that pages show: those against the truth, and the expected error.
-static std::vector<RecordField> page_errors() {
+std::vector<RecordField> page_errors() {
   std::vector<RecordField> out = error_fields();
   out.insert(out.begin() + 1, *find_summary_field(kExpectedError));
   return out;
@@ -250,8 +256,8 @@ Json run_data(const Recording& recording, const History& history) {
                {"x", std::vector<double>(history.x.begin(), history.x.end())},
                {"y", std::vector<double>(history.y.begin(), history.y.end())},
                {"true_contours", true_contours_of(history)},
-               {"config", json_of_config(recording)},
-               {"build", json_of_build(manifest)}});
+               {"config", config_table(recording)},
+               {"build", build_table(manifest)}});
   return data;
 }
 

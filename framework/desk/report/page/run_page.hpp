@@ -2,6 +2,7 @@
 // The page of a run: its data, which web/run.js draws.
 #pragma once
 
+#include "record/field.hpp"
 #include "report/history.hpp"
 #include "report/page/json.hpp"
 
@@ -41,6 +42,9 @@ struct PackedMaps {
 /// to 65535, the greatest, with an error of at most 1 / 131070 of that range. Each frame is stored as differences
 /// between neighbouring cells modulo 65536: first all low bytes, then all high bytes.
 PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames);
+
+/// Returns the errors that pages show: those against the truth, and the expected error.
+std::vector<RecordField> page_errors();
 
 /// Returns the data of a run's page without maps and surfaces.
 Json run_data(const Recording& recording, const History& history);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/runs_page.hpp"
 
+#include "config/scale.hpp"
 #include "record/build_info.hpp"
 #include "record/catalogue.hpp"
+#include "record/fields.hpp"
 #include "report/page/json.hpp"
 #include "report/page/page.hpp"
 #include "report/page/run_page.hpp"
+#include "report/words/titles.hpp"
 
 #include <fmt/format.h>
 
@@ -14,17 +17,48 @@
 namespace palpate {
 namespace {
 
-/// Returns lines of a key and its value in each run; "" if a run lacks it.
-Json json_of_differences(const std::vector<RunBeside>& runs) {
+std::string letter_of(std::size_t run) { return std::string(1, static_cast<char>('A' + run)); }
+
+/// Returns the keys whose values differ between the configs, with the value in each run; "" if a run lacks it.
+Table differences_table(const std::vector<RunBeside>& runs) {
   std::vector<Row> configs;
   for (const RunBeside& run : runs) configs.push_back(read_settings(run.recording.directory));
-  Json lines = Json::array();
+  Table table;
   for (const std::string& key : differing_keys(configs)) {
-    Json line{key};
-    for (const Row& config : configs) line.push_back(config.text(key));
-    lines.push_back(line);
+    table.add_row();
+    table.show("key", key, Table::Kind::text);
+    for (std::size_t i = 0; i < runs.size(); ++i) table.show(letter_of(i), configs[i].text(key), Table::Kind::text);
   }
-  return lines;
+  return table;
+}
+
+/// Returns a table with state and errors of each run; `described` has their data.
+Table standings_table(const std::vector<RunBeside>& runs, const Json& described) {
+  std::vector<Row> errors;
+  for (const RunBeside& run : runs) {
+    const RunResult& last = run.history.moments.back().result;
+    add_errors(errors.emplace_back(), last.errors);
+    errors.back().add(kExpectedError, last.expected_rmse);
+  }
+  Table table;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto text = [&](const char* name) { return described[i].at(name).get<std::string>(); };
+    const RunAtTap& last = runs[i].history.moments.back();
+    table.add_row();
+    table.show("run", fmt::format("{}: {} {}", letter_of(i), text("name"), text("id")), Table::Kind::text);
+    table.show("seed", std::to_string(runs[i].recording.config.options.seed), Table::Kind::text);
+    table.show("state", text("state") == "done" ? text("stop_reason") : text("state"), Table::Kind::text);
+    table.show("taps", std::to_string(last.taps));
+    table.show("robot time [s]", significant(last.result.robot_seconds, 4));
+    for (const RecordField& error : page_errors()) {
+      const auto has_value = [&](const Row& row) { return row.number(error.name).has_value(); };
+      if (std::none_of(errors.begin(), errors.end(), has_value)) continue;
+      const Scale scale = usual_scale(error.unit);
+      const auto value = errors[i].number(error.name);
+      table.show(scale.title(error_title(error)), value ? significant(*value / scale.factor) : "–");
+    }
+  }
+  return table;
 }
 
 }  // namespace
@@ -42,7 +76,8 @@ std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& prog
             {"id", "side by side"},
             {"errors", described.front()["errors"]},
             {"units", described.front()["units"]},
-            {"differences", json_of_differences(runs)}};
+            {"standings", standings_table(runs, described)},
+            {"differences", differences_table(runs)}};
   for (std::size_t stride = 1;; stride += 1 + stride / 4) {
     progress(most_taps, most_taps);
     std::string bytes;

@@ -57,6 +57,11 @@ function table(header, rows, left) {
   return element("div", { class: "scroll" }, element("table", {}, head, body));
 }
 
+/// Returns a table of the page's data, {titles, rows, left}. Texts may come from a config.
+function dataTable({ titles, rows, left }) {
+  return table(titles, rows.map((row) => row.map((cell, i) => (i < left ? foreign(cell) : cell))), left);
+}
+
 /// Returns a list of values with their names, the most important first.
 function factList(facts) {
   const items = facts.map(([value, name]) => element("li", {}, element("b", {}, String(value)), element("span", {}, name)));

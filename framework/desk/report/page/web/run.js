@@ -210,7 +210,6 @@ function drawRun(data, bytes) {
   const slider = new Slider(data, unpackMoments(data, data, bytes));
   const what = data.any_side ? "surfaces" : "maps";
   const thinned = data.shown.length < data.moments.length ? ` To stay small, this page has ${what} of ${data.shown.length} of ${data.moments.length} moments.` : "";
-  const foreignTable = (header, rows) => table(header, rows.map((line) => line.map(foreign)));
   document.body.append(
     element("div", { id: "standing" }, ...standing(data)),
     slider.controls(),
@@ -221,8 +220,8 @@ function drawRun(data, bytes) {
     element("h2", {}, "Curves over taps"),
     element("div", { class: "row small", id: "curves" }),
     element("div", { id: "curve_constants" }),
-    section("Config", foreignTable(["key", "value", "source"], data.config)),
-    section("Build", foreignTable(["", ""], data.build.filter(([, value]) => value !== ""))),
+    section("Config", dataTable(data.config)),
+    section("Build", dataTable(data.build)),
     footer(data),
   );
   slider.listen();

@@ -9,9 +9,6 @@ const wordsOf = (run, index) => `${letterOf(index)}: ${run.name} ${run.id}`;
 /// Returns the title of an error with its unit.
 const errorTitle = ([name, title]) => (unitOf(name).unit ? `${title} [${unitOf(name).unit}]` : title);
 
-/// Returns the last moment of a run with at most this many taps.
-const momentAt = (run, taps) => run.moments[Math.min(taps, run.moments.length - 1)];
-
 /// Returns the last map of a run with at most this many taps, or the first map.
 const frameAt = (run, taps) => Math.max(0, run.shown.findLastIndex((moment) => moment <= taps));
 
@@ -117,28 +114,12 @@ class Surfaces {
   }
 }
 
-/// Returns a table with state and errors of each run.
-function standings(data) {
-  const errors = data.errors.filter(([name]) => data.runs.some((run) => typeof momentAt(run, Infinity)[name] === "number"));
-  const header = ["run", "seed", "state", "taps", "robot time [s]", ...errors.map(errorTitle)];
-  const rows = data.runs.map((run, index) => {
-    const last = momentAt(run, Infinity);
-    const state = run.state === "done" ? run.stop_reason : run.state;
-    const numbers = errors.map(([name]) => shown(typeof last[name] === "number" ? last[name] * unitOf(name).factor : last[name], 3));
-    return [foreign(wordsOf(run, index)), String(run.seed), foreign(state), String(last.taps), shown(last.robot_seconds, 4), ...numbers];
-  });
-  return table(header, rows, 3);
-}
-
 function drawRuns(data, bytes) {
   const errors = new ErrorPlots(data);
   const surfaces = new Surfaces(data, bytes);
-  const letters = data.runs.map((_, index) => letterOf(index));
-  const differences = data.differences.length > 0
-    ? table(["key", ...letters], data.differences.map((line) => line.map((cell) => foreign(cell))), 1 + letters.length)
-    : element("p", { class: "sub" }, "The configs are equal.");
+  const differences = data.differences.rows.length > 0 ? dataTable(data.differences) : element("p", { class: "sub" }, "The configs are equal.");
   document.body.append(
-    standings(data),
+    dataTable(data.standings),
     section("Error", ...errors.elements()),
     element("h2", {}, "Surfaces"),
     surfaces.controls(),
