@@ -55,7 +55,7 @@ int list_runs(Program&, const ListArguments& arguments) {
     // A damaged record does not keep the others from the list.
     if (trouble) print_message(fmt::format("{}\n", trouble->what()));
   }
-  tell_apart(records);
+  add_differences(records);
   std::vector<Row> rows;
   if (where) {
     rows = rows_where(records, *where);

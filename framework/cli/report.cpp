@@ -96,7 +96,7 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
            fmt::format("give at most {}, or compare a sweep of them with 'palpate compare'", kMostRunsOnAPage));
   if (arguments.figures || arguments.paper)
     refuse("--figures and --paper draw one run or sweep", "give one, or leave the options out");
-  std::vector<RunBeside> runs;
+  std::vector<ComparedRun> runs;
   std::string name = "side_by_side";
   for (const std::string& directory : directories) {
     if (is_sweep(directory))

@@ -100,7 +100,7 @@ TEST(InSightTest, LeavesOutWhatTheSurfaceHidesFromTheSide) {
                     {3, TapMark::Kind::off, 0.1, 0.15, 0.0},
                     {4, TapMark::Kind::on, 0.1, 0.15, 0.12}};
   std::vector<int> seen;
-  for (const TapMark& mark : in_sight(snapshot, frame).marks) seen.push_back(mark.tap);
+  for (const TapMark& mark : without_hidden_taps(snapshot, frame).marks) seen.push_back(mark.tap);
   EXPECT_EQ(seen, (std::vector<int>{1, 2, 4}));
 }
 

@@ -55,7 +55,7 @@ class RunsTable : public InFolder {
                R"({"status": "done", "taps": 30, "rmse_m": )" + rmse + R"(, "footprint_iou": 0.875, "found": true})");
   }
   static std::vector<Row> rows_of(std::vector<ListedRecord> records) {
-    tell_apart(records);
+    add_differences(records);
     std::vector<Row> out;
     for (ListedRecord& one : records) out.push_back(std::move(one.row));
     return out;

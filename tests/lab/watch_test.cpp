@@ -122,7 +122,7 @@ TEST_F(AGrowingLog, SaysWhatIsNoLineAndReadsAllOfItOnceThatIsPutRight) {
   EXPECT_THROW(read(), Error);
   folder_.write("record.jsonl", kBegun + "{\"tap\": 1}\n{\"tap\": 2}\n");
   EXPECT_THAT(read(), ElementsAre(1, 2));
-  log_.forget();
+  log_.restart();
   EXPECT_THAT(read(), ElementsAre(1, 2));
 }
 

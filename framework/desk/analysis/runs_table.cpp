@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = RunStatus::State;
 
-constexpr const char* kOutline = "footprint_iou";
+constexpr const char* kIou = "footprint_iou";
 
 /// Returns up to three different names, else "N `noun`".
 std::string in_short(const std::vector<std::string>& names, const char* noun) {
@@ -110,7 +110,7 @@ void add_run(ListedRecord& out, const fs::path& directory, const Row& config) {
   };
   add_error(main_error({}));
   if (summary && main_error({*summary}) != main_error({})) add_error(main_error({*summary}));
-  add_error(kOutline);
+  add_error(kIou);
   row.add("state", state_name(status.state));
   if (summary) out.beside = *summary;
 }
@@ -188,7 +188,7 @@ std::vector<Row> rows_where(const std::vector<ListedRecord>& records, const Cond
   return out;
 }
 
-void tell_apart(std::vector<ListedRecord>& records) {
+void add_differences(std::vector<ListedRecord>& records) {
   std::map<std::pair<std::string, bool>, std::vector<ListedRecord*>> named;
   for (ListedRecord& one : records) {
     const bool is_sweep = one.row.find("jobs") != nullptr;
@@ -225,7 +225,7 @@ std::string runs_table(const std::vector<Row>& rows) {
       table.show(heading, one_line(row.text(field)), Table::Kind::text);
     };
     const std::optional<double> error = row.number(main_error({row}));
-    const std::optional<double> outline = row.number(kOutline);
+    const std::optional<double> outline = row.number(kIou);
     table.add_row();
     for (const char* const field : {"name", "begun", "strategy", "scene"}) show_text(field, field);
     table.show("taps", row.cell("taps"));

@@ -30,7 +30,7 @@ ListedRecord list_record(const std::filesystem::path& directory);
 /// Adds to each row `apart`, the differences from other rows with the same name: swept keys, then
 /// distinguishing_settings(), among runs or among sweeps (configs of sweeps have no defaults); null for no difference.
 /// Moves the configs out of `records`.
-void tell_apart(std::vector<ListedRecord>& records);
+void add_differences(std::vector<ListedRecord>& records);
 
 /// Returns the rows of the records that satisfy `where`. A name that only other records have is null. Throws Error for
 /// a name that no record has.

@@ -26,7 +26,7 @@ class GrowingLog {
   std::vector<RecordLine> read(bool& anew);
 
   /// Makes the next read() begin at the start of the file.
-  void forget() { stamp_ = {}, known_.clear(); }
+  void restart() { stamp_ = {}, known_.clear(); }
 
  private:
   using Stamp = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t>;  ///< inode, size, time

@@ -45,7 +45,7 @@ RunFollower::RunFollower(const Workshop& workshop, fs::path directory)
 
 bool RunFollower::goes_on() const { return is_running(directory_); }
 
-void RunFollower::begin_anew() {
+void RunFollower::start_over() {
   builder_.reset();
   recording_.reset();
   pending_.clear();
@@ -60,7 +60,7 @@ bool RunFollower::look(double seconds) {
   const std::optional<Error> trouble = catch_error([&] {
     read_record();
     while (!pending_.empty() && trouble_.empty()) {
-      take_in();
+      replay_next_tap();
       if (std::chrono::steady_clock::now() >= end) break;
     }
   });
@@ -79,11 +79,11 @@ void RunFollower::read_record() {
   bool anew = false;
   std::vector<RecordLine> lines = log_.read(anew);
   if (!lines.empty() && !trouble_.empty()) {  // A record that failed to replay may have been replaced.
-    log_.forget();
+    log_.restart();
     lines = log_.read(anew);
     anew = true;
   }
-  if (anew) begin_anew();
+  if (anew) start_over();
   for (RecordLine& line : lines) {
     if (line.kind == LineKind::tap) pending_.push_back(std::move(line.row));
     if (line.kind == LineKind::timing) timings_.push_back(times_of(line.row));
@@ -93,24 +93,24 @@ void RunFollower::read_record() {
     standing_ = standing;
     ++revision_;
   }
-  if (recording_) take_times();
+  if (recording_) add_times();
   if (recording_ && pending_.empty()) recording_->summary = summary;
 }
 
 /// Adds the times of taps, which are written after the taps.
-void RunFollower::take_times() {
+void RunFollower::add_times() {
   std::vector<TapTimes>& known = recording_->timings;
   if (known.size() == timings_.size()) return;
   known.insert(known.end(), timings_.begin() + static_cast<std::ptrdiff_t>(known.size()), timings_.end());
   ++revision_;
 }
 
-void RunFollower::take_in() {
+void RunFollower::replay_next_tap() {
   if (!recording_) {
     recording_ = std::make_unique<Recording>(
         Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}, manifest_, {}});
   }
-  take_times();
+  add_times();
   recording_->taps.push_back(past_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));
   pending_.pop_front();
@@ -127,7 +127,7 @@ std::string RunFollower::at() const {
   return fmt::format("{}.{}.{}", generation_, builder_ ? builder_->taps() + 1 : 0, revision_);
 }
 
-std::string RunFollower::why_waiting() const {
+std::string RunFollower::waiting_reason() const {
   if (!trouble_.empty()) return trouble_;
   return "No tap is recorded yet. This page updates after the first tap.";
 }
@@ -144,7 +144,7 @@ std::string RunFollower::page() {
     const Tree config = read_run_config(directory_);
     if (const Tree* said = config.find("name")) name = said->text;
   });
-  return waiting_page(name, directory_.filename().string(), why_waiting(), at());
+  return waiting_page(name, directory_.filename().string(), waiting_reason(), at());
 }
 
 std::optional<std::string> RunFollower::news(const std::string& at) {
@@ -154,7 +154,7 @@ std::optional<std::string> RunFollower::news(const std::string& at) {
   const int moments = builder_ ? builder_->taps() + 1 : 0;
   const bool other = page.generation != generation_ || page.moments > moments || (page.moments == 0 && moments > 0);
   if (other) return line_of({{"at", now}, {"anew", true}});
-  if (!trouble_.empty() || !builder_) return line_of({{"at", now}, {"trouble", why_waiting()}});
+  if (!trouble_.empty() || !builder_) return line_of({{"at", now}, {"trouble", waiting_reason()}});
   std::string out;
   const auto trouble =
       catch_error([&] { out = run_news(*recording_, builder_->since(page.moments), page.moments, now); });

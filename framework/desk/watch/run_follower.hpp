@@ -30,11 +30,11 @@ class RunFollower final : public LiveRecord {
 
  private:
   void read_record();
-  void take_in();
-  void take_times();
-  void begin_anew();
+  void replay_next_tap();
+  void add_times();
+  void start_over();
   std::string at() const;
-  std::string why_waiting() const;
+  std::string waiting_reason() const;
 
   const Workshop& workshop_;
   std::filesystem::path directory_;

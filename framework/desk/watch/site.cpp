@@ -12,16 +12,16 @@ namespace palpate {
 Site::Site(const Workshop& workshop, const std::filesystem::path& directory) : workshop_(workshop) {
   if (is_sweep(directory)) {
     sweep_ = read_sweep(directory);
-    whole_ = std::make_shared<SweepFollower>(*sweep_);
+    main_ = std::make_shared<SweepFollower>(*sweep_);
   } else {
     read_run_config(directory);  // throws if there is no run
-    whole_ = std::make_shared<RunFollower>(workshop, directory);
+    main_ = std::make_shared<RunFollower>(workshop, directory);
   }
 }
 
 std::shared_ptr<LiveRecord> Site::find(std::string_view place) {
   constexpr std::size_t kMostKept = 8;
-  if (place.empty()) return whole_;
+  if (place.empty()) return main_;
   if (!sweep_) return nullptr;
   const auto job = std::find_if(sweep_->jobs.begin(), sweep_->jobs.end(),
                                 [&](const Job& one) { return place == "jobs/" + one.id + "/"; });

@@ -27,12 +27,12 @@ class Site {
   std::shared_ptr<LiveRecord> find(std::string_view place);
 
   /// Returns whether a process works on the record.
-  bool goes_on() const { return whole_->goes_on(); }
+  bool goes_on() const { return main_->goes_on(); }
 
  private:
   const Workshop& workshop_;
   std::optional<Sweep> sweep_;
-  std::shared_ptr<LiveRecord> whole_;
+  std::shared_ptr<LiveRecord> main_;
   std::map<int, std::weak_ptr<LiveRecord>> jobs_;
   std::deque<std::shared_ptr<LiveRecord>> recent_;
 };

@@ -13,7 +13,7 @@ namespace {
 
 /// Returns the descent of the heights along one axis by central differences, one-sided at the edges. `at` is the
 /// position among `count`, and neighbours are `step` indices apart.
-double fall(const VectorView& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
+double descent(const VectorView& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
   const int before = std::max(at - 1, 0);
   const int behind = std::min(at + 1, count - 1);
   if (before == behind) return 0.0;
@@ -34,8 +34,8 @@ SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const int i = row * columns + column;
-      mesh.normals.row(i) = Eigen::RowVector3d(fall(heights, candidates.xs, i, column, columns, 1),
-                                               fall(heights, candidates.ys, i, row, rows, columns), 1.0)
+      mesh.normals.row(i) = Eigen::RowVector3d(descent(heights, candidates.xs, i, column, columns, 1),
+                                               descent(heights, candidates.ys, i, row, rows, columns), 1.0)
                                 .normalized();
       if (row + 1 == rows || column + 1 == columns) continue;
       mesh.triangles.push_back({i, i + 1, i + columns + 1});

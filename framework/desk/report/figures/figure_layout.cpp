@@ -121,7 +121,7 @@ ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& fra
   return out;
 }
 
-MapsAtTap in_sight(const MapsAtTap& snapshot, const SceneFrame& frame) {
+MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame) {
   const Area& area = frame.area;
   const Candidates& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
@@ -195,7 +195,7 @@ void FigureLayout::text(const std::string& words, double x, double top, int poin
   }
 }
 
-void FigureLayout::upright(const std::string& words, double x, double middle, int points) {
+void FigureLayout::vertical_text(const std::string& words, double x, double middle, int points) {
   texts_ += label(words, x, middle, fmt::format("center rotate by 90 font ',{}'", points));
 }
 
@@ -260,7 +260,7 @@ void FigureLayout::bar(const Box& box, const Colours& colours) {
   std::string settings = gnuplot_palette(colours.palette) +
                          fill_template("colour_bar", kBarSteps - 0.5, number(colours.low), number(colours.high));
   if (colours.logarithmic) settings += "set logscale y2\n";
-  if (!colours.label.empty()) upright(colours.label, box.left + box.width + 68, box.top + 0.5 * box.height, 10);
+  if (!colours.label.empty()) vertical_text(colours.label, box.left + box.width + 68, box.top + 0.5 * box.height, 10);
   plot(box, settings, "plot $bar matrix using 1:2:3 with image");
 }
 
@@ -294,7 +294,7 @@ std::string FigureLayout::script() const {
   return (is_ascii ? "" : "set encoding utf8\n") + out;
 }
 
-std::vector<fs::path> write_gallery(const fs::path& folder, const std::vector<Figure>& figures) {
+std::vector<fs::path> write_figures(const fs::path& folder, const std::vector<Figure>& figures) {
   make_inner_folder(folder);
   std::error_code failed;
   for (const auto& [name, layout] : figures) {

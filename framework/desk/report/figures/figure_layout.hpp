@@ -34,7 +34,7 @@ struct Box {
 std::string gnuplot_palette(Palette palette);
 
 /// Returns the maps without the marks of taps that the surface hides in the view from the side.
-MapsAtTap in_sight(const MapsAtTap& snapshot, const SceneFrame& frame);
+MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame);
 
 /// Returns `values`, one per candidate, as rows of a matrix from the lowest y on. Grids with more cells than a picture
 /// can show are thinned out.
@@ -81,7 +81,7 @@ class FigureLayout {
   enum class Align { left, centre };
   void text(const std::string& words, double x, double top, int points, Align align = Align::left);
   /// Adds one vertical line of text with its middle at `middle`, left of a row of panels.
-  void upright(const std::string& words, double x, double middle, int points);
+  void vertical_text(const std::string& words, double x, double middle, int points);
 
   /// Adds the block `map` as a map seen from above, with the taps `taps` on it. The box has the aspect ratio of the
   /// area.
@@ -128,7 +128,7 @@ struct Figure {
 };
 
 /// Writes all scripts to `folder`, then draws them. Throws Error if a picture cannot be drawn.
-std::vector<std::filesystem::path> write_gallery(const std::filesystem::path& folder,
+std::vector<std::filesystem::path> write_figures(const std::filesystem::path& folder,
                                                  const std::vector<Figure>& figures);
 
 }  // namespace palpate

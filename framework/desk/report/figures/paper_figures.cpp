@@ -66,7 +66,7 @@ std::string below_zero_words(const std::vector<PanelRow>& rows) {
 }
 
 /// Returns the suffix of a panel's blocks. gnuplot allows letters, digits and '_' in names.
-std::string key_of(const Progress& progress, std::size_t column) {
+std::string block_suffix(const Progress& progress, std::size_t column) {
   std::string out = fmt::format("{}_{}", progress.strategy, progress.iterations[column]);
   const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0; };
   std::replace_if(out.begin(), out.end(), is_other, '_');
@@ -83,10 +83,10 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
   double left = map.left;
   for (std::size_t i = 0; i < run.snapshots.size(); ++i, left += kStep) {
     const MapsAtTap& snapshot = run.snapshots[i];
-    const std::string key = key_of(run, i);
+    const std::string key = block_suffix(run, i);
     if (is_surface(row)) {
       layout.data("surface_" + key, surface_of(run.frame, snapshot.surface, snapshot.deviation));
-      MapsAtTap seen = in_sight(snapshot, run.frame);
+      MapsAtTap seen = without_hidden_taps(snapshot, run.frame);
       seen.next.reset();  // the map shows it
       layout.taps("seen_" + key, seen);
       layout.surface({left - 4, top, map.width + 26, kSurface}, run.frame, "surface_" + key, "seen_" + key, colours,
@@ -150,7 +150,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
           fmt::format("iteration {}, after tap {}\n{}", run.iterations[k], snapshot.taps, count_words(snapshot.result)),
           map.left + kStep * static_cast<double>(k) + 0.5 * map.width, tops[i] - 52, 11, FigureLayout::Align::centre);
     }
-    if (several) layout.upright(run.strategy, 22, tops[i] + 0.5 * height_of(rows[i], map), 14);
+    if (several) layout.vertical_text(run.strategy, 22, tops[i] + 0.5 * height_of(rows[i], map), 14);
     draw_row(layout, rows[i], tops[i], map);
   }
   if (const std::string words = below_zero_words(rows); !words.empty()) layout.text(words, 680, bottom + 6, 10);
@@ -177,7 +177,7 @@ std::vector<const Job*> finished_jobs(const Sweep& sweep, const std::string& sce
 }
 
 /// Adds the seed to a title, if seeds are swept.
-std::string titled(const std::string& title, const Sweep& sweep, const Job& job) {
+std::string title_with_seed(const std::string& title, const Sweep& sweep, const Job& job) {
   const std::string seed = value_of(sweep, job, "seed");
   return title + (seed.empty() ? "" : ", seed " + seed);
 }
@@ -204,7 +204,8 @@ struct PaperFigures {
       return;
     }
     const std::string title = fmt::format("{}: surface, and where to tap next", object);
-    figures.push_back(progress_figure(name, titled(title, sweep, *jobs.front()), progress(*jobs.front(), iterations)));
+    figures.push_back(
+        progress_figure(name, title_with_seed(title, sweep, *jobs.front()), progress(*jobs.front(), iterations)));
   }
 
   /// Returns whether two jobs differ in nothing but the strategy.
@@ -216,27 +217,28 @@ struct PaperFigures {
 
   /// Adds figures 4 and 5, which compare two such jobs.
   void add_comparisons() {
-    const auto rivals = finished_jobs(sweep, "object_i_right", "uncertainty");
-    const auto explorers = finished_jobs(sweep, "object_i_right", "weighted");
-    for (const Job* const rival : rivals) {
-      const auto explorer =
-          std::find_if(explorers.begin(), explorers.end(), [&](const Job* job) { return alike(rival, job); });
-      if (explorer != explorers.end()) return add_comparison(*rival, **explorer);
+    const auto uncertainty_jobs = finished_jobs(sweep, "object_i_right", "uncertainty");
+    const auto weighted_jobs = finished_jobs(sweep, "object_i_right", "weighted");
+    for (const Job* const uncertainty_job : uncertainty_jobs) {
+      const auto weighted_job = std::find_if(weighted_jobs.begin(), weighted_jobs.end(),
+                                             [&](const Job* job) { return alike(uncertainty_job, job); });
+      if (weighted_job != weighted_jobs.end()) return add_comparison(*uncertainty_job, **weighted_job);
     }
-    const char* const missing = rivals.empty() ? "no finished job has scene=object_i_right and acquisition=uncertainty"
-                                : explorers.empty()
-                                    ? "no finished job has scene=object_i_right and acquisition=weighted"
-                                    : "no two finished jobs with scene=object_i_right, one with "
-                                      "acquisition=uncertainty and one with weighted, are equal in all else";
+    const char* const missing =
+        uncertainty_jobs.empty() ? "no finished job has scene=object_i_right and acquisition=uncertainty"
+        : weighted_jobs.empty()  ? "no finished job has scene=object_i_right and acquisition=weighted"
+                                 : "no two finished jobs with scene=object_i_right, one with "
+                                   "acquisition=uncertainty and one with weighted, are equal in all else";
     notes.push_back(fmt::format("figure_4 and figure_5 are left out: {}, {}", missing, kAllOfThem));
   }
 
-  void add_comparison(const Job& rival, const Job& explorer) {
-    const Progress above = progress(rival, {1, 10, 16});
-    const Progress below = progress(explorer, {1, 10, 16});
+  void add_comparison(const Job& uncertainty_job, const Job& weighted_job) {
+    const Progress above = progress(uncertainty_job, {1, 10, 16});
+    const Progress below = progress(weighted_job, {1, 10, 16});
     const auto add = [&](const char* name, const char* what, Eigen::VectorXd MapsAtTap::*map) {
       const std::string title = fmt::format("Object I on the right: {}", what);
-      figures.push_back(panels_figure(name, titled(title, sweep, rival), {{above, map}, {below, map}}));
+      figures.push_back(
+          panels_figure(name, title_with_seed(title, sweep, uncertainty_job), {{above, map}, {below, map}}));
     };
     add("figure_4", "where to tap next", &MapsAtTap::scores);
     add("figure_5", "uncertainty", &MapsAtTap::uncertainty);
@@ -247,7 +249,7 @@ struct PaperFigures {
 
 Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder) {
   const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
-  return {write_gallery(folder, {progress_figure("paper_progress", recording.config.options.name, progress)}), {}};
+  return {write_figures(folder, {progress_figure("paper_progress", recording.config.options.name, progress)}), {}};
 }
 
 Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const std::filesystem::path& folder) {
@@ -261,7 +263,7 @@ Figures write_paper_figures(const Workshop& workshop, const Sweep& sweep, const 
                 "paper's figures",
                 kAllOfThem);
   }
-  return {write_gallery(folder, out.figures), out.notes};
+  return {write_figures(folder, out.figures), out.notes};
 }
 
 }  // namespace palpate

@@ -25,7 +25,7 @@ std::string after_words(const MapsAtTap& snapshot) {
 Figure surface_figure(const ExperimentOptions& options, const SceneFrame& frame, const MapsAtTap& last) {
   FigureLayout layout(1000, 700);
   layout.data("surface", surface_of(frame, last.surface, last.deviation));
-  const MapsAtTap seen = in_sight(last, frame);
+  const MapsAtTap seen = without_hidden_taps(last, frame);
   layout.taps("last", seen);
   layout.text(options.name, 30, 16, 15);
   const auto behind = last.marks.size() - seen.marks.size();
@@ -181,7 +181,7 @@ Figures write_run_figures(const Workshop& workshop, const Recording& recording, 
   const MapsAtTap last = maps_at_taps(playback, recording, {static_cast<int>(recording.taps.size())}).front();
   const SceneFrame frame = scene_frame_of(playback.from_above());
   const ExperimentOptions& options = recording.config.options;
-  return {write_gallery(folder, {surface_figure(options, frame, last), maps_figure(options, frame, last),
+  return {write_figures(folder, {surface_figure(options, frame, last), maps_figure(options, frame, last),
                                  curves_figure(recording, history)}),
           {}};
 }

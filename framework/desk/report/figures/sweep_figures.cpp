@@ -286,7 +286,7 @@ Figures write_sweep_figures(const Sweep& sweep, const std::filesystem::path& fol
     throw Error(sweep.directory.string(), "has no job that ended well", {}, Error::Kind::run);
   std::vector<Figure> figures{distributions_figure(sweep, results)};
   if (auto map = heat_map(sweep, results)) figures.push_back(std::move(*map));
-  Figures out{write_gallery(folder, figures), {}};
+  Figures out{write_figures(folder, figures), {}};
   if (const auto curves = kept_curves(sweep, results)) {
     const std::filesystem::path file = folder / "curves.png";
     std::string note = write_curves_figure(*curves, sweep_name(sweep), kFigureWidth, file);

@@ -20,9 +20,9 @@ namespace {
 std::string letter_of(std::size_t run) { return std::string(1, static_cast<char>('A' + run)); }
 
 /// Returns the keys whose values differ between the configs, with the value in each run; "" if a run lacks it.
-Table differences_table(const std::vector<RunBeside>& runs) {
+Table differences_table(const std::vector<ComparedRun>& runs) {
   std::vector<Row> configs;
-  for (const RunBeside& run : runs) configs.push_back(read_settings(run.recording.directory));
+  for (const ComparedRun& run : runs) configs.push_back(read_settings(run.recording.directory));
   Table table;
   for (const std::string& key : differing_keys(configs)) {
     table.add_row();
@@ -33,9 +33,9 @@ Table differences_table(const std::vector<RunBeside>& runs) {
 }
 
 /// Returns a table with state and errors of each run; `described` has their data.
-Table standings_table(const std::vector<RunBeside>& runs, const Json& described) {
+Table standings_table(const std::vector<ComparedRun>& runs, const Json& described) {
   std::vector<Row> errors;
-  for (const RunBeside& run : runs) {
+  for (const ComparedRun& run : runs) {
     const RunResult& last = run.history.moments.back().result;
     add_errors(errors.emplace_back(), last.errors);
     errors.back().add(kExpectedError, last.expected_rmse);
@@ -63,10 +63,10 @@ Table standings_table(const std::vector<RunBeside>& runs, const Json& described)
 
 }  // namespace
 
-std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& progress) {
+std::string runs_page(const std::vector<ComparedRun>& runs, const OnProgress& progress) {
   Json described;
   int most_taps = 0;
-  for (const RunBeside& run : runs) {
+  for (const ComparedRun& run : runs) {
     described.push_back(run_data(run.recording, run.history));
     described.back()["directory"] = run.recording.directory.string();
     most_taps = std::max(most_taps, run.history.moments.back().taps);

@@ -13,7 +13,7 @@ namespace palpate {
 inline constexpr std::size_t kMostRunsOnAPage = 8;
 
 /// A run and its history.
-struct RunBeside {
+struct ComparedRun {
   Recording recording;
   History history;
 };
@@ -21,6 +21,6 @@ struct RunBeside {
 /// Returns a page of 2 to kMostRunsOnAPage runs: errors over taps and over robot time, surfaces after a number of taps,
 /// differences from the first surface where the candidates are the same, and differences between the configs. It is at
 /// most as large as the page of a run. `progress` is called while maps are packed.
-std::string runs_page(const std::vector<RunBeside>& runs, const OnProgress& progress);
+std::string runs_page(const std::vector<ComparedRun>& runs, const OnProgress& progress);
 
 }  // namespace palpate

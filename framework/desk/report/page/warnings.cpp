@@ -21,7 +21,7 @@ int diagnostics(const RunResult& result, const char* kind) {
 }
 
 /// Adds "3 taps" with `what` about them; nothing if `count` is 0.
-void tell(std::vector<std::string>& out, int count, const char* noun, const char* what) {
+void add_counted(std::vector<std::string>& out, int count, const char* noun, const char* what) {
   if (count > 0) out.push_back(counted(count, noun) + what);
 }
 
@@ -56,10 +56,10 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
   } else if (last.object_taps == 0) {
     out.push_back(any_side ? "No tap touched an object." : "No tap touched an object: the maps show where it is not.");
   }
-  tell(out, last.failed_taps, "tap", " made no contact and did not reach the models.");
-  tell(out, diagnostics(last, "heights_rejected"), "tap",
-       any_side ? " rejected: the reported height is not a number, or the end is off the path."
-                : " rejected: the reported height is not a number.");
+  add_counted(out, last.failed_taps, "tap", " made no contact and did not reach the models.");
+  add_counted(out, diagnostics(last, "heights_rejected"), "tap",
+              any_side ? " rejected: the reported height is not a number, or the end is off the path."
+                       : " rejected: the reported height is not a number.");
 }
 
 void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
@@ -113,14 +113,14 @@ void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
                     "double precision. It acts as noise of each tap.",
                     last.jitter_max, raised == 1 ? "once" : fmt::format("in {} steps", raised)));
   }
-  tell(out, diagnostics(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
+  add_counted(out, diagnostics(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
   if (const int aside = diagnostics(last, "redundant_taps"); aside > 0)
     out.push_back(fmt::format("{} left out: to machine precision the other taps determine {}.",
                               counted(aside, "tap") + (aside == 1 ? " was" : " were"), aside == 1 ? "it" : "them"));
   if (const int clamped = diagnostics(last, "variance_clamped"); clamped > 0)
     out.push_back(fmt::format("Rounding took the variance of {} out of its bounds; the bounds are shown.",
                               counted(clamped, "candidate")));
-  tell(out, diagnostics(last, "fit_failed"), "fit", " found no finite values and kept the old hyperparameters.");
+  add_counted(out, diagnostics(last, "fit_failed"), "fit", " found no finite values and kept the old hyperparameters.");
 }
 
 }  // namespace

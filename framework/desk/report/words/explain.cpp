@@ -19,7 +19,7 @@ namespace palpate {
 namespace {
 
 /// Adds the values of the maps at the tap: u, and w with e or the probability of `footprint`, whichever the record has.
-void explain_place(TextSections& page, const Row& row, const std::string& footprint) {
+void explain_place(TextSections& sections, const Row& row, const std::string& footprint) {
   std::vector<std::string> said;
   const auto say = [&](const char* name, const std::string& before, const std::string& meaning) {
     if (row.number(name)) said.push_back(fmt::format("{}{} ({})", before, number_words(row, name), meaning));
@@ -28,7 +28,7 @@ void explain_place(TextSections& page, const Row& row, const std::string& footpr
   say("p", "p = ", "probability of an object there, by footprint/" + footprint);
   say("w", "w = ", "mean of the label GP: 0 desk, 1 object");
   if (row.number("w") && row.number("e")) said.push_back("e = u w = " + number_words(row, "e"));
-  if (!said.empty()) page.add(fmt::format("There {}.", fmt::join(said, ", ")));
+  if (!said.empty()) sections.add(fmt::format("There {}.", fmt::join(said, ", ")));
 }
 
 class FromAboveExplained final : public Explanation {

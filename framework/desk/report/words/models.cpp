@@ -77,7 +77,7 @@ std::string fit_words(const Subject& subject) {
   return out + (reason.empty() ? "." : ": " + reason + ".");
 }
 
-void explain_likelihood(TextSections& page, const Subject& subject) {
+void explain_likelihood(TextSections& sections, const Subject& subject) {
   std::vector<std::string> parts;
   if (const std::string value = subject.words("log_marginal_likelihood"); !value.empty())
     parts.push_back("Log marginal likelihood " + value + " (of its taps under these hyperparameters: more is better)");
@@ -87,7 +87,7 @@ void explain_likelihood(TextSections& page, const Subject& subject) {
         "{}ondition of its matrix at least {:.2g}: {} the 16 digits of a number", parts.empty() ? "C" : "c", *least,
         digits == 0 ? "rounding costs none of" : fmt::format("rounding costs about {} of", digits)));
   }
-  if (!parts.empty()) page.add(fmt::format("{}.", fmt::join(parts, "; ")));
+  if (!parts.empty()) sections.add(fmt::format("{}.", fmt::join(parts, "; ")));
 }
 
 /// Returns the engine, and its measures against rounding errors.
@@ -103,16 +103,16 @@ std::string rounding_words(const Subject& subject) {
                    : "No jitter was needed.");
 }
 
-void explain_process(TextSections& page, const Subject& subject) {
+void explain_process(TextSections& sections, const Subject& subject) {
   if (!subject.number("signal")) return;
-  page.add(fmt::format("{}: kernel {}; signal {} and noise {} (standard deviations), prior mean {}{}. {}",
-                       subject.title, kernel_words(subject), subject.amount("signal"), subject.amount("noise"),
-                       subject.amount("mean"), subject.metric ? " above the desk" : "", fit_words(subject)));
-  explain_likelihood(page, subject);
-  page.add(rounding_words(subject));
+  sections.add(fmt::format("{}: kernel {}; signal {} and noise {} (standard deviations), prior mean {}{}. {}",
+                           subject.title, kernel_words(subject), subject.amount("signal"), subject.amount("noise"),
+                           subject.amount("mean"), subject.metric ? " above the desk" : "", fit_words(subject)));
+  explain_likelihood(sections, subject);
+  sections.add(rounding_words(subject));
 }
 
-void explain_range_of_weight(TextSections& page, const Row& row, bool clipped) {
+void explain_range_of_weight(TextSections& sections, const Row& row, bool clipped) {
   const auto least = row.number("min_weight");
   const auto greatest = row.number("max_weight");
   if (!least || !greatest) return;
@@ -124,28 +124,29 @@ void explain_range_of_weight(TextSections& page, const Row& row, bool clipped) {
         "with different labels it overshoots. {}",
         clipped ? "The score takes it clipped to [0, 1] (label.clip: true)."
                 : "The score takes it as it comes (label.clip: false).");
-    return page.add(out);
+    return sections.add(out);
   }
-  page.add(out + (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
+  sections.add(out +
+               (*least < 0.0 || *greatest > 1.0 ? ", which is within [0, 1] but for rounding." : ", within [0, 1]."));
 }
 
 /// Adds type, numbers and remark of a footprint that is not the weight.
-void explain_footprint(TextSections& page, const Row& row, const std::string& type) {
+void explain_footprint(TextSections& sections, const Row& row, const std::string& type) {
   const std::string prefix = "footprint.";
   std::vector<std::string> numbers = numbers_below(row, prefix);
   for (std::string& one : numbers) one = fmt::format("{} {}", parameter_words(one), number_words(row, prefix + one));
-  page.add(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
-                       numbers.empty() ? "" : fmt::format(". Its numbers: {}", fmt::join(numbers, ", "))));
+  sections.add(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
+                           numbers.empty() ? "" : fmt::format(". Its numbers: {}", fmt::join(numbers, ", "))));
   if (const auto left = row.number("footprint.undiscovered_probability"))
-    page.add(fmt::format("The probability that an object of 3 cm or more is still undiscovered is {:.0f} %.",
-                         100.0 * *left));
+    sections.add(fmt::format("The probability that an object of 3 cm or more is still undiscovered is {:.0f} %.",
+                             100.0 * *left));
   if (const std::string remark = row.text("footprint.remark"); !remark.empty())
-    page.add(fmt::format("Its remark: {}.", remark));
+    sections.add(fmt::format("Its remark: {}.", remark));
 }
 
 }  // namespace
 
-void explain_models(TextSections& page, const Row& row, const ExperimentOptions& options, const TapRecord& now) {
+void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const TapRecord& now) {
   const HeightOptions& height = options.height;
   const LabelOptions& label = options.label;
   const bool shared = label.hyperparameters == LabelOptions::Hyperparameters::shared;
@@ -153,15 +154,15 @@ void explain_models(TextSections& page, const Row& row, const ExperimentOptions&
   const PluginChoice& height_fitting = height.fitting ? *height.fitting : options.fitting;
   const PluginChoice& label_kernel = shared ? height_kernel : label.kernel ? *label.kernel : options.kernel;
   const PluginChoice& label_fitting = shared ? height_fitting : label.fitting ? *label.fitting : options.fitting;
-  explain_process(page, {"Height GP", "height_gp.", true, height_kernel, height_fitting, now.height_gp, row});
+  explain_process(sections, {"Height GP", "height_gp.", true, height_kernel, height_fitting, now.height_gp, row});
   if (const std::string mean = number_words(row, "mean_standard_deviation", length_words); !mean.empty())
-    page.add(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
-                         number_words(row, "max_standard_deviation", length_words)));
-  explain_process(page, {"Label GP", "label_gp.", false, label_kernel, label_fitting, now.label_gp, row});
-  explain_range_of_weight(page, row, label.clip);
-  if (row.number("p")) explain_footprint(page, row, options.footprint.type);
-  explain_process(page, {"Surface GP (from the taps on an object alone, with a free mean level)", "surface_gp.", true,
-                         height_kernel, height_fitting, now.surface_gp, row});
+    sections.add(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
+                             number_words(row, "max_standard_deviation", length_words)));
+  explain_process(sections, {"Label GP", "label_gp.", false, label_kernel, label_fitting, now.label_gp, row});
+  explain_range_of_weight(sections, row, label.clip);
+  if (row.number("p")) explain_footprint(sections, row, options.footprint.type);
+  explain_process(sections, {"Surface GP (from the taps on an object alone, with a free mean level)", "surface_gp.",
+                             true, height_kernel, height_fitting, now.surface_gp, row});
 }
 
 }  // namespace palpate

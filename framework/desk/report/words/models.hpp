@@ -9,6 +9,6 @@ namespace palpate {
 
 /// Adds a paragraph per GP in the record of the tap: hyperparameters with their fit, likelihood, condition, engine,
 /// jitter, and range of its map. `now` is the choice computed again, whose models have the units of kernel parameters.
-void explain_models(TextSections& page, const Row& row, const ExperimentOptions& options, const TapRecord& now);
+void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const TapRecord& now);
 
 }  // namespace palpate

@@ -100,7 +100,7 @@ function shown(value, digits = 4) {
 }
 
 /// Returns "1 setting", "3 settings".
-function many(count, what) {
+function counted(count, what) {
   return `${count} ${what}${count === 1 ? "" : "s"}`;
 }
 
@@ -183,19 +183,19 @@ function plot(id, traces, more = {}) {
 }
 
 /// Shows an error on the page; later drawings go on.
-function complain(trouble) {
+function showError(trouble) {
   document.body.prepend(element("p", { class: "trouble" }, `A part of this page could not be drawn: ${trouble}`));
   console.error(trouble);
 }
 
 /// Starts a drawing after the previous one has ended.
 function inTurn(draw) {
-  inTurn.last = (inTurn.last ?? Promise.resolve()).then(draw).catch(complain);
+  inTurn.last = (inTurn.last ?? Promise.resolve()).then(draw).catch(showError);
   return inTurn.last;
 }
 
 /// Publishes what is drawn, for tests that wait for it.
-function tellDrawn(what) {
+function publishDrawn(what) {
   document.body.dataset.drawn = String(what);
 }
 
@@ -213,7 +213,7 @@ async function openPage(draw) {
     kNarrow.addEventListener("change", redraw);
     await redraw();
   } catch (trouble) {
-    complain(trouble);
+    showError(trouble);
   }
 }
 

@@ -13,7 +13,7 @@ function liveNote(data) {
   return data.live === undefined ? "" : element("span", { id: "live", class: "live" }, "live");
 }
 
-function sayLive(words) {
+function showConnection(words) {
   const note = document.getElementById("live");
   if (note) note.textContent = words;
 }
@@ -30,8 +30,8 @@ async function follow(data, take) {
     document.addEventListener("visibilitychange", turned, { once: true });
     try {
       const answer = await fetch(`news?at=${at}${document.hidden ? "&now" : ""}`, { signal: turn.signal, cache: "no-store" });
-      if (answer.status === 403 || answer.status === 404) return sayLive("no longer live");
-      sayLive("live");
+      if (answer.status === 403 || answer.status === 404) return showConnection("no longer live");
+      showConnection("live");
       if (answer.status === 200) {
         const news = await answer.json();
         if (news.anew) return location.reload();
@@ -42,7 +42,7 @@ async function follow(data, take) {
       }
     } catch (trouble) {
       if (!turn.signal.aborted) {
-        sayLive("not connected");
+        showConnection("not connected");
         await pause(kAfterTrouble, turn.signal);
       }
     }
@@ -55,11 +55,11 @@ function drawWaiting(data) {
   const words = element("p", { id: "waiting" }, foreign(data.waiting));
   document.body.append(element("div", { class: "controls" }, liveNote(data)), words);
   follow(data, (news) => words.replaceChildren(foreign(news.trouble ?? data.waiting)));
-  return () => tellDrawn("waiting");
+  return () => publishDrawn("waiting");
 }
 
 /// Shows why the page cannot be updated, until that changes.
-function tellTrouble(trouble) {
+function showTrouble(trouble) {
   document.getElementById("standing").append(element("p", { class: "trouble" }, foreign(trouble)));
 }
 
@@ -69,7 +69,7 @@ const kMostNumbers = 12e6;
 
 /// Adds moments to the page of a run. The slider follows if it stood at the last tap.
 async function growRun(slider, news) {
-  if (news.trouble) return tellTrouble(news.trouble);
+  if (news.trouble) return showTrouble(news.trouble);
   const { data, input } = slider;
   const newest = Number(input.value) === data.moments.length - 1;
   data.moments.push(...news.moments);
@@ -86,7 +86,7 @@ async function growRun(slider, news) {
   }
   input.max = data.moments.length - 1;
   if (newest) input.value = input.max;
-  document.getElementById("standing").replaceChildren(...standing(data));
+  document.getElementById("standing").replaceChildren(...runState(data));
   slider.stale = true;
   slider.show();  // draws after this update
 }
@@ -94,10 +94,10 @@ async function growRun(slider, news) {
 /// Applies new results to the page of a sweep and keeps its reader's choices. Other columns need a new page.
 function growSweep(sweep, news) {
   const fresh = { ...news.sweep, live: news.at };
-  if (fresh.trouble) return tellTrouble(fresh.trouble);
+  if (fresh.trouble) return showTrouble(fresh.trouble);
   const names = (data) => JSON.stringify([...data.columns.values()].map(({ name }) => name));
   if (names(fresh) !== names(sweep)) return location.reload();
   Object.assign(sweep, new SweepData(fresh));
-  document.getElementById("standing").replaceChildren(...standingOfSweep(sweep));
+  document.getElementById("standing").replaceChildren(...sweepState(sweep));
   sweep.refresh();
 }

@@ -44,7 +44,7 @@ function facts(data) {
 }
 
 /// Returns the state of a run with its numbers and warnings, which may change with every tap.
-function standing(data) {
+function runState(data) {
   const state = data.state === "done" ? `stopped by: ${data.stop_reason}` : data.stop_reason ? `${data.state}: ${data.stop_reason}` : data.state;
   const footprint = data.any_side ? [] : [", footprint ", foreign(data.footprint)];
   const strategy = element("p", { class: "sub" }, "id ", data.id, `, seed ${data.seed}, acquisition `, foreign(data.acquisition), ...footprint, ", ", foreign(state), ".");
@@ -183,7 +183,7 @@ class Slider {
     this.stale = false;
     const here = { type: "line", x0: moment.taps, x1: moment.taps, yref: "paper", y0: 0, y1: 1, line: { color: "#999999", width: 1, dash: "dot" } };
     await Promise.all(this.data.curves.map((one, i) => Plotly.relayout(`curve_${i}`, { shapes: [here] })));
-    tellDrawn(moment.taps);
+    publishDrawn(moment.taps);
   }
 }
 
@@ -211,7 +211,7 @@ function drawRun(data, bytes) {
   const what = data.any_side ? "surfaces" : "maps";
   const thinned = data.shown.length < data.moments.length ? ` To stay small, this page has ${what} of ${data.shown.length} of ${data.moments.length} moments.` : "";
   document.body.append(
-    element("div", { id: "standing" }, ...standing(data)),
+    element("div", { id: "standing" }, ...runState(data)),
     slider.controls(),
     element("p", { class: "story", id: "story" }),
     element("div", { class: "tall" }, figure("surface", slider.surface.caption())),

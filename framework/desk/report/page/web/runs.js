@@ -110,7 +110,7 @@ class Surfaces {
       lines ? [plot(`difference_${index}`, [heatMap(this.data.runs[index], lines, [-most, most], "RdBu", "cm")], { ...planeAxes(this.data.runs[index]), showlegend: false })] : [],
     );
     await Promise.all([...drawn, ...compared]);
-    tellDrawn(taps);
+    publishDrawn(taps);
   }
 }
 

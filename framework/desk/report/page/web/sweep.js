@@ -26,7 +26,7 @@ function drawFront(sweep, choice) {
   const done = here(sweep.done).map(at).filter(({ cost, error }) => cost !== null && error !== null);
   const failed = here(sweep.failed).map(at).filter(({ cost }) => cost !== null);
   listFront(choice, settings.filter((one) => one.front > 0));
-  sayOfFront(sweep, choice, settings, failed);
+  describeFront(sweep, choice, settings, failed);
   if (done.length + failed.length === 0) return plotNothing("front");
   if (failed.length === 0 && ![choice.cost, choice.error].some((name) => differs(sweep, name))) {
     return plotNothing("front", [choice.cost, choice.error].map((name) => constantWords(sweep, name)).join(" "));
@@ -36,7 +36,7 @@ function drawFront(sweep, choice) {
     const intervals = settings.flatMap(({ [kind]: { mean, half } }) => [mean - (half ?? 0), mean + (half ?? 0)]);
     return rangeOf(values.length > 0 ? values : [0, 1], intervals);
   };
-  const axisOf = (kind, { type, range }) => roomyAxis(judged(sweep, choice[kind]), { type, range, exponentformat: "power" });
+  const axisOf = (kind, { type, range }) => roomyAxis(directedTitle(sweep, choice[kind]), { type, range, exponentformat: "power" });
   const [x, y] = [ends("cost"), ends("error")];
   const edge = sweep.moreIsBetter(choice.error) ? y.low : y.high;
   return plotOfHeight("front", 520, frontTraces(sweep, settings, done, failed, x, y, edge), {
@@ -97,23 +97,23 @@ function meansWords(sweep, settings) {
   const copies = settings.some(({ error }) => !sweep.seeds && error.clusters < error.count) ? " Copies of a run count once." : "";
   if (!sweep.seeds || counts.length === 0) return `The seed is not swept: means over the jobs of each setting; ${rest}${copies}${equal}`;
   const [fewest, most] = extent(counts);
-  const over = fewest === most ? many(most, "seed") : `${fewest} to ${many(most, "seed")}`;
+  const over = fewest === most ? counted(most, "seed") : `${fewest} to ${counted(most, "seed")}`;
   const few = fewest < kFew ? ` With fewer than ${kFew} seeds such an interval can miss the true mean in more than 5 of 100 cases.` : "";
   return `Means over ${over} with 95 % intervals (Student's t); ${rest}${few}${equal}`;
 }
 
-function sayOfFront(sweep, choice, settings, placed) {
+function describeFront(sweep, choice, settings, placed) {
   const edged = placed.filter(({ error }) => error === null).length;
   const open = settings.filter((one) => !one.complete).length;
   const here = (jobs) => jobs.filter((job) => sweep.sceneOf(job) === choice.scene);
   const empty = sweep.groups(sweep.settings).filter(({ jobs }) => here(jobs).length > 0).length - settings.length;
   const gone = here(sweep.failed).length - placed.length;
   const end = sweep.moreIsBetter(choice.error) ? "lower" : "upper";
-  say(
+  setCaption(
     "front",
     meansWords(sweep, settings),
-    open > 0 ? ` Not compared, because jobs failed, have not ended or lack a value: ${many(open, "setting")}.` : "",
-    empty > 0 ? ` Without any value: ${many(empty, "setting")}.` : "",
+    open > 0 ? ` Not compared, because jobs failed, have not ended or lack a value: ${counted(open, "setting")}.` : "",
+    empty > 0 ? ` Without any value: ${counted(empty, "setting")}.` : "",
     edged > 0 ? ` ${edged} failed runs have no error and are drawn at the ${end} edge.` : "",
     gone > 0 ? ` ${gone} failed runs have no cost either and are not drawn.` : "",
   );
@@ -256,7 +256,7 @@ function sampleNote({ sampled, jobs }) {
 }
 
 /// Returns the numbers of jobs by state, with notes and warnings.
-function standingOfSweep(sweep) {
+function sweepState(sweep) {
   const counts = sweep.counts();
   if (!counts.some(([, state]) => state === "done")) counts.unshift([0, "done"]);
   return [factList([[sweep.tally.jobs, "jobs"], ...counts]), ...sampleNote(sweep), ...warningList(troubles(sweep))];
@@ -275,7 +275,7 @@ function drawSweep(data) {
   const swept = sweep.all.flatMap((key, i) => [i > 0 ? ", " : " over ", foreign(key.name), ` (${key.values.length})`]);
   document.body.append(
     element("p", { class: "sub" }, "sweep ", foreign(data.id), ...swept, ". ", liveNote(data)),
-    element("div", { id: "standing" }, ...standingOfSweep(sweep)),
+    element("div", { id: "standing" }, ...sweepState(sweep)),
   );
   const redraw = sweep.columns.size > 0 ? drawPanels(sweep) : noPanels(sweep);
   document.body.append(section("Config", sweptValues(sweep), element("pre", { class: "foreign scroll", dir: "ltr" }, data.config)), footer(data));
@@ -289,7 +289,7 @@ function noPanels(sweep) {
   document.body.append(element("p", { id: "nothing" }, "No job has a result yet: there is nothing to draw."), jobs.place());
   jobs.choose({});
   sweep.refresh = () => jobs.show();
-  return () => tellDrawn(1);
+  return () => publishDrawn(1);
 }
 
 /// Adds the panels with their controls, made by `chooser`.
@@ -332,7 +332,7 @@ function drawPanels(sweep) {
   const drawAll = (panels) =>
     inTurn(async () => {
       for (const panel of panels) await panel(sweep, choice);
-      tellDrawn(++drawn);
+      publishDrawn(++drawn);
     });
   /// Returns a control that sets a choice and redraws the panels that depend on it.
   const chooser = (id, label, names, panels, textOf = (name) => name) => {

@@ -43,7 +43,7 @@ function curveTraces(curve, place, metric, against) {
   const fill = colour.replace(/^#(..)(..)(..)$/, (_, ...parts) => `rgba(${parts.slice(0, 3).map((one) => parseInt(one, 16)).join()},0.18)`);
   const text = curve.at.map((_, i) => {
     const [low, high] = [curve.low[i], curve.high[i]].map((end) => (end === null ? null : shown(end * y, 3)));
-    return `${plain(brief(curve.name, 80))}: ${shown(curve.mean[i] === null ? null : curve.mean[i] * y, 3)}${low === null ? "" : ` [${low}, ${high}]`}, ${many(curve.jobs[i], "job")}`;
+    return `${plain(brief(curve.name, 80))}: ${shown(curve.mean[i] === null ? null : curve.mean[i] * y, 3)}${low === null ? "" : ` [${low}, ${high}]`}, ${counted(curve.jobs[i], "job")}`;
   });
   const line = { type: "scatter", mode: "lines", name: plain(brief(curve.name, 60)), x: at, y: scaled(curve.mean), text, hovertemplate: "%{text}<extra></extra>", legendgroup: curve.name };
   return [edge(curve.low), { ...edge(curve.high), fill: "tonexty", fillcolor: fill }, { ...line, line: { color: colour, width: 2, dash: place < kColours.lines.light.length ? "solid" : "dash" } }];
@@ -66,7 +66,7 @@ function drawCurves(sweep, { curve_of: metric, against, curves_by: by }) {
       const range = [least >= 0 ? 0 : least - 0.3 * room, Math.min(highest, most + 0.5 * room) + 0.04 * room];
       return plotOfHeight(`curves_${i}`, 380, traces, {
         xaxis: roomyAxis(titleOf(against), { rangemode: "tozero" }),
-        yaxis: roomyAxis(judged(sweep, metric), { range }),
+        yaxis: roomyAxis(directedTitle(sweep, metric), { range }),
         legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
         hovermode: "closest",
       });

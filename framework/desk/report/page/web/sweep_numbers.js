@@ -70,8 +70,8 @@ class SweepData {
 
   /// Returns "20 seeds"; if the seed is not swept, "12 units, copies count once" for jobs with copies, else "".
   unitWords(clusters, jobs) {
-    if (this.seeds) return many(clusters, "seed");
-    return clusters < jobs ? `${many(clusters, "unit")}, copies count once` : "";
+    if (this.seeds) return counted(clusters, "seed");
+    return clusters < jobs ? `${counted(clusters, "unit")}, copies count once` : "";
   }
 
   /// Returns the value of a key as written, or a dash if the job's plugins lack the option.

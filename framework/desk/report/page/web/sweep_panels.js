@@ -24,7 +24,7 @@ const namesOf = (key) => key.values.map((value) => value || kNothing);
 const keyAxis = (key) => placesAxis(plain(brief(key.name)), namesOf(key));
 const titleOf = (name) => plain(brief(withUnit(name), 60));
 
-function judged(sweep, column) {
+function directedTitle(sweep, column) {
   const way = sweep.columns.get(column).better;
   return way ? `${titleOf(column)},${kNarrow.matches ? "<br>" : " "}${way}` : titleOf(column);
 }
@@ -39,7 +39,7 @@ function plotOfHeight(id, height, traces, more) {
 
 /// Hides the plot of a figure; `words`, if any, replace its caption.
 function plotNothing(id, words) {
-  if (words) say(id, foreign(words));
+  if (words) setCaption(id, foreign(words));
   const place = document.getElementById(id);
   Plotly.purge(place);
   place.hidden = true;
@@ -52,7 +52,7 @@ function constantWords(sweep, column) {
   return `${withUnit(column)}: ${shown(values[0])} ${values.length === 1 ? "in the one job that has it" : `in each of ${values.length} jobs`}.`;
 }
 
-function say(id, ...text) {
+function setCaption(id, ...text) {
   document.getElementById(id).closest("figure").querySelector("figcaption").replaceChildren(...text);
 }
 
@@ -87,8 +87,8 @@ function drawPoints(sweep, key, metric, cells, over) {
   const trace = points("", cells.map((one) => one.column), cells.map((one) => one.mean), cells.map((one) => one.hover), { size: 9, color: lineColour(0) }, {
     error_y: { type: "data", array: cells.map((one) => one.deviation ?? 0), color: themed("bars"), thickness: 2 },
   });
-  say("cells_mean", "Mean ", over, "; bars: standard deviation.");
-  return plotOfHeight("cells_mean", 380, [trace], { xaxis: keyAxis(key), yaxis: roomyAxis(judged(sweep, metric)) });
+  setCaption("cells_mean", "Mean ", over, "; bars: standard deviation.");
+  return plotOfHeight("cells_mean", 380, [trace], { xaxis: keyAxis(key), yaxis: roomyAxis(directedTitle(sweep, metric)) });
 }
 
 /// With two keys, draws means as cells of a map, and the spread as a second map.
@@ -122,9 +122,9 @@ function drawMaps(sweep, [across, up], metric, cells, over) {
   };
   const more = { xaxis: keyAxis(across), yaxis: keyAxis(up), plot_bgcolor: themed("empty"), margin: { l: 60, r: 12, t: 12, b: 50 } };
   const height = Math.min(sparse ? 520 : 900, Math.max(340, 130 + 24 * up.values.length));
-  say("cells_mean", "Mean ", over, ". Grey: no value.");
-  say("cells_spread", "Spread: standard deviation of the same jobs. Grey: fewer than two values.");
-  const means = plotOfHeight("cells_mean", height, [trace((one) => one.mean, judged(sweep, metric), kWhere)], more);
+  setCaption("cells_mean", "Mean ", over, ". Grey: no value.");
+  setCaption("cells_spread", "Spread: standard deviation of the same jobs. Grey: fewer than two values.");
+  const means = plotOfHeight("cells_mean", height, [trace((one) => one.mean, directedTitle(sweep, metric), kWhere)], more);
   if (!hasSpread(cells)) return means;
   return Promise.all([
     means,
@@ -170,14 +170,14 @@ function drawGroups(sweep, { group, then, metric }) {
   const traces = groups.map((one, i) => boxTrace(sweep, metric, one.jobs, i, colourOf(one), few));
   const rest = all.length - groups.length;
   const without = groups.reduce((sum, { jobs }, i) => sum + jobs.length - traces[i].x.length, 0);
-  say(
+  setCaption(
     "groups",
     "Boxes: quartiles and median; points: jobs.",
     rest > 0 ? ` ${rest} more groups are not shown: choose fewer keys.` : "",
     without > 0 ? ` ${without} of their jobs have no value: failed, not ended, or no value.` : "",
   );
   return plotOfHeight("groups", Math.max(260, 90 + 30 * groups.length), traces, {
-    xaxis: roomyAxis(judged(sweep, metric)),
+    xaxis: roomyAxis(directedTitle(sweep, metric)),
     yaxis: placesAxis("", groups.map(nameOf), { range: [groups.length - 0.5, -0.5] }, kNarrow.matches ? 18 : 60, kMostGroups),
     showlegend: false,
   });
@@ -210,7 +210,7 @@ function parallelAxes(sweep, metric) {
 function drawParallel(sweep, { metric }) {
   if (!hasWebGL()) return plotNothing("parallel", "This browser has no WebGL, which this plot needs.");
   const { axes, jobs, left, step } = parallelAxes(sweep, metric);
-  say(
+  setCaption(
     "parallel",
     "One line per finished job, coloured by ",
     foreign(withUnit(metric)),
