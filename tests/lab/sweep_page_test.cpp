@@ -89,13 +89,13 @@ TEST_F(LargeSweep, SaysOnItsPageWhatBecameOfAllJobs) {
   const Json page = data(sweep_, 400);
   std::filesystem::rename(gone.string() + ".aside", gone);
   EXPECT_EQ(page.at("tally"), (Json{{"jobs", 2000},
-                                      {"step", 5},
-                                      {"counts", {{"done", 1979}, {"failed", 20}, {"missing", 1}}},
-                                      {"reasons", 1},
-                                      {"failures", Json::array({{{"reason", "out of luck"},
-                                                                 {"jobs", 20},
-                                                                 {"first", 7},
-                                                                 {"words", "seed=3, acquisition=uncertainty"}}})}}));
+                                    {"step", 5},
+                                    {"counts", {{"done", 1979}, {"failed", 20}, {"missing", 1}}},
+                                    {"reasons", 1},
+                                    {"failures", Json::array({{{"reason", "out of luck"},
+                                                               {"jobs", 20},
+                                                               {"first", 7},
+                                                               {"words", "seed=3, acquisition=uncertainty"}}})}}));
 }
 
 TEST_F(LargeSweep, HasAllJobsOnItsPageWhereThereIsRoom) {

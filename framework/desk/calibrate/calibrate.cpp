@@ -132,7 +132,7 @@ class Calibrated {
   }
 
  private:
-  /// Throws Error for a run whose scene does not stand as its config says.
+  /// Throws Error for a run whose scene does not match its config.
   void check_scenes() const {
     constexpr const char* kRemedy = "use taps on a scene that stands as in its config";
     std::size_t next = 0;

@@ -125,7 +125,7 @@ MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame
   const Area& area = frame.area;
   const Candidates& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
-  // Ignores what is less than the margin higher than a tap, as the tap's mark reaches above the surface.
+  // A mark reaches above the surface, so only surfaces higher than the tap by this margin hide it.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
   const double margin = 0.06 * height;
   const auto hidden = [&](const TapMark& mark) {

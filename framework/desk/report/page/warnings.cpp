@@ -20,7 +20,7 @@ int diagnostics(const RunResult& result, const char* kind) {
   return found != result.diagnostics.end() ? found->second : 0;
 }
 
-/// Adds "3 taps" with `what` about them; nothing if `count` is 0.
+/// Adds a sentence "3 taps" + `what`; nothing if `count` is 0.
 void add_counted(std::vector<std::string>& out, int count, const char* noun, const char* what) {
   if (count > 0) out.push_back(counted(count, noun) + what);
 }

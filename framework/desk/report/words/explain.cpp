@@ -276,7 +276,7 @@ class FromAboveExplained final : public Explanation {
     if (all > number_) text_.add(fmt::format("After all {} taps, it {}.", all, said(all)));
   }
 
-  std::optional<double> expected_;  ///< expected height; the height of an object says nothing about the desk
+  std::optional<double> expected_;  ///< expected height, metres, that the contact is compared with
 };
 
 }  // namespace
