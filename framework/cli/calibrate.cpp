@@ -7,10 +7,10 @@
 namespace palpate::cli {
 
 int calibrate(Program& program, const CalibrateArguments& arguments) {
-  std::vector<Recording> recordings;
+  std::vector<RecordedRun> recordings;
   for (const std::string& directory : arguments.runs) {
     check_one_run(directory);
-    recordings.push_back(read_recording(program, directory));
+    recordings.push_back(read_recorded_run(program.host, directory));
   }
   print_text(palpate::calibrate(program, recordings));
   return kDone;

@@ -34,11 +34,11 @@ fs::path table_file(const Sweep& sweep, const Comparison& comparison, const std:
 }
 
 /// Returns the taps after which the jobs are compared, each once, in the order of the command line.
-std::vector<Occasion> occasions_of(const CompareArguments& arguments) {
-  std::vector<Occasion> out;
-  if (arguments.until) out.push_back(Occasion::once(field_name(*arguments.until)));
+std::vector<Checkpoint> occasions_of(const CompareArguments& arguments) {
+  std::vector<Checkpoint> out;
+  if (arguments.until) out.push_back(Checkpoint::once(field_name(*arguments.until)));
   for (const int count : arguments.at) {
-    const Occasion one = Occasion::after(count);
+    const Checkpoint one = Checkpoint::after(count);
     if (std::find(out.begin(), out.end(), one) == out.end()) out.push_back(one);
   }
   return out;
@@ -77,7 +77,7 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
                                                    const CompareArguments& arguments) {
   const std::optional<Condition> where = Condition::of_command_line(arguments.where);
   std::vector<Comparison> comparisons;
-  const auto add = [&](const std::vector<Row>& results, const std::optional<Occasion>& occasion) {
+  const auto add = [&](const std::vector<Row>& results, const std::optional<Checkpoint>& occasion) {
     for (const std::string& metric : arguments.metrics) {
       const CompareQuery query{arguments.by,       metric,          where ? &*where : nullptr,
                                arguments.baseline, arguments.ratio, extent_of(arguments)};
@@ -85,7 +85,7 @@ std::optional<std::vector<Comparison>> compare_all(const Program& program, const
       comparisons.back().occasion = occasion;
     }
   };
-  const std::vector<Occasion> occasions = occasions_of(arguments);
+  const std::vector<Checkpoint> occasions = occasions_of(arguments);
   if (occasions.empty()) {
     if (arguments.workers) throw Error("command line", "-j: there is nothing to compute without --at or --until");
     add(sweep_results(sweep), std::nullopt);

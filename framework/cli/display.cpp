@@ -6,7 +6,6 @@
 #include "reading/reading.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 
 #include <fmt/format.h>
 
@@ -87,20 +86,20 @@ void TapTable::announce(const TapRecord& tap) {
     header_ = true;
   }
   if (!terminal_) return;
-  print_out("{:>4}  of {}, going to ({}, {}) cm ...", tap.number, budget_, place_text(tap.target.x),
-            place_text(tap.target.y));
+  print_out("{:>4}  of {}, going to ({}, {}) cm ...", tap.number(), budget_, place_text(tap.target().x),
+            place_text(tap.target().y));
   flush_output();
 }
 
 void TapTable::record(const TapRecord& tap, const std::array<double, kPhases>&) {
   clear_live_line();
-  const bool touched = tap.contact.outcome == Outcome::contact;
-  const std::string contact = !touched ? outcome_name(tap.contact.outcome) : *tap.on_object ? "object" : "desk";
+  const bool touched = tap.is_contact();
+  const std::string contact = !touched ? outcome_name(tap.result.outcome) : tap.reading->on_object ? "object" : "desk";
   const std::string line = fmt::format(
-      "{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}{}\n", tap.number, source_name(tap.source),
-      place_text(tap.target.x), place_text(tap.target.y), touched ? place_text(tap.contact.height) : std::string("-"),
-      contact, error_text(tap.expected_rmse), error_text(tap.errors.overall()), share_text(tap.errors.footprint_iou),
-      touched ? "" : "  " + tap.contact.reason);
+      "{:>4}  {:<11}  {:>6}  {:>6}  {:>9}  {:<11}  {:>11}  {:>8}  {:>5}{}\n", tap.number(),
+      source_name(tap.request.source), place_text(tap.target().x), place_text(tap.target().y),
+      touched ? place_text(tap.result.height()) : std::string("-"), contact, error_text(tap.shown_expected_rmse),
+      error_text(tap.errors.overall()), share_text(tap.errors.footprint_iou), touched ? "" : "  " + tap.result.reason);
   print_text(line);
   flush_output();
 }

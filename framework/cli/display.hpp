@@ -2,7 +2,7 @@
 // The output of a run on the terminal: one line per tap, and the summary.
 #pragma once
 
-#include "record/session.hpp"
+#include "record/run.hpp"
 
 #include <array>
 #include <cstdint>
@@ -12,9 +12,10 @@
 namespace palpate::cli {
 
 /// Prints one line per tap on stdout. A terminal also shows a live line during the tap.
-class TapTable final : public Journal {
+class TapTable final : public Observer {
  public:
   explicit TapTable(std::int64_t budget);
+  bool wants_errors() const override { return true; }
   void announce(const TapRecord& tap) override;
   void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
 

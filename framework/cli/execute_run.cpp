@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace palpate::cli {
 
@@ -20,14 +21,16 @@ int execute_run(const Program& program, const ResolvedConfig& config, const RunO
   listen_for_interrupts();
   outlive_reader();
   const std::unique_ptr<Step> step = Step::when(output.step, config.options, program.interrupted);
-  std::unique_ptr<Journal> display;
-  if (output.table) display = std::make_unique<TapTable>(config.options.taps);
+  std::vector<Observer*> observers;
+  if (step) observers.push_back(step.get());
   std::optional<Watcher> watcher;
-  if (!output.watched.empty()) watcher.emplace(program, output.watched, display.get());
+  if (!output.watched.empty()) observers.push_back(&watcher.emplace(program, output.watched));
+  std::optional<TapTable> table;
+  if (output.table) observers.push_back(&table.emplace(config.options.taps));
   const GateOutput gate{config.options.name, output.junit, output.table};
   RunReport report;
   const std::optional<Error> trouble = catch_error([&] {
-    report = action(watcher ? &*watcher : display.get(), step.get());
+    report = action(observers);
     if (watcher) watcher->start();  // for a run without further taps, which calls neither announce() nor record()
   });
   std::vector<RunOutcome> runs{{"run " + config.id, "", trouble ? trouble->what() : "", {}}};

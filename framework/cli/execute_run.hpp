@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace palpate::cli {
 
@@ -19,9 +20,9 @@ struct RunOutput {
   std::filesystem::path watched{};  ///< run directory whose page another process serves; "": none
 };
 
-/// Runs `action`, which starts or resumes the run with the given display and supervisor (either may be null). Prints
-/// the result and checks the expectations of the config. Returns the exit status. Throws Error.
-using RunAction = std::function<RunReport(Journal* display, Supervisor* step)>;
+/// Runs `action`, which starts or resumes the run with the given observers. Prints the result and checks the
+/// expectations of the config. Returns the exit status. Throws Error.
+using RunAction = std::function<RunReport(const std::vector<Observer*>& observers)>;
 int execute_run(const Program& program, const ResolvedConfig& config, const RunOutput& output, const RunAction& action);
 
 }  // namespace palpate::cli

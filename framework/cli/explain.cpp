@@ -8,7 +8,7 @@ namespace palpate::cli {
 
 int explain(Program& program, const ExplainArguments& arguments) {
   check_one_run(arguments.directory);
-  const Recording recording = read_recording(program, arguments.directory);
+  const RecordedRun recording = read_recorded_run(program.host, arguments.directory);
   print_text(explain_tap(program, recording, arguments.tap));
   return kDone;
 }

@@ -5,6 +5,7 @@
 #include "cli/output.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
+#include "report/beliefs.hpp"
 #include "report/exchange/mesh_export.hpp"
 
 #include <palpate/error.hpp>
@@ -61,13 +62,12 @@ int export_tables(const fs::path& directory, const std::string& to) {
 int export_run(Program& program, const ExportArguments& arguments) {
   check_one_run(arguments.directory);
   if (arguments.format == "csv") return export_tables(arguments.directory, arguments.to);
-  const Recording recording = read_recording(program, arguments.directory);
-  Playback playback(program, recording);
+  const RecordedRun recording = read_recorded_run(program.host, arguments.directory);
+  RunReplay playback(program, recording, page_readers(recording));
   playback.advance_to(static_cast<int>(recording.taps.size()));
   const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
-  auto* const any_side = dynamic_cast<FromAnySide*>(&playback.experiment());
-  const std::string surface =
-      any_side != nullptr ? surface_ply(*any_side, run) : surface_ply(reconstruct(playback.from_above()), run);
+  const std::string surface = is_any_side(recording) ? surface_ply(playback.experiment().belief().surface(), run)
+                                                     : surface_ply(reconstruct(playback.experiment()), run);
   if (playback.truth_lost())
     print_message(fmt::format("surface.ply has no true heights: {}\n", playback.truth_lost()->what()));
   const fs::path folder = folder_for(recording.directory, arguments.to);

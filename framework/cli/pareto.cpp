@@ -4,7 +4,6 @@
 #include "analysis/gnuplot.hpp"
 #include "analysis/mean_output.hpp"
 #include "analysis/pareto_report.hpp"
-#include "cli/commands.hpp"
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_display.hpp"

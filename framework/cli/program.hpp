@@ -5,7 +5,7 @@
 
 #include "config/compose.hpp"
 #include "plugin/host.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 
 #include <filesystem>
 

@@ -4,8 +4,8 @@
 #include "cli/output.hpp"
 #include "math/instructions.hpp"
 #include "record/record_reader.hpp"
-#include "record/recording.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_replay.hpp"
 
 #include <fmt/format.h>
 

@@ -56,7 +56,7 @@ void show(const Figures& figures) {
 }
 
 /// Throws Error with the reason `what` for a run from any side.
-void check_from_above(const Recording& recording, const std::string& what) {
+void check_from_above(const RecordedRun& recording, const std::string& what) {
   if (recording.config.options.scene.touch != SceneOptions::Touch::any) return;
   throw Error(recording.directory.string(), "is a run from any side, but " + what,
               "use 'palpate report' without options for its page");
@@ -68,7 +68,7 @@ void warn_lost(const History& history) {
 }
 
 void report_run(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
-  const Recording recording = read_recording(workshop, arguments.directories.front());
+  const RecordedRun recording = read_recorded_run(workshop.host, arguments.directories.front());
   if (arguments.figures || arguments.paper)
     check_from_above(recording, "--figures and --paper are only for runs from above");
   ProgressMessages progress("taps");
@@ -101,7 +101,7 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
   for (const std::string& directory : directories) {
     if (is_sweep(directory))
       refuse(directory + " is a sweep, but a page of several runs needs single runs", "name its jobs: SWEEP/jobs/ID");
-    Recording recording = read_recording(workshop, directory);
+    RecordedRun recording = read_recorded_run(workshop.host, directory);
     check_from_above(recording, "pages of several runs are only for runs from above");
     History history = make_history(workshop, recording, ProgressMessages("taps"));
     warn_lost(history);

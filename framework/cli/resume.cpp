@@ -26,8 +26,10 @@ int resume(Program& program, const ResumeArguments& arguments) {
   const ResolvedConfig config = load_run(program.host, arguments.directory);
   RunOutput output{!arguments.launch.quiet, false, arguments.launch.junit, arguments.step};
   if (arguments.launch.watch) output.watched = arguments.directory;
-  return execute_run(program, config, output, [&](Journal* display, Supervisor* step) {
-    return resume_run(program, arguments.directory, arguments.options, display, step);
+  return execute_run(program, config, output, [&](const std::vector<Observer*>& observers) {
+    ResumeOptions options = arguments.options;
+    options.asks_before_taps = arguments.step;
+    return resume_run(program, arguments.directory, options, observers);
   });
 }
 

@@ -77,9 +77,9 @@ Error axis_error(const std::vector<Override>& overrides, const std::vector<std::
 void print_models(const Program& program, const ResolvedConfig& config) {
   std::map<std::string, std::string> models;
   const std::optional<Error> trouble = catch_error([&] {
-    for (const ModelReader& one : readers_of(program, config)) {
+    for (const PlannedModel& one : models_of(program, config)) {
       std::string& who = models[one.model];
-      who += (who.empty() ? "" : ", ") + one.who;
+      who += (who.empty() ? "" : ", ") + one.reader;
     }
   });
   if (trouble) print_out("# this config cannot be run: {}\n", trouble->what());
@@ -138,8 +138,8 @@ int run(Program& program, const RunArguments& arguments) {
   check_junit(arguments.junit);
   RunOutput output{!arguments.quiet && !arguments.json, arguments.json, arguments.junit, arguments.step};
   if (arguments.watch) output.watched = directory;
-  const int status = execute_run(program, config, output, [&](Journal* display, Supervisor* step) {
-    return start_run(program, config, directory, arguments.force, display, step);
+  const int status = execute_run(program, config, output, [&](const std::vector<Observer*>& observers) {
+    return start_run(program, config, directory, {arguments.force, Taps::by_backend, arguments.step}, observers);
   });
   if (arguments.quiet) return status;
   for (const std::string& line : partly_given_sizes(config.tree, config.notes)) print_message(line + "\n");

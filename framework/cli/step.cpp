@@ -4,7 +4,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "config/scale.hpp"
-#include "record/tap_row.hpp"
+#include "record/fields.hpp"
 
 #include <palpate/error.hpp>
 
@@ -21,8 +21,8 @@ namespace {
 constexpr int kPollMilliseconds = 100;
 
 std::string who_chose(const TapRecord& tap) {
-  if (tap.source == Source::fallback) return "a fallback: " + tap.why;
-  return tap.source == Source::initial ? "one of the initial taps" : "chosen by the acquisition";
+  if (tap.request.source == Source::fallback) return "a fallback: " + tap.why;
+  return tap.request.source == Source::initial ? "one of the initial taps" : "chosen by the acquisition";
 }
 
 }  // namespace
@@ -41,10 +41,12 @@ Step::Step(const ExperimentOptions& options, const std::atomic<bool>* stopped)
       two_part_(options.surface == ExperimentOptions::Surface::two_part),
       interrupted_(stopped) {}
 
-bool Step::permits(const TapRecord& tap, const Preview& preview) {
+bool Step::permits(const TapRecord& tap, const Experiment& experiment) {
+  const Preview preview = experiment.preview(tap);
   const Scale places = usual_scale(Unit::metre, LengthKind::place);
-  std::string text = fmt::format("tap {} of {} at ({}, {}) {}, {}", tap.number, budget_, places.number(tap.target.x),
-                                 places.number(tap.target.y), places.unit, who_chose(tap));
+  std::string text =
+      fmt::format("tap {} of {} at ({}, {}) {}, {}", tap.number(), budget_, places.number(tap.target().x),
+                  places.number(tap.target().y), places.unit, who_chose(tap));
   if (const std::optional<Prediction>& expected = preview.expected) {
     text += fmt::format("; expected height{} {} +- {} {}", two_part_ ? " of an object there" : "",
                         places.number(expected->height), places.number(expected->standard_deviation), places.unit);

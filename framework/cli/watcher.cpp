@@ -58,13 +58,4 @@ void Watcher::start() {
   start_watcher(program_, directory_);
 }
 
-void Watcher::announce(const TapRecord& tap) {
-  start();
-  if (display_ != nullptr) display_->announce(tap);
-}
-
-void Watcher::record(const TapRecord& tap, const std::array<double, kPhases>& seconds) {
-  if (display_ != nullptr) display_->record(tap, seconds);
-}
-
 }  // namespace palpate::cli

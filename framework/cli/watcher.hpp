@@ -14,21 +14,18 @@ namespace palpate::cli {
 void start_watcher(const Program& program, const std::filesystem::path& directory);
 
 /// Starts the watcher right before the first tap, because the run directory does not exist earlier.
-class Watcher final : public Journal {
+class Watcher final : public Observer {
  public:
-  /// `display` may be null. Both objects must outlive this one.
-  Watcher(const Program& program, std::filesystem::path directory, Journal* display)
-      : program_(program), directory_(std::move(directory)), display_(display) {}
+  /// `program` must outlive this object.
+  Watcher(const Program& program, std::filesystem::path directory)
+      : program_(program), directory_(std::move(directory)) {}
 
   void start();
-  void announce(const TapRecord& tap) override;
-  void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
-  bool wants_errors() const override { return display_ != nullptr && display_->wants_errors(); }
+  void announce(const TapRecord&) override { start(); }
 
  private:
   const Program& program_;
   std::filesystem::path directory_;
-  Journal* display_;
   bool started_ = false;
 };
 

@@ -4,10 +4,10 @@
 
 #include "answers/answer.hpp"
 #include "environment.hpp"
-#include "experiment/from_above.hpp"
-#include "record/callers_run.hpp"
+#include "experiment/experiment.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
+#include "record/run.hpp"
 #include "threads.hpp"
 #include "values.hpp"
 
@@ -26,12 +26,12 @@ class AskTellRun {
              bool force) {
     const ObjectGuard guard(lock_);
     const ResolvedConfig resolved = resolve(config, overrides);
-    run_ = CallersRun::start(environment_.workshop, resolved, directory_of(resolved, runs), force);
+    run_ = started(Run::start(environment_.workshop, resolved, directory_of(resolved, runs), {force, Taps::by_caller}));
     describe();
   }
   AskTellRun(const std::string& directory, bool retry_failed, bool force) {
     const ObjectGuard guard(lock_);
-    run_ = CallersRun::resume(environment_.workshop, directory, {retry_failed, force});
+    run_ = started(Run::resume(environment_.workshop, directory, {retry_failed, force, Taps::by_caller}));
     describe();
   }
   /// In a forked child the run is leaked, because its destructor would wait for threads that the child lacks.
@@ -43,13 +43,13 @@ class AskTellRun {
     std::optional<Eigen::VectorXd> values;
     if (scores) values = checked(*scores);
     const ObjectGuard guard(lock_);
-    const TapRecord* tap = open().begin(values ? &*values : nullptr);
+    const TapRecord* tap = open().ask(values ? &*values : nullptr);
     return tap != nullptr ? std::optional(*tap) : std::nullopt;
   }
 
-  void tell(Contact contact) {
+  void tell(TapResult result) {
     const ObjectGuard guard(lock_);
-    open().end(std::move(contact));
+    open().tell(std::move(result));
   }
 
   std::string finish() {
@@ -61,24 +61,22 @@ class AskTellRun {
   void close(bool finish) {
     if (!lock_.is_here()) return;
     const ObjectGuard guard(lock_);
-    const std::unique_ptr<CallersRun> run = std::move(run_);
-    if (run && finish && !run->finished() && !run->pending()) run->finish();
+    const std::unique_ptr<Run> run = std::move(run_);
+    if (run && finish && !run->is_finished() && !run->is_pending()) run->finish();
   }
 
   bool finished() {
     const ObjectGuard guard(lock_);
-    return open().finished();
+    return open().is_finished();
   }
   int taps() {
     const ObjectGuard guard(lock_);
     return open().experiment().counts().taps;
   }
-  /// Returns a copy of a map of the present belief. `wanted` is the quantity that the map needs.
-  Map map(const Eigen::VectorXd& (TapBelief::*quantity)() const, Quantity wanted) {
+  /// Returns a copy of the values of a quantity as of now.
+  Map map(const char* quantity) {
     const ObjectGuard guard(lock_);
-    FromAbove& experiment = open().experiment();
-    experiment.build(wanted);
-    return {(experiment.belief().*quantity)(), rows(), columns()};
+    return {open().look({quantity}).values(quantity), rows(), columns()};
   }
 
   const std::string& directory() const { return directory_; }
@@ -91,13 +89,21 @@ class AskTellRun {
   void describe() {
     directory_ = run_->directory().string();
     if (const Tree* label = run_->config().tree.find_path("backend.label")) label_ = label->text;
-    xs_ = run_->experiment().candidates().xs;
-    ys_ = run_->experiment().candidates().ys;
+    const CandidateGrid grid = grid_of(run_->experiment().belief().candidates());
+    xs_ = grid.xs;
+    ys_ = grid.ys;
   }
   int rows() const { return static_cast<int>(ys_.size()); }
   int columns() const { return static_cast<int>(xs_.size()); }
 
-  CallersRun& open() {
+  /// Returns the run. Throws Error for a finished one.
+  static std::unique_ptr<Run> started(std::unique_ptr<Run> run) {
+    if (!run->is_finished()) return run;
+    throw Error(run->finish().directory.string(), "this run is finished",
+                "add force=True to move it aside and run again");
+  }
+
+  Run& open() {
     if (!run_) throw Error("experiment", "is closed", "resume the run with palpate.Experiment.resume(DIR)");
     return *run_;
   }
@@ -115,7 +121,7 @@ class AskTellRun {
 
   ObjectLock lock_;
   InterruptibleEnvironment environment_;
-  std::unique_ptr<CallersRun> run_;
+  std::unique_ptr<Run> run_;
   std::string directory_;
   std::string label_;
   Eigen::VectorXd xs_;
@@ -123,14 +129,19 @@ class AskTellRun {
 };
 
 /// Returns the result of a tap as a backend would return it. Throws Error for an outcome that no answer may have.
-inline Contact contact_of(const std::string& outcome, double height, double force, double seconds,
-                          const std::string& reason, bool ends_run) {
+inline TapResult contact_of(const std::string& outcome, double height, double force, double seconds,
+                            const std::string& reason, bool ends_run) {
   const std::optional<Outcome> known = answered_outcome(outcome);
   if (!known) {
     throw Error("tell", "unknown outcome '" + plain_line(outcome) + "'",
                 "use contact, no_contact, unreachable, timeout or aborted");
   }
-  return {*known, height, force, seconds, reason, ends_run};
+  TapResult out =
+      *known == Outcome::contact ? contact_on({}, height, force, seconds) : tap_without_contact(*known, seconds);
+  out.force = force;
+  out.reason = reason;
+  out.ends_run = ends_run;
+  return out;
 }
 
 }  // namespace palpate

@@ -5,7 +5,7 @@
 #include "config/compose.hpp"
 #include "experiment/experiment_options.hpp"
 #include "record/build_info.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 
 #include <palpate/error.hpp>
 

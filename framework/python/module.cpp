@@ -7,7 +7,6 @@
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 #include "records.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
@@ -31,11 +30,10 @@ namespace {
 
 /// Calls a Python function after every tap of a run, on the thread of the run. Interrupts the run at Ctrl-C, and if the
 /// function throws.
-class ProgressJournal final : public Journal {
+class ProgressObserver final : public Observer {
  public:
-  ProgressJournal(std::atomic<bool>& interrupted, py::object progress)
+  ProgressObserver(std::atomic<bool>& interrupted, py::object progress)
       : interrupted_(interrupted), progress_(std::move(progress)) {}
-  void announce(const TapRecord&) override {}
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override {
     if (CallsWithoutGil::all().ended()) {
       interrupted_ = true;
@@ -45,7 +43,7 @@ class ProgressJournal final : public Journal {
     if (PyErr_CheckSignals() != 0) return stop(py::error_already_set());
     if (progress_.is_none()) return;
     try {
-      CallsWithoutGil::all().call_back(progress_, tap.number);
+      CallsWithoutGil::all().call_back(progress_, tap.number());
     } catch (const py::error_already_set& trouble) {
       stop(trouble);
     }
@@ -66,14 +64,14 @@ class ProgressJournal final : public Journal {
 std::string run(const std::string& config, const std::vector<std::string>& overrides, const std::string& runs,
                 bool force, const py::object& progress) {
   InterruptibleEnvironment environment;
-  ProgressJournal journal(environment.interrupted, progress);
+  ProgressObserver observer(environment.interrupted, progress);
   RunReport report;
   {
     const GilRelease no_gil;
     const ResolvedConfig resolved = resolve(config, overrides);
-    report = start_run(environment.workshop, resolved, directory_of(resolved, runs), force, &journal);
+    report = start_run(environment.workshop, resolved, directory_of(resolved, runs), {force}, {&observer});
   }
-  if (journal.trouble()) throw *journal.trouble();
+  if (observer.trouble()) throw *observer.trouble();
   return report.directory.string();
 }
 
@@ -195,20 +193,22 @@ void bind_sweep_record(py::module_& module) {
 
 void bind_tap(py::module_& module) {
   py::class_<TapRecord>(module, "Tap")
-      .def_readonly("number", &TapRecord::number)
-      .def_property_readonly("x", [](const TapRecord& tap) { return tap.target.x; })
-      .def_property_readonly("y", [](const TapRecord& tap) { return tap.target.y; })
+      .def_property_readonly("number", &TapRecord::number)
+      .def_property_readonly("x", [](const TapRecord& tap) { return tap.target().x; })
+      .def_property_readonly("y", [](const TapRecord& tap) { return tap.target().y; })
       .def_readonly("candidate", &TapRecord::candidate)
       .def_readonly("score", &TapRecord::score)
-      .def_property_readonly("source", [](const TapRecord& tap) { return source_name(tap.source); })
+      .def_property_readonly("source", [](const TapRecord& tap) { return source_name(tap.request.source); })
       .def_readonly("why", &TapRecord::why);
 }
 
 void bind_ask_tell_run(py::module_& module) {
   // Arrays are read-only, because a changed array would not change the belief.
-  const auto map = [](const Eigen::VectorXd& (TapBelief::*quantity)() const, Quantity wanted) {
-    return [quantity, wanted](AskTellRun& self) {
-      Array out = array_of(self.map(quantity, wanted));
+  const auto map = [](const char* quantity, bool squared = false) {
+    return [quantity, squared](AskTellRun& self) {
+      Map values = self.map(quantity);
+      if (squared) values.values = values.values.cwiseAbs2().eval();
+      Array out = array_of(values);
       out.attr("setflags")(py::arg("write") = false);
       return out;
     };
@@ -228,11 +228,11 @@ void bind_ask_tell_run(py::module_& module) {
       .def("taps", &AskTellRun::taps)
       .def("xs", [](AskTellRun& self) { return vector_of(self.xs()); })
       .def("ys", [](AskTellRun& self) { return vector_of(self.ys()); })
-      .def("uncertainty", map(&TapBelief::uncertainty, Quantity::uncertainty))
-      .def("weight", map(&TapBelief::weight, Quantity::weight))
-      .def("probability", map(&TapBelief::probability, Quantity::probability))
-      .def("height_mean", map(&TapBelief::height_mean, Quantity::height))
-      .def("height_variance", map(&TapBelief::height_variance, Quantity::height));
+      .def("uncertainty", map(quantity::kUncertainty))
+      .def("weight", map(quantity::kLabelMean))
+      .def("probability", map(quantity::kObjectProbability))
+      .def("height_mean", map(quantity::kHeightMean))
+      .def("height_variance", map(quantity::kHeightStd, true));
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "environment.hpp"
-#include "experiment/from_above.hpp"
+#include "experiment/experiment.hpp"
 #include "experiment/metrics.hpp"
 #include "record/json.hpp"
-#include "record/recording.hpp"
 #include "record/run_directory.hpp"
+#include "record/run_replay.hpp"
 #include "sweep/pooled_sweep.hpp"
 #include "sweep/sweep.hpp"
 #include "threads.hpp"
@@ -25,24 +25,25 @@ namespace palpate {
 using NamedMaps = std::vector<std::pair<const char*, Map>>;
 
 /// Returns maps of the present belief. Heights are in metres.
-inline NamedMaps maps_of(FromAbove& experiment) {
-  experiment.build(Quantity::uncertainty | Quantity::weight | Quantity::probability | Quantity::height);
-  const TapBelief& belief = experiment.belief();
+inline NamedMaps maps_of(Experiment& experiment) {
+  experiment.look();
+  Belief& belief = experiment.belief();
   const auto map = [&](const Eigen::VectorXd& values) {
-    return Map{values, experiment.candidates().rows, experiment.candidates().columns};
+    return Map{values, belief.candidates().rows, belief.candidates().columns};
   };
-  return {{"height_mean", map(belief.height_mean())},
-          {"height_standard_deviation", map(belief.height_variance().cwiseMax(0.0).cwiseSqrt())},
-          {"uncertainty", map(belief.uncertainty())},
-          {"weight", map(belief.weight())},
-          {"probability", map(belief.probability())},
-          {"surface", map(reconstruction(belief))}};
+  return {{"height_mean", map(belief.values(quantity::kHeightMean))},
+          {"height_standard_deviation", map(belief.values(quantity::kHeightStd))},
+          {"uncertainty", map(belief.values(quantity::kUncertainty))},
+          {"weight", map(belief.values(quantity::kLabelMean))},
+          {"probability", map(belief.values(quantity::kObjectProbability))},
+          {"surface", map(belief.surface().heights)}};
 }
 
 /// A run directory and its models. Any thread may call the methods, with the GIL; one thread at a time uses the models.
 class Record {
  public:
-  explicit Record(const std::string& directory) : recording_(read_recording(environment_.workshop, directory)) {}
+  explicit Record(const std::string& directory)
+      : recording_(read_recorded_run(environment_.workshop.host, directory)) {}
   /// In a forked child the models are leaked, because their destructor would wait for threads that the child lacks.
   ~Record() {
     if (!lock_.is_here()) static_cast<void>(playback_.release());
@@ -70,10 +71,10 @@ class Record {
       throw Error("after", "there are " + std::to_string(size()) + " taps, not " + std::to_string(taps), "take fewer");
     const ObjectGuard guard(lock_, "run");
     // An exception may leave taps in the models that taps() does not count. So models are kept only after success.
-    std::unique_ptr<Playback> models = std::move(playback_);
-    if (!models || models->taps() > taps) models = std::make_unique<Playback>(environment_.workshop, recording_);
+    std::unique_ptr<RunReplay> models = std::move(playback_);
+    if (!models || models->taps() > taps) models = make_replay();
     models->advance_to(taps);
-    NamedMaps maps = maps_of(models->from_above());
+    NamedMaps maps = maps_of(models->experiment());
     playback_ = std::move(models);
     return maps;
   }
@@ -81,28 +82,39 @@ class Record {
   /// Returns the heights of the simulated scene, metres; nullopt if another world was tapped.
   std::optional<Map> truth() {
     const ObjectGuard guard(lock_, "run");
-    FromAbove& experiment = playback().from_above();
-    const Truth* truth = experiment.truth();
+    Experiment& experiment = playback().experiment();
+    const Scene* const truth = experiment.truth();
     if (truth == nullptr) return std::nullopt;
-    return Map{truth->height, experiment.candidates().rows, experiment.candidates().columns};
+    const Candidates& candidates = experiment.belief().candidates();
+    return Map{true_heights(candidates, *truth), candidates.rows, candidates.columns};
   }
 
   std::pair<Eigen::VectorXd, Eigen::VectorXd> axes() {
     const ObjectGuard guard(lock_, "run");
-    const Candidates& candidates = playback().from_above().candidates();
-    return {candidates.xs, candidates.ys};
+    const CandidateGrid grid = grid_of(playback().experiment().belief().candidates());
+    return {grid.xs, grid.ys};
   }
 
  private:
-  Playback& playback() {
-    if (!playback_) playback_ = std::make_unique<Playback>(environment_.workshop, recording_);
+  std::unique_ptr<RunReplay> make_replay() const {
+    using namespace quantity;
+    if (recording_.config.options.scene.touch == SceneOptions::Touch::any) {
+      throw Error(recording_.directory.string(), "is a run from any side, but this needs a run from above",
+                  "read its surface from surface.ply");
+    }
+    return std::make_unique<RunReplay>(
+        environment_.workshop, recording_,
+        readers_from_first_tap("maps", {kUncertainty, kLabelMean, kObjectProbability, kHeightMean, kHeightStd}));
+  }
+  RunReplay& playback() {
+    if (!playback_) playback_ = make_replay();
     return *playback_;
   }
 
   ObjectLock lock_;
   InterruptibleEnvironment environment_;
-  Recording recording_;
-  std::unique_ptr<Playback> playback_;
+  RecordedRun recording_;
+  std::unique_ptr<RunReplay> playback_;
 };
 
 /// A sweep, or several sweeps and runs that are read as one (see read_pooled()), in its state at the opening.

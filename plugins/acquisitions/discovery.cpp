@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Acquisition for taps from any side: expected gain in metres of mean surface distance, from the discovery of untouched
-// parts or from smaller uncertainty of the known surface.
+// Acquisition for taps from any side: expected decrease of the mean surface distance in metres. A tap discovers
+// untouched parts or reduces the uncertainty of the known surface.
 #include <palpate/acquisition.hpp>
 #include <palpate/plugin.hpp>
 
@@ -23,18 +23,20 @@ class Discovery final : public Acquisition {
   using Options = DiscoveryOptions;
   Discovery(const Options& options, const Context&) : options_(options) {}
 
-  bool from_above() const override { return false; }
-  bool any_side() const override { return true; }
-  Quantities reads() const override { return {}; }
-  Quantities reads_of_approaches() const override { return Quantity::expected_discovery | Quantity::std_reduction; }
-  void score(const Belief&, VectorOut out) const override { out.setZero(); }
+  QuantitySet reads() const override {
+    QuantitySet out{quantity::kExpectedDiscovery, quantity::kStdReduction};
+    if (options_.travel_cost_exponent > 0.0) out.insert(quantity::kExpectedDistance);
+    return out;
+  }
   double prior_scale() const override { return 0.001; }
 
-  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
+  void score(const BeliefView& belief, VectorOut out) const override {
     constexpr double kUsual = 0.3;  // metres, usual path length
-    out = belief.expected_discovery() + belief.std_reduction();
-    if (options_.travel_cost_exponent > 0.0)
-      out.array() /= (belief.way().array() / kUsual).max(0.1).pow(options_.travel_cost_exponent);
+    out = belief.values(quantity::kExpectedDiscovery) + belief.values(quantity::kStdReduction);
+    if (options_.travel_cost_exponent > 0.0) {
+      const auto distance = belief.values(quantity::kExpectedDistance).array();
+      out.array() /= (distance / kUsual).max(0.1).pow(options_.travel_cost_exponent);
+    }
   }
 
  private:

@@ -14,10 +14,10 @@ class FootprintEntropy final : public Acquisition {
   using Options = NoOptions;
   FootprintEntropy(const Options&, const Context&) {}
 
-  Quantities reads() const override { return Quantity::probability; }
-  void score(const Belief& belief, VectorOut out) const override {
+  QuantitySet reads() const override { return {quantity::kObjectProbability}; }
+  void score(const BeliefView& belief, VectorOut out) const override {
     const auto bits = [](double p) { return p > 0.0 ? -p * math::log2(p) : 0.0; };
-    out = belief.probability().unaryExpr([&](double p) { return bits(p) + bits(1.0 - p); });
+    out = belief.values(quantity::kObjectProbability).unaryExpr([&](double p) { return bits(p) + bits(1.0 - p); });
   }
   double prior_scale() const override { return 1.0; }
 };

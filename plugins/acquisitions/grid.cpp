@@ -25,23 +25,22 @@ struct GridOptions : Options {
 class GridSearch final : public Acquisition {
  public:
   using Options = GridOptions;
-  GridSearch(const Options& options, const Context&) : count_(options.count) {}
+  GridSearch(const Options& options, const Context& context) : count_(options.count), area_(context.scene.area()) {}
 
-  Quantities reads() const override { return {}; }
+  QuantitySet reads() const override { return {quantity::kDeskPosition}; }
   /// Returns 1 at the next point, decreasing to 0 at the area's far corner. The nearest candidate has the highest
   /// score.
-  void score(const Belief& belief, VectorOut out) const override {
-    const Area area = belief.area();
-    const auto [x, y] = due(belief.taps() - belief.initial_taps(), area);
-    const Points& places = belief.candidates();
-    const double diagonal = math::hypot(area.width, area.depth);
+  void score(const BeliefView& belief, VectorOut out) const override {
+    const auto [x, y] = due(belief.counts().all - belief.counts().initial);
+    const Points3& places = belief.candidates().starts;
+    const double diagonal = math::hypot(area_.width, area_.depth);
     out = 1.0 - ((places.col(0).array() - x).square() + (places.col(1).array() - y).square()).sqrt() / diagonal;
   }
   double prior_scale() const override { return 1.0; }
 
  private:
   /// Returns the position of tap `n`, counted from 0 after the initial taps.
-  Target due(std::int64_t n, const Area& area) const {
+  Target due(std::int64_t n) const {
     std::int64_t side = count_;
     while (n >= side * side) {
       n -= side * side;
@@ -50,10 +49,11 @@ class GridSearch final : public Acquisition {
     const auto cell = [side](std::int64_t i, double extent) {
       return (static_cast<double>(i) + 0.5) * extent / static_cast<double>(side);
     };
-    return {cell(n % side, area.width), cell(n / side, area.depth)};
+    return {cell(n % side, area_.width), cell(n / side, area_.depth)};
   }
 
   std::int64_t count_;
+  Area area_;
 };
 
 PALPATE_PLUGIN(Acquisition, GridSearch, "grid", "points of a lattice, row by row, as a baseline")

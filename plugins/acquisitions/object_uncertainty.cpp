@@ -11,9 +11,10 @@ class ObjectUncertainty final : public Acquisition {
   using Options = NoOptions;
   ObjectUncertainty(const Options&, const Context&) {}
 
-  Quantities reads() const override { return Quantity::uncertainty | Quantity::probability; }
-  void score(const Belief& belief, VectorOut out) const override {
-    out = belief.uncertainty().cwiseMax(0.0).cwiseSqrt().cwiseProduct(belief.probability());
+  QuantitySet reads() const override { return {quantity::kUncertainty, quantity::kObjectProbability}; }
+  void score(const BeliefView& belief, VectorOut out) const override {
+    const Eigen::VectorXd& probability = belief.values(quantity::kObjectProbability);
+    out = belief.values(quantity::kUncertainty).cwiseMax(0.0).cwiseSqrt().cwiseProduct(probability);
   }
   double prior_scale() const override { return 1.0; }
 };

@@ -10,19 +10,15 @@ class RandomSearch final : public Acquisition {
   using Options = NoOptions;
   RandomSearch(const Options&, const Context& context) : seed_(context.seed) {}
 
-  Quantities reads() const override { return {}; }
-  void score(const Belief& belief, VectorOut out) const override { draw(belief.taps(), out); }
-  bool any_side() const override { return true; }
-  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override { draw(belief.taps(), out); }
+  QuantitySet reads() const override { return {}; }
+  /// Draws from a stream per tap: the score stays a pure function of the belief, and a resumed run draws the same.
+  void score(const BeliefView& belief, VectorOut out) const override {
+    Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(belief.counts().all));
+    for (double& one : out) one = random.uniform() + 0x1.0p-54;
+  }
   double prior_scale() const override { return 0.0; }
 
  private:
-  /// Draws from one stream per tap. So scores are a pure function of the belief, and a resumed run draws the same ones.
-  void draw(int taps, VectorOut out) const {
-    Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(taps));
-    for (double& one : out) one = random.uniform() + 0x1.0p-54;
-  }
-
   std::uint64_t seed_;
 };
 

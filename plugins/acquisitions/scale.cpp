@@ -22,8 +22,8 @@ class Scale final : public Acquisition {
   Scale(const Options& options, const Context& context)
       : factor_(options.factor), part_(context.create<Acquisition>(options.acquisition)) {}
 
-  Quantities reads() const override { return part_->reads(); }
-  void score(const Belief& belief, VectorOut out) const override {
+  QuantitySet reads() const override { return part_->reads(); }
+  void score(const BeliefView& belief, VectorOut out) const override {
     part_->score(belief, out);
     out *= factor_;
   }

@@ -24,12 +24,12 @@ class Sum final : public Acquisition {
     for (const PluginChoice& one : options.acquisitions) parts_.push_back(context.create<Acquisition>(one));
   }
 
-  Quantities reads() const override {
-    Quantities all;
+  QuantitySet reads() const override {
+    QuantitySet all;
     for (const auto& one : parts_) all = all | one->reads();
     return all;
   }
-  void score(const Belief& belief, VectorOut out) const override {
+  void score(const BeliefView& belief, VectorOut out) const override {
     Eigen::VectorXd part(out.size());
     out.setZero();
     for (const auto& one : parts_) {

@@ -84,21 +84,22 @@ struct VarianceReductionOptions : Options {
 class VarianceReduction final : public Acquisition {
  public:
   using Options = VarianceReductionOptions;
-  VarianceReduction(const Options& options, const Context&) : options_(options) {}
+  VarianceReduction(const Options& options, const Context& context)
+      : options_(options), area_(context.scene.area().width * context.scene.area().depth) {}
 
-  Quantities reads() const override { return Quantity::probability | Quantity::outlines; }
+  QuantitySet reads() const override { return {quantity::kObjectProbability, quantity::kHypotheses}; }
 
-  void score(const Belief& belief, VectorOut out) const override {
-    const OutlineSample& sample = belief.outlines();
+  void score(const BeliefView& belief, VectorOut out) const override {
+    const HypothesisSample& sample = belief.hypotheses();
     if (sample.count == 0) {
-      // Without sampled outlines a tap is informative about its own position only.
-      out = belief.probability().array() * (1.0 - belief.probability().array());
+      // Without hypotheses a tap is informative about its own position only.
+      const Eigen::ArrayXd p = belief.values(quantity::kObjectProbability).array();
+      out = p * (1.0 - p);
       return divide_by(out.maxCoeff(), out);
     }
-    const double area = belief.area().width * belief.area().depth;
-    const double larger = std::max(1.0, std::sqrt(area) / kUsualSide);
-    out = options_.new_object_weight * larger * sample.to_find;
-    const double settled = add_reductions(sample, area / static_cast<double>(out.size()), out);
+    const double larger = std::max(1.0, std::sqrt(area_) / kUsualSide);
+    out = options_.new_object_weight * larger * sample.expected_discovery_area;
+    const double settled = add_reductions(sample, area_ / static_cast<double>(out.size()), out);
     divide_by(settled > 0.0 ? std::max(settled, out.maxCoeff() / larger) : out.maxCoeff(), out);
   }
 
@@ -111,8 +112,8 @@ class VarianceReduction final : public Acquisition {
     if (most > 0.0) out /= most;
   }
 
-  /// Adds the reductions for known outlines to `out` and returns the largest one.
-  static double add_reductions(const OutlineSample& sample, double extent_of_place, VectorOut out) {
+  /// Adds the reductions for known objects to `out` and returns the largest one.
+  static double add_reductions(const HypothesisSample& sample, double extent_of_place, VectorOut out) {
     const std::vector<std::uint64_t> all(static_cast<std::size_t>(sample.holds.rows()), ~std::uint64_t{0});
     const Counts held = common(all.data(), sample.holds);
     std::vector<int> open;  // positions with uncertain coverage
@@ -140,6 +141,7 @@ class VarianceReduction final : public Acquisition {
   }
 
   Options options_;
+  double area_;  ///< of the desk, square metres
 };
 
 PALPATE_PLUGIN(Acquisition, VarianceReduction, "variance_reduction",

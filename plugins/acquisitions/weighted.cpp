@@ -11,9 +11,9 @@ class Weighted final : public Acquisition {
   using Options = NoOptions;
   Weighted(const Options&, const Context&) {}
 
-  Quantities reads() const override { return Quantity::uncertainty | Quantity::weight; }
-  void score(const Belief& belief, VectorOut out) const override {
-    out = belief.uncertainty().cwiseProduct(belief.weight());
+  QuantitySet reads() const override { return {quantity::kUncertainty, quantity::kLabelMean}; }
+  void score(const BeliefView& belief, VectorOut out) const override {
+    out = belief.values(quantity::kUncertainty).cwiseProduct(belief.values(quantity::kLabelMean));
   }
   /// Before any tap u is 1, and w is a probability.
   double prior_scale() const override { return 1.0; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Backend without an arm: the caller's program makes the taps and reports the results, for example through Experiment
-// of the Python module. Area and desk of the scene apply; its objects only if `scene_is_truth` is set. CallersRun reads
-// the options.
+// of the Python module. Area and desk of the scene apply; its objects only if `scene_is_truth` is set. Run::tell()
+// reads the options.
 #include <palpate/backend.hpp>
 #include <palpate/error.hpp>
 #include <palpate/plugin.hpp>
@@ -44,8 +44,8 @@ class Caller final : public Backend {
   using Options = CallerOptions;
   Caller(const Options& options, const Context&) : scene_is_truth_(options.scene_is_truth) {}
 
-  /// Never called in a run by a caller, see CallersRun.
-  Contact tap(const TapRequest&) override {
+  /// Never called in a run by a caller, see Run::tell().
+  TapResult tap(const TapRequest&) override {
     throw Error("", "makes no taps: the caller's program does", "use ask() and tell() in Python", Error::Kind::run);
   }
   /// The scene of the caller is unknown, so taps count as not repeatable.

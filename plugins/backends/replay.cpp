@@ -47,7 +47,7 @@ namespace {
 struct Recorded {
   int number = 0;
   Target place;
-  Contact contact;
+  TapResult result;
 };
 
 Outcome outcome_of(const std::string& name, const std::string& where) {
@@ -164,16 +164,17 @@ std::vector<Recorded> read_record(const std::string& path) {
     Recorded one;
     one.number = table.count("tap");
     one.place = {table.number("x", kMissing), table.number("y", kMissing)};
-    one.contact.outcome = outcome_of(table.text("outcome"), table.where());
-    one.contact.height = table.number("height", kMissing);
-    one.contact.force = table.number("force", 0.0);
-    one.contact.seconds = table.number("robot_seconds", 0.0);
-    if (one.contact.outcome != Outcome::contact) {
-      one.contact.height = 0.0;
-      one.contact.reason = "recorded without a reason";
+    const Outcome outcome = outcome_of(table.text("outcome"), table.where());
+    const double seconds = table.number("robot_seconds", 0.0);
+    if (outcome == Outcome::contact) {
+      one.result =
+          contact_on(line_from_above(one.place), table.number("height", kMissing), table.number("force", 0.0), seconds);
+    } else {
+      one.result = tap_without_contact(outcome, seconds, "recorded without a reason");
+      one.result.force = table.number("force", 0.0);
     }
-    if (std::isnan(one.place.x + one.place.y + one.contact.height)) throw Error(table.where(), "lacks x, y or height");
-    if (const auto fault = find_fault(one.contact, kAnyArm)) throw Error(table.where(), fault->reason, fault->remedy);
+    if (std::isnan(one.place.x + one.place.y + one.result.height())) throw Error(table.where(), "lacks x, y or height");
+    if (const auto fault = find_fault(one.result, kAnyArm)) throw Error(table.where(), fault->reason, fault->remedy);
     taps.push_back(std::move(one));
   }
   return taps;
@@ -188,20 +189,21 @@ class Replay final : public Backend {
   Replay(const Options& options, const Context&) : options_(options), taps_(read_record(options.record)) {}
 
   /// Returns the tap with the same number if it is within the tolerance, else the nearest tap within the tolerance.
-  Contact tap(const TapRequest& request) override {
+  TapResult tap(const TapRequest& request) override {
     const Recorded* best = nullptr;
     double least = options_.tolerance;
     for (const Recorded& one : taps_) {
-      const double distance = math::hypot(one.place.x - request.target.x, one.place.y - request.target.y);
+      const Target target = request.line.target();
+      const double distance = math::hypot(one.place.x - target.x, one.place.y - target.y);
       if (distance > options_.tolerance) continue;
-      if (one.number == request.number) return one.contact;
+      if (one.number == request.number) return one.result;
       if (best == nullptr || distance < least) {
         best = &one;
         least = distance;
       }
     }
-    if (best == nullptr) return {Outcome::unreachable, 0.0, 0.0, 0.0, "no tap was recorded at this place"};
-    return best->contact;
+    if (best == nullptr) return tap_without_contact(Outcome::unreachable, 0.0, "no tap was recorded at this place");
+    return best->result;
   }
 
   bool repeatable() const override { return true; }

@@ -25,9 +25,8 @@ struct PartsOptions : Options {
 /// defines the combination:
 ///     static constexpr double kNothing;          result without parts
 ///     static void apply(whole, part);            combines the covariances of a part with those of the previous parts
-///     static void join_slopes(before, own, whole, part);   the same for derivatives, one matrix per parameter:
-/// `before`
-///                                                of the previous parts, `own` of the part; `whole` precedes apply()
+///     static void join_slopes(before, own, whole, part);   combines derivatives, one matrix per parameter
+/// In join_slopes(), `before` belongs to the previous parts and `own` to the part. It is called before apply().
 template <class Join>
 class Composed : public Kernel {
  public:

@@ -37,8 +37,8 @@ class Child {
   /// Starts `program`. Its stderr is appended to the file `stderr_file`, or dropped if the name is empty. The program
   /// inherits the descriptor `kept`, if any. Throws Error if the start fails.
   Child(Program program, const std::string& stderr_file, const Descriptor& kept);
-  /// Closes stdin, which asks the program to end, and waits for kGrace; then sends SIGTERM to the group, and finally
-  /// SIGKILL to all descendants. No process of the program remains.
+  /// Ends the program: closes its stdin, sends SIGTERM to its group after kGrace, and finally SIGKILL to all
+  /// descendants. No process of the program remains.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;

@@ -21,12 +21,18 @@ class Backend final : public palpate::Backend {
     while (awaited != nullptr && !std::ifstream(awaited)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
-  palpate::Contact tap(const palpate::TapRequest& request) override {
-    palpate::Contact out{palpate::Outcome::contact, 0.05, 8.0, 1.0, {}};
-    if (request.approach) out.along = 0.2;
+  palpate::TapResult tap(const palpate::TapRequest& request) override {
+    if (request.line.from_above) return palpate::contact_on(request.line, 0.05, 8.0, 1.0);
+    constexpr double kDistance = 0.2;  // metres
+    palpate::TapResult out = palpate::contact_on(request.line, 0.0, 8.0, 1.0);
+    out.distance = kDistance;
+    out.contacts.front().position = request.line.at(kDistance);
     return out;
   }
-  bool reaches(const palpate::Approach& approach) const override { return approach.line.direction.x() > -0.2; }
+  bool taps_any_line() const override { return true; }
+  void reaches(const palpate::Candidates& lines, palpate::BoolOut out) const override {
+    for (Eigen::Index i = 0; i < lines.size(); ++i) out(i) = lines.line(i).direction.x() > -0.2;
+  }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return true; }
 };

@@ -27,7 +27,7 @@ class Backend final : public palpate::Backend {
   using Options = broken::Options;
   explicit Backend(const Options& options, const palpate::Context&) : way_(options.way) {}
 
-  palpate::Contact tap(const palpate::TapRequest& request) override {
+  palpate::TapResult tap(const palpate::TapRequest& request) override {
     if (request.number == 5 && way_ == Options::Way::crash) {
       std::signal(SIGSEGV, SIG_DFL);  // without the handler of a sanitizer
       std::raise(SIGSEGV);
@@ -38,7 +38,7 @@ class Backend final : public palpate::Backend {
     if (request.number == 5 && way_ == Options::Way::fail) {
       throw palpate::Error("", "its arm has fallen off", {}, palpate::Error::Kind::run);
     }
-    return {palpate::Outcome::contact, 0.01 * request.number, 8.0, 1.0, {}};
+    return palpate::contact_on(request.line, 0.01 * request.number, 8.0, 1.0);
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return false; }

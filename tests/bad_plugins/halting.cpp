@@ -12,14 +12,16 @@ class Backend final : public palpate::Backend {
   static constexpr bool kOneAtATime = true;
   Backend(const Options&, const palpate::Context&) {}
 
-  palpate::Contact tap(const palpate::TapRequest& request) override {
-    if (request.number != 5) return {palpate::Outcome::contact, 0.01 * request.number, 8.0, 1.0, {}};
-    return {palpate::Outcome::aborted, 0.0, 0.0, 1.0, "the e-stop is pressed", true};
+  palpate::TapResult tap(const palpate::TapRequest& request) override {
+    if (request.number != 5) return palpate::contact_on(request.line, 0.01 * request.number, 8.0, 1.0);
+    return palpate::tap_without_contact(palpate::Outcome::aborted, 1.0, "the e-stop is pressed", true);
   }
   bool repeatable() const override { return false; }
   bool scene_is_truth() const override { return false; }
-  palpate::Quantities reads() const override { return palpate::Quantity::height; }
-  void show(const palpate::Belief& belief) override { shown_ += belief.height_mean().sum(); }
+  palpate::QuantitySet reads() const override { return {palpate::quantity::kHeightMean}; }
+  void show(const palpate::BeliefView& belief) override {
+    shown_ += belief.values(palpate::quantity::kHeightMean).sum();
+  }
 
  private:
   double shown_ = 0.0;

@@ -108,16 +108,10 @@ class Acquisition final : public palpate::Acquisition, Spoilt {
  public:
   using Options = broken::Options;
   Acquisition(const Options& options, const palpate::Context&) : Spoilt(options) {}
-  palpate::Quantities reads() const override { return palpate::Quantity::uncertainty; }
-  void score(const palpate::Belief& belief, palpate::VectorOut out) const override {
-    out = belief.uncertainty();
+  palpate::QuantitySet reads() const override { return {palpate::quantity::kUncertainty}; }
+  void score(const palpate::BeliefView& belief, palpate::VectorOut out) const override {
+    out = belief.values(palpate::quantity::kUncertainty);
     spoil("score", out);
-  }
-  bool any_side() const override { return true; }
-  palpate::Quantities reads_of_approaches() const override { return palpate::Quantity::deviation; }
-  void score_approaches(const palpate::SurfaceBelief& belief, palpate::VectorOut out) const override {
-    out = belief.deviation();
-    spoil("score_approaches", out);
   }
   double prior_scale() const override { return number("prior_scale", 1.0); }
 };
@@ -153,12 +147,12 @@ class Footprint final : public palpate::Footprint, Spoilt {
     out.setConstant(0.5);
     spoil("probability", out);
   }
-  void sample(const palpate::PointsView& places, palpate::OutlineSample& out) const override {
+  void sample(const palpate::PointsView& places, palpate::HypothesisSample& out) const override {
     out.count = 64;
     out.holds.resize(1, places.rows());
     out.holds.setConstant(0xff);
-    out.to_find = Eigen::VectorXd::Zero(places.rows());
-    spoil("sample", out.to_find);
+    out.expected_discovery_area = Eigen::VectorXd::Zero(places.rows());
+    spoil("sample", out.expected_discovery_area);
   }
   void doubt(palpate::VectorOut out) const override {
     out.setZero();
@@ -193,17 +187,17 @@ class Backend final : public palpate::Backend, Spoilt {
     if (options.spoils.rfind("motions", 0) != 0) return nullptr;
     return std::make_unique<Motions>(options);
   }
-  palpate::Contact tap(const palpate::TapRequest& request) override {
-    palpate::Contact out{palpate::Outcome::contact,
-                         number("tap: height", 0.05),
-                         number("tap: force", 8.0),
-                         number("tap: seconds", 1.0),
-                         {}};
-    out.peak = number("tap: peak", 8.0);
-    if (request.approach) out.along = number("tap: along", 0.1);
+  palpate::TapResult tap(const palpate::TapRequest& request) override {
+    palpate::TapResult out = palpate::contact_on(request.line, number("tap: height", 0.05), number("tap: force", 8.0),
+                                                 number("tap: seconds", 1.0));
+    out.peak_force = number("tap: peak", 8.0);
+    if (request.line.from_above) return out;
+    constexpr double kDistance = 0.1;  // metres
+    out.distance = number("tap: along", kDistance);
+    out.contacts.front().position = request.line.at(kDistance);
     return out;
   }
-  bool reaches(const palpate::Approach&) const override { return true; }
+  bool taps_any_line() const override { return true; }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return false; }
 };

@@ -32,12 +32,13 @@ class Acquisition final : public palpate::Acquisition {
  public:
   using Options = palpate::NoOptions;
   Acquisition(const Options&, const palpate::Context&) {}
-  palpate::Quantities reads() const override { return palpate::Quantity::uncertainty; }
-  void score([[maybe_unused]] const palpate::Belief& belief, [[maybe_unused]] palpate::VectorOut out) const override {
+  palpate::QuantitySet reads() const override { return {palpate::quantity::kUncertainty}; }
+  void score([[maybe_unused]] const palpate::BeliefView& belief,
+             [[maybe_unused]] palpate::VectorOut out) const override {
 #ifdef THROWS_NUMBER
     throw 42;
 #elif defined(READS_UNTOLD)
-    out = belief.uncertainty() + belief.weight();
+    out = belief.values(palpate::quantity::kUncertainty) + belief.values(palpate::quantity::kLabelMean);
 #else
     throw OwnException();
 #endif

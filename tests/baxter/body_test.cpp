@@ -42,10 +42,10 @@ TEST(FakeBody, TrailsItsSetPointInEveryJointByAThirdOfASecondTimesTheSpeed) {
 TEST(FakeBody, GoesAtItsShareOfTheGreatestSpeedHoweverFarTheSetPointJumps) {
   BodyBench as_shipped(kBare, "{}");
   BodyBench as_left(kBare, "{}", [](auto& o) { o.speed_ratio = 0.03; });
-  BodyBench in_letters(kBare, "{}");
-  told.body.set_speed_ratio(1.0);
-  told.body.set_speed_ratio(std::numeric_limits<double>::quiet_NaN());
-  for (const auto& [bench, share] : {std::pair(&as_shipped, 0.3), {&as_left, 0.03}, {&told, 1.0}}) {
+  BodyBench set_by_command(kBare, "{}");
+  set_by_command.body.set_speed_ratio(1.0);
+  set_by_command.body.set_speed_ratio(std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [bench, share] : {std::pair(&as_shipped, 0.3), {&as_left, 0.03}, {&set_by_command, 1.0}}) {
     bench->target(1) -= 1.5 * share;
     for (int i = 0; i < 100; ++i) {
       bench->hold(Body::kPeriod);

@@ -61,13 +61,14 @@ class Session {
   bool tap(Tally& tally) {
     TapRequest request;
     request.number = ++taps_;
-    request.target = draw_place();
+    request.line = line_from_above(draw_place());
     request.previous = previous_;
-    previous_ = request.target;
-    if (predicts_) request.predicted = Prediction{scene_.height(request.target.x, request.target.y), 0.005, {}};
+    previous_ = request.line;
+    if (predicts_)
+      request.predicted = Prediction{scene_.height(request.line.target().x, request.line.target().y), 0.005, {}};
     peak_ = 0.0;
     touched_at_.reset();
-    const Contact contact = tapper_.tap(request);
+    const tapping::HeightResult contact = tapper_.tap(request);
     ++tally.taps;
     const bool touched = peak_ > kTouched;
     tally.touched += touched ? 1 : 0;
@@ -77,7 +78,7 @@ class Session {
     if (touched_at_) tally.found = std::max(tally.found, pressed_until_ - *touched_at_);
     if (contact.outcome == Outcome::contact) {
       ++tally.contacts;
-      const double error = std::abs(contact.height - scene_.height(request.target.x, request.target.y));
+      const double error = std::abs(contact.height - scene_.height(request.line.target().x, request.line.target().y));
       tally.error = std::max(tally.error, error);
       tally.phantoms += !touched || error >= Tally::kFar ? 1 : 0;
       return true;
@@ -129,7 +130,7 @@ class Session {
   double spiked_at_ = -1.0;
   std::optional<double> touched_at_;  ///< s, in this tap
   double pressed_until_ = 0.0;        ///< s
-  std::optional<Target> previous_;
+  std::optional<TapLine> previous_;
 };
 
 }  // namespace

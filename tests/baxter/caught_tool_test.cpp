@@ -30,7 +30,7 @@ TEST(ACaughtTool, IsHeldWhereItIsAndToldAndNotPulledAgainstTheReflex) {
                 Outcome::contact);  // from which the driver learns the robot's properties
       bench.robot.body.inject({FaultKind::caught, stiffness, {}});
       const double begin = bench.robot.body.now();
-      const Contact contact = bench.tap(kOnDesk);
+      const tapping::HeightResult contact = bench.tap(kOnDesk);
       const std::string where = fmt::format("{} Nm, {} N/m", friction, stiffness);
       EXPECT_EQ(contact.outcome, Outcome::aborted) << where;
       EXPECT_TRUE(contact.ends_run);
@@ -68,7 +68,7 @@ TEST(ACaughtTool, IsFreedByAPersonAndTheNextTapGoesOn) {
   SpringDesk bench(kHard, fake_options(), 0.0);
   bench.robot.body.inject({FaultKind::caught, 3000.0, {}});
   ASSERT_THAT(bench.tap(kOnDesk).reason, StartsWith("the tool is caught"));
-  const Contact again = bench.tap(kOnDesk);
+  const tapping::HeightResult again = bench.tap(kOnDesk);
   EXPECT_TRUE(again.ends_run) << "nobody has freed it: the next run does not pull on either";
   EXPECT_THAT(again.reason, HasSubstr("the arm holds "));
   EXPECT_LE(bench.reflexes, 2);
@@ -84,7 +84,7 @@ TEST(ACaughtTool, IsNoticedBeforeTheReflexHoweverSoftlyItIsHeld) {
       const std::string where = fmt::format("{} Nm, {} N/m", friction, stiffness);
       ASSERT_EQ(bench.tap({0.06, 0.03}).outcome, Outcome::contact) << where;
       bench.robot.body.inject({FaultKind::caught, stiffness, {}});
-      const Contact contact = bench.tap(kOnDesk);
+      const tapping::HeightResult contact = bench.tap(kOnDesk);
       EXPECT_THAT(contact.reason, StartsWith("the tool is caught")) << where;
       EXPECT_THAT(contact.reason, HasSubstr("; the arm holds ")) << where;
       bench.wait(10.0);
@@ -99,7 +99,7 @@ TEST(AnArmThatIsFree, IsNotHeldByTheFrictionOfItsJoints) {
        {Target{0.02, 0.21}, Target{0.21, 0.02}}) {  // positions with the most and the least friction
     SpringDesk bench(kHard, fake_options(), 0.4);
     for (int tap = 0; tap < 2; ++tap) {
-      const Contact contact = bench.tap(place);
+      const tapping::HeightResult contact = bench.tap(place);
       EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
     }
   }

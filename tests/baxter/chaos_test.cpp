@@ -72,7 +72,7 @@ class Chaos {
         options_(draw_options()),
         robot_(wave_scene(), draw_body(seed)),
         tapper_(options_, wave_scene(), robot_, &interrupted_, [](const std::string&) {}) {
-    robot_.every_period = [this] { look(); };
+    robot_.every_period = [this] { check_period(); };
     heard_ = robot_.read().joints->position;
   }
 
@@ -130,7 +130,8 @@ class Chaos {
   void tap(bool with_fault) {
     TapRequest request;
     request.number = ++taps_;
-    request.target = target_ = draw_place();
+    target_ = draw_place();
+    request.line = line_from_above(target_);
     const double truth = wave_scene().height(target_.x, target_.y);
     if (options_.motion.adaptive_hover) request.predicted = {truth + between(-0.02, 0.02), between(0.001, 0.02)};
     const double begin = robot_.body.now();
@@ -185,7 +186,7 @@ class Chaos {
     return true;
   }
 
-  void look() {
+  void check_period() {
     const Eigen::Vector3d tip = robot_.body.tip();
     for (; looked_at_ < robot_.commands.size(); ++looked_at_) expect_sound(robot_.commands[looked_at_]);
     const std::optional<JointReading> joints = robot_.read().joints;
@@ -239,7 +240,7 @@ class Chaos {
   std::atomic<bool> interrupted_{false};
   BodyRobot robot_;
   Tapper tapper_;
-  Contact last_;
+  tapping::HeightResult last_;
   Target target_;
   int taps_ = 0;
   long period_ = 0, moment_ = 0;
@@ -285,7 +286,7 @@ TEST(ATap, ComesDownOnlyWhereItWasSentWhenCommandsWereLostOnTheWay) {
       aside = std::max(aside, (tip - *low).head<2>().norm());
     };
     TapRequest request;
-    request.target = {0.03, 0.03};
+    request.line = line_from_above({0.03, 0.03});
     tapper.tap(request);
     ASSERT_LT(aside, 0.004) << "commands lost from period " << moment;
   }

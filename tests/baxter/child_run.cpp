@@ -30,7 +30,7 @@ void set_environment(const std::vector<std::string>& environment) {
   }
 }
 
-std::string told(const std::function<std::string()>& act) {
+std::string report_of(const std::function<std::string()>& act) {
   try {
     return act();
   } catch (const Error& error) {
@@ -53,7 +53,7 @@ ChildResult run_in_child(const std::vector<std::string>& environment, const std:
     if (std::freopen(file.c_str(), "w", stdout) == nullptr) return 1;
     dup2(STDOUT_FILENO, STDERR_FILENO);
     set_environment(environment);
-    std::fputs(told(act).c_str(), stdout);
+    std::fputs(report_of(act).c_str(), stdout);
     std::exit(0);
   });
   if (!child) throw std::runtime_error("no process");

@@ -5,7 +5,7 @@
 #include "baxter/campaign.hpp"
 #include "calibrate/calibrate.hpp"
 #include "config/yaml.hpp"
-#include "record/tap_row.hpp"
+#include "record/fields.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 
@@ -42,22 +42,23 @@ class ArmBackend final : public Backend {
     begin();
   }
 
-  Contact tap(const TapRequest& request) override {
+  TapResult tap(const TapRequest& request) override {
     Random random(seed_, "default test", static_cast<std::uint64_t>(request.number));
     const auto normal = [&] {
       return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(6.283185307179586 * random.uniform());
     };
     const Area area = scene_->area();
     TapRequest off = request;
-    off.target.x = std::clamp(request.target.x + kLateral * normal(), 0.0, area.width);
-    off.target.y = std::clamp(request.target.y + kLateral * normal(), 0.0, area.depth);
-    Contact contact = tapper_->tap(off);
+    const Target target = request.line.target();
+    const double x = std::clamp(target.x + kLateral * normal(), 0.0, area.width);
+    off.line = line_from_above({x, std::clamp(target.y + kLateral * normal(), 0.0, area.depth)});
+    tapping::HeightResult contact = tapper_->tap(off);
     if (contact.ends_run) {  // a person has checked the robot and continues
       contact.ends_run = false;
       begin();
     }
     if (contact.outcome == Outcome::contact) contact.height += kVertical * normal();
-    return contact;
+    return tapping::result_on(request.line, contact);
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return true; }
@@ -121,8 +122,7 @@ double mean_error(const ResolvedConfig& config, const std::vector<TapRecord>& ta
       build_scene(config.options.scene, static_cast<std::uint64_t>(config.options.seed), palpate::test::shared_host());
   std::vector<double> off;
   for (const TapRecord& tap : taps) {
-    if (tap.contact.outcome == Outcome::contact)
-      off.push_back(tap.contact.height - scene->height(tap.target.x, tap.target.y));
+    if (tap.is_contact()) off.push_back(tap.result.height() - scene->height(tap.target().x, tap.target().y));
   }
   std::sort(off.begin(), off.end());
   const auto tenth = static_cast<std::ptrdiff_t>(off.size() / 10);
@@ -133,7 +133,7 @@ TEST(DefaultOnTheArm, IsSimulatedByWhatCalibrateMakesOfFortyOfItsTaps) {
   if (palpate::test::kSanitized) GTEST_SKIP() << "many descents, too slow under sanitizers: release makes them";
   const auto of_block = words(3, 40, {"scene=block", "acquisition=random", "scene.effects=" + kEffects + "}"});
   auto arm = on_the_arm(of_block);
-  Recording recording{"the arm", arm.config, {}, {}, {}, {}, {}};
+  RecordedRun recording{"the arm", arm.config, {}, {}, {}, {}, {}};
   for (const TapRecord& tap : arm.taps) {
     recording.rows.push_back(tap_row(tap));
     recording.taps.push_back(tap);
@@ -145,7 +145,7 @@ TEST(DefaultOnTheArm, IsSimulatedByWhatCalibrateMakesOfFortyOfItsTaps) {
   Tree twin = arm.config.tree;
   twin.at("scene").at("effects") = parse_yaml(file, "effects.yaml").at("effects");
   const ResolvedConfig config = resolve_experiment(twin, palpate::test::shared_host());
-  FromAbove experiment(config.options, palpate::test::shared_host(), nullptr);
+  Experiment experiment(config.options, {palpate::test::shared_host()});
   palpate::test::Collector journal;
   experiment.run(journal);
   const double simulated = mean_error(config, journal.taps);

@@ -36,7 +36,7 @@ class Rules : public MotionGuard {
   std::optional<Fault> at(double now, const Spoil& spoil = nullptr, const Joints& joints = pose()) {
     Snapshot seen = sound(now, joints);
     if (spoil) spoil(seen);
-    return look(seen, tip);
+    return check(seen, tip);
   }
 };
 

@@ -159,9 +159,9 @@ TEST(JointsThatAreNotKnown, AreNotHeldWhateverElseIsWrong) {
 
 TEST(AnArmBesideTheArea, IsNotRaisedEvenIfItsReflexStoppedIt) {
   Snapshot seen = sound(1.0, pose());
-  EXPECT_THAT(Rules().look(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
+  EXPECT_THAT(Rules().check(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
   seen.collision->collision = true;
-  EXPECT_THAT(Rules().look(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
+  EXPECT_THAT(Rules().check(seen, {0.1, 0.1, -0.05}), IsFault("below the floor", Then::hold));
 }
 
 TEST(ASoundRobot, BreaksNoRule) {

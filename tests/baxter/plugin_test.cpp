@@ -3,7 +3,7 @@
 #include "child_run.hpp"
 #include "children/arm_lock.hpp"
 #include "command_lines.hpp"
-#include "record/tap_row.hpp"
+#include "record/fields.hpp"
 #include "robot_lab.hpp"
 #include "support/plugins.hpp"
 #include "support/testing.hpp"
@@ -30,21 +30,21 @@ TEST(RobotPlugin, MadeAndDestroyedTwiceInAProcessLeavesNoThreadAndNoNode) {
   RobotLab lab(robot_arguments());
   const ChildResult process = run_in_child(lab.environment(), [&] {
     const PluginHost host({plugin_folder()});
-    std::string told;
+    std::string report;
     for (int i = 0; i < 2; ++i) {
       auto backend = make<Backend>(host, "baxter", kOptions);
       const long connected = threads();
       TapRequest request;
       request.number = i + 1;
-      request.target = {0.04, 0.07};
-      const Contact contact = backend->tap(request);
-      told += outcome_name(contact.outcome) + contact.reason;
+      request.line = line_from_above({0.04, 0.07});
+      const TapResult contact = backend->tap(request);
+      report += outcome_name(contact.outcome) + contact.reason;
       const bool listed = lab.nodes().size() == 3;
       backend.reset();
-      told +=
+      report +=
           " on the net " + std::to_string(listed) + ", gone with it " + std::to_string(connected - threads()) + "\n";
     }
-    return told + "left " + std::to_string(threads());
+    return report + "left " + std::to_string(threads());
   });
   EXPECT_EQ(process.status, 0);
   // The test's own thread and roscpp's threads remain until the process ends.

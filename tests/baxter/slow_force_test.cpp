@@ -29,7 +29,7 @@ TEST(AForce, ThatIsRenewedTwentyOrTenTimesASecondIsTappedWith) {
       desk.inject(fmt::format("slow_force={}", every));
       desk.tapper.check();
       for (int i = 0; i < 3; ++i) {
-        const Contact contact = desk.tap();
+        const tapping::HeightResult contact = desk.tap();
         EXPECT_EQ(contact.outcome, Outcome::contact) << every << ": " << contact.reason;
         EXPECT_NEAR(contact.height, 0.0, 0.003) << every;
         EXPECT_LT(desk.peak, Body::kReflex) << every;
@@ -63,7 +63,7 @@ TEST(ARobot, ThatMayBeTooSlowIsRejectedBeforeItsFirstTapWithWhatIsAssumed) {
   SpringDesk desk(kHard, options);
   desk.inject("slow_force=10");
   desk.inject("jitter=0.07");
-  const Contact contact = desk.tap();
+  const tapping::HeightResult contact = desk.tap();
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason,
               HasSubstr("before the first measured contact it is assumed that a contact would be detected"));
@@ -78,7 +78,7 @@ TEST(AForce, ThatIsRenewedSeldomAndFreezesAtAContactIsFoundBeforeTheReflex) {
     if (every > 1) desk.inject(fmt::format("slow_force={}", every));
     ASSERT_EQ(desk.tap().outcome, Outcome::contact) << every;
     desk.robot.body.inject({FaultKind::freeze_endpoint, 0.0, {}}, {1, 0.0002});
-    const Contact contact = desk.tap();
+    const tapping::HeightResult contact = desk.tap();
     EXPECT_THAT(contact.reason, AnyOf(HasSubstr("exactly the same force"), HasSubstr("with a new force only")));
     EXPECT_LT(desk.peak, Body::kReflex) << every;
   }
@@ -105,7 +105,7 @@ TEST(AnArm, ThatPressesOnSomethingHardIsNotTakenForOneThatStands) {
     SpringDesk desk(kHard, options);
     if (one.filter > 0.0) desk.inject(fmt::format("wrench_filter={}", one.filter));
     for (int tap = 0; tap < 3; ++tap) {
-      const Contact contact = desk.tap();
+      const tapping::HeightResult contact = desk.tap();
       EXPECT_EQ(contact.outcome, Outcome::contact) << one.what << ": " << contact.reason;
     }
   }
@@ -117,7 +117,7 @@ TEST(ARobot, WhoseForceIsRenewedTooSeldomForItsThresholdIsRejectedWithTheMeasure
   SpringDesk desk(kHard, options);
   desk.inject("slow_force=10");
   ASSERT_EQ(desk.tap().outcome, Outcome::contact) << "at 5 N, while nothing was measured";
-  const Contact contact = desk.tap();
+  const tapping::HeightResult contact = desk.tap();
   EXPECT_THAT(contact.reason, ContainsRegex("^a contact would be detected after [45].. ms"));
   EXPECT_THAT(contact.reason, HasSubstr(" mm/s, but 2 mm/s are needed"));
   EXPECT_GT(desk.lowest, 0.1) << "it did not come down";
@@ -132,7 +132,7 @@ TEST(ARobot, ThatBecomesTooSlowOnTheWayDownIsStoppedAndRaisedWithTheMeasuredFigu
   for (const auto& [delay, height] : {std::pair{0.27, 0.06}, {0.18, 0.08}, {0.09, 0.1}}) {
     desk.robot.body.inject({FaultKind::delay, delay, {}}, {1, height});
   }
-  const Contact contact = desk.tap();
+  const tapping::HeightResult contact = desk.tap();
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, HasSubstr(" mm/s, but 2 mm/s are needed"));
   EXPECT_THAT(contact.reason, HasSubstr("the arm was raised to the height of travel"));
@@ -147,7 +147,7 @@ TEST(SomethingSoft, BelowThePromisedStiffnessIsPressedForLessThan25SecondsAndTol
     options.motion.overrun = 0.1;
     SpringDesk desk(stiffness, options);
     for (int i = 0; i < 2; ++i) {
-      const Contact contact = desk.tap();
+      const tapping::HeightResult contact = desk.tap();
       const double took = desk.robot.body.now() - desk.touched.value();
       if (contact.outcome != Outcome::contact) {
         EXPECT_THAT(contact.reason, HasSubstr("a contact is too soft: its force rises by 1")) << stiffness;
@@ -164,7 +164,7 @@ TEST(SomethingSoft, BelowThePromisedStiffnessIsToldByThePapersMotionToo) {
   options.motion.type = tapping::MotionOptions::Type::paper;
   options.motion.overrun = 0.1;
   SpringDesk desk(250.0, options);
-  const Contact contact = desk.tap();
+  const tapping::HeightResult contact = desk.tap();
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, HasSubstr("a contact is too soft: its force rises by 1"));
   EXPECT_FALSE(contact.ends_run);

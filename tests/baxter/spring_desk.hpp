@@ -28,17 +28,17 @@ class SpringDesk {
     };
   }
 
-  Contact tap(const Target& place) {
+  tapping::HeightResult tap(const Target& place) {
     TapRequest request;
     request.number = ++taps_;
-    request.target = place;
+    request.line = line_from_above(place);
     touched.reset();
     peak = 0.0;
     lowest = 1.0;
     return tapper.tap(request);
   }
   /// Taps at a new position.
-  Contact tap() { return tap({0.06 + 0.03 * taps_, 0.05}); }
+  tapping::HeightResult tap() { return tap({0.06 + 0.03 * taps_, 0.05}); }
   void inject(const std::string& fault) { robot.body.inject(fake_baxter::parse_fault(fault)); }
   void wait(double seconds) { robot.wait_until(robot.body.now() + seconds); }
 

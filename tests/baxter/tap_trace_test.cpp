@@ -95,7 +95,8 @@ RecordedTap second_tap(const Case& one, const BaxterOptions& options, bool conta
   };
   TapRequest request;
   for (request.number = 1; request.number <= 2; ++request.number) {
-    request.previous = request.target = Target{kPlace.x + 0.03 * (2 - request.number), kPlace.y};
+    request.line = line_from_above({kPlace.x + 0.03 * (2 - request.number), kPlace.y});
+    request.previous = request.line;
     out.rows.clear();
     out.touched = -1.0;
     EXPECT_EQ(tapper.tap(request).outcome, contact ? Outcome::contact : Outcome::no_contact) << one.name;
@@ -158,10 +159,10 @@ TapTrace record(const Case& one) {
 /// Messages of the robot per period during one tap on the bare, hard desk with this fault, and the truth.
 struct Watched {
   std::vector<TapTrace::Row> rows;
-  std::vector<double> told;      ///< N, published by the robot itself
-  std::vector<double> pressing;  ///< N, true; negative for a pull
-  std::vector<bool> faulty;      ///< whether the fault has begun
-  Contact contact;
+  std::vector<double> published;  ///< N, published by the robot itself
+  std::vector<double> pressing;   ///< N, true; negative for a pull
+  std::vector<bool> faulty;       ///< whether the fault has begun
+  tapping::HeightResult contact;
   double stopped = 0.0;  ///< s, time of the last new set-point
 };
 
@@ -180,13 +181,13 @@ Watched watch_tap(const fake_baxter::Fault& fault, const fake_baxter::Trigger& t
     const Snapshot seen = robot.read();
     const double height = (to_scene * arm.tip(seen.joints->position).position).z();
     out.rows.push_back({robot.body.now(), height, -seen.endpoint->force.z(), 0});
-    out.told.push_back(-robot.body.messages().endpoint->force.z());
+    out.published.push_back(-robot.body.messages().endpoint->force.z());
     out.pressing.push_back(robot.body.pressing());
     out.faulty.push_back(robot.body.active(fault.kind) != nullptr);
   };
   TapRequest request;
   request.number = 1;
-  request.target = kPlace;
+  request.line = line_from_above(kPlace);
   out.contact = tapper.tap(request);
   EXPECT_EQ(out.contact.outcome, Outcome::aborted) << out.contact.reason;
   std::size_t last = robot.commands.size() - 1;
@@ -205,8 +206,8 @@ std::size_t cut(TapTrace& trace, const Watched& watched, std::size_t begin, doub
   for (std::size_t i = first; i < last; ++i) {
     const TapTrace::Row& row = watched.rows[i];
     const double time = row.time - watched.rows[first].time;
-    const bool second = watched.told[i] != row.force;
-    trace.rows.push_back({time, row.height, watched.told[i], 0});
+    const bool second = watched.published[i] != row.force;
+    trace.rows.push_back({time, row.height, watched.published[i], 0});
     if (second) trace.rows.push_back({time, row.height, row.force, 1});
   }
   return first;

@@ -56,21 +56,20 @@ class TapperBench {
         tapper_(options, wave_scene(), robot, &interrupted,
                 [this](const std::string& line) { notes.push_back(line); }) {}
 
-  Contact tap(const Target& place, int motion = 0) {
-    const TapRequest request{++taps_, place, previous_, std::nullopt, 0.0, motion};
-    previous_ = place;
+  tapping::HeightResult tap(const Target& place, int motion = 0) {
+    TapRequest request = this->request(place, ++taps_);
+    request.motion = motion;
+    previous_ = request.line;
     return tapper_.tap(request);
   }
   /// Taps and expects a contact whose height is within `within` of the scene's.
-  Contact touch(const Target& place, double within = 0.002) {
-    const Contact out = tap(place);
+  tapping::HeightResult touch(const Target& place, double within = 0.002) {
+    const tapping::HeightResult out = tap(place);
     EXPECT_EQ(out.outcome, Outcome::contact) << out.reason;
     EXPECT_NEAR(out.height, wave_scene().height(place.x, place.y), within);
     return out;
   }
-  std::vector<std::string> describe(const Target& place) {
-    return tapper_.describe({taps_ + 1, place, previous_, std::nullopt});
-  }
+  std::vector<std::string> describe(const Target& place) { return tapper_.describe(request(place, taps_ + 1)); }
   void check() { tapper_.check(); }
   std::string learnt_sign() const { return tapper_.learnt_sign(); }
   double tip() const { return robot.body.tip().z(); }
@@ -91,6 +90,13 @@ class TapperBench {
     if (change) change(out);
     return out;
   }
+  TapRequest request(const Target& place, int number) const {
+    TapRequest out;
+    out.number = number;
+    out.line = line_from_above(place);
+    out.previous = previous_;
+    return out;
+  }
 
  public:
   BodyRobot robot;
@@ -98,7 +104,7 @@ class TapperBench {
  private:
   Tapper tapper_;
   int taps_ = 0;
-  std::optional<Target> previous_;
+  std::optional<TapLine> previous_;
 };
 
 }  // namespace palpate::baxter::test

@@ -25,7 +25,7 @@ TEST(ADryRun, CommandsNothing) {
   Bench bench(with([](BaxterOptions& o) { o.dry_run = true; }));
   bench.robot.body.inject({FaultKind::tucked, 0.0, {}});
   bench.check();
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, StartsWith("dry run"));
   EXPECT_TRUE(bench.robot.commands.empty());
@@ -56,7 +56,7 @@ TEST(TheRobotsInverseKinematics, IsNotBelieved) {
   for (const auto& one : answers) {
     Bench bench(asking());
     bench.robot.answer = one;
-    const Contact contact = bench.tap(kOnObject);
+    const tapping::HeightResult contact = bench.tap(kOnObject);
     EXPECT_EQ(contact.outcome, Outcome::unreachable) << contact.reason;
     EXPECT_TRUE(bench.robot.commands.empty());
   }
@@ -65,7 +65,7 @@ TEST(TheRobotsInverseKinematics, IsNotBelieved) {
 TEST(TheRobotsInverseKinematics, EndsTheRunBeforeAnythingMovesWhenItDoesNotAnswer) {
   Bench bench(asking());
   bench.robot.answer = test::silent_service;
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
   EXPECT_THAT(contact.reason, StartsWith("IKService did not answer"));

@@ -28,7 +28,7 @@ TEST(ATap, InterruptedIsAbortedAndTheArmRaised) {
     bench.robot.every_period = [&] {
       if (bench.tip() < at) bench.interrupted = true;
     };
-    const Contact contact = bench.tap(kOnObject);
+    const tapping::HeightResult contact = bench.tap(kOnObject);
     EXPECT_EQ(contact.outcome, Outcome::aborted);
     EXPECT_EQ(contact.reason, "interrupted; the arm was raised to the height of travel");
     EXPECT_FALSE(contact.ends_run);
@@ -38,7 +38,7 @@ TEST(ATap, InterruptedIsAbortedAndTheArmRaised) {
 
 TEST(ATap, WithTheForceOfTheOtherSignIsStoppedAndSaysWhatToSet) {
   Bench bench(test::with([](BaxterOptions& o) { o.force_sign = BaxterOptions::ForceSign::positive; }));
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, HasSubstr("force_sign is wrong"));
   EXPECT_NEAR(bench.tip(), kHover, 0.01);
@@ -58,7 +58,7 @@ void expect_safe(const palpate::test::FaultCase& trouble, fake_baxter::Mechanics
     if (since == 0.0 && bench.robot.body.faulty()) since = bench.robot.body.now();
     lowest = std::min(lowest, bench.tip());
   };
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   const double took = bench.robot.body.now() - since;
   ASSERT_GT(since, 0.0) << "it never happened";
   EXPECT_EQ(contact.outcome, Outcome::aborted);
@@ -104,7 +104,7 @@ TEST(AFault, OfAnArmThatStandsWhereItIsSentDownSlowlyIsNoticedBeforeItCanJump) {
       stood = bench.robot.body.now();
       bench.robot.body.inject({FaultKind::drop_commands, 5.0, {}});
     };
-    const Contact contact = bench.tap(kOnObject);
+    const tapping::HeightResult contact = bench.tap(kOnObject);
     ASSERT_GT(stood, 0.0);
     EXPECT_THAT(contact.reason, HasSubstr("the arm does not follow: it stays ")) << filter;
     EXPECT_TRUE(contact.ends_run) << filter;
@@ -125,7 +125,7 @@ TEST(AFault, ThatIsFollowedByAnEmergencyStopEndsTheHold) {
       sent = bench.robot.commands.size();
     }
   };
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   ASSERT_GT(sent, 0U);
   EXPECT_LE(bench.robot.commands.size(), sent + 1) << "an arm under an emergency stop is sent nothing";
   EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not arrive"));
@@ -142,7 +142,7 @@ TEST(AFault, BetweenTwoTapsSendsNothing) {
   bench.robot.body.inject({FaultKind::kill_endpoint, 0.0, {}});
   bench.robot.wait_until(bench.robot.body.now() + 1.0);
   const std::size_t sent = bench.robot.commands.size();
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   EXPECT_THAT(contact.reason, StartsWith("endpoint_state of the left arm did not arrive"));
   EXPECT_TRUE(contact.ends_run);
   EXPECT_EQ(bench.robot.commands.size(), sent);
@@ -156,7 +156,7 @@ TEST(AFault, ThatNobodyThoughtOfIsRecordedAndNothingMoreIsSent) {
     sent = bench.robot.commands.size();
     throw std::runtime_error("out of memory");
   };
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
   EXPECT_EQ(contact.reason, "out of memory; no more commands are sent, the arm stays where it is");
@@ -172,7 +172,7 @@ TEST(ATap, InterruptedWhileItIsPlannedAsksForNoOtherPoseAndSendsNothing) {
     return gripper.solve(pose, seed);
   };
   const int before = bench.robot.asked;
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.reason, "interrupted; no more commands are sent, the arm stays where it is");
   EXPECT_FALSE(contact.ends_run);
   EXPECT_EQ(bench.robot.asked, before + 1);
@@ -186,7 +186,7 @@ TEST(AFault, RaisesTheArmWithoutTheRobotsInverseKinematics) {
     bench.interrupted = true;
     bench.robot.answer = test::silent_service;
   };
-  const Contact contact = bench.tap(kOnObject);
+  const tapping::HeightResult contact = bench.tap(kOnObject);
   EXPECT_EQ(contact.reason, "interrupted; the arm was raised to the height of travel");
   EXPECT_NEAR(bench.tip(), kHover, 0.01);
 }
@@ -199,7 +199,7 @@ double hardest_press(const char* fault, std::string& reason) {
     peak = std::max(peak, desk.robot.body.arm().peak);
     if (desk.robot.body.pressing() > 2.0 && !desk.robot.body.faulty()) desk.inject(fault);
   };
-  const Contact contact = desk.tap(kOnDesk);
+  const tapping::HeightResult contact = desk.tap(kOnDesk);
   reason = contact.reason;
   EXPECT_TRUE(contact.ends_run);
   desk.wait(3.0);
@@ -225,7 +225,7 @@ TEST(ATap, FeelsAForceThatIsRenewedWithEverySecondMessageOnly) {
 
 TEST(Travel, OfARobotAtHalfItsSpeedSaysWhatToSet) {
   Bench bench(fake_options(), [](test::BodyOptions& body) { body.speed_ratio = 0.15; });
-  const Contact contact = bench.tap({0.21, 0.02});
+  const tapping::HeightResult contact = bench.tap({0.21, 0.02});
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, HasSubstr("set its speed ratio to 0.3, a Baxter's default, on "
                                         "/robot/limb/left/set_speed_ratio, or lower motion.travel_speed"));
@@ -240,7 +240,7 @@ TEST(Travel, StopsWhenItMeetsSomething) {
     if (met == 0.0) met = seen.now;
     seen.endpoint->force.x() += 60.0 * (seen.now - met);
   };
-  const Contact contact = bench.tap({0.2, 0.2});
+  const tapping::HeightResult contact = bench.tap({0.2, 0.2});
   ASSERT_GT(met, 0.0);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_THAT(contact.reason, HasSubstr("more than force_stop allows"));
@@ -257,7 +257,7 @@ TEST(Travel, StopsWhenAnotherProgramCommandsTheArm) {
     if (sent == 0) sent = bench.robot.commands.size();
     seen.commanders = {"/palpate_2"};
   };
-  const Contact contact = bench.tap({0.2, 0.2});
+  const tapping::HeightResult contact = bench.tap({0.2, 0.2});
   EXPECT_THAT(contact.reason, StartsWith("the arm is also commanded by /palpate_2: end that program first"));
   EXPECT_TRUE(contact.ends_run);
   EXPECT_EQ(bench.robot.commands.size(), sent) << "two that command the arm make it tremble";

@@ -36,12 +36,12 @@ TEST(ATap, FindsTheObjectAndTheDeskAndEndsAtTheHeightOfTravel) {
   const std::vector<Target> places{kOnObject, kOnDesk, {0.115, 0.05}, {0.2, 0.21}};
   constexpr int kTaps = 12;
   for (int tap = 0; tap < kTaps; ++tap) {
-    const Contact contact = bench.touch(places[static_cast<std::size_t>(tap) % places.size()]);
+    const tapping::HeightResult contact = bench.touch(places[static_cast<std::size_t>(tap) % places.size()]);
     EXPECT_NEAR(bench.tip(), kHover, 0.01);
     EXPECT_GT(contact.force, 5.0);
     EXPECT_LT(contact.force, Body::kReflex);
-    EXPECT_GE(contact.peak.value(), 5.0);
-    EXPECT_LT(contact.peak.value(), Body::kReflex);
+    EXPECT_GE(contact.peak_force.value(), 5.0);
+    EXPECT_LT(contact.peak_force.value(), Body::kReflex);
     EXPECT_GT(contact.seconds, 2.0);
     // The first taps are slow, because a soft object shows little about the delay of a detection.
     EXPECT_LT(contact.seconds, tap < 4 ? 32.0 : 24.0) << tap;
@@ -62,7 +62,7 @@ TEST(ATap, IsMadeByTheMotionThatIsAskedFor) {
   const auto seconds = [&](int motion) {
     // The first tap starts elsewhere. The others start above their position and improve the known delay of a detection.
     for (int i = 0; i < 5; ++i) bench.tap(kOnDesk, motion);
-    const Contact contact = bench.tap(kOnDesk, motion);
+    const tapping::HeightResult contact = bench.tap(kOnDesk, motion);
     EXPECT_EQ(contact.outcome, Outcome::contact);
     return contact.seconds;
   };
@@ -139,7 +139,7 @@ TEST(ATap, IsDescribedFromWhereTheArmIsAndNothingMoves) {
 
 TEST(ATap, OutOfReachMovesNothing) {
   Bench bench(with([](BaxterOptions& o) { o.scene_pose.corner[0] = 0.9; }));
-  const Contact contact = bench.tap({0.23, 0.0});
+  const tapping::HeightResult contact = bench.tap({0.23, 0.0});
   EXPECT_EQ(contact.outcome, Outcome::unreachable);
   EXPECT_THAT(contact.reason, StartsWith("no joint position"));
   EXPECT_FALSE(contact.ends_run);
@@ -148,7 +148,7 @@ TEST(ATap, OutOfReachMovesNothing) {
 
 TEST(ATap, ThatMeetsNothingEndsAboveTheFloor) {
   Bench bench(with([](BaxterOptions& o) { o.scene_pose.height += 0.1; }));  // the desk is lower than in the config
-  const Contact contact = bench.tap(kOnDesk);
+  const tapping::HeightResult contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::no_contact);
   EXPECT_FALSE(contact.ends_run);
   EXPECT_GT(*std::min_element(bench.robot.heights.begin(), bench.robot.heights.end()), 0.1 - 0.03);
@@ -165,7 +165,7 @@ TEST(ACalibrationTap, PutsTheZeroWhereTheDeskIs) {
 
 TEST(ACalibrationTap, EndsTheRunWhereTheDeskIsNotNearWhereTheConfigHasIt) {
   Bench bench(with([](BaxterOptions& o) { calibrate(o, 0.115, 0.115); }));  // on the object
-  const Contact contact = bench.tap(kOnDesk);
+  const tapping::HeightResult contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::aborted);
   EXPECT_TRUE(contact.ends_run);
   EXPECT_THAT(contact.reason, HasSubstr("cm higher than scene_pose.height"));
@@ -181,8 +181,8 @@ TEST(ATap, OfARobotWhoseForceRisesIsTheSameOnceTheConfigSaysSo) {
       if (rises) bench.robot.spoil = [](Snapshot& seen) { seen.endpoint->force.z() *= -1.0; };
       return bench.tap(kOnObject);
     };
-    const Contact falls = tapped(false);
-    const Contact rises = tapped(true);
+    const tapping::HeightResult falls = tapped(false);
+    const tapping::HeightResult rises = tapped(true);
     ASSERT_EQ(rises.outcome, Outcome::contact) << rises.reason;
     // The first reading preceded the change of the sign.
     EXPECT_NEAR(rises.height, falls.height, 0.003);
@@ -228,7 +228,7 @@ TEST(ATap, InTwoStagesTaresTheStopAgainWithTheSecondStage) {
     const double trembles = 0.1 * std::sin(1000.0 * seen.now);  // a real sensor never repeats a value exactly
     seen.endpoint->force = {over && height < 0.05 ? 13.0 : 0.0, 0.0, trembles - bench.robot.body.pressing()};
   };
-  const Contact contact = bench.tap(kOnDesk);
+  const tapping::HeightResult contact = bench.tap(kOnDesk);
   EXPECT_EQ(contact.outcome, Outcome::contact) << contact.reason;
 }
 
@@ -289,7 +289,7 @@ TEST(ATap, IsNotFooledByOneLoudReadingThatStaysTheLatest) {
   bench.robot.spoil = spikes(5, bench);
   for (int i = 0; i < 40; ++i) {
     const Target place{0.02 + 0.01 * (i % 20), i % 2 == 0 ? 0.02 : 0.115};
-    const Contact contact = bench.tap(place);
+    const tapping::HeightResult contact = bench.tap(place);
     if (contact.outcome != Outcome::contact) continue;  // a rejected contact is not wrong
     ASSERT_NEAR(contact.height, wave_scene().height(place.x, place.y), 0.004) << "tap " << i;
   }

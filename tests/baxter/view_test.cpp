@@ -56,22 +56,22 @@ std::string seen_late(const std::string& topic, const std::function<std::string(
   return seen.empty() ? "nothing" : seen;
 }
 
-std::string told(const geometry_msgs::Point& point) {
+std::string describe(const geometry_msgs::Point& point) {
   return fmt::format("({:.3f} {:.3f} {:.3f})", point.x, point.y, point.z);
 }
 
-std::string told(const MarkerArray& array) {
+std::string describe(const MarkerArray& array) {
   std::string text;
   for (const Marker& marker : array.markers) {
     text += fmt::format("{} {} in {} at {}{}:", marker.ns, marker.id, marker.header.frame_id,
                         marker.header.stamp.toSec(), marker.action == Marker::DELETE ? ", gone" : "");
-    for (const geometry_msgs::Point& point : marker.points) text += " " + told(point);
+    for (const geometry_msgs::Point& point : marker.points) text += " " + describe(point);
     text += "\n";
   }
   return text;
 }
 
-std::string told(const PointCloud2& cloud) {
+std::string describe(const PointCloud2& cloud) {
   std::string text = cloud.header.frame_id + (cloud.is_dense ? "" : ", not dense") + "\n";
   sensor_msgs::PointCloud2ConstIterator<float> value(cloud, "x");
   sensor_msgs::PointCloud2ConstIterator<float> intensity(cloud, "intensity");
@@ -89,7 +89,7 @@ std::string seen(const RobotLab& lab, const std::string& topic, const std::funct
                         const auto robot = baxter::connect({false, false});
                         const std::unique_ptr<View> view = turned_view(*robot);
                         show(*view);
-                        return seen_late<Message>(topic, [](const Message& message) { return told(message); });
+                        return seen_late<Message>(topic, [](const Message& message) { return describe(message); });
                       })
       .printed;
 }
@@ -103,11 +103,17 @@ TEST(Shown, AreTheAreaTheTapsOnAndOffTheObjectAndTheNextAboveTheDeskInTheRobotsF
       "(0.500 0.100 -0.190)\n";
   EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", [](View&) {}),
             area + "on object 0 in base at 0, gone:\noff object 0 in base at 0, gone:\nnext 0 in base at 0, gone:\n");
-  const auto show = [](View& view) {
+  const auto contact = [&](const Target& place, double height, bool on_object) {
+    TapReading out;
+    out.position = Eigen::Vector3d(place.x, place.y, 0.01 + height);
+    out.on_object = on_object;
+    return out;
+  };
+  const auto show = [&](View& view) {
     view.target({0.1, 0.0});
-    view.contacts({{{0.1, 0.0}, 0.07, false}});
+    view.contacts({contact({0.1, 0.0}, 0.07, false)});
     view.target({0.2, 0.0});
-    view.contacts({{{0.1, 0.0}, 0.07, true}, {{0.2, 0.0}, 0.0, false}});  // the first contact was changed
+    view.contacts({contact({0.1, 0.0}, 0.07, true), contact({0.2, 0.0}, 0.0, false)});  // the first contact was changed
     view.target({0.0, 0.1});
   };
   EXPECT_EQ(seen<MarkerArray>(lab, "palpate/taps", show),

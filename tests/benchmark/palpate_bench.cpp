@@ -37,7 +37,7 @@ long peak_rss_bytes() {
   return usage.ru_maxrss * 1024;
 }
 
-void write_maps(const std::string& file, const Candidates& candidates, const test::GaussianProcess& process) {
+void write_maps(const std::string& file, const CandidateGrid& candidates, const test::GaussianProcess& process) {
   const Eigen::VectorXd mean = process.mean(0);
   const Eigen::VectorXd variance = process.variance(0);
   const Eigen::VectorXd weight = process.mean(1);
@@ -53,7 +53,7 @@ void write_maps(const std::string& file, const Candidates& candidates, const tes
 
 void run(const Arguments& arguments) {
   const palpate::benchmark::Taps taps = palpate::benchmark::read_taps(arguments.taps);
-  const Candidates candidates = palpate::benchmark::square(arguments.grid);
+  const CandidateGrid candidates = palpate::benchmark::square(arguments.grid);
   EngineSettings settings;
   settings.engine = arguments.engine;
   settings.tolerance = arguments.tolerance;

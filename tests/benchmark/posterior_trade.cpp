@@ -35,36 +35,40 @@ class Timer final : public test::Collector {
 
 struct Outcome {
   std::array<double, kPhases> seconds{};
-  std::vector<PastTap> taps;
+  std::vector<TapRecord> taps;
   Eigen::VectorXd mean, variance;  ///< of the heights at the end: metres, and relative to the prior
   double error_bound = 0.0;
   double rmse = 0.0;
 };
 
 /// With `past`, those taps instead of own choices.
-Outcome run(std::vector<std::string> overrides, const std::string& engine, const std::vector<PastTap>& past = {}) {
+Outcome run(std::vector<std::string> overrides, const std::string& engine, const std::vector<TapRecord>& past = {}) {
   overrides.push_back("engine.type=" + engine);
   const ResolvedConfig config = test::shipped_config("paper/object_i_right.yaml", overrides);
-  FromAbove experiment(config.options, test::shared_host(), nullptr);
+  Experiment experiment(config.options, {test::shared_host()});
   experiment.resume(past);
   Timer timer;
   experiment.run(timer);
   Outcome out;
-  out.mean = experiment.belief().height_mean();  // takes the last tap
-  out.variance = experiment.belief().uncertainty();
+  Belief& belief = experiment.belief();
+  belief.update();  // takes the last tap
+  belief.infer({quantity::kHeightMean, quantity::kUncertainty});
+  out.mean = belief.values(quantity::kHeightMean);
+  out.variance = belief.values(quantity::kUncertainty);
   timer.add(experiment.clock().take());
   out.seconds = timer.seconds;
   out.taps.assign(timer.taps.begin(), timer.taps.end());
   const RunResult result = experiment.result();
-  out.error_bound = result.height_gp->error_bound;
+  out.error_bound = test::number_of(result.state, "height_gp.error_bound").value();
   out.rmse = result.errors.rmse.value();
   return out;
 }
 
 bool same_taps(const Outcome& a, const Outcome& b) {
-  return std::equal(a.taps.begin(), a.taps.end(), b.taps.begin(), b.taps.end(), [](const PastTap& p, const PastTap& q) {
-    return p.target.x == q.target.x && p.target.y == q.target.y;
-  });
+  const auto is_same = [](const TapRecord& p, const TapRecord& q) {
+    return p.target().x == q.target().x && p.target().y == q.target().y;
+  };
+  return std::equal(a.taps.begin(), a.taps.end(), b.taps.begin(), b.taps.end(), is_same);
 }
 
 /// A row of the table, of all seeds.

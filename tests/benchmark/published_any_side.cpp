@@ -16,7 +16,7 @@
 // points, brought to the value 0 by two steps of Newton's, without the part that no tool could reach.
 #include "experiment/experiment_options.hpp"
 #include "space/cloud.hpp"
-#include "space/space_belief.hpp"
+#include "space/line_sampler.hpp"
 #include "space/view.hpp"
 #include "support/runs.hpp"
 
@@ -257,7 +257,7 @@ class Run {
       : settings_(settings),
         config_(test::shipped_config("any_side.yaml", {"scene=" + scene, "seed=" + std::to_string(seed)})),
         scene_(build_scene(config_.options.scene, static_cast<std::uint64_t>(seed), test::shared_host())),
-        region_(scene_->area(), 0.0),
+        region_(scene_->area()),
         bundle_(region_.centre, region_.outside(), 150, 0.006),
         random_(static_cast<std::uint64_t>(seed), "published") {
     for (const Line& line : bundle_.lines) {

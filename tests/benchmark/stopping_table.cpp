@@ -50,7 +50,7 @@ int table(int first, int last, const std::vector<std::string>& overrides) {
   for (const std::string& scene : test::stopping_scenes()) {
     std::vector<Tally> here(std::size(kBounds));
     for (int seed = first; seed <= last; ++seed) {
-      const test::Forecasts run = test::forecasts(scene, seed, overrides);
+      const test::Moments run = test::moments(scene, seed, overrides);
       for (std::size_t i = 0; i < std::size(kBounds); ++i) {
         const test::Stop stop = test::stop_of(run, kBounds[i]);
         here[i].add(stop, static_cast<int>(run.size()));

@@ -49,8 +49,8 @@ std::vector<TapRequest> requests(int taps) {
   std::vector<TapRequest> out(static_cast<std::size_t>(taps));
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i].number = static_cast<int>(i) + 1;
-    out[i].target = {0.23 * random.uniform(), 0.23 * random.uniform()};
-    if (i > 0) out[i].previous = out[i - 1].target;
+    out[i].line = line_from_above({0.23 * random.uniform(), 0.23 * random.uniform()});
+    if (i > 0) out[i].previous = out[i - 1].line;
   }
   return out;
 }
@@ -58,7 +58,7 @@ std::vector<TapRequest> requests(int taps) {
 Result measure(const std::string& effects, const std::string& motion, int taps) {
   Bench bench(effects, motion);
   const std::vector<TapRequest> all = requests(taps);
-  std::vector<Contact> contacts;
+  std::vector<TapResult> contacts;
   contacts.reserve(all.size());
   const auto begin = std::chrono::steady_clock::now();
   for (const TapRequest& request : all) contacts.push_back(bench.simulator.tap(request));
@@ -71,8 +71,8 @@ Result measure(const std::string& effects, const std::string& motion, int taps) 
       out.failed += 1.0 / taps;
       continue;
     }
-    const Target& place = all[i].target;
-    squares += std::pow(contacts[i].height - bench.scene->height(place.x, place.y), 2);
+    const Target place = all[i].line.target();
+    squares += std::pow(contacts[i].height() - bench.scene->height(place.x, place.y), 2);
   }
   out.rms = std::sqrt(squares / (taps * (1.0 - out.failed)));
   return out;
@@ -112,10 +112,10 @@ void perfect(int taps) {
   TapRequest request;
   for (int i = 0; i < taps; ++i) {
     request.number = i + 1;
-    request.target = {0.23 * ((i * 37) % 101) / 101.0, 0.23 * ((i * 61) % 103) / 103.0};
-    const Contact contact = bench.simulator.tap(request);
-    sum += contact.height + contact.seconds;
-    request.previous = request.target;
+    request.line = line_from_above({0.23 * ((i * 37) % 101) / 101.0, 0.23 * ((i * 61) % 103) / 103.0});
+    const TapResult contact = bench.simulator.tap(request);
+    sum += contact.height() + contact.seconds;
+    request.previous = request.line;
   }
   fmt::print("{}\n", sum);
 }

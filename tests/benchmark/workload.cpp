@@ -40,7 +40,7 @@ Taps read_taps(const std::filesystem::path& file) {
   return {all.leftCols(2), all.rightCols(2)};
 }
 
-Candidates square(int count) {
+CandidateGrid square(int count) {
   Eigen::VectorXd places(count);
   for (int i = 0; i < count; ++i) places(i) = kSide * i / std::max(1, count - 1);
   return product_grid(places, places);
@@ -51,7 +51,7 @@ std::shared_ptr<Kernel> make_kernel() {
   return test::make<Kernel>(test::shared_host(), "rbf", "{length_scale: 3 m}");
 }
 
-Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
+Replay replay(const Taps& taps, const CandidateGrid& candidates, const std::shared_ptr<Kernel>& kernel,
               const EngineSettings& settings, std::unique_ptr<test::GaussianProcess>* last) {
   Replay out;
   const auto count = static_cast<std::size_t>(taps.places.rows());

@@ -19,7 +19,7 @@ struct Taps {
 Taps read_taps(const std::filesystem::path& file);
 
 /// A square of 23 cm with `count` candidates a side, corners included.
-Candidates square(int count);
+CandidateGrid square(int count);
 
 /// The kernel of the workloads, a squared exponential of 3 cm.
 std::shared_ptr<Kernel> make_kernel();
@@ -36,7 +36,7 @@ constexpr int kInitialTaps = 3;
 
 /// Brings the taps one by one to a height and a label GP of unit variance and noise variance 1e-4, and chooses
 /// the best of u w after each, the initial ones apart.
-Replay replay(const Taps& taps, const Candidates& candidates, const std::shared_ptr<Kernel>& kernel,
+Replay replay(const Taps& taps, const CandidateGrid& candidates, const std::shared_ptr<Kernel>& kernel,
               const EngineSettings& settings, std::unique_ptr<test::GaussianProcess>* last = nullptr);
 
 }  // namespace palpate::benchmark

@@ -16,17 +16,18 @@ std::vector<TapRequest> requests() {
     for (const double y : {0.0, 0.5, 0.8, 1.0}) {
       TapRequest request;
       request.number = static_cast<int>(out.size()) + 1;
-      request.target = {x * area.width, y * area.depth};
-      if (!out.empty()) request.previous = out.back().target;
+      request.line = line_from_above({x * area.width, y * area.depth});
+      if (!out.empty()) request.previous = out.back().line;
       out.push_back(request);
     }
   }
   return out;
 }
 
-void expect_same(const Contact& a, const Contact& b) {
+void expect_same(const TapResult& a, const TapResult& b) {
   EXPECT_EQ(a.outcome, b.outcome);
-  EXPECT_EQ(a.height, b.height);
+  EXPECT_EQ(a.contacts.size(), b.contacts.size());
+  EXPECT_EQ(a.height(), b.height());
   EXPECT_EQ(a.force, b.force);
   EXPECT_EQ(a.seconds, b.seconds);
   EXPECT_EQ(a.reason, b.reason);
@@ -54,23 +55,25 @@ class BackendContract : public testing::TestWithParam<std::string> {
 
 TEST_P(BackendContract, FailsByOutcomeAndNeverByNumber) {
   for (const TapRequest& request : requests()) {
-    const Contact contact = backend_->tap(request);
+    const TapResult contact = backend_->tap(request);
     EXPECT_TRUE(std::isfinite(contact.seconds));
     EXPECT_GE(contact.seconds, 0.0);
     EXPECT_EQ(contact.reason.find('\n'), std::string::npos);
     if (contact.outcome == Outcome::contact) {
-      EXPECT_TRUE(std::isfinite(contact.height));
+      ASSERT_FALSE(contact.contacts.empty());
+      EXPECT_TRUE(contact.contacts.front().position.allFinite());
       EXPECT_TRUE(std::isfinite(contact.force));
       EXPECT_EQ(contact.reason, "");
     } else {
       EXPECT_NE(contact.reason, "");
+      EXPECT_TRUE(contact.contacts.empty());
     }
   }
 }
 
 TEST_P(BackendContract, AnswersTheSameRequestAlikeWhateverCameBefore) {
   const std::vector<TapRequest> all = requests();
-  std::vector<Contact> first;
+  std::vector<TapResult> first;
   for (const TapRequest& request : all) first.push_back(backend_->tap(request));
   const std::shared_ptr<Backend> fresh = make<Backend>(contract_host(), GetParam());
   for (std::size_t i = all.size(); i-- > 0;) {
@@ -90,10 +93,11 @@ TEST_P(BackendContract, AnswersAlikeWhetherItWasAskedToDescribeTheTapOrNot) {
 TEST_P(BackendContract, TouchesTheSceneThatItCallsTheTruth) {
   if (!backend_->scene_is_truth()) return;
   for (const TapRequest& request : requests()) {
-    const Contact contact = backend_->tap(request);
+    const TapResult contact = backend_->tap(request);
     ASSERT_EQ(contact.outcome, Outcome::contact);
     // Without effects that a config would have to ask for, the answer is exact up to the rounding of a subtraction.
-    EXPECT_NEAR(contact.height, wave_scene().height(request.target.x, request.target.y), 1e-12);
+    const Target target = request.line.target();
+    EXPECT_NEAR(contact.height(), wave_scene().height(target.x, target.y), 1e-12);
   }
 }
 

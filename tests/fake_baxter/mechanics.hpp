@@ -84,9 +84,9 @@ struct MechanicsOptions {
   double step = 1e-3;     ///< s, step of `springs`; must divide the period
 };
 
-/// Creates the model of the arm. `tip`: position of the tool's tip in the frame left_hand, metres. Contact stiffness
-/// and lag come from the effects of the scene in `scene_frame`, of which the model keeps a copy. Throws Error if this
-/// build does not have the model.
+/// Creates the model of the arm. `tip`: position of the tool's tip in the frame left_hand, metres.
+/// tapping::HeightResult stiffness and lag come from the effects of the scene in `scene_frame`, of which the model
+/// keeps a copy. Throws Error if this build does not have the model.
 std::unique_ptr<Mechanics> make_mechanics(const MechanicsOptions& options, const SceneFrame& scene_frame,
                                           const Eigen::Vector3d& tip);
 

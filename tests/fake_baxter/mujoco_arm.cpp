@@ -49,8 +49,8 @@ std::string joint(std::size_t number, double friction) {
 }  // namespace
 
 std::string mujoco_model(const Eigen::Vector3d& tip, double stiffness, double friction) {
-  // Contact and friction are as stiff as the step allows. So only the plate's spring yields, and a sticking joint stays
-  // in place.
+  // tapping::HeightResult and friction are as stiff as the step allows. So only the plate's spring yields, and a
+  // sticking joint stays in place.
   std::string out = fmt::format(R"(<mujoco>
 <compiler angle='radian' eulerseq='XYZ' inertiafromgeom='false'/>
 <option timestep='{step}' integrator='implicit' gravity='0 0 -{gravity}'/>

@@ -146,8 +146,8 @@ void join_network(bool clock) {
   if (clock) ros::param::set("/use_sim_time", true);
 }
 
-/// Writes one row per period with the true state: t, x, y, z of the tip in the scene's frame, height of the set-point,
-/// contact force, published force along z, mode, number of commands, and whether a fault has begun.
+/// Writes one row per period with the true state. Columns: time, tip (x, y, z in the scene's frame), height of the
+/// set-point, contact force, published force along z, mode, number of commands, and whether a fault has begun.
 class Trace {
  public:
   /// An empty name writes nothing. Throws Error.

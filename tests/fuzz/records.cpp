@@ -3,8 +3,8 @@
 #include "fuzz/ground.hpp"
 #include "fuzz/harness.hpp"
 
-#include "record/recording.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
+#include "record/run_replay.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 
@@ -39,7 +39,9 @@ fs::path sound_run() {
   const ResolvedConfig config =
       resolve_experiment(composer.compose(shipped_configs() / "paper" / "object_i.yaml", overrides), host());
   const fs::path directory = directory_of(config, ground().path() / "runs");
-  start_run(workshop(), config, directory, true, nullptr, nullptr);
+  StartOptions options;
+  options.force = true;
+  start_run(workshop(), config, directory, options);
   return directory;
 }
 

@@ -7,6 +7,7 @@
 #include "config/yaml.hpp"
 #include "process/protocol.hpp"
 #include "record/resolved.hpp"
+#include "support/requests.hpp"
 #include "sweep/condition.hpp"
 #include "sweep/description.hpp"
 
@@ -72,13 +73,15 @@ void words(const std::string& bytes) {
 void answer(const std::string& bytes) {
   constexpr double kLowest = -0.04;
   constexpr double kHighest = 0.135;
-  const process::Answer answer = process::read_answer(bytes, 2, {kLowest, kHighest, ""});
+  const TapRequest request = test::request_at({0.1, 0.1}, 2);
+  const process::Answer answer = process::read_answer(bytes, request, {kLowest, kHighest, ""});
   if (!answer.accepted) return;
   if (!answer.in_step) throw std::logic_error("an answer to another tap was accepted");
-  const Contact& contact = answer.contact;
-  const bool plain = std::isfinite(contact.height) && std::isfinite(contact.force) && std::isfinite(contact.seconds);
-  if (!plain || contact.height < kLowest || contact.height > kHighest || contact.force < 0.0 ||
-      contact.force > 1000.0 || contact.seconds < 0.0) {
+  const TapResult& result = answer.result;
+  const double height = result.height();
+  const bool plain = std::isfinite(height) && std::isfinite(result.force) && std::isfinite(result.seconds);
+  if (!plain || height < kLowest || height > kHighest || result.force < 0.0 || result.force > 1000.0 ||
+      result.seconds < 0.0) {
     throw std::logic_error("a number that no arm can have felt was accepted");
   }
 }

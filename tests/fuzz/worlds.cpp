@@ -7,7 +7,7 @@
 #include "shapes/height_map/grid.hpp"
 
 #include "config/compose.hpp"
-#include "experiment/from_above.hpp"
+#include "experiment/experiment.hpp"
 #include "reading/npy.hpp"
 #include "record/resolved.hpp"
 
@@ -35,7 +35,7 @@ void table(const std::string& bytes) {
       with({"backend=replay", "backend.record=" + (ground().path() / "table.csv").string()});
   ground().write("table.csv", bytes);
   try {
-    FromAbove(config.options, host(), nullptr);
+    Experiment(config.options, {host()});
   } catch (const Error&) {
   }
 }
@@ -48,7 +48,7 @@ void mesh(const std::string& bytes) {
   try {
     const ResolvedConfig config =
         with({"scene.objects=[{type: mesh, file: '" + file.string() + "', unit: 1 mm, at: [11.5 cm, 11.5 cm]}]"});
-    FromAbove(config.options, host(), nullptr);
+    Experiment(config.options, {host()});
   } catch (const Error&) {
   }
 }

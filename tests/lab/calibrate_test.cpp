@@ -5,7 +5,7 @@
 
 #include "calibrate/contact_fit.hpp"
 #include "config/yaml.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "scene/scene_options.hpp"
 #include "support/filled.hpp"
 #include "support/runs.hpp"
@@ -95,20 +95,19 @@ TEST(Contacts, ShareOfNoneAndOfAllKeepsToWhatASharesCanBe) {
 
 class Calibrate : public testing::Test {
  protected:
-  Recording recorded(const ResolvedConfig& config) {
+  RecordedRun recorded(const ResolvedConfig& config) {
     const fs::path directory = folder_.path() / std::to_string(runs_++);
-    start_run(workshop, config, directory, false, nullptr);
-    return read_recording(workshop, directory);
+    start_run(workshop, config, directory, {});
+    return read_recorded_run(workshop.host, directory);
   }
 
   /// Returns the mean height error of the middle half of the contacts.
-  static double mean_error(const Recording& run) {
+  static double mean_error(const RecordedRun& run) {
     const auto scene =
         build_scene(run.config.options.scene, static_cast<std::uint64_t>(run.config.options.seed), shared_host());
     std::vector<double> off;
-    for (const PastTap& tap : run.taps) {
-      if (tap.contact.outcome == Outcome::contact)
-        off.push_back(tap.contact.height - scene->height(tap.target.x, tap.target.y));
+    for (const TapRecord& tap : run.taps) {
+      if (tap.is_contact()) off.push_back(tap.result.height() - scene->height(tap.target().x, tap.target().y));
     }
     std::sort(off.begin(), off.end());
     const auto quarter = static_cast<std::ptrdiff_t>(off.size() / 4);
@@ -116,7 +115,7 @@ class Calibrate : public testing::Test {
            static_cast<double>(off.end() - off.begin() - 2 * quarter);
   }
 
-  std::string refusal(const std::vector<Recording>& runs) {
+  std::string refusal(const std::vector<RecordedRun>& runs) {
     return test::error_of([&] { calibrate(workshop, runs); });
   }
 
@@ -135,13 +134,13 @@ TEST_F(Calibrate, HasTheSimulatorErrAsTheArmDidThatTheTapsAreOf) {
       "{lateral: 3 mm, vertical: 2 mm}, missed_contacts: {probability: 0.1}, height_offset: {constant: -3 mm}}";
   for (const std::string motion : {"per_tap", "paper", "continuous"}) {
     const std::vector<std::string> words{"scene=block", "acquisition=random", "taps=40", "motion=" + motion, effects};
-    const Recording arm = recorded(test::shipped_config("default.yaml", words));
+    const RecordedRun arm = recorded(test::shipped_config("default.yaml", words));
     const std::string file = calibrate(workshop, {arm});
     SCOPED_TRACE(file);
     Tree found = test::shipped_config("default.yaml", words).tree;
     found.at("scene").at("effects") = parse_yaml(file, "effects.yaml").at("effects");
     found.at("seed") = Tree::scalar("12");
-    const Recording rerun = recorded(resolve_experiment(found, shared_host()));
+    const RecordedRun rerun = recorded(resolve_experiment(found, shared_host()));
     EXPECT_NEAR(mean_error(rerun), mean_error(arm), 0.001);
     EXPECT_THAT(file, HasSubstr("height_offset"));
     EXPECT_THAT(file, HasSubstr("# assumed"));
@@ -163,14 +162,14 @@ TEST(Contacts, AreBesideTheSceneByHowFarTheyAreOffAllHeightsWithinOneCentimetre)
 }
 
 TEST_F(Calibrate, RejectsARunWhoseSceneDoesNotStandAsItsConfigSays) {
-  const Recording arm = recorded(
+  const RecordedRun arm = recorded(
       test::shipped_config("default.yaml", {"scene=block", "acquisition=random", "taps=40", "scene.effects=standard"}));
   EXPECT_EQ(refusal({arm}), "accepted");
   const auto said_to_be = [&](const char* scene) {
     Tree tree = arm.config.tree;
     const Tree changes = parse_yaml(scene, "scene");
     for (const Tree::Entry& one : changes.entries) tree.at("scene").at(one.key) = one.value;
-    Recording out = arm;
+    RecordedRun out = arm;
     out.config = resolve_experiment(tree, shared_host());
     return out;
   };
@@ -180,7 +179,7 @@ TEST_F(Calibrate, RejectsARunWhoseSceneDoesNotStandAsItsConfigSays) {
   EXPECT_THAT(refusal({said_to_be(("{objects: [" + block + "[8 cm, 11.5 cm]}]}").c_str())}),
               HasSubstr("contacts are within an object of its scene, but only one in 20 may be"));
   EXPECT_THAT(refusal({said_to_be("{desk: 4 cm}")}), HasSubstr("the heights are off by -40."));
-  const Recording moved = said_to_be("{objects: []}");
+  const RecordedRun moved = said_to_be("{objects: []}");
   EXPECT_THAT(refusal({arm, arm, arm, moved}), HasSubstr("far from its scene")) << "among others, too";
 }
 

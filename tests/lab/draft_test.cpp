@@ -2,7 +2,7 @@
 #include "sweep/draft.hpp"
 
 #include "config/yaml.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 
 #include "support/field_table.hpp"
 #include "support/runs.hpp"

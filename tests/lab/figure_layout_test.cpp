@@ -109,7 +109,7 @@ TEST(SheetTest, WritesEachKindOfTapToABlockOfItsOwnAndPlotsOnlyWhatThereIs) {
   MapsAtTap snapshot;
   snapshot.marks = {{1, TapMark::Kind::on, 0.01, 0.02, 0.03}, {2, TapMark::Kind::failed, 0.04, 0.05, 0.0}};
   snapshot.next.emplace();
-  snapshot.next->target = {0.06, 0.07};
+  snapshot.next->request.line = line_from_above({0.06, 0.07});
   layout.taps("a", snapshot);
   const Area area{0.1, 0.1};
   const SceneFrame frame{grid_by_count(area, 2), area};

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The replay of a run has the values of the run at each tap, and those of its summary at the end.
+// A run lived through again says at every tap what the run said then, and at its end what its summary says.
 #include "report/history.hpp"
+
 #include "record/fields.hpp"
-#include "record/session.hpp"
-#include "record/tap_row.hpp"
+#include "record/run.hpp"
+#include "report/beliefs.hpp"
 #include "report/curves.hpp"
 #include "report/page/run_page.hpp"
 #include "report/page/warnings.hpp"
@@ -26,15 +27,15 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A run made in this process.
+/// A run that was made in this process.
 class Recorded {
  public:
   Recorded(const std::string& base, const std::vector<std::string>& words) {
     const ResolvedConfig config = test::shipped_config(base, words);
-    directory = start_run(workshop, config, folder_.path() / "run", false, nullptr).directory;
+    directory = start_run(workshop, config, folder_.path() / "run", {}).directory;
   }
 
-  Recording recording() const { return read_recording(workshop, directory); }
+  RecordedRun recording() const { return read_recorded_run(workshop.host, directory); }
   History history() const {
     return make_history(workshop, recording(), [](int, int) {});
   }
@@ -53,12 +54,12 @@ std::string cell(const Row& row, const char* name) {
   return value != nullptr ? csv_cell(*value) : "absent";
 }
 
-/// A shipped config and overrides.
+/// A shipped config, and words behind it.
 class RunHistory : public ::testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   const Recorded run(GetParam().front(), {GetParam().begin() + 1, GetParam().end()});
-  const Recording recording = run.recording();
+  const RecordedRun recording = run.recording();
   const History history = run.history();
   ASSERT_EQ(history.moments.size(), recording.rows.size() + 1);
   int compared = 0;
@@ -74,7 +75,7 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
     for (const auto& [name, value] : row.fields) {
       const bool of_footprint = name == "p" || name == "footprint_iou" || name.compare(0, 10, "footprint.") == 0;
       if (!of_footprint || csv_cell(value).empty()) continue;
-      // Errors belong to the state from which the tap was chosen, whatever models the next choice needs.
+      // Errors are of the state that the tap was chosen from, whatever the next choice would build beyond it.
       const std::string now =
           name == "footprint_iou" ? csv_cell(*moment.result.errors.footprint_iou) : cell(next, name.c_str());
       EXPECT_EQ(now, csv_cell(value)) << name << " of tap " << made + 1;
@@ -89,8 +90,8 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   const ExperimentOptions& options = recording.config.options;
   const bool reads_surface =
       (options.acquisition.type != "random" && options.surface == ExperimentOptions::Surface::single) ||
-      (recording.taps.front().predicted &&
-       !options.height.outlier_probability);  // otherwise heights are predicted without the map
+      (recording.taps.front().request.predicted &&
+       !options.height.outlier_probability);  // else a height is predicted without its map
   EXPECT_EQ(compared > 0, reads_surface);
   EXPECT_EQ(compared_footprint > 10, options.footprint.type != "gp_regression");
   RunResult last = history.moments.back().result;
@@ -134,26 +135,27 @@ TEST(History, HasTheProbabilityOfTheFootprintInPlaceOfTheWeight) {
   std::vector<std::string> names;
   for (const MapSeries& one : history.maps) names.push_back(one.name);
   EXPECT_THAT(names, ::testing::ElementsAre("height", "deviation", "u", "p", "score", "truth"));
-  const Recording recording = run.recording();
-  Playback last(run.workshop, recording);
+  const RecordedRun recording = run.recording();
+  RunReplay last(run.workshop, recording, page_readers(recording));
   last.advance_to(12);
-  last.from_above().ask(Quantity::probability);
-  const TapBelief& belief = last.from_above().belief();
-  EXPECT_EQ(history.maps.at(3).frames.back(), Eigen::VectorXf(belief.probability().cast<float>()));
+  last.experiment().look();
+  const HeightMap& belief = height_map_of(last.experiment());
+  EXPECT_EQ(history.maps.at(3).frames.back(),
+            Eigen::VectorXf(belief.values(quantity::kObjectProbability).cast<float>()));
   EXPECT_FALSE(history.moments.back().least_weight.has_value());
-  EXPECT_EQ(belief.label_gp().process, nullptr) << "nobody has asked for it";
+  EXPECT_EQ(belief.models().label_gp().process, nullptr) << "nothing reads it";
 }
 
 TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {
-  // Before the first contact with an object, its level is free, so that its uncertainty is a thousand times the signal.
+  // Before an object is touched its level is free, and so a thousand signals uncertain.
   const Recorded run("paper/object_i.yaml", {"surface=two_part", "taps=12"});
   const History history = run.history();
   for (const Eigen::VectorXf& frame : history.maps.at(1).frames) EXPECT_LE(frame.maxCoeff(), 1.0F);
-  const Recording recording = run.recording();
-  Playback last(run.workshop, recording);
+  const RecordedRun recording = run.recording();
+  RunReplay last(run.workshop, recording, page_readers(recording));
   last.advance_to(12);
-  last.from_above().ask(Quantity::height);
-  const Eigen::VectorXd deviation = last.from_above().belief().height_variance().cwiseSqrt();
+  last.experiment().look();
+  const Eigen::VectorXd deviation = last.experiment().belief().values(quantity::kHeightStd);
   for (Eigen::Index i = 0; i < deviation.size(); ++i)
     EXPECT_NEAR(static_cast<double>(history.maps.at(1).frames.back()(i)), std::min(deviation(i), 1.0), 1e-6);
 }
@@ -170,7 +172,7 @@ TEST(History, TakesOnlySomeCellsOfFineMaps) {
 TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
   const Recorded run("any_side.yaml",
                      {"scene=object_i", "scene.touch=any", "taps=9", "space.approaches=200", "space.moves=100"});
-  const Recording recording = run.recording();
+  const RecordedRun recording = run.recording();
   const History history = run.history();
   ASSERT_EQ(history.surfaces.size(), 10U);
   EXPECT_TRUE(history.maps.empty());
@@ -180,10 +182,10 @@ TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
   for (int taps = 0; taps <= 9; ++taps) {
     const RunAtTap& moment = history.moments[static_cast<std::size_t>(taps)];
     EXPECT_EQ(history.surfaces[static_cast<std::size_t>(taps)].vertices.empty(), taps < hit);
-    ASSERT_TRUE(moment.next && moment.next->approach && moment.next_along);
-    EXPECT_LE(*moment.next_along, moment.next->approach->length);
+    ASSERT_TRUE(moment.next && moment.next_along);
+    EXPECT_LE(*moment.next_along, moment.next->request.line.length);
     if (taps == 9) continue;
-    EXPECT_EQ(moment.next->approach->line.origin, recording.taps[static_cast<std::size_t>(taps)].approach->line.origin);
+    EXPECT_EQ(moment.next->request.line.start, recording.taps[static_cast<std::size_t>(taps)].request.line.start);
   }
   EXPECT_EQ(history.moments.back().result.errors.surface_distance, recording.summary->number("surface_distance_m"));
 
@@ -205,7 +207,7 @@ TEST(RunPage, IsSmallEnoughToMailHoweverLongTheRunAndFineTheGrid) {
     const Recorded run("paper/object_i.yaml", words);
     const std::string page = run_page(run.recording(), run.history(), [](int, int) {});
     EXPECT_LE(page.size(), kMostPageBytes);
-    EXPECT_GT(page.size(), 1'900'000U);  // the page contains plotly
+    EXPECT_GT(page.size(), 1'900'000U);  // plotly is in it
   }
 }
 
@@ -222,10 +224,10 @@ TEST(RunPage, SaysOneThingOfARunThatEndsOrGoesOnWhileItIsMade) {
   const std::string begun = test::record_until(whole, 6);
   ASSERT_LT(begun.size(), whole.size());
   const auto write = [&](const std::string& text) { std::ofstream(file, std::ios::binary) << text; };
-  // The run ends between the reading of the record and the making of the page.
-  const Recording ended = run.recording();
+  // The record is read in one state, and stands in the other when the page is made.
+  const RecordedRun ended = run.recording();
   write(begun);
-  const Recording going_on = run.recording();
+  const RecordedRun going_on = run.recording();
   EXPECT_THAT(run_news(ended, history, 7, ""),
               AllOf(HasSubstr(R"("state":"done")"), HasSubstr(R"("stop_reason":"tap budget")"),
                     Not(HasSubstr("The run has not ended"))));
@@ -256,7 +258,7 @@ TEST(Warnings, TellOfARuleThatStalls) {
 
 TEST(Warnings, OfARunFromAnySideSpeakOfApproachesAndTakeAFreeWayForNoFailure) {
   const Recorded run("any_side.yaml", {"scene=object_i", "scene.touch=any", "acquisition=uncertainty", "taps=12",
-                                       "space.approaches=1", "space.moves=20"});
+                                       "fallback=none", "space.approaches=1", "space.moves=20"});
   ASSERT_GT(run.history().moments.back().result.no_contact_taps, 0);
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   EXPECT_THAT(said, Contains(HasSubstr("although no approach had a positive score")));
@@ -270,23 +272,23 @@ TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {
   const RunResult last = run.history().moments.back().result;
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   ASSERT_GT(last.failed_taps, 0);
-  ASSERT_GT(last.diagnostics.at("jitter"), 0);
+  ASSERT_GT(last.state.diagnostics.at("jitter"), 0);
   EXPECT_THAT(said, Contains(HasSubstr(std::to_string(last.failed_taps) + " tap")));
   EXPECT_THAT(said, Contains(HasSubstr("Jitter up to ")));
 }
 
 TEST(Warnings, TellOfTheFirstTapThatThisBuildWouldHaveMadeElsewhere) {
   const Recorded run("paper/object_i.yaml", {});
-  Recording recording = run.recording();
+  RecordedRun recording = run.recording();
   for (const std::size_t tap : {11U, 14U})
-    recording.taps[tap].target.x = 0.5 * 0.23 / 47;  // the first candidate of its row
+    recording.taps[tap].request.line.start.x() = 0.5 * 0.23 / 47;  // the first of its row
   const History history = make_history(run.workshop, recording, [](int, int) {});
   EXPECT_THAT(warnings_of(recording, history),
               Contains(HasSubstr("this build would choose another position for tap 12")));
 }
 
 TEST(Warnings, AreNoneOfARunWithoutTrouble) {
-  // After one tap on the object, w is 1 at the tap and falls to 0 around it.
+  // One tap, on the object: w is 1 there and falls to 0 around it.
   const Recorded run("paper/object_i.yaml", {"taps=1", "initial.count=1", "initial.design=grid"});
   ASSERT_EQ(run.history().moments.back().result.object_taps, 1);
   EXPECT_THAT(warnings_of(run.recording(), run.history()), ::testing::IsEmpty());

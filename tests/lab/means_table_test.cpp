@@ -23,7 +23,7 @@ Comparison comparison(const char* metric, Unit unit, std::optional<int> taps, st
   out.metric = {metric, unit, RecordField::Better::less};
   out.by = {"strategy"};
   out.groups = std::move(groups);
-  if (taps) out.occasion = Occasion::after(*taps);
+  if (taps) out.occasion = Checkpoint::after(*taps);
   return out;
 }
 

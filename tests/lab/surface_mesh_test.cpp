@@ -14,28 +14,28 @@ namespace {
 
 constexpr double kRounding = 1e-13;
 
-/// A grid whose sides, numbers of cells and distances all differ.
-Candidates oblong() {
+/// A grid whose sides, numbers and distances all differ.
+CandidateGrid oblong() {
   return product_grid(Eigen::VectorXd::LinSpaced(7, 0.01, 0.13), Eigen::Vector4d(0.1, 0.15, 0.2, 0.25));
 }
 
 template <class Height>
-Eigen::VectorXd heights(const Candidates& candidates, const Height& height) {
+Eigen::VectorXd heights(const CandidateGrid& candidates, const Height& height) {
   Eigen::VectorXd out(candidates.size());
   for (int i = 0; i < candidates.size(); ++i) out(i) = height(candidates.points(i, 0), candidates.points(i, 1));
   return out;
 }
 
-/// Returns the mesh of `height` over oblong().
+/// Over oblong().
 template <class Height>
 SurfaceMesh mesh_of(const Height& height) {
-  const Candidates candidates = oblong();
+  const CandidateGrid candidates = oblong();
   return surface_mesh(candidates, heights(candidates, height));
 }
 
 Eigen::Vector3d corner(const SurfaceMesh& mesh, int vertex) { return mesh.points.row(vertex).transpose(); }
 
-/// Returns twice the area of a triangle along its normal, given by the order of its corners.
+/// Twice the area of a triangle, along its normal by the order of its corners.
 Eigen::Vector3d area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& t) {
   return (corner(mesh, t[1]) - corner(mesh, t[0])).cross(corner(mesh, t[2]) - corner(mesh, t[0]));
 }
@@ -58,9 +58,9 @@ TEST(SurfaceMesh, OfALevelSurfaceLooksStraightUpWithoutAMinusBeforeAnyZero) {
 }
 
 TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
-  // For a parabola, the central difference equals the slope. At an edge, it equals the slope half a step inside.
+  // Of a parabola along x the central difference is the slope itself; at an edge it is that half a step inside.
   const double bend = 3.0;
-  const Candidates candidates = oblong();
+  const CandidateGrid candidates = oblong();
   const SurfaceMesh mesh = mesh_of([&](double x, double) { return bend * x * x; });
   const double step = candidates.xs(1) - candidates.xs(0);
   for (int row = 0; row < candidates.rows; ++row) {
@@ -109,13 +109,13 @@ TEST(SurfaceMesh, IsADiscWhoseInnerEdgesHaveATriangleOnEitherSide) {
 }
 
 TEST(SurfaceMesh, OfASingleRowOrASingleCandidateHasNoTriangleAndLevelNormalsAcross) {
-  const Candidates row = product_grid(Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::VectorXd::Constant(1, 0.5));
+  const CandidateGrid row = product_grid(Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::VectorXd::Constant(1, 0.5));
   const SurfaceMesh strip = surface_mesh(row, Eigen::Vector3d(0.0, 0.1, 0.2));
   EXPECT_TRUE(strip.triangles.empty());
   for (int i = 0; i < 3; ++i)
     EXPECT_LT((strip.normals.row(i) - Eigen::RowVector3d(-1, 0, 1).normalized()).norm(), kRounding);
 
-  const Candidates one = product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.5));
+  const CandidateGrid one = product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.5));
   const SurfaceMesh point = surface_mesh(one, Eigen::VectorXd::Constant(1, 0.3));
   EXPECT_TRUE(point.triangles.empty());
   EXPECT_EQ(point.normals.row(0), Eigen::RowVector3d(0, 0, 1));

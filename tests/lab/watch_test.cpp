@@ -2,7 +2,7 @@
 // `palpate watch` without a browser and without another process: a growing log, a history that is read in between, and
 // a server without visitors.
 #include "record/json.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "report/history.hpp"
 #include "support/parts.hpp"
 #include "support/runs.hpp"
@@ -131,7 +131,7 @@ class Watching : public ::testing::Test {
  protected:
   fs::path made(const std::string& base, const std::vector<std::string>& words = {}) const {
     const ResolvedConfig config = test::shipped_config(base, words);
-    return start_run(workshop_, config, folder_.path() / "run", false, nullptr).directory;
+    return start_run(workshop_, config, folder_.path() / "run", {}).directory;
   }
 
   const test::TemporaryFolder folder_;
@@ -140,12 +140,12 @@ class Watching : public ::testing::Test {
 };
 
 TEST_F(Watching, AHistoryThatGrowsIsAtEachTapThatOfARunThatEndsThere) {
-  const Recording whole = read_recording(workshop_, made("paper/object_i.yaml", {"taps=9"}));
-  Recording growing{whole.directory, whole.config, {whole.rows.front()}, {whole.taps.front()}, {}, {}, {}};
+  const RecordedRun whole = read_recorded_run(workshop_.host, made("paper/object_i.yaml", {"taps=9"}));
+  RecordedRun growing{whole.directory, whole.config, {whole.rows.front()}, {whole.taps.front()}, {}, {}, {}};
   HistoryBuilder builder(workshop_, growing);
   builder.advance();
   for (std::size_t taps = 1;; ++taps) {
-    Recording until{whole.directory, whole.config, {}, {}, {}, {}, {}};
+    RecordedRun until{whole.directory, whole.config, {}, {}, {}, {}, {}};
     until.rows.assign(whole.rows.begin(), whole.rows.begin() + static_cast<std::ptrdiff_t>(taps));
     until.taps.assign(whole.taps.begin(), whole.taps.begin() + static_cast<std::ptrdiff_t>(taps));
     const History expected = make_history(workshop_, until, [](int, int) {});
@@ -169,7 +169,7 @@ TEST_F(Watching, AHistoryThatGrowsIsAtEachTapThatOfARunThatEndsThere) {
 }
 
 TEST_F(Watching, AHistoryThatIsThinnedKeepsTheLastMomentAndEverySecondOfTheOthers) {
-  const Recording recording = read_recording(workshop_, made("paper/object_i.yaml", {"taps=7"}));
+  const RecordedRun recording = read_recorded_run(workshop_.host, made("paper/object_i.yaml", {"taps=7"}));
   const History whole = make_history(workshop_, recording, [](int, int) {});
   HistoryBuilder builder(workshop_, recording);
   while (builder.taps() < 7) builder.advance();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page of a run from any side in a browser: surface, taps as arrows, text.
 #include "record/files.hpp"
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 #include "report/browser.hpp"
 #include "report/history.hpp"
 #include "support/programs.hpp"
@@ -57,7 +57,7 @@ TEST_P(AnySidePage, DrawsTheSurfaceAfterEachTapAndTheTapsAsArrows) {
   ASSERT_EQ(seen.values.size(), 11U);
   const Installation installation;
   const Workshop workshop{test::shared_host(), installation, {}, nullptr};
-  const Recording recording = read_recording(workshop, directory);
+  const RecordedRun recording = read_recorded_run(workshop.host, directory);
   const History history = make_history(workshop, recording, [](int, int) {});
   ASSERT_EQ(history.surfaces.size(), 1U + kTaps);
   for (const auto& [value, taps] : {std::pair(0, kTaps), std::pair(3, kTaps - 1)}) {

@@ -23,7 +23,7 @@ using test::scattered;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// `sound` becomes false if there ever was a number that is none.
-GaussianProcess processed(const Problem& problem, const Candidates& candidates, const EngineSettings& posterior,
+GaussianProcess processed(const Problem& problem, const CandidateGrid& candidates, const EngineSettings& posterior,
                           bool& sound) {
   const Case& one = problem.one;
   // Before a fit the matrix is as singular as can be.
@@ -94,7 +94,7 @@ Answer answered(const Problem& problem, const Engine& engine) {
   const Case& one = problem.one;
   const Points places = asked(problem, engine);
   const bool dense = engine.kind == EngineSettings::Kind::dense;
-  const Candidates candidates = dense ? scattered(places) : product_grid(places.col(0), places.col(1));
+  const CandidateGrid candidates = dense ? scattered(places) : product_grid(places.col(0), places.col(1));
   // Of a product grid, the places lie on the diagonal.
   const Eigen::Index step = dense ? 1 : places.rows() + 1;
   const auto at_places = [&](const Eigen::VectorXd& map) {

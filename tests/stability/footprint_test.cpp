@@ -88,19 +88,23 @@ TEST(FootprintHeights, OfAnySizeLeaveProbabilities) {
 /// A run of the loop over such touches, every number of the footprint that it recorded checked.
 void expect_sound_run(const std::string& labels, int taps, std::vector<std::string> words) {
   words.insert(words.end(), {fmt::format("taps={}", taps), "repeat=allow"});
-  std::vector<Contact> answers;
+  std::vector<TapResult> answers;
   for (const Touch& touch : touches_of(labels, taps)) answers.push_back(contact_at(touch.on ? 0.05 : 0.0));
   Finished run("default.yaml", words, scripted(answers));
   ASSERT_EQ(run.taps.size(), static_cast<std::size_t>(taps));
   for (const TapRecord& tap : run.taps) {
-    EXPECT_TRUE(std::isfinite(tap.score.value_or(0.0))) << tap.number;
-    if (!tap.footprint) continue;
-    EXPECT_TRUE(*tap.probability >= 0.0 && *tap.probability <= 1.0) << tap.number;
-    for (const FootprintNumber& one : tap.footprint->numbers) EXPECT_TRUE(std::isfinite(one.value)) << one.name;
+    EXPECT_TRUE(std::isfinite(tap.score.value_or(0.0))) << tap.number();
+    const std::optional<double> probability = number_of(tap.state, "p");
+    if (!probability) continue;
+    EXPECT_TRUE(*probability >= 0.0 && *probability <= 1.0) << tap.number();
+    for (const auto& [name, value] : tap.state.fields) {
+      const double* const number = name.rfind("footprint.", 0) == 0 ? std::get_if<double>(&value) : nullptr;
+      EXPECT_TRUE(number == nullptr || std::isfinite(*number)) << name;
+    }
   }
-  run.experiment.ask(Quantity::probability | Quantity::height);
-  EXPECT_TRUE(all_probabilities(run.experiment.belief().probability()));
-  EXPECT_TRUE(run.experiment.belief().height_mean().allFinite());
+  run.read({quantity::kObjectProbability, quantity::kHeightMean});
+  EXPECT_TRUE(all_probabilities(run.belief().values(quantity::kObjectProbability)));
+  EXPECT_TRUE(run.belief().values(quantity::kHeightMean).allFinite());
 }
 
 // All taps go to one place where there is only one candidate.

@@ -79,7 +79,7 @@ Points places_of(Places how, int count) {
 class OutlierModel : public ::testing::TestWithParam<Places> {};
 
 TEST_P(OutlierModel, IsFiniteAndAsGoodAsTheProcessItself) {
-  const Candidates candidates =
+  const CandidateGrid candidates =
       product_grid(Eigen::VectorXd::LinSpaced(12, 0.0, 0.23), Eigen::VectorXd::LinSpaced(12, 0.0, 0.23));
   const auto surface = [](double x, double y) { return 0.06 + 0.02 * std::sin(30.0 * x) + 0.1 * y; };
   for (const int count : brief() ? std::vector<int>{3, 25} : std::vector<int>{3, 25, 100}) {

@@ -26,7 +26,7 @@ Case with(double mean_ratio, int points, double signal, double mean) {
   return one;
 }
 
-GaussianProcess processed(const Problem& problem, const Candidates& candidates) {
+GaussianProcess processed(const Problem& problem, const CandidateGrid& candidates) {
   const Case& one = problem.one;
   const auto kernel = test::make<Kernel>(test::shared_host(), one.kernel, "{length_scale: 2.3 cm}");
   GaussianProcess process(kernel, {one.signal, one.noise(), one.mean, one.mean_ratio}, candidates);
@@ -42,7 +42,7 @@ TEST(UnknownMean, MeanVarianceAndLikelihoodAgreeWithTheOracle) {
       for (const double signal : {1e-6, 1.0, 1e6}) {
         const Case one = with(ratio, points, signal, 0.25 * signal);
         const Problem problem(one);
-        const Candidates candidates = scattered(problem.probes);
+        const CandidateGrid candidates = scattered(problem.probes);
         const GaussianProcess process = processed(problem, candidates);
         Oracle oracle(one, problem.places, problem.values);
         ASSERT_TRUE(oracle.factorise(0.0));
@@ -67,7 +67,7 @@ TEST(UnknownMean, OfNoKnowledgeAtAllFollowsTheLevelOfTheData) {
   const Case one = with(1e6, 30, 1.0, 0.0);
   Problem problem(one);
   problem.values.array() += 1000.0;
-  const Candidates candidates = scattered(problem.probes);
+  const CandidateGrid candidates = scattered(problem.probes);
   const GaussianProcess process = processed(problem, candidates);
   const Eigen::Index far = problem.probes.rows() - 1;
   const Case plain = with(0.0, 30, 1.0, 0.0);

@@ -33,7 +33,7 @@ TEST_P(WorkloadAccuracy, IsThatPromisedForEveryEngine) {
   if (test::brief() && workload.grid > 100) GTEST_SKIP() << "./check --all makes it in release";
   const benchmark::Taps taps =
       benchmark::read_taps(test::source_folder() / "tests/data" / fmt::format("taps_{}.csv", workload.name));
-  const Candidates candidates = benchmark::square(workload.grid);
+  const CandidateGrid candidates = benchmark::square(workload.grid);
   constexpr Eigen::Index kProbes = 397;  // a prime, so that they fall into all rows and columns
   Eigen::Array<Eigen::Index, kProbes, 1> chosen;
   for (Eigen::Index i = 0; i < kProbes; ++i) chosen(i) = i * (candidates.size() - 1) / (kProbes - 1);

@@ -11,19 +11,19 @@
 namespace palpate::test {
 
 /// Returns candidates at any positions, in one row.
-inline Candidates scattered(Points points) {
+inline CandidateGrid scattered(Points points) {
   const auto count = static_cast<int>(points.rows());
   return {count, 1, std::move(points), {}, {}};
 }
 
 class GaussianProcess : public palpate::GaussianProcess {
  public:
-  GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs, const Candidates& candidates,
+  GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs, const CandidateGrid& candidates,
                   EngineSettings posterior = {})
       : palpate::GaussianProcess(std::move(kernel), std::move(outputs), candidates, std::move(posterior)) {
     update_maps();
   }
-  GaussianProcess(std::shared_ptr<Kernel> kernel, const GpSettings& output, const Candidates& candidates,
+  GaussianProcess(std::shared_ptr<Kernel> kernel, const GpSettings& output, const CandidateGrid& candidates,
                   EngineSettings posterior = {})
       : GaussianProcess(std::move(kernel), std::vector<GpSettings>{output}, candidates, std::move(posterior)) {}
 

@@ -5,70 +5,38 @@
 #include <palpate/belief.hpp>
 #include <palpate/fitting.hpp>
 #include <palpate/kernel.hpp>
-#include <palpate/surface_belief.hpp>
 
-#include <algorithm>
 #include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace palpate::test {
 
-/// Maps as they are written down, over 23 cm by 23 cm, and what was read of them.
-class WrittenBelief final : public Belief {
+/// A belief whose values a test writes down, and the quantities that were read.
+class WrittenBelief final : public BeliefView {
  public:
-  int count = 0;  ///< of taps
-  Area desk{0.23, 0.23};
-  Points places;
-  Eigen::VectorXd u, w, p, mean, variance;
-  OutlineSample sample;
-  std::vector<Target> aims;
-  std::vector<Touch> contacts;
-  mutable Quantities read;
+  Candidates lines;
+  TapCounts taps;
+  std::map<std::string, Eigen::VectorXd, std::less<>> arrays;
+  HypothesisSample sample;
+  std::vector<TapReading> read_taps;
+  mutable QuantitySet read;
 
-  const Points& candidates() const override { return places; }
-  Area area() const override { return desk; }
-  int taps() const override { return count; }
-  int initial_taps() const override { return std::min(count, 3); }
-  const std::vector<Target>& targets() const override { return aims; }
-  const std::vector<Touch>& touches() const override { return contacts; }
-  const Eigen::VectorXd& uncertainty() const override { return seen(Quantity::uncertainty, u); }
-  const Eigen::VectorXd& weight() const override { return seen(Quantity::weight, w); }
-  const Eigen::VectorXd& probability() const override { return seen(Quantity::probability, p); }
-  const OutlineSample& outlines() const override {
-    read = read | Quantity::outlines;
+  const Candidates& candidates() const override { return lines; }
+  TapCounts counts() const override { return taps; }
+  const std::vector<TapReading>& readings() const override { return read_taps; }
+  const Eigen::VectorXd& values(std::string_view quantity) const override {
+    read.insert(std::string(quantity));
+    return arrays.at(std::string(quantity));
+  }
+  std::optional<double> scalar(std::string_view) const override { return std::nullopt; }
+  const HypothesisSample& hypotheses() const override {
+    read.insert(quantity::kHypotheses);
     return sample;
-  }
-  const Eigen::VectorXd& height_mean() const override { return seen(Quantity::height, mean); }
-  const Eigen::VectorXd& height_variance() const override { return seen(Quantity::height, variance); }
-
- private:
-  const Eigen::VectorXd& seen(Quantity one, const Eigen::VectorXd& map) const {
-    read = read | one;
-    return map;
-  }
-};
-
-/// A belief from any side that is written down, and what was read of it.
-class WrittenSurface final : public SurfaceBelief {
- public:
-  int count = 0;  ///< of taps
-  std::vector<Approach> lines;
-  Eigen::VectorXd ways, found, taken, sigma, square;
-  mutable Quantities read;
-
-  const std::vector<Approach>& approaches() const override { return lines; }
-  int taps() const override { return count; }
-  const Eigen::VectorXd& way() const override { return ways; }
-  const Eigen::VectorXd& expected_discovery() const override { return seen(Quantity::expected_discovery, found); }
-  const Eigen::VectorXd& std_reduction() const override { return seen(Quantity::std_reduction, taken); }
-  const Eigen::VectorXd& deviation() const override { return seen(Quantity::deviation, sigma); }
-  const Eigen::VectorXd& incidence_cosine() const override { return seen(Quantity::deviation, square); }
-
- private:
-  const Eigen::VectorXd& seen(Quantity one, const Eigen::VectorXd& of) const {
-    read = read | one;
-    return of;
   }
 };
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Experiments inside a test: configs from the shipped ones, journals that collect, backends and plugins of the test's
+// Experiments inside a test: configs from the shipped ones, observers that collect, backends and plugins of the test's
 // own, and whole runs.
 #pragma once
 
 #include "config/compose.hpp"
-#include "experiment/from_above.hpp"
+#include "experiment/experiment.hpp"
+#include "experiment/height_map.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/resolved.hpp"
-#include "record/tap_row.hpp"
+#include "support/requests.hpp"
 #include "support/support.hpp"
 
 #include <gtest/gtest.h>
@@ -29,14 +31,14 @@ inline ResolvedConfig shipped_config(const std::string& file, const std::vector<
 }
 
 /// Keeps every record, and does what the test wants done meanwhile.
-class Collector : public Journal {
+class Collector : public Observer {
  public:
   std::vector<TapRecord> taps;
   std::function<bool(const TapRecord&)> permitting;
   std::function<void(const TapRecord&)> announcing;
   std::function<void(const TapRecord&)> recording;
 
-  bool permits(const TapRecord& tap) override { return !permitting || permitting(tap); }
+  bool permits(const TapRecord& tap, const Experiment&) override { return !permitting || permitting(tap); }
   void announce(const TapRecord& tap) override {
     if (announcing) announcing(tap);
   }
@@ -46,37 +48,44 @@ class Collector : public Journal {
   }
 };
 
-/// What a tap brings that meets something at `height`, in one second.
-inline Contact contact_at(double height) { return {Outcome::contact, height, 8.0, 1.0, {}}; }
+/// Returns the result of a contact at `height`, at the corner of the area, in one second.
+inline TapResult contact_at(double height) { return contact_on({}, height, 8.0, 1.0); }
+
+/// Returns a number of the state of a belief; nullopt if it is null, or if there is none of this name.
+inline std::optional<double> number_of(const BeliefState& state, const std::string& name) {
+  return Row{state.fields}.number(name);
+}
 
 /// Answers with what the test scripts; a plain desk at 0 once the script has ended. Reads of the belief what `reading`
 /// reads when it is shown.
 class ScriptedBackend final : public Backend {
  public:
-  explicit ScriptedBackend(std::vector<Contact> answers, bool truth = false)
+  explicit ScriptedBackend(std::vector<TapResult> answers, bool truth = false)
       : answers_(std::move(answers)), truth_(truth) {}
   std::vector<TapRequest> requests;
-  std::function<void(const Belief&)> reading;
-  Quantities read;  ///< by `reading`
+  std::function<void(const BeliefView&)> reading;
+  QuantitySet read;  ///< by `reading`
 
-  Contact tap(const TapRequest& request) override {
+  TapResult tap(const TapRequest& request) override {
     requests.push_back(request);
     const auto index = static_cast<std::size_t>(request.number - 1);
-    return index < answers_.size() ? answers_[index] : contact_at(0.0);
+    TapResult out = index < answers_.size() ? answers_[index] : contact_at(0.0);
+    for (ContactPoint& one : out.contacts) one.position.head<2>() = request.line.start.head<2>();
+    return out;
   }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return truth_; }
-  Quantities reads() const override { return read; }
-  void show(const Belief& belief) override {
+  QuantitySet reads() const override { return read; }
+  void show(const BeliefView& belief) override {
     if (reading) reading(belief);
   }
 
  private:
-  std::vector<Contact> answers_;
+  std::vector<TapResult> answers_;
   bool truth_;
 };
 
-inline std::shared_ptr<ScriptedBackend> scripted(std::vector<Contact> answers = {}) {
+inline std::shared_ptr<ScriptedBackend> scripted(std::vector<TapResult> answers = {}) {
   return std::make_shared<ScriptedBackend>(std::move(answers));
 }
 
@@ -93,20 +102,40 @@ class Instead final : public PluginFactory {
   std::shared_ptr<Interface> made_;
 };
 
-/// The experiment of a shipped config, not yet begun, and the journal of its taps.
+/// The experiment of a shipped config, not yet begun, and the observer of its taps.
 struct Prepared {
   explicit Prepared(const std::string& file, const std::vector<std::string>& overrides = {},
-                    std::shared_ptr<Backend> backend = nullptr, const PluginFactory& plugins = shared_host())
-      : config(shipped_config(file, overrides)), experiment(config.options, plugins, nullptr, std::move(backend)) {}
+                    std::shared_ptr<Backend> backend = nullptr, const PluginFactory& plugins = shared_host(),
+                    const QuantitySet& quantities = {})
+      : config(shipped_config(file, overrides)),
+        experiment(config.options, {plugins, nullptr, std::move(backend), {}, readers(quantities)}) {}
 
   void run() { experiment.run(journal); }
+  /// The belief of a run that taps from above.
+  HeightMap& belief() { return static_cast<HeightMap&>(experiment.belief()); }
+  const HeightMap& belief() const { return static_cast<const HeightMap&>(experiment.belief()); }
+  const HeightModels& models() const { return belief().models(); }
+  const CandidateGrid& grid() const { return belief().grid(); }
+  /// Has models of these quantities read from now on, beside those of the run, and their arrays computed.
+  void read(const QuantitySet& quantities) {
+    ReadPlan plan = experiment.stages().plan();
+    plan.readers.push_back(readers(quantities).readers.front());
+    belief().plan(plan);
+    belief().begin(Stage::first_tap);
+    belief().update();
+    belief().infer(quantities);
+  }
+  /// Returns a plan whose one reader reads these quantities from the first tap on.
+  static ReadPlan readers(const QuantitySet& quantities) {
+    return {{{"test", quantities, Stage::first_tap}}, std::nullopt};
+  }
   /// The first `count` of its taps, as a later process takes them over.
-  std::vector<PastTap> past(std::size_t count) const {
+  std::vector<TapRecord> past(std::size_t count) const {
     return {taps.begin(), std::next(taps.begin(), static_cast<std::ptrdiff_t>(count))};
   }
 
   ResolvedConfig config;
-  FromAbove experiment;
+  Experiment experiment;
   Collector journal;
   const std::vector<TapRecord>& taps = journal.taps;
 };

@@ -2,7 +2,7 @@
 // What `stop.expected_rmse` would have said at each tap of a run that it does not stop.
 #pragma once
 
-#include "experiment/forecast.hpp"
+#include "experiment/stop_rules.hpp"
 #include "support/runs.hpp"
 
 #include <optional>
@@ -11,15 +11,21 @@
 
 namespace palpate::test {
 
-/// As it stood after so many taps.
+/// The state of a run after some taps.
 struct Moment {
   int taps = 0;
-  Forecast forecast;
-  double rmse = 0.0;  ///< the true one, metres; meaningless before the first hit
+  std::optional<double> expected_rmse;  ///< metres
+  std::optional<double> undiscovered;   ///< probability of an object that no tap has touched
+  double rmse = 0.0;                    ///< the true one, metres; meaningless before the first hit
 };
 
 /// All moments of a run, the one before the first tap included.
-using Forecasts = std::vector<Moment>;
+using Moments = std::vector<Moment>;
+
+/// Returns the moment of a recorded state of the belief.
+inline Moment moment_of(int taps, const BeliefState& state, double rmse) {
+  return {taps, number_of(state, "expected_rmse_m"), number_of(state, "footprint.undiscovered_probability"), rmse};
+}
 
 /// Objects of one piece, and two of two pieces: l and two_blocks.
 inline const std::vector<std::string>& stopping_scenes() {
@@ -29,15 +35,16 @@ inline const std::vector<std::string>& stopping_scenes() {
 }
 
 /// Runs the default strategy over 60 taps, objects placed at random.
-inline Forecasts forecasts(const std::string& scene, int seed, const std::vector<std::string>& more = {}) {
+inline Moments moments(const std::string& scene, int seed, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"scene=" + scene, "scene.placement=random", "taps=60",
                                      "seed=" + std::to_string(seed), "stop.expected_rmse=1e-6 mm"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   Finished run("default.yaml", overrides);
-  Forecasts out;
-  for (const TapRecord& tap : run.taps) out.push_back({tap.number - 1, *tap.forecast, tap.errors.rmse.value_or(0)});
+  Moments out;
+  for (const TapRecord& tap : run.taps)
+    out.push_back(moment_of(tap.number() - 1, tap.state, tap.errors.rmse.value_or(0)));
   const RunResult last = run.experiment.result();
-  out.push_back({last.taps, *last.forecast, *last.errors.rmse});
+  out.push_back(moment_of(last.taps, last.state, *last.errors.rmse));
   return out;
 }
 
@@ -49,16 +56,16 @@ struct Stop {
   std::optional<int> good_from;
 };
 
-inline Stop stop_of(const Forecasts& run, double bound) {
+inline Stop stop_of(const Moments& run, double bound) {
   Stop out;
   out.bound = bound;
   for (const Moment& one : run) {
-    if (!one.forecast.rmse || one.rmse > bound) {
+    if (!one.expected_rmse || one.rmse > bound) {
       out.good_from.reset();
     } else if (!out.good_from) {
       out.good_from = one.taps;
     }
-    if (!out.tap && &one != &run.back() && good_enough(one.forecast, bound)) {
+    if (!out.tap && &one != &run.back() && is_good_enough(one.expected_rmse, one.undiscovered, bound)) {
       out.tap = one.taps;
       out.rmse = one.rmse;
     }

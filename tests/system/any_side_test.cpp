@@ -339,12 +339,13 @@ TEST_F(AnySide, ARecordIsReadByAllThatReadOneWithoutItsBackendBeingBuilt) {
 
 TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "acquisition=weighted"}),
-              testing::HasSubstr("weighted only scores taps from above, choose one that scores approaches"));
+              testing::HasSubstr(
+                  "weighted reads label_mean, which the belief solids does not offer, choose another acquisition"));
   EXPECT_THAT(refused({"run", config(), "scene.touch=top"}),
               testing::HasSubstr("surface: implicit needs a scene with touch: any"));
   EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side sets"));
   EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
-              testing::HasSubstr("discovery only scores approaches from any side"));
+              testing::HasSubstr("discovery reads expected_discovery, which the belief height_map does not offer"));
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
               testing::HasSubstr("kernel: depends on more than the distance"));
   const fs::path run = touched("taps=4");
@@ -353,7 +354,7 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"report", run, "--figures"}), testing::HasSubstr("is a run from any side, but --figures"));
   EXPECT_THAT(refused({"report", run, run}), testing::HasSubstr("is a run from any side, but pages of several"));
   const std::string record = text_of(run / "record.jsonl");
-  for (const auto& [lost, told] : {std::pair("\"z\": ", "a tap of a run from any side has no z and no direction, its"),
+  for (const auto& [lost, told] : {std::pair("\"z\": ", "has some of z, direction and length, but not all"),
                                    std::pair("\"along\": ", "has no number 'along', how far the tool went to its")}) {
     std::string damaged = record;
     for (auto at = record.find(lost); at != std::string::npos; at = record.find(lost, at + 1)) damaged[at + 1] = '_';
@@ -368,14 +369,15 @@ TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
                 height.kernel={"type":rbf} height.fitting={"type":fixed} label.signal=2 label.noise=0.3
                 label.prior_mean=1 label.clip=true label.hyperparameters=shared label.kernel={"type":rbf}
                 label.fitting={"type":fixed} engine.type=dense engine.tolerance=1e-9
-                footprint={"type":primitives,"kernel":{"type":rbf}} fitting.type=ceres fallback=none repeat=allow
-                engine.accuracy=1e-6 stop.max_standard_deviation=1cm stop.expected_rmse=1cm engine.threads=2
-                log.maps=true)")) {
+                footprint={"type":primitives,"kernel":{"type":rbf}} fitting.type=ceres repeat=allow engine.accuracy=1e-6
+                engine.threads=2 log.maps=true)")) {
     EXPECT_THAT(
         refused({"run", config(), "--dry-run", word}),
         testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),
                        testing::HasSubstr(": applies to taps from above only, remove it or choose scene.touch: top")));
   }
+  EXPECT_THAT(refused({"run", config(), "stop.expected_rmse=1cm"}),
+              testing::HasSubstr("stop.expected_rmse reads expected_rmse, which the belief solids does not offer"));
   // Of a grid that is not read there.
   EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "tie_tolerance=1e-6", "candidates.count=47",
                      "initial.count=2500", "taps=3000"})

@@ -237,7 +237,7 @@ TEST_F(BadPlugin, ThrowingInTheMiddleOfARunFailsTheRunInGoodOrder) {
   for (const auto& [name, reason] : std::vector<std::pair<std::string, std::string>>{
            {"throws_in_score", "acquisition/throws_in_score: no score today"},
            {"reads_untold",
-            "acquisition/reads_untold: reads the weight w, which its reads() does not list, add it there"},
+            "acquisition/reads_untold: reads label_mean, which its reads() does not list, add it there"},
            {"throws_number_in_score",
             "acquisition/throws_number_in_score: threw an object that is not a std::exception"}}) {
     environment_ = {test::with_plugin(name)};

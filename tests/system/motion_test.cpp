@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The motions of configs/backend on an arm like Baxter's: whole runs of the paper's experiment, tap by tap.
 #include "config/compose.hpp"
-#include "experiment/from_above.hpp"
+#include "experiment/experiment.hpp"
 #include "record/resolved.hpp"
 #include "support/runs.hpp"
 #include "support/support.hpp"
@@ -25,13 +25,13 @@ Motion measured(const std::string& motion, int seeds) {
     const ResolvedConfig config =
         shipped_config("paper/object_i.yaml", {"scene=object_i_arm", "surface=two_part", "height.signal=5cm",
                                                "motion=" + motion, "seed=" + std::to_string(seed)});
-    FromAbove experiment(config.options, shared_host(), nullptr);
+    Experiment experiment(config.options, {shared_host()});
     Collector collector;
     experiment.run(collector);
     for (const TapRecord& tap : collector.taps) {
-      EXPECT_EQ(tap.contact.outcome, Outcome::contact);
-      out.error += std::pow(tap.contact.height - experiment.scene().height(tap.target.x, tap.target.y), 2);
-      out.seconds += tap.contact.seconds;
+      EXPECT_EQ(tap.result.outcome, Outcome::contact);
+      out.error += std::pow(tap.result.height() - experiment.scene().height(tap.target().x, tap.target().y), 2);
+      out.seconds += tap.result.seconds;
       ++out.taps;
     }
   }
@@ -60,7 +60,7 @@ TEST(Motions, AdaptiveHoverSavesTimeWhereTheModelIsSure) {
     const ResolvedConfig config = shipped_config(
         "paper/object_ii.yaml",
         {"kernel.length_scale=10cm", "surface=two_part", "height.signal=5cm", "taps=30", "seed=3", "motion=" + motion});
-    FromAbove experiment(config.options, shared_host(), nullptr);
+    Experiment experiment(config.options, {shared_host()});
     Collector collector;
     experiment.run(collector);
     return experiment.result().robot_seconds;

@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
             Spoilt{"kernel", "covariance of a far fit", "covariance() returned", kFarFit},
             Spoilt{"acquisition", "score", "score that is not"},
             Spoilt{"acquisition", "prior_scale", "prior_scale() returned"},
-            Spoilt{"acquisition", "score_approaches", "score that is not", {}, kAnySide},
+            Spoilt{"acquisition", "score", "score that is not", {}, kAnySide},
             Spoilt{"fitting", "fit: noise", "fit() returned"}, Spoilt{"fitting", "fit: signal", "fit() returned"},
             Spoilt{"fitting", "fit: mean", "fit() returned"}, Spoilt{"fitting", "fit: objective", "fit() returned"},
             Spoilt{"fitting", "fit: kernel", "fit() returned"},

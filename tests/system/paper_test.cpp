@@ -121,14 +121,14 @@ void expect_found(const std::vector<std::string>& overrides) {
   const int count = starts(1000, 100);
   for (int seed = 0; seed < count; ++seed) {
     config.options.seed = seed;
-    FromAbove experiment(config.options, test::shared_host(), nullptr);
+    Experiment experiment(config.options, {test::shared_host()});
     test::Collector collector;
     experiment.run(collector);
     std::set<int> places;
     bool hit = false;
     for (const TapRecord& tap : collector.taps) {
       places.insert(tap.candidate);
-      hit = hit || *tap.on_object;
+      hit = hit || tap.reading->on_object;
     }
     stalled += places.size() < collector.taps.size() ? 1 : 0;
     found += hit ? 1 : 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `palpate pareto` as a user calls it: table, files, the config of the cheapest setting, and what it refuses.
 #include "record/json.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "sweep/sweep.hpp"
 #include "system/shell.hpp"
 

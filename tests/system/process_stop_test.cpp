@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Programs that move something: who ends the run, who is started again, and what becomes of taps when all is killed.
 // PALPATE_KILLS says how many kills (tests/stress.sh: a hundred).
+#include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 #include "support/lasting.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"

@@ -162,7 +162,7 @@ TEST_F(ProgramRun, FromAnySideAProgramScoresLinesAndIsReplayedByItsRecord) {
   EXPECT_THAT(palpate({"replay", own}).out, HasSubstr("all equal"));
   EXPECT_EQ(palpate({"explain", own, "9"}).status, 0);
   EXPECT_THAT(refused(Words{"run", config, "scene=any_bowl", echo("object_probability")}),
-              HasSubstr("program only scores taps from above"));
+              HasSubstr("program reads object_probability, which the belief solids does not offer"));
 }
 
 TEST_F(ProgramRun, InPythonOneFunctionIsAnAcquisitionThatIsTestedRunAndReplayed) {

@@ -147,7 +147,7 @@ TEST_F(ARun, OriginsTellWhereValuesCameFromAndWhatWasDropped) {
 TEST_F(ARun, WritesTheMapsOfEachChoiceWhereTheConfigAsksForThem) {
   const fs::path maps = ran("log.maps=true") / "maps";
   EXPECT_FALSE(fs::exists(maps / "tap_003.csv")) << "the initial taps are made without a model";
-  EXPECT_THAT(text_of(maps / "tap_004.csv"), StartsWith("x,y,height_mean,height_variance,u,w\n"));
+  EXPECT_THAT(text_of(maps / "tap_004.csv"), StartsWith("x,y,height_mean,height_standard_deviation,u,w\n"));
   EXPECT_EQ(lines(text_of(maps / "tap_017.csv")), 1 + 47 * 47);
 }
 

@@ -21,7 +21,7 @@ namespace {
 const int kSeeds = test::brief() ? 10 : std::getenv("PALPATE_LONG") != nullptr ? 200 : 20;
 
 std::vector<int> taps_of(const ExperimentOptions& options) {
-  FromAbove experiment(options, test::shared_host(), nullptr);
+  Experiment experiment(options, {test::shared_host()});
   test::Collector collector;
   experiment.run(collector);
   std::vector<int> out;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Two launchers at one sweep, and kill -9 at random moments on them and on their jobs: every job is done, none runs to
 // its end twice, no tap is made twice. PALPATE_KILLS says how many kills (tests/stress.sh: a thousand).
+#include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 #include "support/lasting.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"

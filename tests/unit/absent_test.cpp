@@ -2,7 +2,7 @@
 // Plugins of a build that has not found their libraries.
 #include "config/compose.hpp"
 #include "config/describe.hpp"
-#include "experiment/from_above.hpp"
+#include "experiment/experiment.hpp"
 #include "record/resolved.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
@@ -75,9 +75,7 @@ TEST_F(WithoutLibraries, ARunIsToldWhatToInstallAndNotFirstWhatItsConfigLacks) {
       {"scene.objects=[{type: mesh, file: " + file.string() + ", unit: 1mm, at: [11cm, 11cm]}]",
        "shape/mesh: " + remedy("Embree or no assimp", mesh)}};
   for (const auto& [override, words] : cases) {
-    const auto build = [&, &override = override] {
-      FromAbove(resolved({parse_override(override)}).options, host_, nullptr);
-    };
+    const auto build = [&, &override = override] { Experiment(resolved({parse_override(override)}).options, {host_}); };
     EXPECT_THAT(error_of(build, Error::Kind::usage), testing::EndsWith(words)) << override;
   }
 }

@@ -11,13 +11,11 @@ namespace {
 /// Five candidates, of which only what the scores here read is known.
 WrittenBelief maps() {
   WrittenBelief out;
-  out.count = 4;
-  out.places = Points::Zero(5, 2);
-  out.u = Eigen::VectorXd{{1.0, 0.5, 0.2, 0.0, 0.8}};
-  out.w = Eigen::VectorXd{{0.1, 1.2, -0.3, 0.5, 0.0}};
-  out.p = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0, 0.9}};
-  out.mean = out.p;
-  out.variance = out.u;
+  out.taps.all = 4;
+  out.lines.starts = Points3::Zero(5, 3);
+  out.arrays[quantity::kUncertainty] = Eigen::VectorXd{{1.0, 0.5, 0.2, 0.0, 0.8}};
+  out.arrays[quantity::kLabelMean] = Eigen::VectorXd{{0.1, 1.2, -0.3, 0.5, 0.0}};
+  out.arrays[quantity::kObjectProbability] = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0, 0.9}};
   return out;
 }
 

@@ -22,7 +22,7 @@ double normal(Random& random) {
 /// Heights at the candidates, drawn from the prior; every tap adds noise of its own.
 class DrawnSurface final : public Backend {
  public:
-  DrawnSurface(const Kernel& kernel, const Candidates& candidates, double level, std::uint64_t seed)
+  DrawnSurface(const Kernel& kernel, const CandidateGrid& candidates, double level, std::uint64_t seed)
       : candidates_(candidates), random_(seed, "drawn surface") {
     const int size = candidates.size();
     Eigen::MatrixXd covariance(size, size);
@@ -35,23 +35,23 @@ class DrawnSurface final : public Backend {
 
   Eigen::VectorXd heights;
 
-  Contact tap(const TapRequest& request) override {
-    const int cell = candidates_.nearest(request.target.x, request.target.y, {0.23, 0.23});
-    return {Outcome::contact, observed(cell), 8.0, 1.0, {}};
+  TapResult tap(const TapRequest& request) override {
+    const Target target = request.line.target();
+    return contact_on(request.line, observed(candidates_.nearest(target.x, target.y, {0.23, 0.23})), 8.0, 1.0);
   }
   double observed(int cell) { return heights(cell) + kNoise * normal(random_); }
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return false; }
 
  private:
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   Random random_;
 };
 
 /// Mean share of untapped cells within the 95 % interval, over surfaces drawn with `kernel`.
 double coverage(const std::string& kernel, const std::vector<std::string>& overrides, double level) {
   const int surfaces = brief() ? 50 : 150;
-  const Candidates candidates = grid_by_count({0.23, 0.23}, 12);
+  const CandidateGrid candidates = grid_by_count({0.23, 0.23}, 12);
   double sum = 0.0;
   for (int seed = 0; seed < surfaces; ++seed) {
     const auto drawn = test::make<Kernel>(test::shared_host(), kernel, "{length_scale: 4 cm}");
@@ -71,8 +71,11 @@ double coverage(const std::string& kernel, const std::vector<std::string>& overr
     for (int i = 0; i < candidates.size(); ++i) truth.height(i) = surface->observed(i);
     std::vector<bool> tapped(static_cast<std::size_t>(candidates.size()), false);
     for (const TapRecord& tap : run.taps) tapped[static_cast<std::size_t>(tap.candidate)] = true;
-    run.experiment.ask(Quantity::height);
-    sum += *calibration(run.experiment.belief(), truth, tapped).coverage_95;
+    run.read({quantity::kHeightMean, quantity::kHeightStd});
+    const HeightModels& models = run.models();
+    const Calibration calibrated =
+        calibration(models.height_mean(), models.height_variance(), models.height_noise(), truth, tapped);
+    sum += *calibrated.coverage_95;
   }
   return sum / surfaces;
 }

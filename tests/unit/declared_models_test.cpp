@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Models are built and recorded for those who said that they read them, and for nobody else.
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
+#include "record/record_reader.hpp"
+#include "record/run.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
@@ -15,25 +16,25 @@ using Words = std::vector<std::string>;
 
 TEST(Experiment, UncertaintyBuildsNoWeightProcessBeforeTheLastTap) {
   Prepared prepared("paper/object_i.yaml", {"acquisition=uncertainty"});
-  const TapBelief& belief = prepared.experiment.belief();
+  const HeightModels& models = prepared.models();
   int weight_seen = 0;
   int height_seen = 0;
   prepared.journal.recording = [&](const TapRecord&) {
-    weight_seen += belief.label_gp() ? 1 : 0;
-    height_seen += belief.height_gp() ? 1 : 0;
+    weight_seen += models.label_gp() ? 1 : 0;
+    height_seen += models.height_gp() ? 1 : 0;
   };
   prepared.run();
   EXPECT_EQ(weight_seen, 0);
   EXPECT_EQ(height_seen, 14) << "of 17 taps, the 14 chosen by score need the height GP";
   prepared.experiment.result();
-  EXPECT_NE(belief.label_gp().process, nullptr) << "the truth-based metrics want the outline, once, after the last tap";
+  EXPECT_NE(models.label_gp().process, nullptr) << "the truth-based metrics want the outline, once, after the last tap";
 }
 
 TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
   const Finished run("paper/object_i.yaml", {"acquisition=random"});
-  EXPECT_EQ(run.experiment.belief().height_gp().process, nullptr);
-  EXPECT_EQ(run.experiment.belief().label_gp().process, nullptr);
-  EXPECT_FALSE(run.taps.back().max_standard_deviation.has_value());
+  EXPECT_EQ(run.models().height_gp().process, nullptr);
+  EXPECT_EQ(run.models().label_gp().process, nullptr);
+  EXPECT_FALSE(number_of(run.taps.back().state, "max_standard_deviation"));
   EXPECT_FALSE(run.taps.back().errors.rmse.has_value());
 }
 
@@ -41,9 +42,8 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
   const auto readers = [](const Words& words) {
     Words out;
     const Prepared prepared("paper/object_i.yaml", words);
-    for (const ModelReader& one : prepared.experiment.readers()) out.push_back(one.model + ": " + one.who);
-    const TapBelief& belief = prepared.experiment.belief();
-    EXPECT_FALSE(belief.height_gp() || belief.label_gp());
+    for (const PlannedModel& one : prepared.experiment.models()) out.push_back(one.model + ": " + one.reader);
+    EXPECT_FALSE(prepared.models().height_gp() || prepared.models().label_gp());
     return out;
   };
   using testing::ElementsAre;
@@ -78,67 +78,91 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
     all.insert(all.end(), {"fallback=none", "initial.design=grid", "initial.count=9"});  // one of them hits
     Prepared prepared("paper/object_i.yaml", all);
     std::set<std::string> named;
-    for (const ModelReader& one : prepared.experiment.readers()) named.insert(one.model);
+    for (const PlannedModel& one : prepared.experiment.models()) named.insert(one.model);
     prepared.run();
-    const TapRecord& last = prepared.taps.back();
-    std::set<std::string> recorded;
-    if (last.height_gp) recorded.insert("height GP");
-    if (last.label_gp) recorded.insert("label GP");
-    if (last.surface_gp) recorded.insert("surface GP");
-    if (last.footprint) recorded.insert("footprint primitives");
-    EXPECT_EQ(recorded, named) << (words.empty() ? "weighted" : words.front());
+    const auto recorded = [](const BeliefState& state) {
+      std::set<std::string> out;
+      if (number_of(state, "height_gp.signal")) out.insert("height GP");
+      if (number_of(state, "label_gp.signal")) out.insert("label GP");
+      if (number_of(state, "surface_gp.signal")) out.insert("surface GP");
+      if (number_of(state, "footprint.primitives")) out.insert("footprint primitives");
+      return out;
+    };
+    EXPECT_EQ(recorded(prepared.taps.back().state), named) << (words.empty() ? "weighted" : words.front());
   }
 }
 
+/// Follows the errors of a run.
+class Follower final : public Observer {
+ public:
+  std::vector<Errors> errors;
+  bool wants_errors() const override { return true; }
+  void record(const TapRecord& tap, const std::array<double, kPhases>&) override { errors.push_back(tap.errors); }
+};
+
 TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
-  for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=footprint_entropy"}) {
-    const Words words{acquisition, "surface=two_part"};
-    Finished alone("paper/object_i.yaml", words);
-    Prepared followed("paper/object_i.yaml", words);
-    std::vector<Errors> errors;
-    followed.journal.announcing = [&](const TapRecord&) { errors.push_back(followed.experiment.errors()); };
-    followed.run();
-    ASSERT_EQ(followed.taps.size(), alone.taps.size());
-    for (std::size_t i = 0; i < alone.taps.size(); ++i) {
-      EXPECT_EQ(to_json_line(tap_row(followed.taps[i])), to_json_line(tap_row(alone.taps[i]))) << acquisition;
-      ASSERT_TRUE(errors[i].rmse && errors[i].footprint_iou);
-      EXPECT_LT(*errors[i].rmse, 1.0);
+  const TemporaryFolder folder;
+  const Installation installation;
+  const Workshop environment{shared_host(), installation, {}, nullptr};
+  for (const auto& [acquisition, surface] : {std::pair<std::string, std::string>{"random", "two_part"},
+                                             {"uncertainty", "two_part"},
+                                             {"uncertainty", "single"},
+                                             {"footprint_entropy", "two_part"}}) {
+    const ResolvedConfig config =
+        shipped_config("paper/object_i.yaml", {"acquisition=" + acquisition, "surface=" + surface});
+    const fs::path alone = folder.path() / (acquisition + surface + "_alone");
+    const fs::path followed = folder.path() / (acquisition + surface + "_followed");
+    const Row summary = start_run(environment, config, alone, {}).summary;
+    Follower follower;
+    const Row other = start_run(environment, config, followed, {}, {&follower}).summary;
+    const std::vector<Row> taps = read_run_record(alone).taps;
+    const std::vector<Row> other_taps = read_run_record(followed).taps;
+    ASSERT_EQ(other_taps.size(), taps.size());
+    ASSERT_EQ(follower.errors.size(), taps.size());
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      EXPECT_EQ(to_json_line(other_taps[i]), to_json_line(taps[i])) << acquisition;
+      ASSERT_TRUE(follower.errors[i].rmse && follower.errors[i].footprint_iou) << acquisition << " tap " << i + 1;
+      EXPECT_LT(*follower.errors[i].rmse, 1.0);
     }
-    const RunResult result = followed.experiment.result();
-    EXPECT_EQ(*result.errors.rmse, *alone.experiment.result().errors.rmse);
-    EXPECT_EQ(result.diagnostics, alone.experiment.result().diagnostics);
-    EXPECT_FALSE(alone.taps.back().errors.rmse.has_value()) << "nobody reads the surface for the strategy";
+    EXPECT_EQ(other.number("rmse_m").value(), summary.number("rmse_m").value());
+    for (const auto& [name, value] : summary.fields) {
+      if (name.rfind("diagnostics.", 0) != 0) continue;
+      EXPECT_EQ(other.cell(name), csv_cell(value)) << name;
+    }
+    const bool is_read = surface == "single";  // by the acquisition
+    EXPECT_EQ(taps.back().number("rmse_m").has_value(), is_read) << "nobody reads the surface for the strategy";
   }
 }
 
 TEST(Belief, ThatNobodyAskedForOrThatIsOldIsNotRead) {
   Prepared prepared("paper/object_i.yaml", {"taps=4"});
-  const TapBelief& belief = prepared.experiment.belief();
-  EXPECT_THROW(belief.weight(), std::logic_error);
-  prepared.experiment.ask(Quantity::weight);
-  EXPECT_NO_THROW(belief.weight());
+  const HeightMap& belief = prepared.belief();
+  const auto weight = [&] { belief.values(quantity::kLabelMean); };
+  EXPECT_THROW(weight(), std::logic_error);
+  prepared.read({quantity::kLabelMean});
+  EXPECT_NO_THROW(weight());
   prepared.journal.recording = [&](const TapRecord&) {
-    EXPECT_NO_THROW(belief.weight()) << "a tap is recorded before it is taken in";
+    EXPECT_NO_THROW(weight()) << "a tap is recorded before it is taken in";
   };
   std::optional<TapRecord> tap = prepared.experiment.begin(prepared.journal);
   ASSERT_TRUE(tap);
-  EXPECT_NO_THROW(belief.weight());
-  tap->contact = contact_at(0.0);
+  EXPECT_NO_THROW(weight());
+  tap->result = contact_at(0.0);
   prepared.experiment.end(*tap, prepared.journal);
-  EXPECT_THROW(belief.weight(), std::logic_error) << "it has taken in the tap, and nobody has inferred since";
+  EXPECT_THROW(weight(), std::logic_error) << "it has taken in the tap, and nobody has inferred since";
 }
 
 TEST(Experiment, APreviewTellsWhatTheModelsExpectAndBuildsNone) {
   Prepared prepared("paper/object_i.yaml", {"taps=4"}, scripted({contact_at(0.09)}));
-  const TapBelief& belief = prepared.experiment.belief();
+  const HeightModels& models = prepared.models();
   std::vector<Preview> previews;
   std::vector<bool> built;
   double mean = 0.0;
   prepared.journal.permitting = [&](const TapRecord& tap) {
-    built.push_back(static_cast<bool>(belief.height_gp()));
+    built.push_back(static_cast<bool>(models.height_gp()));
     previews.push_back(prepared.experiment.preview(tap));
-    EXPECT_EQ(static_cast<bool>(belief.height_gp()), built.back());
-    if (built.back()) mean = belief.height_mean()(tap.candidate);
+    EXPECT_EQ(static_cast<bool>(models.height_gp()), built.back());
+    if (built.back()) mean = models.height_mean()(tap.candidate);
     return true;
   };
   prepared.run();

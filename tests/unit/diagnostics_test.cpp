@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a run counts of the factorisations of its models: each once, and jitter is a variance, never a count.
+#include "experiment/belief_state.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
@@ -7,28 +8,29 @@ namespace palpate::test {
 namespace {
 
 TEST(Diagnostics, CountATapThatSeveralModelsSetAsideOnce) {
-  RunResult result;
-  result.count(FactorReport{1e-9, 2, 1, 3});
-  result.count(FactorReport{1e-6, 1, 4, 2});
-  EXPECT_EQ(result.diagnostics.at("jitter"), 3);
-  EXPECT_EQ(result.diagnostics.at("pivoted"), 5);
-  EXPECT_EQ(result.diagnostics.at("redundant_taps"), 3);
-  EXPECT_EQ(result.jitter_max, 1e-6);
+  BeliefState state;
+  count_factors(state, FactorReport{1e-9, 2, 1, 3});
+  count_factors(state, FactorReport{1e-6, 1, 4, 2});
+  EXPECT_EQ(state.diagnostics.at("jitter"), 3);
+  EXPECT_EQ(state.diagnostics.at("pivoted"), 5);
+  EXPECT_EQ(state.diagnostics.at("redundant_taps"), 3);
+  EXPECT_EQ(state.jitter_max, 1e-6);
 }
 
 TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
-  const std::vector<Contact> answers(6, contact_at(0.05));
+  const std::vector<TapResult> answers(6, contact_at(0.05));
   Finished run("default.yaml",
                {"label.hyperparameters=shared", "surface=single", "height.outlier_probability=none",
                 "footprint=gp_regression", "height.noise=0mm", "candidates.count=1", "repeat=allow", "taps=6"},
                scripted(answers));
-  run.experiment.ask(Quantity::weight | Quantity::height);
+  run.read({quantity::kLabelMean, quantity::kHeightMean});
   const RunResult result = run.experiment.result();
-  const GaussianProcess* const process = run.experiment.belief().height_gp().process;
+  const GaussianProcess* const process = run.models().height_gp().process;
   ASSERT_NE(process, nullptr);
-  ASSERT_EQ(run.experiment.belief().label_gp().process, process);
-  ASSERT_GT(process->diagnostics().factors.raised, 0);
-  EXPECT_EQ(result.diagnostics.at("jitter"), process->diagnostics().factors.raised);
+  ASSERT_EQ(run.models().label_gp().process, process);
+  const int raised = process->diagnostics().factors.raised;
+  ASSERT_GT(raised, 0);
+  EXPECT_EQ(result.state.diagnostics.at("jitter"), raised);
 }
 
 /// A footprint that factorises something.
@@ -42,12 +44,12 @@ struct Factorising final : Footprint {
 
 TEST(Diagnostics, TakeTheNumbersOfAFootprintByTheirNames) {
   const Instead<Footprint> plugins(std::make_shared<Factorising>());
-  Finished run("default.yaml", {"taps=4"}, scripted(std::vector<Contact>(4, contact_at(0.05))), plugins);
+  Finished run("default.yaml", {"taps=4"}, scripted(std::vector<TapResult>(4, contact_at(0.05))), plugins);
   const RunResult result = run.experiment.result();
-  EXPECT_EQ(result.diagnostics.at("jitter"), 3);
-  EXPECT_EQ(result.diagnostics.at("pivoted"), 2);
-  EXPECT_EQ(result.diagnostics.at("redundant_taps"), 1);
-  EXPECT_EQ(result.jitter_max, 0.25);
+  EXPECT_EQ(result.state.diagnostics.at("jitter"), 3);
+  EXPECT_EQ(result.state.diagnostics.at("pivoted"), 2);
+  EXPECT_EQ(result.state.diagnostics.at("redundant_taps"), 1);
+  EXPECT_EQ(result.state.jitter_max, 0.25);
 }
 
 /// No covariance: all pairs vary more with each other than by themselves.
@@ -65,13 +67,10 @@ TEST(Diagnostics, OfTheClassifierTellJitterAsAVarianceAndItsCountBeside) {
   const Instead<Kernel> plugins(std::make_shared<Impossible>());
   Finished run("default.yaml", {"footprint=gp_classifier", "engine.type=dense", "acquisition=random", "taps=6"},
                scripted({contact_at(0.05), contact_at(0.0), contact_at(0.05), contact_at(0.05)}), plugins);
-  run.experiment.ask(Quantity::probability | Quantity::height);
+  run.read({quantity::kObjectProbability, quantity::kHeightMean});
   const RunResult result = run.experiment.result();
-  ASSERT_TRUE(result.footprint);
   const auto number = [&](const std::string& name) {
-    for (const FootprintNumber& one : result.footprint->numbers)
-      if (one.name == name) return one.value;
-    return std::nan("");
+    return number_of(result.state, "footprint." + name).value_or(std::nan(""));
   };
   EXPECT_GE(number("jitter_raised"), 1.0);
   EXPECT_GT(number("jitter"), 0.0);

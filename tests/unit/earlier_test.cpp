@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What a run had come to after fewer taps is what a run with that budget comes to.
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 
 #include "record/fields.hpp"
-#include "record/session.hpp"
+#include "record/recorded_run.hpp"
+#include "record/run.hpp"
 #include "support/parts.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
@@ -18,12 +19,12 @@ class Earlier : public InFolder, public testing::WithParamInterface<std::vector<
     std::vector<std::string> words = GetParam();
     words.push_back("taps=" + std::to_string(taps));
     const fs::path directory = folder_.path() / std::to_string(taps);
-    return start_run(workshop_, shipped_config("default.yaml", words), directory, false, nullptr);
+    return start_run(workshop_, shipped_config("default.yaml", words), directory, {});
   }
 
-  std::vector<Row> summaries_after(const Recording& recording, const std::vector<int>& taps) {
-    const std::vector<Row> all = earlier_summaries(workshop_, recording);
-    EXPECT_EQ(all.size() + 1, recording.rows.size());
+  std::vector<Row> summaries_after(const RecordedRun& recorded, const std::vector<int>& taps) {
+    const std::vector<Row> all = earlier_summaries(workshop_, recorded);
+    EXPECT_EQ(all.size() + 1, recorded.rows.size());
     std::vector<Row> out;
     for (const int count : taps) out.push_back(all.at(static_cast<std::size_t>(count - 1)));
     return out;
@@ -45,8 +46,8 @@ double number(const Row& row, const std::string& name) { return row.number(name)
 
 TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
   const RunReport whole = run(14);
-  const Recording recording = read_recording(workshop_, whole.directory);
-  const std::vector<Row> earlier = summaries_after(recording, {5, 9});
+  const RecordedRun recorded = read_recorded_run(test::shared_host(), whole.directory);
+  const std::vector<Row> earlier = summaries_after(recorded, {5, 9});
   ASSERT_EQ(earlier.size(), 2U);
   for (const int taps : {5, 9}) {
     const Row& row = earlier[taps == 5 ? 0 : 1];
@@ -64,7 +65,7 @@ TEST_P(Earlier, EqualsTheRunThatHadThisBudget) {
 
 TEST_P(Earlier, HasItsShareOfTheTimes) {
   const RunReport whole = run(14);
-  const std::vector<Row> earlier = summaries_after(read_recording(workshop_, whole.directory), {5, 9});
+  const std::vector<Row> earlier = summaries_after(read_recorded_run(test::shared_host(), whole.directory), {5, 9});
   for (const char* name : {"wall_seconds", "compute_seconds", "robot_seconds"}) {
     EXPECT_GT(number(earlier[0], name), 0.0) << name;
     EXPECT_LT(number(earlier[0], name), number(earlier[1], name)) << name;
@@ -80,7 +81,7 @@ TEST_P(Earlier, HasItsShareOfTheTimes) {
   EXPECT_EQ(cell(earlier[1], "peak_rss_bytes"), "") << "nobody measured it then";
   // Without its times a run is as good as before, but for those.
   write_part(whole.directory, "timing", "");
-  const Row untimed = summaries_after(read_recording(workshop_, whole.directory), {9}).front();
+  const Row untimed = summaries_after(read_recorded_run(test::shared_host(), whole.directory), {9}).front();
   EXPECT_EQ(cell(untimed, "rmse_m"), cell(earlier[1], "rmse_m"));
   EXPECT_EQ(cell(untimed, "compute_seconds"), "");
   EXPECT_EQ(cell(untimed, "compute.infer"), "");

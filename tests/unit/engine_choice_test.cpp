@@ -9,7 +9,7 @@ namespace {
 
 TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
   const Data data = draw(60);
-  const Candidates candidates = grid(40, 40);
+  const CandidateGrid candidates = grid(40, 40);
   const GaussianProcess exact = processed(data, candidates, settings_of(Kind::dense));
   for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-13}) {
     EngineSettings settings = settings_of(Kind::lowrank);
@@ -29,7 +29,7 @@ TEST(Lowrank, StaysWithinItsOwnErrorBoundForAnyTolerance) {
 
 TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
   const Data data = draw(20);
-  const Candidates candidates = grid(40, 40);
+  const CandidateGrid candidates = grid(40, 40);
   EngineSettings settings = settings_of(Kind::lowrank);
   settings.tolerance = 1e-7;
   std::vector<double> bounds;
@@ -55,7 +55,7 @@ TEST(Lowrank, TellsItsErrorInPriorStandardDeviationsWhateverThePrior) {
 
 TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
   Data data = draw(60);
-  const Candidates candidates = grid(40, 40);
+  const CandidateGrid candidates = grid(40, 40);
   Random random(3, "engine_test/places");
   for (Eigen::Index i = 0; i < data.places.rows(); ++i) {
     const Target place =
@@ -70,10 +70,10 @@ TEST(Lowrank, OfTapsOnCandidatesKeepsTwelveDigits) {
 }
 
 TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
-  const Candidates square = grid(30, 30);
-  const Candidates any = scattered(Points::Random(20, 2));
+  const CandidateGrid square = grid(30, 30);
+  const CandidateGrid any = scattered(Points::Random(20, 2));
   const auto matern = test::make<Kernel>(test::shared_host(), "matern32");
-  const auto engine = [](const std::shared_ptr<Kernel>& kernel, const Candidates& candidates, int taps,
+  const auto engine = [](const std::shared_ptr<Kernel>& kernel, const CandidateGrid& candidates, int taps,
                          double accuracy) {
     EngineSettings settings;
     settings.taps = taps;
@@ -94,7 +94,7 @@ TEST(AutomaticEngine, TakesWhatServesAndSaysWhy) {
 
 TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
   const Data data = draw(30);
-  const Candidates candidates = grid(30, 30);
+  const CandidateGrid candidates = grid(30, 30);
   EngineSettings settings = settings_of(Kind::automatic);
   settings.taps = 300;
   settings.accuracy = 1e-13;  // some taps keep to it
@@ -110,8 +110,8 @@ TEST(AutomaticEngine, LeavesLowrankWhenItsErrorBoundIsAboveTheAccuracy) {
 
 TEST(Engine, ThatCannotServeIsRefusedWithTheReason) {
   const auto matern = test::make<Kernel>(test::shared_host(), "matern32");
-  const Candidates square = grid(3, 3);
-  const Candidates any = scattered(Points::Random(20, 2));
+  const CandidateGrid square = grid(3, 3);
+  const CandidateGrid any = scattered(Points::Random(20, 2));
   for (const Kind kind : {Kind::grid, Kind::lowrank}) {
     EXPECT_THROW(GaussianProcess(matern, kOutputs, square, settings_of(kind)), Error);
     EXPECT_THROW(GaussianProcess(rbf(), kOutputs, any, settings_of(kind)), Error);

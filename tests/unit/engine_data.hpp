@@ -29,7 +29,7 @@ inline Data draw(int taps, std::uint64_t seed = 5) {
 }
 
 /// Irregular in both directions.
-inline Candidates grid(int columns, int rows) {
+inline CandidateGrid grid(int columns, int rows) {
   Random random(9, "engine_test/grid");
   Eigen::VectorXd xs(columns);
   Eigen::VectorXd ys(rows);
@@ -39,7 +39,7 @@ inline Candidates grid(int columns, int rows) {
 }
 
 /// What configs have: regular, its own mirror image.
-inline Candidates regular(int columns, int rows) {
+inline CandidateGrid regular(int columns, int rows) {
   return product_grid(Eigen::VectorXd::LinSpaced(columns, 0.0, 0.2), Eigen::VectorXd::LinSpaced(rows, 0.0, 0.2));
 }
 
@@ -64,7 +64,7 @@ inline void add_all(
   }
 }
 
-inline GaussianProcess processed(const Data& data, const Candidates& candidates, const EngineSettings& settings,
+inline GaussianProcess processed(const Data& data, const CandidateGrid& candidates, const EngineSettings& settings,
                                  const std::shared_ptr<Kernel>& kernel = rbf(),
                                  const std::vector<GpSettings>& outputs = kOutputs) {
   GaussianProcess process(kernel, outputs, candidates, settings);

@@ -20,14 +20,14 @@ class EveryEngine : public testing::TestWithParam<Kind> {};
 
 TEST_P(EveryEngine, EqualsTheTextbookFormulasOnGridsOfAnyShape) {
   const Data data = draw(40);
-  std::vector<Candidates> grids;
+  std::vector<CandidateGrid> grids;
   for (const auto& [columns, rows] : {std::pair{1, 1}, {1, 9}, {9, 1}, {7, 5}, {8, 8}, {24, 8}, {25, 9}, {47, 33}}) {
     grids.push_back(grid(columns, rows));
     grids.push_back(regular(columns, rows));
   }
   grids.push_back(regular(48, 7));
   grids.push_back(regular(100, 3));
-  for (const Candidates& candidates : grids) {
+  for (const CandidateGrid& candidates : grids) {
     const std::string columns = fmt::format("{} x {} at x = {}", candidates.columns, candidates.rows, candidates.xs(0));
     const auto kernel = rbf();
     const GaussianProcess process = processed(data, candidates, settings_of(GetParam()), kernel);
@@ -46,7 +46,7 @@ TEST_P(EveryEngine, EqualsTheTextbookFormulasOnGridsOfAnyShape) {
 
 TEST_P(EveryEngine, ServesEverySeparableKernel) {
   const Data data = draw(25);
-  const Candidates candidates = grid(12, 15);
+  const CandidateGrid candidates = grid(12, 15);
   for (const char* options :
        {"{kernels: [{type: rbf, length_scale: 2 cm}, {type: rbf, length_scale: 9 cm, length_scale_y: 4 cm}]}",
         "{kernels: [{type: scale, factor: 3, kernel: {type: rbf, length_scale: 4 cm}}]}"}) {
@@ -62,7 +62,7 @@ TEST_P(EveryEngine, ServesEverySeparableKernel) {
 
 TEST_P(EveryEngine, HasTheSameBytesWhetherMapsFollowEveryChangeOrAllAtOnce) {
   const Data data = draw(30);
-  const Candidates candidates = regular(24, 18);
+  const CandidateGrid candidates = regular(24, 18);
   GaussianProcess followed(rbf(), kOutputs, candidates, settings_of(GetParam()));
   palpate::GaussianProcess behind(rbf(), kOutputs, candidates, settings_of(GetParam()));
   Eigen::VectorXd shares = Eigen::VectorXd::Ones(30);
@@ -107,7 +107,7 @@ TEST_P(EveryEngine, HasTheSameBytesWhetherMapsFollowEveryChangeOrAllAtOnce) {
 
 TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {
   const Data data = draw(30);
-  const Candidates candidates = regular(90, 70);
+  const CandidateGrid candidates = regular(90, 70);
   const GaussianProcess alone = processed(data, candidates, settings_of(GetParam()));
   for (const int threads : {2, 3}) {
     EngineSettings settings = settings_of(GetParam());
@@ -119,7 +119,7 @@ TEST_P(EveryEngine, HasTheSameBytesOnAnyNumberOfThreads) {
 
 TEST_P(EveryEngine, IsTheSameWithinRoundingOnEveryInstructionSet) {
   const Data data = draw(30);
-  const Candidates candidates = regular(91, 70);
+  const CandidateGrid candidates = regular(91, 70);
   const GaussianProcess widest = processed(data, candidates, settings_of(GetParam()));
   for (const Instructions set : math::instruction_sets()) {
     const OnInstructions on(set);
@@ -131,7 +131,7 @@ TEST_P(EveryEngine, IsTheSameWithinRoundingOnEveryInstructionSet) {
 
 TEST_P(EveryEngine, ShowsAnOutputThatIsReadLateAsItWouldHaveBeen) {
   const Data data = draw(20);
-  const Candidates candidates = grid(20, 20);
+  const CandidateGrid candidates = grid(20, 20);
   const GaussianProcess early = processed(data, candidates, settings_of(GetParam()));
   GaussianProcess late(rbf(), kOutputs, candidates, settings_of(GetParam()));
   add_all(late, data);
@@ -141,7 +141,7 @@ TEST_P(EveryEngine, ShowsAnOutputThatIsReadLateAsItWouldHaveBeen) {
 
 TEST_P(EveryEngine, IsAfterAFitWhatItWouldBeIfItHadBegunSo) {
   const Data data = draw(20);
-  const Candidates candidates = grid(20, 31);
+  const CandidateGrid candidates = grid(20, 31);
   GaussianProcess fitted = processed(data, candidates, settings_of(GetParam()));
   Random random(1, "engine_test");
   const ChangingFit stretching([](FitProblem& problem) {

@@ -2,7 +2,6 @@
 // The expected RMSE as people see it beside a run, whether or not a stop rule reads it.
 #include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
@@ -16,16 +15,22 @@
 namespace palpate::test {
 namespace {
 
-/// By the scene and the reconstruction alone.
-double rmse_by_the_truth(FromAbove& experiment) {
-  experiment.build(Quantity::height | Quantity::probability);
-  const TapBelief& belief = experiment.belief();
-  const Points& points = belief.candidates();
+/// The expected RMSE as displays show it.
+std::optional<double> shown_rmse(Prepared& run) {
+  const std::optional<ShownErrors> shown = run.belief().shown_errors();
+  return shown ? shown->expected_rmse : std::nullopt;
+}
+
+/// By the scene and the reconstruction alone, whose arrays are up to date.
+double rmse_by_the_truth(const Prepared& run) {
+  const HeightModels& models = run.models();
+  const Scene& scene = run.experiment.scene();
+  const Points& points = run.grid().points;
   double sum = 0.0;
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    const bool on = !belief.two_part() || belief.probability()(i) >= 0.5;
-    const double reconstructed = on ? belief.height_mean()(i) : belief.desk();
-    const double off = reconstructed - experiment.scene().height(points(i, 0), points(i, 1));
+    const bool on = !models.is_two_part() || models.probability()(i) >= 0.5;
+    const double reconstructed = on ? models.height_mean()(i) : scene.desk();
+    const double off = reconstructed - scene.height(points(i, 0), points(i, 1));
     sum += off * off;
   }
   return std::sqrt(sum / static_cast<double>(points.rows()));
@@ -60,15 +65,15 @@ Moments over_seeds(const std::vector<std::string>& overrides) {
     Prepared run("default.yaml", all);
     bool begun = false;
     run.journal.announcing = [&](const TapRecord& tap) {
-      const std::optional<double> expected = run.experiment.expected_rmse();
+      const std::optional<double> expected = shown_rmse(run);
       if (!expected) return;
-      if (!begun) out.first.add(*expected, rmse_by_the_truth(run.experiment));
+      if (!begun) out.first.add(*expected, rmse_by_the_truth(run));
       begun = true;
-      if (tap.number == 16) out.middle.add(*expected, rmse_by_the_truth(run.experiment));
+      if (tap.number() == 16) out.middle.add(*expected, rmse_by_the_truth(run));
     };
     run.run();
-    const RunResult result = run.experiment.result();
-    if (result.expected_rmse) out.last.add(*result.expected_rmse, rmse_by_the_truth(run.experiment));
+    const std::optional<double> last = number_of(run.experiment.result().state, "expected_rmse_m");
+    if (last) out.last.add(*last, rmse_by_the_truth(run));
   }
   return out;
 }
@@ -99,13 +104,13 @@ TEST(ExpectedRmse, OfOneProcessForObjectAndDeskIsNearTheTrueOneOverManySeedsAndF
   EXPECT_LT(moments.last.expected / moments.last.count, 0.5 * moments.first.expected / moments.first.count);
 }
 
-/// What the head of experiment/forecast.hpp says, cell by cell and by matrices of the taps alone. The kernel is rbf.
-double rmse_by_the_formula(FromAbove& experiment, const ExperimentOptions& options, double length_scale) {
-  experiment.build(Quantity::height | Quantity::probability);
-  const TapBelief& belief = experiment.belief();
-  const bool two_part = belief.two_part();
-  const std::vector<Touch>& hits = belief.log().object_contacts();
-  const std::vector<Touch>& data = two_part ? hits : belief.touches();
+/// The formula of experiment/expected_rmse.hpp, cell by cell and by matrices of the taps alone. The kernel is rbf.
+double rmse_by_the_formula(const Prepared& run, double length_scale) {
+  const ExperimentOptions& options = run.config.options;
+  const HeightModels& models = run.models();
+  const bool two_part = models.is_two_part();
+  const std::vector<Touch>& hits = models.log().object_contacts();
+  const std::vector<Touch>& data = two_part ? hits : models.log().contacts();
   const auto n = static_cast<Eigen::Index>(data.size());
   Eigen::MatrixXd covariance(n, n);
   Eigen::VectorXd heights(n);
@@ -128,13 +133,13 @@ double rmse_by_the_formula(FromAbove& experiment, const ExperimentOptions& optio
   const double ratio = (square / static_cast<double>(hits.size()) + rest.dot(factor.solve(rest))) /
                        static_cast<double>(two_part ? n : n + 1);
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < belief.candidates().rows(); ++i) {
-    const double variance = ratio * belief.height_variance()(i);
-    const double p = belief.probability()(i);
-    const double mean = belief.height_mean()(i) - experiment.scene().desk();
+  for (int i = 0; i < run.grid().size(); ++i) {
+    const double variance = ratio * models.height_variance()(i);
+    const double p = models.probability()(i);
+    const double mean = models.height_mean()(i) - run.experiment.scene().desk();
     sum += !two_part ? variance : p >= 0.5 ? p * variance + (1.0 - p) * mean * mean : p * (variance + mean * mean);
   }
-  return std::sqrt(sum / static_cast<double>(belief.candidates().rows()));
+  return std::sqrt(sum / run.grid().size());
 }
 
 TEST(ExpectedRmse, IsAtEachTapThatOfTheFormulaAlsoWhereTheDeskIsNotAtZero) {
@@ -145,16 +150,16 @@ TEST(ExpectedRmse, IsAtEachTapThatOfTheFormulaAlsoWhereTheDeskIsNotAtZero) {
            {}, {"footprint=gp_classifier"}, {"surface=single", "acquisition=uncertainty", "footprint=gp_regression"}}) {
     std::vector<std::string> all = plain;
     all.insert(all.end(), more.begin(), more.end());
-    Prepared run("default.yaml", all);
+    Prepared run("default.yaml", all, nullptr, shared_host(),
+                 {quantity::kHeightMean, quantity::kHeightStd, quantity::kObjectProbability});
     int compared = 0;
     run.journal.announcing = [&](const TapRecord& tap) {
-      run.experiment.build(Quantity::height | Quantity::probability);
-      const std::optional<double> expected = run.experiment.expected_rmse();
+      const std::optional<double> expected = shown_rmse(run);
       if (!expected) return;
       ++compared;
       // A level of a thousand signals is as good as free: to a millionth, which n taps may add to.
-      const double wanted = rmse_by_the_formula(run.experiment, run.config.options, 0.03);
-      EXPECT_NEAR(*expected, wanted, 1e-4 * wanted) << "tap " << tap.number << (more.empty() ? "" : more.front());
+      const double wanted = rmse_by_the_formula(run, 0.03);
+      EXPECT_NEAR(*expected, wanted, 1e-4 * wanted) << "tap " << tap.number() << (more.empty() ? "" : more.front());
     };
     run.run();
     EXPECT_GT(compared, 5);
@@ -171,7 +176,7 @@ TEST(ExpectedRmse, IsSeenAndChangesNoTapAndNoResult) {
   for (const auto& [file, overrides] : configs) {
     Finished alone(file, overrides);
     Prepared watched(file, overrides);
-    watched.journal.announcing = [&](const TapRecord&) { watched.experiment.expected_rmse(); };
+    watched.journal.announcing = [&](const TapRecord&) { shown_rmse(watched); };
     watched.run();
     ASSERT_EQ(alone.taps.size(), watched.taps.size());
     for (std::size_t i = 0; i < alone.taps.size(); ++i)
@@ -180,7 +185,7 @@ TEST(ExpectedRmse, IsSeenAndChangesNoTapAndNoResult) {
       return to_json_line(summary_list().row({run.experiment.result(), run.config, "", {}, {}, {}, {}}));
     };
     EXPECT_EQ(row(alone), row(watched));
-    EXPECT_EQ(alone.experiment.readers().size(), watched.experiment.readers().size());
+    EXPECT_EQ(alone.experiment.models().size(), watched.experiment.models().size());
   }
 }
 
@@ -189,30 +194,32 @@ TEST(ExpectedRmse, NeedsNoTruthAndNoModelThatTheRunHasNot) {
   Finished robot("default.yaml", {"taps=6"}, scripted({contact_at(0.1), contact_at(0.0), contact_at(0.1)}));
   const RunResult result = robot.experiment.result();
   EXPECT_FALSE(result.errors.rmse);
-  ASSERT_TRUE(result.expected_rmse);
-  EXPECT_GT(*result.expected_rmse, 0.001);
-  EXPECT_LT(*result.expected_rmse, 0.2);
+  const std::optional<double> expected = number_of(result.state, "expected_rmse_m");
+  ASSERT_TRUE(expected);
+  EXPECT_GT(*expected, 0.001);
+  EXPECT_LT(*expected, 0.2);
 
   Finished blind("default.yaml",
                  {"taps=6", "acquisition=random", "initial.design=random", "height.outlier_probability=none",
-                  "footprint=gp_classifier", "motion=gentle"},
+                  "footprint=gp_classifier", "motion=gentle", "log.surface=false"},
                  scripted({contact_at(0.1), contact_at(0.1)}));
-  EXPECT_FALSE(blind.experiment.expected_rmse());
-  EXPECT_FALSE(blind.experiment.result().expected_rmse);
-  EXPECT_FALSE(blind.experiment.belief().surface_gp()) << "no model was started for it";
+  EXPECT_FALSE(shown_rmse(blind));
+  EXPECT_FALSE(number_of(blind.experiment.result().state, "expected_rmse_m"));
+  EXPECT_FALSE(blind.models().surface_gp()) << "no model was started for it";
 
   Finished unfound("default.yaml", {"taps=3"}, scripted());
-  EXPECT_FALSE(unfound.experiment.result().expected_rmse) << "there is nothing yet to go by";
+  EXPECT_FALSE(number_of(unfound.experiment.result().state, "expected_rmse_m")) << "there is nothing yet to go by";
 }
 
 TEST(ExpectedRmse, IsThatOfTheStopRuleWhereThereIsOne) {
   Prepared run("default.yaml", {"taps=10", "stop.expected_rmse=1e-6 mm"});
   run.journal.announcing = [&](const TapRecord& tap) {
-    EXPECT_EQ(run.experiment.expected_rmse(), tap.forecast->rmse) << tap.number;
+    EXPECT_EQ(shown_rmse(run), number_of(tap.state, "expected_rmse_m")) << tap.number();
   };
   run.run();
   const RunResult result = run.experiment.result();
-  EXPECT_EQ(result.expected_rmse, result.forecast->rmse);
+  ASSERT_TRUE(number_of(result.state, "expected_rmse_m"));
+  EXPECT_EQ(number_of(result.state, "expected_rmse_m"), run.belief().scalar(quantity::kExpectedRmse));
 }
 
 }  // namespace

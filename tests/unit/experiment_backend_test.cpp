@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
 // What passes between the loop and a backend beside plain taps: one that cannot go on, one that shows what is believed.
 #include "record/row.hpp"
-#include "record/tap_row.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
 namespace palpate::test {
 namespace {
 
-Contact stopped(const std::string& reason) { return {Outcome::aborted, 0.0, 0.0, 1.0, reason, true}; }
+TapResult stopped(const std::string& reason) { return tap_without_contact(Outcome::aborted, 1.0, reason, true); }
 
 /// A contact that is the last tap of its run.
-Contact last_contact(double height, const std::string& reason = {}) {
-  return {Outcome::contact, height, 8.0, 1.0, reason, true};
+TapResult last_contact(double height, const std::string& reason = {}) {
+  TapResult out = contact_at(height);
+  out.reason = reason;
+  out.ends_run = true;
+  return out;
 }
 
 /// The line with which a run fails.
@@ -25,7 +27,7 @@ TEST(LastTap, ThatTouchedSomethingCountsAsAContact) {
   Prepared prepared("paper/object_i.yaml", {}, scripted({contact_at(0.0), last_contact(0.09, reason)}));
   EXPECT_EQ(failure_of(prepared), "backend/simulator: " + reason);
   EXPECT_EQ(prepared.experiment.counts().object_taps, 1);
-  EXPECT_EQ(prepared.experiment.belief().taps(), 2);
+  EXPECT_EQ(prepared.belief().counts().all, 2);
 }
 
 TEST(LastTap, WithoutAReasonOrAHeightIsTheLastAllTheSame) {
@@ -44,17 +46,18 @@ TEST(ShownBelief, HasTheTapThatWasJustMade) {
   const std::vector<double> heights{0.0, 0.09, 0.05, 0.07};
   int shown = 0;
   const auto backend = four_taps();
-  backend->read = Quantity::height;
+  backend->read = {quantity::kHeightMean, quantity::kHeightStd};
   Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
-  const FromAbove& experiment = prepared.experiment;
-  backend->reading = [&](const Belief& belief) {
+  backend->reading = [&](const BeliefView& belief) {
     ++shown;
-    ASSERT_EQ(belief.taps(), shown);
+    ASSERT_EQ(belief.counts().all, shown);
     const TapRequest& last = backend->requests.back();
     ASSERT_EQ(last.number, shown) << "after the tap, before the next one";
-    const int place = experiment.candidates().nearest(last.target.x, last.target.y, experiment.scene().area());
-    EXPECT_NEAR(belief.height_mean()(place), heights[static_cast<std::size_t>(shown) - 1], 1e-6);
-    EXPECT_LT(belief.height_variance()(place), 1e-7);
+    const Target target = last.line.target();
+    const int place = prepared.grid().nearest(target.x, target.y, prepared.experiment.scene().area());
+    const double deviation = belief.values(quantity::kHeightStd)(place);
+    EXPECT_NEAR(belief.values(quantity::kHeightMean)(place), heights[static_cast<std::size_t>(shown) - 1], 1e-6);
+    EXPECT_LT(deviation * deviation, 1e-7);
   };
   prepared.run();
   EXPECT_EQ(shown, 4);
@@ -64,17 +67,17 @@ TEST(ShownBelief, IsTheRecordedOne) {
   const auto backend = scripted();
   Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
   std::vector<std::size_t> recorded;
-  backend->reading = [&](const Belief&) { recorded.push_back(prepared.taps.size()); };
+  backend->reading = [&](const BeliefView&) { recorded.push_back(prepared.taps.size()); };
   prepared.run();
   EXPECT_EQ(recorded, (std::vector<std::size_t>{1, 2, 3, 4})) << "whatever showing does, no tap is lost by it";
 }
 
 TEST(ShownBelief, ThatNobodyReadsBuildsNoModel) {
   const auto backend = scripted();
-  backend->reading = [](const Belief& belief) { EXPECT_GT(belief.taps(), 0); };
+  backend->reading = [](const BeliefView& belief) { EXPECT_GT(belief.counts().all, 0); };
   const Finished run("paper/object_i.yaml", {"acquisition=random"}, backend);
-  EXPECT_EQ(run.experiment.belief().height_gp().process, nullptr);
-  EXPECT_EQ(run.experiment.belief().label_gp().process, nullptr);
+  EXPECT_EQ(run.models().height_gp().process, nullptr);
+  EXPECT_EQ(run.models().label_gp().process, nullptr);
 }
 
 TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
@@ -84,14 +87,16 @@ TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
                                            "candidates.count=12"};
       const Finished quiet("paper/object_i.yaml", words, four_taps());
       const auto backend = four_taps();
-      backend->read = Quantity::height | Quantity::weight | Quantity::uncertainty;
-      backend->reading = [](const Belief& belief) {
-        EXPECT_TRUE(belief.height_variance().allFinite() && belief.weight().allFinite());
-        EXPECT_TRUE(belief.height_mean().allFinite() && belief.uncertainty().allFinite());
+      backend->read = {quantity::kHeightMean, quantity::kHeightStd, quantity::kLabelMean, quantity::kUncertainty};
+      backend->reading = [&](const BeliefView& belief) {
+        for (const std::string& one : backend->read) EXPECT_TRUE(belief.values(one).allFinite()) << one;
       };
       const Finished read("paper/object_i.yaml", words, backend);
       ASSERT_EQ(read.taps.size(), quiet.taps.size());
-      EXPECT_TRUE(read.taps[1].height_gp && !quiet.taps[1].height_gp) << "what is read is recorded from then on";
+      const auto has_gp = [](const Finished& run) {
+        return number_of(run.taps[1].state, "height_gp.signal").has_value();
+      };
+      EXPECT_TRUE(has_gp(read) && !has_gp(quiet)) << "what is read is recorded from then on";
       for (std::size_t i = 0; i < quiet.taps.size(); ++i) {
         const Row with = tap_row(read.taps[i]);
         for (const auto& [field, value] : tap_row(quiet.taps[i]).fields) {
@@ -108,7 +113,7 @@ TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
 /// How many taps the belief had whenever it was shown.
 std::vector<int> shown_in(Prepared& prepared, ScriptedBackend& backend) {
   std::vector<int> shown;
-  backend.reading = [&](const Belief& belief) { shown.push_back(belief.taps()); };
+  backend.reading = [&](const BeliefView& belief) { shown.push_back(belief.counts().all); };
   failure_of(prepared);
   return shown;
 }
@@ -116,8 +121,13 @@ std::vector<int> shown_in(Prepared& prepared, ScriptedBackend& backend) {
 TEST(ShownBelief, ComesFirstInARunThatIsCarriedOn) {
   const auto backend = scripted();
   Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
-  prepared.experiment.resume(
-      {{{0.01, 0.02}, contact_at(0.09), Source::initial}, {{0.05, 0.02}, contact_at(0.0), Source::initial}});
+  const auto tapped = [](int number, const Target& target, double height) {
+    TapRecord out;
+    out.request = request_at(target, number);
+    out.result = contact_at(height);
+    return out;
+  };
+  prepared.experiment.resume({tapped(1, {0.01, 0.02}, 0.09), tapped(2, {0.05, 0.02}, 0.0)});
   EXPECT_EQ(shown_in(prepared, *backend), (std::vector<int>{2, 3, 4}));
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "experiment/from_above.hpp"
+#include "experiment/experiment.hpp"
 
 #include "record/json.hpp"
-#include "record/recording.hpp"
-#include "record/tap_row.hpp"
+#include "record/run.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -14,17 +13,18 @@
 namespace palpate::test {
 namespace {
 
-Contact failure(Outcome outcome) { return {outcome, 0.0, 0.0, 1.0, "because the test says so"}; }
+TapResult failure(Outcome outcome) { return tap_without_contact(outcome, 1.0, "because the test says so"); }
 
 TEST(Experiment, WeightedScoreIsTheProductOfUncertaintyAndWeight) {
   const Finished run("paper/object_i_right.yaml", {"seed=6"});
   int by_score = 0;
   for (const TapRecord& tap : run.taps) {
-    if (tap.source != Source::acquisition) continue;
+    if (tap.request.source != Source::acquisition) continue;
     ++by_score;
-    EXPECT_DOUBLE_EQ(*tap.score, *tap.uncertainty * *tap.weight);
-    EXPECT_GE(*tap.uncertainty, 0.0);
-    EXPECT_LE(*tap.uncertainty, 1.0);
+    const double uncertainty = number_of(tap.state, "u").value();
+    EXPECT_DOUBLE_EQ(*tap.score, uncertainty * number_of(tap.state, "w").value());
+    EXPECT_GE(uncertainty, 0.0);
+    EXPECT_LE(uncertainty, 1.0);
   }
   EXPECT_EQ(by_score, 14);
 }
@@ -32,10 +32,10 @@ TEST(Experiment, WeightedScoreIsTheProductOfUncertaintyAndWeight) {
 TEST(Experiment, ADeadStartFallsBackToUncertaintyAndSaysSo) {
   Finished run("paper/object_i.yaml", {}, scripted());
   for (std::size_t i = 3; i < run.taps.size(); ++i) {
-    EXPECT_EQ(run.taps[i].source, Source::fallback);
+    EXPECT_EQ(run.taps[i].request.source, Source::fallback);
     EXPECT_EQ(run.taps[i].why, "no score is positive");
   }
-  EXPECT_EQ(run.experiment.result().diagnostics.at("fallback"), 14);
+  EXPECT_EQ(run.experiment.result().state.diagnostics.at("fallback"), 14);
 }
 
 TEST(Experiment, ForbiddenRepeatsTapEveryCandidateAtMostOnceAndStopWhenNoneIsLeft) {
@@ -56,8 +56,8 @@ TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
   EXPECT_EQ(result.object_taps, 1);
   EXPECT_EQ(result.desk_taps, 1);
   EXPECT_EQ(result.failed_taps, 4);
-  run.experiment.ask(Quantity::height);
-  EXPECT_EQ(run.experiment.belief().height_gp().process->size(), 2);
+  run.read({quantity::kHeightMean});
+  EXPECT_EQ(run.models().height_gp().process->size(), 2);
   std::set<int> places;
   for (const TapRecord& tap : run.taps) places.insert(tap.candidate);
   EXPECT_EQ(places.size(), 6U) << "a place that failed is not tried again, even where repeats are allowed";
@@ -66,8 +66,8 @@ TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
 TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
   class Broken final : public Acquisition {
    public:
-    Quantities reads() const override { return {}; }
-    void score(const Belief&, VectorOut out) const override { out.setConstant(std::nan("")); }
+    QuantitySet reads() const override { return {}; }
+    void score(const BeliefView&, VectorOut out) const override { out.setConstant(std::nan("")); }
     double prior_scale() const override { return 1.0; }
   };
   const Instead<Acquisition> broken(std::make_shared<Broken>());
@@ -77,39 +77,48 @@ TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
 }
 
 TEST(Experiment, GivesAnAcquisitionTheTapsSoFarAndWhereTheArmIs) {
-  // Taps what lies nearest to the arm, and takes down what it was given.
+  // Taps what lies nearest to the last contact, and takes down what it was given.
   struct Nearest final : Acquisition {
-    mutable std::vector<Target> targets;
-    mutable std::vector<Touch> touches;
-    Quantities reads() const override { return {}; }
-    void score(const Belief& belief, VectorOut out) const override {
-      targets = belief.targets();
-      touches = belief.touches();
-      const Target arm = belief.arm().value();
-      out = 1.0 / (1.0 + (belief.candidates().rowwise() - Eigen::RowVector2d(arm.x, arm.y)).rowwise().norm().array());
+    mutable TapCounts counts;
+    mutable std::vector<TapReading> readings;
+    QuantitySet reads() const override { return {quantity::kDeskPosition}; }
+    void score(const BeliefView& belief, VectorOut out) const override {
+      counts = belief.counts();
+      readings = belief.readings();
+      const Eigen::RowVector2d last = readings.back().position.head<2>();
+      out = 1.0 / (1.0 + (belief.candidates().starts.leftCols<2>().rowwise() - last).rowwise().norm().array());
     }
     double prior_scale() const override { return 1.0; }
   };
   const auto nearest = std::make_shared<Nearest>();
   const Instead<Acquisition> plugins(nearest);
-  const Contact missed{Outcome::no_contact, 0.0, 0.0, 1.0, "nothing there"};
+  const TapResult missed = tap_without_contact(Outcome::no_contact, 1.0, "nothing there");
   const auto backend = scripted({contact_at(0.05), contact_at(0.0), contact_at(0.0), missed, contact_at(0.05)});
   const Finished run("paper/object_i.yaml", {"taps=6"}, backend, plugins);
   ASSERT_EQ(run.taps.size(), 6U);
-  const Points& places = run.experiment.candidates().points;
+  const Points& places = run.grid().points;
   const double step = (places.row(1) - places.row(0)).norm();
+  const std::size_t last_contacts[] = {2, 2, 4};  // before taps 4, 5 and 6, from 0
   for (std::size_t i = 3; i < 6; ++i) {
-    const Target& here = run.taps[i - 1].target;
-    const Target& next = run.taps[i].target;
+    const Target here = run.taps[last_contacts[i - 3]].target();
+    const Target next = run.taps[i].target();
     EXPECT_NEAR(std::hypot(next.x - here.x, next.y - here.y), step, 1e-9) << "tap " << i + 1;
   }
-  ASSERT_EQ(nearest->targets.size(), 5U);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(nearest->targets[i].x, run.taps[i].target.x);
-  ASSERT_EQ(nearest->touches.size(), 4U) << "the one that met nothing is no contact";
-  EXPECT_TRUE(nearest->touches.front().on);
-  EXPECT_FALSE(nearest->touches[1].on);
-  EXPECT_EQ(nearest->touches.back().height, 0.05);
-  EXPECT_EQ(nearest->touches.back().place.x, run.taps[4].target.x);
+  EXPECT_EQ(nearest->counts.all, 5);
+  EXPECT_EQ(nearest->counts.initial, 3);
+  const std::vector<TapReading>& readings = nearest->readings;
+  ASSERT_EQ(readings.size(), 4U) << "the one that met nothing is no contact";
+  const int numbers[] = {1, 2, 3, 5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Target target = run.taps[static_cast<std::size_t>(numbers[i]) - 1].target();
+    EXPECT_EQ(readings[i].tap, numbers[i]);
+    EXPECT_TRUE(readings[i].is_contact);
+    EXPECT_EQ(readings[i].position.x(), target.x);
+    EXPECT_EQ(readings[i].position.y(), target.y);
+  }
+  EXPECT_TRUE(readings.front().on_object);
+  EXPECT_FALSE(readings[1].on_object);
+  EXPECT_EQ(readings.back().position.z(), 0.05);
 }
 
 TEST(Experiment, StopsWhenTheRobotHasBeenBusyLongEnough) {
@@ -122,16 +131,17 @@ TEST(Experiment, StopsWhenNoCandidateIsUncertainAnyMore) {
   Finished run("paper/object_i.yaml", {"acquisition=uncertainty", "kernel.length_scale=13 cm", "taps=100",
                                        "stop.max_standard_deviation=10 cm"});
   EXPECT_EQ(run.experiment.result().stop_reason, "max_standard_deviation");
-  EXPECT_LE(std::sqrt(run.experiment.belief().height_variance().maxCoeff()), 0.1);
-  EXPECT_GT(*run.taps.back().max_standard_deviation, 0.1) << "it stopped as soon as it could";
+  EXPECT_LE(std::sqrt(run.models().height_variance().maxCoeff()), 0.1);
+  EXPECT_GT(number_of(run.taps.back().state, "max_standard_deviation").value(), 0.1)
+      << "it stopped as soon as it could";
 }
 
 TEST(Experiment, AnInterruptionStopsItAfterTheTapUnderWay) {
   const ResolvedConfig config = shipped_config("paper/object_i.yaml");
   std::atomic<bool> interrupted{false};
-  FromAbove experiment(config.options, shared_host(), &interrupted);
+  Experiment experiment(config.options, {shared_host(), &interrupted});
   Collector collector;
-  collector.announcing = [&](const TapRecord& tap) { interrupted = tap.number == 5; };
+  collector.announcing = [&](const TapRecord& tap) { interrupted = tap.number() == 5; };
   experiment.run(collector);
   EXPECT_EQ(experiment.result().taps, 5);
   EXPECT_TRUE(experiment.result().interrupted);
@@ -142,10 +152,10 @@ TEST(Experiment, ATapThatWasBrokenOffAndCanBeRepeatedIsNotRecorded) {
   for (const bool wished : {true, false}) {
     std::atomic<bool> interrupted{false};
     // Its second tap is broken off, or fails by itself.
-    FromAbove experiment(config.options, shared_host(), &interrupted,
-                         scripted({contact_at(0.0), failure(Outcome::aborted)}));
+    Experiment experiment(config.options,
+                          {shared_host(), &interrupted, scripted({contact_at(0.0), failure(Outcome::aborted)})});
     Collector collector;
-    collector.announcing = [&](const TapRecord& tap) { interrupted = wished && tap.number == 2; };
+    collector.announcing = [&](const TapRecord& tap) { interrupted = wished && tap.number() == 2; };
     experiment.run(collector);
     EXPECT_EQ(collector.taps.size(), wished ? 1U : 17U);
     EXPECT_EQ(experiment.counts().taps, wished ? 1 : 17);
@@ -158,12 +168,12 @@ TEST(Experiment, ATapThatIsNotPermittedIsNeitherAnnouncedNorMade) {
   const auto backend = scripted();
   Prepared prepared("paper/object_i.yaml", {}, backend);
   std::vector<int> announced;
-  prepared.journal.permitting = [](const TapRecord& tap) { return tap.number < 3; };
-  prepared.journal.announcing = [&](const TapRecord& tap) { announced.push_back(tap.number); };
+  prepared.journal.permitting = [](const TapRecord& tap) { return tap.number() < 3; };
+  prepared.journal.announcing = [&](const TapRecord& tap) { announced.push_back(tap.number()); };
   prepared.run();
   EXPECT_EQ(announced, (std::vector<int>{1, 2}));
   ASSERT_EQ(prepared.taps.size(), 2U);
-  EXPECT_EQ(prepared.taps.back().number, 2);
+  EXPECT_EQ(prepared.taps.back().number(), 2);
   EXPECT_EQ(backend->requests.size(), 2U);
   EXPECT_TRUE(prepared.experiment.result().interrupted);
 }
@@ -210,7 +220,9 @@ TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore)
                                        "acquisition={type: object_uncertainty}"};
   const Finished unbroken("default.yaml", words);
   ASSERT_GT(unbroken.experiment.counts().object_taps, 105);
-  ASSERT_FALSE(unbroken.taps.back().suspected_outliers->empty());
+  const Row last{unbroken.taps.back().state.fields};
+  const Scalar* const suspected = last.find("suspected_outliers");
+  ASSERT_TRUE(suspected != nullptr && std::holds_alternative<JsonList>(*suspected));
   for (const std::size_t cut : {100U, 149U}) {
     Prepared rest("default.yaml", words);
     expect_resumed(rest, unbroken, cut);
@@ -224,13 +236,13 @@ TEST(Experiment, SendsWhoeverTapsByHandWhereTheRunWent) {
     std::optional<TapRecord> chosen = by_hand.experiment.choose_next();
     ASSERT_TRUE(chosen.has_value());
     EXPECT_EQ(by_hand.experiment.choose_next()->candidate, chosen->candidate) << "it is only asked again";
-    chosen->contact = made.contact;
-    chosen->on_object = made.on_object;
+    chosen->result = made.result;
+    chosen->reading = made.reading;
     EXPECT_EQ(to_json_line(tap_row(*chosen)), to_json_line(tap_row(made)));
-    by_hand.experiment.observe({chosen->target, made.contact, chosen->source});
+    by_hand.experiment.take_in(*chosen);
   }
   EXPECT_EQ(*by_hand.experiment.result().errors.rmse, *whole.experiment.result().errors.rmse);
-  EXPECT_EQ(by_hand.experiment.result().diagnostics, whole.experiment.result().diagnostics);
+  EXPECT_EQ(by_hand.experiment.result().state.diagnostics, whole.experiment.result().state.diagnostics);
 }
 
 TEST(Experiment, TheDeskMayLieAnywhere) {

@@ -49,7 +49,7 @@ TEST(Fields, AreWhatTheTablesOfTheFormatSay) {
 
 TEST(Fields, OfDiagnosticsAreAllThatARunCounts) {
   RunResult result;
-  result.diagnostics = {{"jitter", 3}};
+  result.state.diagnostics = {{"jitter", 3}};
   const Row row = summary_list().row({result, ResolvedConfig{}, "", {}, {}, {}, {}});
   EXPECT_EQ(row.number("diagnostics.jitter"), 3.0);
   EXPECT_EQ(row.number("diagnostics.fallback"), 0.0);

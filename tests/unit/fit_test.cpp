@@ -2,7 +2,6 @@
 // What an experiment hands to a fitting, and what it makes of the answer.
 #include "experiment/experiment.hpp"
 #include "record/fields.hpp"
-#include "record/tap_row.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
@@ -70,12 +69,12 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
     ASSERT_EQ(call.targets[1].size(), taps);
     for (Eigen::Index tap = 0; tap < taps; ++tap) {
       const TapRecord& record = shared->taps[static_cast<std::size_t>(tap)];
-      EXPECT_EQ(call.targets[0](tap), record.contact.height);
-      EXPECT_EQ(call.targets[1](tap), *record.on_object ? 1.0 : 0.0);
+      EXPECT_EQ(call.targets[0](tap), record.result.height());
+      EXPECT_EQ(call.targets[1](tap), record.reading->on_object ? 1.0 : 0.0);
     }
   }
-  const auto& height = *shared->experiment.belief().height_gp().process;
-  const TapBelief::Output label = shared->experiment.belief().label_gp();
+  const auto& height = *shared->models().height_gp().process;
+  const HeightModels::Output label = shared->models().label_gp();
   const GpSettings& weight = label.process->settings(label.output);
   EXPECT_EQ(&height, label.process) << "two outputs of one process";
   EXPECT_EQ(height.settings().signal, 0.25);
@@ -100,9 +99,9 @@ TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
   EXPECT_EQ(of_surface, result.object_taps / 5);
   EXPECT_GT(of_surface, 0);
   EXPECT_EQ(fitting_->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
-  const TapBelief& belief = own->experiment.belief();
-  EXPECT_NE(&belief.height_gp().process->kernel(), &belief.label_gp().process->kernel());
-  EXPECT_NE(&belief.height_gp().process->kernel(), &belief.surface_gp().process->kernel());
+  const HeightModels& models = own->models();
+  EXPECT_NE(&models.height_gp().process->kernel(), &models.label_gp().process->kernel());
+  EXPECT_NE(&models.height_gp().process->kernel(), &models.surface_gp().process->kernel());
 }
 
 TEST_F(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {
@@ -113,10 +112,10 @@ TEST_F(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {
 TEST_F(Fit, IsInTheRecordOfTheTapAfterIt) {
   const auto own = run();
   for (const TapRecord& tap : own->taps) {
-    const bool after_fit = tap.number == 6 || tap.number == 11 || tap.number == 16;
+    const bool after_fit = tap.number() == 6 || tap.number() == 11 || tap.number() == 16;
     const Row row = tap_row(tap);
-    EXPECT_EQ(row.find("height_gp.fit.reason") != nullptr, after_fit) << tap.number;
-    EXPECT_EQ(row.find("label_gp.fit.reason") != nullptr, after_fit) << tap.number;
+    EXPECT_EQ(row.find("height_gp.fit.reason") != nullptr, after_fit) << tap.number();
+    EXPECT_EQ(row.find("label_gp.fit.reason") != nullptr, after_fit) << tap.number();
     if (!after_fit) continue;
     EXPECT_EQ(*row.find("height_gp.fit.changed"), Scalar{true});
     EXPECT_EQ(*row.find("height_gp.fit.objective"), Scalar{-1.5});
@@ -134,7 +133,7 @@ TEST_F(Fit, ThatFailsIsCountedAndChangesNothing) {
     EXPECT_EQ(failing->taps[i].score, unfitted.taps[i].score);
   }
   const RunResult result = failing->experiment.result();
-  EXPECT_EQ(result.diagnostics.at("fit_failed"), 6) << "heights and labels, at 5, 10 and 15 contacts";
+  EXPECT_EQ(result.state.diagnostics.at("fit_failed"), 6) << "heights and labels, at 5, 10 and 15 contacts";
   const Row summary = summary_list().row({result, failing->config, "", {}, {}, {}, {}});
   for (const auto& [kind, count] : {std::pair("fit_failed", 6), {"pivoted", 0}, {"redundant_taps", 0}}) {
     const Scalar* value = summary.find(std::string("diagnostics.") + kind);
@@ -145,7 +144,7 @@ TEST_F(Fit, ThatFailsIsCountedAndChangesNothing) {
 
 TEST_F(Fit, ThatFailsForHeightsAndLabelsTogetherIsOneFailure) {
   fitting_->fails = true;
-  EXPECT_EQ(run({"label.hyperparameters=shared"})->experiment.result().diagnostics.at("fit_failed"), 3);
+  EXPECT_EQ(run({"label.hyperparameters=shared"})->experiment.result().state.diagnostics.at("fit_failed"), 3);
 }
 
 TEST_F(Fit, OfAResumedRunIsThatOfTheUnbrokenOne) {

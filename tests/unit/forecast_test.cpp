@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What error is expected, and whether a run that stops for it was right to.
-#include "experiment/forecast.hpp"
+#include "experiment/expected_rmse.hpp"
 
+#include "experiment/stop_rules.hpp"
 #include "support/gaussian_process.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
@@ -57,7 +58,7 @@ struct Bench {
   const Points places = (Points(5, 2) << 0.05, 0.05, 0.07, 0.05, 0.09, 0.06, 0.06, 0.1, 0.1, 0.1).finished();
   const Eigen::VectorXd heights = (Eigen::VectorXd(5) << 0.05, 0.055, 0.04, 0.06, 0.05).finished();
   ResolvedConfig config;
-  Candidates candidates;
+  CandidateGrid candidates;
   std::unique_ptr<const Scene> scene;
   Context context;
   GaussianProcess process;
@@ -94,44 +95,39 @@ TEST(VarianceRatio, MakesTheSignalOfTheConfigAConvention) {
 }
 
 TEST(GoodEnough, WantsAnExpectationAndAMargin) {
-  EXPECT_TRUE(good_enough({0.01 / kMoreCaution}, 0.01));
-  EXPECT_FALSE(good_enough({0.0101 / kMoreCaution}, 0.01));
-  EXPECT_FALSE(good_enough({std::nullopt}, 1.0));
+  EXPECT_TRUE(is_good_enough(0.01 / kLargeMargin, std::nullopt, 0.01));
+  EXPECT_FALSE(is_good_enough(0.0101 / kLargeMargin, std::nullopt, 0.01));
+  EXPECT_FALSE(is_good_enough(std::nullopt, std::nullopt, 1.0));
 }
 
 TEST(GoodEnough, WantsLittleToBeLeftWhereThatIsKnownAndThenLessOfAMargin) {
-  EXPECT_TRUE(good_enough({0.01 / kCaution, kMostLeft}, 0.01));
-  EXPECT_FALSE(good_enough({0.01 / kCaution, 1.01 * kMostLeft}, 0.01));
-  EXPECT_FALSE(good_enough({0.0101 / kCaution, 0.0}, 0.01));
-  EXPECT_FALSE(good_enough({0.01 / kCaution}, 0.01)) << "nobody knows what is left";
-  EXPECT_FALSE(good_enough({std::nullopt, 0.0}, 1.0));
+  EXPECT_TRUE(is_good_enough(0.01 / kMargin, kMostUndiscovered, 0.01));
+  EXPECT_FALSE(is_good_enough(0.01 / kMargin, 1.01 * kMostUndiscovered, 0.01));
+  EXPECT_FALSE(is_good_enough(0.0101 / kMargin, 0.0, 0.01));
+  EXPECT_FALSE(is_good_enough(0.01 / kMargin, std::nullopt, 0.01)) << "nobody knows what is left";
+  EXPECT_FALSE(is_good_enough(std::nullopt, 0.0, 1.0));
   const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_FALSE(good_enough({-infinity, 0.0}, 1.0)) << "what is not finite satisfies no condition";
-  EXPECT_FALSE(good_enough({1e-3, -infinity}, 1.0));
+  EXPECT_FALSE(is_good_enough(-infinity, 0.0, 1.0)) << "what is not finite satisfies no condition";
+  EXPECT_FALSE(is_good_enough(1e-3, -infinity, 1.0));
 }
 
 TEST(Forecast, AsksTheFootprintWhatIsLeftAndSaysNothingWhereNobodyKnows) {
   for (const char* footprint : {"primitives", "gp_classifier", "gp_regression"}) {
-    Finished run("default.yaml", {"taps=12", "stop.expected_rmse=1e-6 mm", std::string("footprint=") + footprint});
+    Prepared run("default.yaml", {"taps=12", "stop.expected_rmse=1e-6 mm", std::string("footprint=") + footprint});
     int told = 0;
-    for (const TapRecord& tap : run.taps) {
-      const std::optional<double> left = tap.forecast->left;
-      told += left ? 1 : 0;
-      if (!left) continue;
-      EXPECT_TRUE(tap.forecast->rmse);
-      const std::vector<FootprintNumber>& numbers = tap.footprint->numbers;
-      const auto number = std::find_if(numbers.begin(), numbers.end(),
-                                       [](const auto& one) { return one.name == "undiscovered_probability"; });
-      ASSERT_NE(number, numbers.end());
-      EXPECT_EQ(*left, number->value);
-    }
+    run.journal.announcing = [&](const TapRecord& tap) {
+      const std::optional<double> left = run.belief().scalar(quantity::kUndiscoveredProbability);
+      EXPECT_EQ(left, number_of(tap.state, "footprint.undiscovered_probability"));
+      told += left && number_of(tap.state, "expected_rmse_m") ? 1 : 0;
+    };
+    run.run();
     EXPECT_EQ(told > 5, footprint == std::string("primitives")) << footprint;
     EXPECT_EQ(told == 0, footprint != std::string("primitives")) << footprint;
   }
 }
 
 TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
-  std::vector<Contact> answers(20, contact_at(0.0));
+  std::vector<TapResult> answers(20, contact_at(0.0));
   answers.push_back(contact_at(0.05));
   // A hit so late is more probably none where contacts may lie; the classifier knows nothing of what is left.
   Finished run("default.yaml",
@@ -139,12 +135,12 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
                scripted(answers));
   EXPECT_EQ(run.taps.size(), 21U) << "the hit is the 21st";
   for (const TapRecord& tap : run.taps) {
-    ASSERT_TRUE(tap.forecast.has_value());
-    EXPECT_FALSE(tap.forecast->rmse.has_value());
+    ASSERT_NE(Row{tap.state.fields}.find("expected_rmse_m"), nullptr);
+    EXPECT_FALSE(number_of(tap.state, "expected_rmse_m"));
   }
   const RunResult result = run.experiment.result();
   EXPECT_EQ(result.stop_reason, "expected_rmse");
-  EXPECT_GT(*result.forecast->rmse, 0.0);
+  EXPECT_GT(number_of(result.state, "expected_rmse_m").value(), 0.0);
 
   // Where it is known that something is left, it goes on after the hit.
   const Finished knowing("default.yaml",
@@ -152,24 +148,28 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
                           "footprint.false_contact_probability=0.0001"},
                          scripted(answers));
   EXPECT_GE(knowing.taps.size(), 21U);
-  for (std::size_t i = 0; i < 21; ++i) EXPECT_FALSE(knowing.taps[i].forecast->rmse.has_value()) << i;
+  for (std::size_t i = 0; i < 21; ++i) EXPECT_FALSE(number_of(knowing.taps[i].state, "expected_rmse_m")) << i;
 }
 
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
   const Finished run(
       "default.yaml",
       {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m", "footprint=gp_classifier"},
-      scripted(std::vector<Contact>(25, contact_at(0.05))));
+      scripted(std::vector<TapResult>(25, contact_at(0.05))));
   EXPECT_EQ(run.taps.size(), 12U);
   const Finished knowing("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"},
-                         scripted(std::vector<Contact>(25, contact_at(0.05))));
+                         scripted(std::vector<TapResult>(25, contact_at(0.05))));
   EXPECT_GE(knowing.taps.size(), 12U);
 }
 
 TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
   Finished run("default.yaml", {"taps=12", "height.outlier_probability=none", "motion=gentle"});
-  for (const TapRecord& tap : run.taps) EXPECT_FALSE(tap.forecast || tap.surface_gp);
-  EXPECT_FALSE(run.experiment.result().forecast.has_value());
+  for (const TapRecord& tap : run.taps) {
+    const Row state{tap.state.fields};
+    EXPECT_EQ(state.find("expected_rmse_m"), nullptr);
+    EXPECT_EQ(state.find("surface_gp.signal"), nullptr);
+  }
+  for (const PlannedModel& one : run.experiment.models()) EXPECT_NE(one.reader, "stop.expected_rmse");
 }
 
 TEST(Forecast, IsFiniteForEverySurfaceAndFootprint) {
@@ -178,8 +178,10 @@ TEST(Forecast, IsFiniteForEverySurfaceAndFootprint) {
       Finished run("default.yaml", {"taps=20", "stop.expected_rmse=1e-6 mm", std::string("surface=") + surface,
                                     std::string("footprint=") + footprint});
       for (const TapRecord& tap : run.taps)
-        EXPECT_EQ(tap.forecast->rmse.has_value(), *run.experiment.counts().first_hit_tap < tap.number) << tap.number;
-      EXPECT_GT(*run.experiment.result().forecast->rmse, 0.0) << surface << footprint;
+        EXPECT_EQ(number_of(tap.state, "expected_rmse_m").has_value(),
+                  *run.experiment.counts().first_hit_tap < tap.number())
+            << tap.number();
+      EXPECT_GT(number_of(run.experiment.result().state, "expected_rmse_m").value(), 0.0) << surface << footprint;
     }
   }
 }

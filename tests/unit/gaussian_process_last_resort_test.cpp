@@ -22,7 +22,7 @@ double bell(double r) { return std::exp(-0.5 * r * r / (0.3 * 0.3)); }
 double box(double r) { return r < 0.5 ? 1.0 : 0.0; }
 double hole(double r) { return r > 0.45 && r < 0.55 ? std::nan("") : bell(r); }
 
-const Candidates kCandidates = grid_by_count({1.0, 1.0}, 5);
+const CandidateGrid kCandidates = grid_by_count({1.0, 1.0}, 5);
 
 GaussianProcess process_of(double (*shape)(double), double noise = 0.0, double mean_ratio = 0.0, double signal = 1.0) {
   return GaussianProcess(shaped(shape), {signal, noise, 0.0, mean_ratio}, kCandidates);
@@ -97,7 +97,7 @@ TEST(LastResort, PivotingWorksWithAnUnknownMeanToo) {
 
 TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
   // The candidates keep clear of the hole: theirs are numbers.
-  const Candidates candidates = scattered((Points(2, 2) << 0.0, 0.0, 0.1, 0.0).finished());
+  const CandidateGrid candidates = scattered((Points(2, 2) << 0.0, 0.0, 0.1, 0.0).finished());
   GaussianProcess process(shaped(hole), {1.0, 0.1, 0.0, 0.0}, candidates);
   process.add({0.0, 0.1}, 1.0);
   const Eigen::VectorXd before = process.mean();
@@ -112,7 +112,7 @@ TEST(LastResort, ATapWhoseCovariancesAreNotNumbersIsSetAside) {
 }
 
 TEST(LastResort, OfAKernelOfNothingButNoNumbersTheFirstTapIsLeft) {
-  const Candidates candidates = scattered(Points::Zero(1, 2));
+  const CandidateGrid candidates = scattered(Points::Zero(1, 2));
   GaussianProcess process(shaped([](double r) { return r == 0.0 ? 1.0 : std::nan(""); }), {1.0, 0.0, 0.0, 0.0},
                           candidates);
   process.add({0.0, 0.0}, 1.0);

@@ -25,7 +25,7 @@ Data drawn(int n, std::uint64_t seed) {
   return data;
 }
 
-GaussianProcess processed(const Data& data, const GpSettings& settings, const Candidates& candidates) {
+GaussianProcess processed(const Data& data, const GpSettings& settings, const CandidateGrid& candidates) {
   GaussianProcess process(bowl(), settings, candidates);
   for (Eigen::Index i = 0; i < data.values.size(); ++i) {
     process.add({data.places(i, 0), data.places(i, 1)}, data.values(i));
@@ -34,7 +34,7 @@ GaussianProcess processed(const Data& data, const GpSettings& settings, const Ca
 }
 
 TEST(GaussianProcess, EqualsTheTextbookFormulasWithTheWholeMatrix) {
-  const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
+  const CandidateGrid candidates = grid_by_count({1.0, 1.0}, 9);
   const Data data = drawn(30, 1);
   const GpSettings settings{2.5, 0.1, 0.7};
   const GaussianProcess process = processed(data, settings, candidates);
@@ -49,7 +49,7 @@ TEST(GaussianProcess, EqualsTheTextbookFormulasWithTheWholeMatrix) {
 }
 
 TEST(GaussianProcess, WithoutTapsIsThePrior) {
-  const Candidates candidates = grid_by_count({1.0, 1.0}, 4);
+  const CandidateGrid candidates = grid_by_count({1.0, 1.0}, 4);
   const GaussianProcess process(bowl(), {3.0, 0.1, -2.0}, candidates);
   EXPECT_TRUE((process.mean().array() == -2.0).all());
   EXPECT_TRUE((process.relative_variance().array() == 1.0).all());
@@ -57,7 +57,7 @@ TEST(GaussianProcess, WithoutTapsIsThePrior) {
 }
 
 TEST(GaussianProcess, AMeasuredPlaceWithoutNoiseIsKnownExactly) {
-  const Candidates candidates = grid_by_count({1.0, 1.0}, 4);
+  const CandidateGrid candidates = grid_by_count({1.0, 1.0}, 4);
   GaussianProcess process(bowl(), {1.0, 0.0, 0.0}, candidates);
   process.add(candidates.target(5), 0.25);
   EXPECT_NEAR(process.mean()(5), 0.25, 1e-15);
@@ -65,7 +65,7 @@ TEST(GaussianProcess, AMeasuredPlaceWithoutNoiseIsKnownExactly) {
 }
 
 TEST(GaussianProcess, MoreTapsNeverRaiseTheVariance) {
-  const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
+  const CandidateGrid candidates = grid_by_count({1.0, 1.0}, 9);
   const Data data = drawn(40, 5);
   GaussianProcess process(bowl(), {1.0, 1e-3, 0.0}, candidates);
   Eigen::VectorXd before = process.variance();
@@ -79,7 +79,7 @@ TEST(GaussianProcess, MoreTapsNeverRaiseTheVariance) {
 }
 
 TEST(GaussianProcess, TheOrderOfTapsDoesNotMatterBeyondRounding) {
-  const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
+  const CandidateGrid candidates = grid_by_count({1.0, 1.0}, 9);
   const Data data = drawn(25, 8);
   Data reversed{data.places.colwise().reverse(), data.values.colwise().reverse()};
   const GaussianProcess a = processed(data, {1.0, 0.05, 0.0}, candidates);
@@ -89,7 +89,7 @@ TEST(GaussianProcess, TheOrderOfTapsDoesNotMatterBeyondRounding) {
 }
 
 TEST(GaussianProcess, ScalingTheUnitOfTheTargetsScalesTheAnswer) {
-  const Candidates candidates = grid_by_count({1.0, 1.0}, 9);
+  const CandidateGrid candidates = grid_by_count({1.0, 1.0}, 9);
   const Data metres = drawn(20, 2);
   // A power of two, so that the two computations round alike.
   const Data other{metres.places, metres.values * 1024.0};
@@ -100,7 +100,7 @@ TEST(GaussianProcess, ScalingTheUnitOfTheTargetsScalesTheAnswer) {
 }
 
 TEST(GaussianProcess, RepeatedTapsWithNoiseAreAveraged) {
-  const Candidates candidates = grid_by_count({1.0, 1.0}, 1);
+  const CandidateGrid candidates = grid_by_count({1.0, 1.0}, 1);
   GaussianProcess process(bowl(), {1.0, 0.5, 0.0}, candidates);
   const Target centre = candidates.target(0);
   for (const double value : {1.0, 2.0, 3.0, 2.0}) process.add(centre, value);

@@ -254,7 +254,8 @@ TEST(Descent, BeginsAboveThePredictionButNeverAboveTheHover) {
 TEST(Descent, ReliesOnAnObjectOnlyWhereThatOrNoneIsCertain) {
   const MotionOptions options =
       motion("{type: continuous, overrun: 1 cm, adaptive_hover: {deviations: 2, clearance: 1 cm, certainty: 0.95}}");
-  EXPECT_EQ(expects(options), Quantity::height | Quantity::probability);
+  EXPECT_EQ(predicts(options),
+            (QuantitySet{quantity::kHeightMean, quantity::kHeightStd, quantity::kObjectProbability}));
   const auto plan = [&](double probability) { return plan_descent(options, 0.5, Prediction{0.58, 0.01, probability}); };
   EXPECT_DOUBLE_EQ(plan(0.5).start, 0.61);
   EXPECT_DOUBLE_EQ(plan(0.5).floor, 0.49) << "the desk may be all there is";

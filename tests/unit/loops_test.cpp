@@ -20,8 +20,8 @@ namespace {
 class Loops : public testing::TestWithParam<Instructions> {
  protected:
   double draw() { return random_.uniform() - 0.5; }
-  Lines drawn(std::size_t size) {
-    Lines out(size);
+  AlignedArray drawn(std::size_t size) {
+    AlignedArray out(size);
     for (std::size_t i = 0; i < size; ++i) out.data()[i] = draw();
     return out;
   }
@@ -60,7 +60,7 @@ struct Trial {
     }
   }
 
-  Lines a;
+  AlignedArray a;
   Panels b;
   Product product;
   std::vector<double> expected;
@@ -73,7 +73,7 @@ void expect_product(Random& random) {
     for (const int depth : {0, 1, 5, 40}) {
       for (const int strips : {1, 3}) {
         const Trial trial(strips, columns, depth, random);
-        Lines c(trial.expected.size());
+        AlignedArray c(trial.expected.size());
         multiply(trial.product, c.data());
         for (std::size_t i = 0; i < trial.expected.size(); ++i) {
           ASSERT_NEAR(c.data()[i], trial.expected[i], (depth + 1) * 0.25 * depth * kUlp)
@@ -90,12 +90,12 @@ TEST_P(Loops, UpdateTheMapsByEveryCellOfAProduct) {
   const Trial trial(2, 77, 9, random_);
   const std::size_t cells = trial.expected.size();
   const auto map = [&] {
-    Lines out(cells);
+    AlignedArray out(cells);
     for (std::size_t i = 0; i < cells; ++i) out.data()[i] = random_.uniform();
     return out;
   };
-  std::array<Lines, 2> means{map(), map()};
-  Lines variance = map();
+  std::array<AlignedArray, 2> means{map(), map()};
+  AlignedArray variance = map();
   std::vector<double> mean_0(means[0].data(), means[0].data() + cells);
   std::vector<double> mean_1(means[1].data(), means[1].data() + cells);
   std::vector<double> left(variance.data(), variance.data() + cells);
@@ -119,16 +119,16 @@ TEST_P(Loops, UpdateTheMapsByEveryCellOfAProduct) {
 
 TEST_P(Loops, UpdateADensePieceByAllItsRows) {
   for (const int depth : {0, 1, 7, 8, 9, 30}) {
-    Lines rows = drawn((static_cast<std::size_t>(depth) + 1) * kBlock);
-    const Lines factor = drawn(static_cast<std::size_t>(depth) + 1);
-    const Lines covariance = drawn(kBlock);
+    AlignedArray rows = drawn((static_cast<std::size_t>(depth) + 1) * kBlock);
+    const AlignedArray factor = drawn(static_cast<std::size_t>(depth) + 1);
+    const AlignedArray covariance = drawn(kBlock);
     const Eigen::Map<const Eigen::VectorXd> k(covariance.data(), kBlock);
     using Rows = Eigen::Matrix<double, kBlock, Eigen::Dynamic>;
     const Rows all = Eigen::Map<const Rows>(rows.data(), kBlock, depth + 1);
     const Eigen::Map<const Eigen::VectorXd> l(factor.data(), depth);
     const Eigen::VectorXd v = (k - all.leftCols(depth) * l) / 1.75;
-    Lines mean = drawn(kBlock);
-    Lines variance = drawn(kBlock);
+    AlignedArray mean = drawn(kBlock);
+    AlignedArray variance = drawn(kBlock);
     const Eigen::VectorXd mean_before = Eigen::Map<Eigen::VectorXd>(mean.data(), kBlock);
     const Eigen::VectorXd variance_before = Eigen::Map<Eigen::VectorXd>(variance.data(), kBlock);
     Update update{};
@@ -151,7 +151,7 @@ TEST_P(Loops, ReadCellsToTheSameBytesAsWrittenDown) {
   constexpr int kRows = 3;
   constexpr int kWidth = kPanelLines * kLine;
   constexpr int kColumns = 61;
-  const Lines cells = drawn(std::size_t{kRows} * kWidth);
+  const AlignedArray cells = drawn(std::size_t{kRows} * kWidth);
   const Reading reading{-0.25, 0.375, 0.1, 0.3};
   for (int count = 0; count <= kWidth; ++count) {
     for (const bool mirrored : {false, true}) {
@@ -176,7 +176,7 @@ TEST_P(Loops, ReadCellsToTheSameBytesAsWrittenDown) {
 TEST_P(Loops, SolveATriangleOfAnySize) {
   for (const int n : {0, 1, 2, 7, 8, 9, 16, 40, 61}) {
     Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(n, n);
-    Lines packed(packed_row(round_up(n, kLine)) + 1);
+    AlignedArray packed(packed_row(round_up(n, kLine)) + 1);
     for (int i = 0; i < n; ++i) {
       for (int k = 0; k <= i; ++k) {
         lower(i, k) = i == k ? 2.0 + draw() : draw();
@@ -185,7 +185,7 @@ TEST_P(Loops, SolveATriangleOfAnySize) {
     }
     Eigen::VectorXd right(n);
     for (double& one : right) one = draw();
-    Lines x(static_cast<std::size_t>(round_up(n + 1, kLine)));
+    AlignedArray x(static_cast<std::size_t>(round_up(n + 1, kLine)));
     const auto residual = [&](const Eigen::MatrixXd& matrix) {
       return n == 0 ? 0.0 : (matrix * Eigen::Map<Eigen::VectorXd>(x.data(), n) - right).cwiseAbs().maxCoeff();
     };
@@ -202,7 +202,7 @@ TEST_P(Loops, SolveATriangleOfAnySize) {
 
 TEST_P(Loops, FindTheHighestOfEachBlockWhereverItStands) {
   constexpr int kBlocks = 2 * kScores;
-  Lines numbers = drawn(static_cast<std::size_t>(kBlocks) * kScores + 1);
+  AlignedArray numbers = drawn(static_cast<std::size_t>(kBlocks) * kScores + 1);
   double* const from = numbers.data() + 1;  // not aligned
   std::array<double, kBlocks + 1> found;
   found.fill(7.0);
@@ -223,31 +223,31 @@ std::uint64_t hash_on(Instructions instructions) {
   const test::OnInstructions on(instructions);
   Random random(5, "loops_test");
   const auto drawn = [&](std::size_t size) {
-    Lines out(size);
+    AlignedArray out(size);
     for (std::size_t i = 0; i < size; ++i) out.data()[i] = random.uniform() - 0.5;
     return out;
   };
   constexpr int kDepth = 29;
-  Lines rows = drawn((kDepth + 1) * std::size_t{kBlock});
-  Lines maps = drawn(2 * std::size_t{kBlock});
-  const Lines factor = drawn(kDepth);
-  const Lines covariance = drawn(kBlock);
+  AlignedArray rows = drawn((kDepth + 1) * std::size_t{kBlock});
+  AlignedArray maps = drawn(2 * std::size_t{kBlock});
+  const AlignedArray factor = drawn(kDepth);
+  const AlignedArray covariance = drawn(kBlock);
   Update update{};
   update.means = 1;
   update.coefficient[0] = 0.3;
   update.mean[0] = maps.data();
   update.variance = maps.data() + kBlock;
   absorb_dense({rows.data(), covariance.data(), factor.data(), kDepth, 1.75}, update);
-  Lines lower = drawn(packed_row(64));
+  AlignedArray lower = drawn(packed_row(64));
   for (int i = 0; i < 61; ++i) lower.data()[packed_row(i) + static_cast<std::size_t>(i)] = 2.5;
-  Lines x = drawn(64);
+  AlignedArray x = drawn(64);
   solve_lower(lower.data(), 61, x.data());
   std::uint64_t hash = test::hash_of(x.data(), 61, test::hash_of(maps.data(), maps.size()));
   solve_lower_transposed(lower.data(), 61, x.data());
   hash = test::hash_of(x.data(), 61, hash);
   const Trial trial(2, 61, kDepth, random);
   const std::size_t cells = trial.expected.size();
-  Lines product(cells);
+  AlignedArray product(cells);
   multiply(trial.product, product.data());
   maps = drawn(4 * cells);  // with mirror images
   update.mean[0] = maps.data();
@@ -267,9 +267,9 @@ TEST(InstructionSets, ThatFuseProductsWithSumsGiveTheBytesThatWereWrittenDown) {
 INSTANTIATE_TEST_SUITE_P(Every, Loops, testing::ValuesIn(math::instruction_sets()),
                          [](const auto& one) { return test::test_name(one.param); });
 
-TEST(Lines, BeginWithACacheLine) {
+TEST(AlignedArray, BeginWithACacheLine) {
   for (const std::size_t size : {1U, 1000U, 131071U, 131072U, 300000U}) {
-    Lines numbers(size);
+    AlignedArray numbers(size);
     EXPECT_EQ(numbers.size(), size);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(numbers.data()) % kLineBytes, 0U) << size;
     numbers.data()[size - 1] = 1.0;

@@ -36,7 +36,7 @@ TEST(FootprintIou, IsPerfectWhenThereIsNothingAndNothingIsSeenButTheErrorHasNoVa
 void expect_errors_by_definition(bool gated) {
   Finished run("paper/object_i_right.yaml", {"seed=3", gated ? "surface=two_part" : "surface=single"});
   const RunResult result = run.experiment.result();
-  const TapBelief& belief = run.experiment.belief();
+  const HeightModels& models = run.models();
   constexpr double kTwoPi = 2 * 3.14159265358979323846;
   double all = 0.0;
   double on = 0.0;
@@ -46,36 +46,36 @@ void expect_errors_by_definition(bool gated) {
   int seen = 0;
   int untapped = 0;
   int covered = 0;
-  for (int i = 0; i < run.experiment.candidates().size(); ++i) {
-    const Target at = run.experiment.candidates().target(i);
+  for (int i = 0; i < run.grid().size(); ++i) {
+    const Target at = run.grid().target(i);
     // Object I by its definition: 9 + 2 cos(2 pi s / 8) cm within 6 x 16 cm around (17.5, 11.5) cm.
     const double s = (at.y - 0.115) * 100;
     const bool inside = std::abs(s) <= 8.0 && std::abs(at.x - 0.175) <= 0.03;
     const double height = inside ? 0.01 * (9 + 2 * std::cos(kTwoPi * s / 8)) : 0.0;
-    const bool object = !gated || belief.weight_mean()(i) >= 0.5;
+    const bool object = !gated || models.label_map().mean()(i) >= 0.5;
     seen += object ? 1 : 0;
-    const double square = std::pow((object ? belief.height_mean()(i) : 0.0) - height, 2);
+    const double square = std::pow((object ? models.height_mean()(i) : 0.0) - height, 2);
     all += square;
     if (!inside) continue;
-    const double error = belief.height_mean()(i) - height;
+    const double error = models.height_mean()(i) - height;
     on += square;
     bare += error * error;
     ++cells_on;
     if (std::any_of(run.taps.begin(), run.taps.end(), [&](const TapRecord& tap) { return tap.candidate == i; })) {
       continue;
     }
-    const double spread = belief.height_variance()(i) + 1e-4 * 1e-4;
+    const double spread = models.height_variance()(i) + 1e-4 * 1e-4;
     density += 0.5 * std::log(kTwoPi * spread) + error * error / (2 * spread);
     covered += std::abs(error) < 1.959964 * std::sqrt(spread) ? 1 : 0;
     ++untapped;
   }
-  EXPECT_NEAR(*result.errors.rmse, std::sqrt(all / run.experiment.candidates().size()), 1e-12);
+  EXPECT_NEAR(*result.errors.rmse, std::sqrt(all / run.grid().size()), 1e-12);
   EXPECT_NEAR(*result.errors.rmse_object, std::sqrt(on / cells_on), 1e-12);
   EXPECT_NEAR(*result.errors.rmse_height, std::sqrt(bare / cells_on), 1e-12);
-  EXPECT_NEAR(*result.calibration.nlpd, density / untapped, 1e-9);
-  EXPECT_NEAR(*result.calibration.coverage_95, static_cast<double>(covered) / untapped, 1e-12);
+  EXPECT_NEAR(number_of(result.state, "nlpd").value(), density / untapped, 1e-9);
+  EXPECT_NEAR(number_of(result.state, "coverage_95").value(), static_cast<double>(covered) / untapped, 1e-12);
   EXPECT_GT(seen, 0);
-  EXPECT_EQ(seen < run.experiment.candidates().size(), gated);
+  EXPECT_EQ(seen < run.grid().size(), gated);
   EXPECT_EQ(*result.errors.rmse_height != *result.errors.rmse_object, gated);
 }
 
@@ -86,7 +86,7 @@ TEST(TwoPart, ErrorsOfARunAreThoseOfTheGatedSurface) { expect_errors_by_definiti
 TEST(Errors, AreUnknownWhereTheSceneIsNotTheTruth) {
   Finished run("paper/object_i.yaml", {}, scripted());
   const RunResult result = run.experiment.result();
-  EXPECT_FALSE(result.errors.rmse || result.errors.footprint_iou || result.calibration.nlpd);
+  EXPECT_FALSE(result.errors.rmse || result.errors.footprint_iou || number_of(result.state, "nlpd"));
   EXPECT_FALSE(run.taps.front().true_on_object.has_value());
 }
 

@@ -14,9 +14,10 @@ TEST(Motions, OfTheSimulatorAreThoseThatAreAskedFor) {
   for (const char* effects : {"{}", kTrailing}) {
     const TappingBench all(kObjectI, effects, several);
     for (int motion = 0; motion < 3; ++motion) {
-      TapRequest request{1, {0.1, 0.1}, {}, Prediction{0.05, 0.01, 0.5}};
+      TapRequest request = request_at({0.1, 0.1});
+      request.predicted = Prediction{0.05, 0.01, 0.5};
       const TappingBench one(kObjectI, effects, alone[motion]);
-      const Contact expected = one.backend().tap(request);
+      const TapResult expected = one.backend().tap(request);
       request.motion = motion;
       expect_same(all.backend().tap(request), expected);
     }
@@ -35,11 +36,12 @@ TEST(Motions, TellWhatATapTakesOnAPerfectArm) {
   const auto backend = context.create<Backend>(choice);
   Random random(5, "places");
   for (int i = 1; i <= 50; ++i) {
-    TapRequest request{i, {0.23 * random.uniform(), 0.23 * random.uniform()}, Target{0.1, 0.2}, Prediction{0.06, 0.01}};
-    request.predicted->probability = random.uniform();
+    TapRequest request = request_at({0.23 * random.uniform(), 0.23 * random.uniform()}, i);
+    request.previous = line_from_above({0.1, 0.2});
+    request.predicted = Prediction{0.06, 0.01, random.uniform()};
     for (request.motion = 0; request.motion < 4; ++request.motion) {
-      const Contact contact = backend->tap(request);
-      EXPECT_NEAR(motions->seconds(request, contact.height), contact.seconds, 1e-12);
+      const TapResult contact = backend->tap(request);
+      EXPECT_NEAR(motions->seconds(request, contact.height()), contact.seconds, 1e-12);
     }
   }
   EXPECT_GT(motions->deviation(2), 0.0);

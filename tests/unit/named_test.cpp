@@ -47,19 +47,21 @@ struct BrokenFootprint final : Footprint {
 };
 
 struct BrokenAcquisition final : Acquisition {
-  Quantities reads() const override { fail(); }
-  void score(const Belief&, VectorOut) const override { fail(); }
+  QuantitySet reads() const override { fail(); }
+  void score(const BeliefView&, VectorOut) const override { fail(); }
   double prior_scale() const override { fail(); }
 };
 
 struct BrokenBackend final : Backend {
-  Contact tap(const TapRequest&) override { fail(); }
+  TapResult tap(const TapRequest&) override { fail(); }
   bool repeatable() const override { fail(); }
   std::vector<std::string> describe(const TapRequest&) override { fail(); }
   std::vector<Learnt> learnt() const override { fail(); }
-  Quantities expects() const override { fail(); }
-  Quantities reads() const override { fail(); }
-  void show(const Belief&) override { fail(); }
+  bool taps_any_line() const override { fail(); }
+  void reaches(const Candidates&, BoolOut) const override { fail(); }
+  QuantitySet predicts() const override { fail(); }
+  QuantitySet reads() const override { fail(); }
+  void show(const BeliefView&) override { fail(); }
   bool scene_is_truth() const override { fail(); }
 };
 
@@ -108,6 +110,7 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   EXPECT_EQ(error_of([&] { footprint->remark(); }), "footprint/mine: it broke");
 
   const auto acquisition = broken<BrokenAcquisition, Acquisition>();
+  EXPECT_EQ(error_of([&] { acquisition->reads(); }), "acquisition/mine: it broke");
   EXPECT_EQ(error_of([&] { acquisition->prior_scale(); }), "acquisition/mine: it broke");
 
   const auto backend = broken<BrokenBackend, Backend>();
@@ -115,7 +118,11 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
   EXPECT_EQ(error_of([&] { backend->repeatable(); }), "backend/mine: it broke");
   EXPECT_EQ(error_of([&] { backend->describe({}); }), "backend/mine: it broke");
   EXPECT_EQ(error_of([&] { backend->learnt(); }), "backend/mine: it broke");
-  EXPECT_EQ(error_of([&] { backend->expects(); }), "backend/mine: it broke");
+  Eigen::Array<bool, Eigen::Dynamic, 1> reached(0);
+  EXPECT_EQ(error_of([&] { backend->taps_any_line(); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->reaches({}, reached); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->predicts(); }), "backend/mine: it broke");
+  EXPECT_EQ(error_of([&] { backend->reads(); }), "backend/mine: it broke");
   EXPECT_EQ(error_of([&] { backend->scene_is_truth(); }), "backend/mine: it broke");
 
   const auto shape = broken<BrokenShape, Shape>();
@@ -127,7 +134,7 @@ TEST(NamedPlugin, OfEachKindIsNamedByEachOfItsFunctions) {
 
 TEST(NamedPlugin, KeepsPlaceReasonAndRemedyOfAnError) {
   struct Arm final : Backend {
-    Contact tap(const TapRequest& request) override {
+    TapResult tap(const TapRequest& request) override {
       if (request.number == 1) throw Error("arm.txt:3", "has no joint", "add one", Error::Kind::busy);
       throw 42;
     }

@@ -16,7 +16,7 @@ using Picture = std::vector<std::string>;
 std::vector<ObjectErrors> errors_of_maps(const Picture& true_ones, const Picture& predicted) {
   const int rows = static_cast<int>(true_ones.size());
   const int columns = static_cast<int>(true_ones.front().size());
-  const Candidates candidates = grid_by_spacing({0.01 * columns, 0.01 * rows}, 0.01);
+  const CandidateGrid candidates = grid_by_spacing({0.01 * columns, 0.01 * rows}, 0.01);
   Truth truth{Eigen::VectorXd::Zero(candidates.size()), Eigen::Array<bool, Eigen::Dynamic, 1>(candidates.size()),
               Eigen::ArrayXi(candidates.size()), 0};
   Eigen::VectorXd probability(candidates.size());
@@ -110,7 +110,7 @@ TEST(ObjectErrors, OfAnObjectWithoutACellHaveNoNumber) {
 }
 
 TEST(ObjectErrors, OfHeightsAreOverTheCellsOfEach) {
-  const Candidates candidates = grid_by_spacing({0.04, 0.01}, 0.01);
+  const CandidateGrid candidates = grid_by_spacing({0.04, 0.01}, 0.01);
   Truth truth{Eigen::Vector4d(0.05, 0.05, 0.0, 0.02), Eigen::Array<bool, Eigen::Dynamic, 1>(4), Eigen::ArrayXi(4), 2};
   truth.on << true, true, false, true;
   truth.object << 0, 0, Scene::kNoObject, 1;
@@ -159,12 +159,12 @@ TEST(ObjectResults, OfARunAreCountedByWhereItsTapsTrulyWent) {
   Prepared run("default.yaml", how);
   std::vector<ObjectTouches> expected(2);
   run.journal.announcing = [&](const TapRecord& tap) {
-    const auto pushed = run.experiment.scene().after(tap.number - 1);
+    const auto pushed = run.experiment.scene().after(tap.number() - 1);
     const Scene& now = pushed ? *pushed : run.experiment.scene();
-    const int object = now.object(tap.target.x, tap.target.y);
+    const int object = now.object(tap.target().x, tap.target().y);
     if (object == Scene::kNoObject) return;
     ObjectTouches& touches = expected[static_cast<std::size_t>(object)];
-    if (++touches.taps == 1) touches.first_tap = tap.number;
+    if (++touches.taps == 1) touches.first_tap = tap.number();
   };
   run.run();
   const RunResult result = run.experiment.result();

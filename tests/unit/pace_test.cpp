@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A motion for each tap: by what it tells in its time, and by what its taps have shown.
-#include "experiment/pace.hpp"
+#include "experiment/motion_selector.hpp"
 
-#include "record/tap_row.hpp"
+#include "support/mocks.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
@@ -27,101 +27,144 @@ class Given final : public Motions {
   std::vector<One> motions_;
 };
 
-/// What is believed of the scene of configs/default.yaml after a hit in its middle and the desk in a corner.
+/// The belief about the scene of configs/default.yaml after a hit in its middle and the desk in a corner.
 struct Believed {
   Believed()
-      : config(shipped_config("default.yaml", {"height.offset=none"})),
+      : config(shipped_config("default.yaml", {"height.offset=none", "candidates.count=21"})),
         scene(build_scene(config.options.scene, 1, shared_host())),
         context{shared_host(), *scene, 1, nullptr},
-        candidates(grid_by_count(scene->area(), 21)),
-        belief(config.options, candidates, context, clock) {
-    belief.ask(Pace::kReads);
-    belief.observe({0.115, 0.115}, contact_at(0.05));
-    belief.observe({0.01, 0.01}, contact_at(0.0));
+        belief(config.options, context, clock) {
+    belief.plan(Prepared::readers(MotionSelector::reads()));
+    belief.begin(Stage::first_tap);
+    belief.add(request_at({0.115, 0.115}, 1), contact_at(0.05));
+    belief.add(request_at({0.01, 0.01}, 2), contact_at(0.0));
     belief.update();
+    belief.infer(MotionSelector::reads());
   }
-  int nearest(double x, double y) const { return candidates.nearest(x, y, scene->area()); }
-  Pace::Choice choose(const Pace& pace, double x, double y) const {
-    return pace.choose(belief, nearest(x, y), candidates.target(nearest(x, y)), std::nullopt);
+  int nearest(double x, double y) const { return belief.grid().nearest(x, y, scene->area()); }
+  TapRecord choose(const MotionSelector& motions, int candidate) const {
+    TapRecord out;
+    out.candidate = candidate;
+    out.request.line = belief.candidates().line(candidate);
+    motions.choose(belief, out);
+    return out;
   }
+  TapRecord choose(const MotionSelector& motions, double x, double y) const { return choose(motions, nearest(x, y)); }
 
   ResolvedConfig config;
   std::unique_ptr<const Scene> scene;
   Context context;
-  Candidates candidates;
   PhaseClock clock;
-  TapBelief belief;
+  HeightMap belief;
 };
 
-Pace pace_of(std::vector<Given::One> motions) { return {std::make_shared<Given>(std::move(motions)), 0.0}; }
+/// A belief that has nothing but the readings that a test writes down.
+class WrittenReadings final : public Belief {
+ public:
+  std::vector<TapReading> written;
 
-PastTap tapped(int motion, Outcome outcome, double seconds, double height = 0.0) {
-  PastTap out;
-  out.motion = motion;
-  out.contact = {outcome, height, 8.0, seconds, {}};
+  const std::vector<TapReading>& readings() const override { return written; }
+  const Candidates& candidates() const override { return nothing_.lines; }
+  TapCounts counts() const override { return {}; }
+  const Eigen::VectorXd& values(std::string_view quantity) const override { return nothing_.values(quantity); }
+  std::optional<double> scalar(std::string_view) const override { return std::nullopt; }
+  const HypothesisSample& hypotheses() const override { return nothing_.sample; }
+  std::vector<Quantity> offers() const override { return {}; }
+  std::vector<PlannedModel> plan(const ReadPlan&) override { return {}; }
+  void begin(Stage) override {}
+  std::optional<TapReading> read(const TapRequest&, const TapResult&) const override { return std::nullopt; }
+  void add(const TapRequest&, const TapResult&) override {}
+  void update() override {}
+  void infer(const QuantitySet&) override {}
+  QuantitySet available() const override { return {}; }
+  BeliefState state(std::optional<Eigen::Index>) const override { return {}; }
+  void set_truth(const Scene*) override {}
+  Errors errors() override { return {}; }
+  std::optional<ShownErrors> shown_errors() override { return std::nullopt; }
+  palpate::Surface surface() override { return {}; }
+
+ private:
+  WrittenBelief nothing_;
+};
+
+MotionSelector motions_of(std::vector<Given::One> motions) {
+  return {std::make_shared<Given>(std::move(motions)), 0.0};
+}
+
+TapRecord tapped(int motion, Outcome outcome, double seconds) {
+  TapRecord out;
+  out.request.motion = motion;
+  out.result = outcome == Outcome::contact ? contact_at(0.0) : tap_without_contact(outcome, seconds);
+  out.result.seconds = seconds;
   return out;
 }
 
 TEST(Pace, OfEqualMotionsTakesTheQuickerAndOfEquallyQuickOnesTheMorePrecise) {
   const Believed one;
-  EXPECT_EQ(one.choose(pace_of({{3.0, 0.001}, {2.0, 0.001}}), 0.05, 0.05).motion, 1);
-  EXPECT_EQ(one.choose(pace_of({{2.0, 0.002}, {2.0, 0.001}}), 0.115, 0.115).motion, 1);
-  EXPECT_EQ(one.choose(pace_of({{2.0, 0.001}, {2.0, 0.001}}), 0.115, 0.115).motion, 0) << "of equals the first";
+  EXPECT_EQ(one.choose(motions_of({{3.0, 0.001}, {2.0, 0.001}}), 0.05, 0.05).request.motion, 1);
+  EXPECT_EQ(one.choose(motions_of({{2.0, 0.002}, {2.0, 0.001}}), 0.115, 0.115).request.motion, 1);
+  EXPECT_EQ(one.choose(motions_of({{2.0, 0.001}, {2.0, 0.001}}), 0.115, 0.115).request.motion, 0)
+      << "of equals the first";
 }
 
 TEST(Pace, GoesQuicklyWhereItAsksWhetherAndPreciselyWhereItAsksHowHigh) {
   const Believed one;
-  const Eigen::VectorXd& p = one.belief.probability();
-  const Eigen::VectorXd& v = one.belief.height_variance();
+  const Eigen::VectorXd& p = one.belief.models().probability();
+  const Eigen::VectorXd& v = one.belief.models().height_variance();
   int edge = 0;
   int inside = one.nearest(0.115, 0.115);
-  for (int i = 0; i < one.candidates.size(); ++i) {
+  for (int i = 0; i < one.belief.grid().size(); ++i) {
     if (std::abs(p(i) - 0.5) < std::abs(p(edge) - 0.5)) edge = i;
     if (p(i) > 0.9 && v(i) > v(inside)) inside = i;
   }
   ASSERT_GT(v(inside), 9e-6);
   ASSERT_NEAR(p(edge), 0.5, 0.15);
   // Of the first motion no height is worth a word.
-  const Pace pace = pace_of({{2.0, 1.0}, {3.0, 0.001}});
-  EXPECT_EQ(pace.choose(one.belief, inside, one.candidates.target(inside), std::nullopt).motion, 1);
+  EXPECT_EQ(one.choose(motions_of({{2.0, 1.0}, {3.0, 0.001}}), inside).request.motion, 1);
   const double bits = 0.5 * std::log2(1.0 + v(edge) / 1e-6);
-  const Pace at_edge = pace_of({{2.0, 1.0}, {2.0 * (1.0 + p(edge) * bits) + 0.1, 0.001}});
-  EXPECT_EQ(at_edge.choose(one.belief, edge, one.candidates.target(edge), std::nullopt).motion, 0)
-      << "there the height would have to be had for less";
+  const MotionSelector at_edge = motions_of({{2.0, 1.0}, {2.0 * (1.0 + p(edge) * bits) + 0.1, 0.001}});
+  EXPECT_EQ(one.choose(at_edge, edge).request.motion, 0) << "there the height would have to be had for less";
 }
 
 TEST(Pace, LearnsWhichMotionComesToNothingHowLongItTakesAndHowFarItErrs) {
   const Believed one;
-  Pace failing = pace_of({{2.0, 0.001}, {2.2, 0.001}});
-  EXPECT_EQ(one.choose(failing, 0.05, 0.05).motion, 0);
-  for (int i = 0; i < 3; ++i) failing.observe(tapped(0, Outcome::aborted, 2.0), std::nullopt);
-  EXPECT_EQ(one.choose(failing, 0.05, 0.05).motion, 1);
+  WrittenReadings unread;
+  MotionSelector failing = motions_of({{2.0, 0.001}, {2.2, 0.001}});
+  EXPECT_EQ(one.choose(failing, 0.05, 0.05).request.motion, 0);
+  for (int i = 0; i < 3; ++i) failing.take_in(tapped(0, Outcome::aborted, 2.0), unread);
+  EXPECT_EQ(one.choose(failing, 0.05, 0.05).request.motion, 1);
 
-  Pace late = pace_of({{2.0, 0.001}, {2.2, 0.001}});
-  for (int i = 0; i < 5; ++i) late.observe(tapped(0, Outcome::contact, 4.0), std::nullopt);
-  EXPECT_EQ(one.choose(late, 0.05, 0.05).motion, 1);
-  EXPECT_NEAR(one.choose(late, 0.05, 0.05).seconds, 2.2, 1e-12);
-  for (int i = 0; i < 5; ++i) late.observe(tapped(1, Outcome::contact, 6.2), std::nullopt);
-  EXPECT_NEAR(one.choose(late, 0.05, 0.05).seconds, 3.0, 1e-12) << "half of what it was late: ten taps in all";
+  MotionSelector late = motions_of({{2.0, 0.001}, {2.2, 0.001}});
+  for (int i = 0; i < 5; ++i) late.take_in(tapped(0, Outcome::contact, 4.0), unread);
+  EXPECT_EQ(one.choose(late, 0.05, 0.05).request.motion, 1);
+  EXPECT_NEAR(one.choose(late, 0.05, 0.05).expected_seconds.value(), 2.2, 1e-12);
+  for (int i = 0; i < 5; ++i) late.take_in(tapped(1, Outcome::contact, 6.2), unread);
+  EXPECT_NEAR(one.choose(late, 0.05, 0.05).expected_seconds.value(), 3.0, 1e-12)
+      << "half of what it was late: ten taps in all";
 
-  Pace rough = pace_of({{2.0, 0.001}, {2.0, 0.001}});
-  std::vector<Touch> touches(15, {{0.1, 0.1}, 0.008, false});
-  std::vector<int> motions(15, 1);
-  rough.see_desk(touches, motions);
-  EXPECT_EQ(rough.roughness(0), 0.0);
-  EXPECT_NEAR(rough.roughness(1), std::sqrt(0.75 * (0.008 * 0.008 - 0.001 * 0.001)), 1e-12) << "15 taps and 5";
+  MotionSelector rough = motions_of({{2.0, 0.001}, {2.0, 0.001}});
+  WrittenReadings read;
+  const auto tap = [&](int motion, double height, bool on_object) {
+    TapReading& reading = read.written.emplace_back();
+    reading.tap = static_cast<int>(read.written.size());
+    reading.position = {0.1, 0.1, height};
+    reading.on_object = on_object;
+    rough.take_in(tapped(motion, Outcome::contact, 2.0), read);
+  };
+  for (int i = 0; i < 15; ++i) tap(1, 0.008, false);
+  EXPECT_EQ(rough.height_noise(0), 0.0);
+  EXPECT_NEAR(rough.height_noise(1), std::sqrt(0.75 * (0.008 * 0.008 - 0.001 * 0.001)), 1e-12) << "15 taps and 5";
   for (const bool on : {false, true}) {
-    touches.push_back({{0.1, 0.1}, on ? 0.009 : 0.5, on});
-    motions.push_back(0);
-    rough.see_desk(touches, motions);
-    EXPECT_EQ(rough.roughness(0), 0.0) << "neither half a metre above the desk is it, nor an object";
+    tap(0, on ? 0.009 : 0.5, on);
+    EXPECT_EQ(rough.height_noise(0), 0.0) << "neither half a metre above the desk is it, nor an object";
   }
 }
 
 TEST(Pace, RefusesATapOfAMotionThatThereIsNot) {
-  Pace pace = pace_of({{2.0, 0.001}, {2.0, 0.001}});
+  MotionSelector motions = motions_of({{2.0, 0.001}, {2.0, 0.001}});
+  const WrittenReadings unread;
   for (const int motion : {-1, 2}) {
-    EXPECT_THAT(error_of([&] { pace.observe(tapped(motion, Outcome::contact, 2.0), std::nullopt); }),
+    EXPECT_THAT(error_of([&] { motions.take_in(tapped(motion, Outcome::contact, 2.0), unread); }),
                 testing::HasSubstr("a recorded tap was made by motion"));
   }
 }
@@ -133,9 +176,9 @@ TEST(Pace, ARunRecordsByWhichMotionEachTapWasMadeAndGoesOnAsItWouldHave) {
   double expected = 0.0;
   double taken = 0.0;
   for (const TapRecord& tap : whole.taps) {
-    motions.insert(tap.motion);
+    motions.insert(tap.request.motion);
     expected += tap.expected_seconds.value();
-    taken += tap.contact.seconds;
+    taken += tap.result.seconds;
   }
   EXPECT_EQ(motions, (std::set<int>{0, 1}));
   EXPECT_NEAR(expected, taken, 0.25 * taken);
@@ -146,9 +189,9 @@ TEST(Pace, ARunRecordsByWhichMotionEachTapWasMadeAndGoesOnAsItWouldHave) {
     ASSERT_EQ(rest.taps.size(), whole.taps.size() - cut);
     for (std::size_t i = 0; i < rest.taps.size(); ++i) {
       EXPECT_EQ(rest.taps[i].candidate, whole.taps[cut + i].candidate);
-      EXPECT_EQ(rest.taps[i].motion, whole.taps[cut + i].motion);
+      EXPECT_EQ(rest.taps[i].request.motion, whole.taps[cut + i].request.motion);
       EXPECT_EQ(rest.taps[i].expected_seconds, whole.taps[cut + i].expected_seconds);
-      EXPECT_EQ(rest.taps[i].contact.height, whole.taps[cut + i].contact.height);
+      EXPECT_EQ(rest.taps[i].result.height(), whole.taps[cut + i].result.height());
     }
   }
 }
@@ -156,7 +199,7 @@ TEST(Pace, ARunRecordsByWhichMotionEachTapWasMadeAndGoesOnAsItWouldHave) {
 TEST(Pace, ABackendWithOneMotionIsAskedForNoOtherAndItsRecordTellsOfNone) {
   Finished one("default.yaml", {"motion=gentle", "taps=8"});
   for (const TapRecord& tap : one.taps) {
-    EXPECT_EQ(tap.motion, 0);
+    EXPECT_EQ(tap.request.motion, 0);
     EXPECT_FALSE(tap.expected_seconds);
     EXPECT_EQ(tap_row(tap).find("motion"), nullptr);
   }
@@ -164,14 +207,15 @@ TEST(Pace, ABackendWithOneMotionIsAskedForNoOtherAndItsRecordTellsOfNone) {
 
 TEST(Chooser, ASearchLooksAgainWhereATapWasBrokenOff) {
   // The first tap of the search comes to nothing: nobody has looked there, so the next goes beside it.
-  const auto second = [](Contact first) {
+  const auto second = [](TapResult first) {
     Prepared run("default.yaml", {"motion=gentle", "taps=2"}, scripted({std::move(first)}));
     run.run();
-    return std::hypot(run.taps[1].target.x - run.taps[0].target.x, run.taps[1].target.y - run.taps[0].target.y);
+    const Target a = run.taps[0].target(), b = run.taps[1].target();
+    return std::hypot(b.x - a.x, b.y - a.y);
   };
-  EXPECT_LT(second({Outcome::aborted, 0.0, 0.0, 1.0, "stopped"}), 0.02);
+  EXPECT_LT(second(tap_without_contact(Outcome::aborted, 1.0, "stopped")), 0.02);
   EXPECT_GT(second(contact_at(0.0)), 0.03);
-  EXPECT_GT(second({Outcome::unreachable, 0.0, 0.0, 0.0, "too far"}), 0.03);
+  EXPECT_GT(second(tap_without_contact(Outcome::unreachable, 0.0, "too far")), 0.03);
 }
 
 }  // namespace

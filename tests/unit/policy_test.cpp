@@ -90,7 +90,7 @@ TEST(Pick, IsTheFirstOfTheHighestAmongManyWhicheverLoopsLook) {
 TEST(InitialDesign, GivesDifferentCandidatesAndTheSameOnesForTheSameSeed) {
   using Design = InitialOptions::Design;
   const Area area{0.23, 0.23};
-  const Candidates candidates = grid_by_count(area, 5);
+  const CandidateGrid candidates = grid_by_count(area, 5);
   for (const Design design : {Design::random, Design::sobol, Design::grid}) {
     for (const std::int64_t count : {1, 3, 24, 25}) {
       InitialOptions options;
@@ -106,7 +106,7 @@ TEST(InitialDesign, GivesDifferentCandidatesAndTheSameOnesForTheSameSeed) {
 
 TEST(InitialDesign, RandomHitsEveryCandidateEquallyOften) {
   const Area area{1.0, 1.0};
-  const Candidates candidates = grid_by_count(area, 4);
+  const CandidateGrid candidates = grid_by_count(area, 4);
   std::vector<int> counts(16, 0);
   InitialOptions options;
   constexpr int kSeeds = 4000;
@@ -121,7 +121,7 @@ TEST(InitialDesign, RandomHitsEveryCandidateEquallyOften) {
 
 TEST(InitialDesign, SobolSpreadsFourTapsOverTheFourQuarters) {
   const Area area{1.0, 1.0};
-  const Candidates candidates = grid_by_count(area, 40);
+  const CandidateGrid candidates = grid_by_count(area, 40);
   InitialOptions options;
   options.design = InitialOptions::Design::sobol;
   options.count = 4;

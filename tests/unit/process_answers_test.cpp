@@ -20,7 +20,7 @@ class OddAnswer : public ProcessBackend, public testing::WithParamInterface<Odd>
 
 TEST_P(OddAnswer, FailsTheTapWithOneClearLineAndTheNextTapIsFine) {
   const std::string file = folder_.write("odd", GetParam().line + "\n").string();
-  const Contact contact =
+  const TapResult contact =
       second_tap("sys.stdout.buffer.write(open('" + file + "', 'rb').read()); sys.stdout.flush()", GetParam().kept);
   expect_failure(contact, Outcome::aborted, GetParam().reason);
 }
@@ -113,14 +113,14 @@ INSTANTIATE_TEST_SUITE_P(Every, OddAnswer, testing::ValuesIn(odd_answers()),
                          [](const auto& one) { return one.param.name; });
 
 TEST(Answer, HasTheSameBoundsForItsPeakAsForItsForce) {
-  Contact contact{Outcome::contact, 0.05, 8.0, 1.0, {}};
+  TapResult contact = contact_on({}, 0.05, 8.0, 1.0);
   EXPECT_FALSE(find_fault(contact, kAnyArm));
   for (const double peak : {0.0, 8.0, 1000.0}) {
-    contact.peak = peak;
+    contact.peak_force = peak;
     EXPECT_FALSE(find_fault(contact, kAnyArm)) << peak;
   }
   for (const double peak : {-1.0, 1000.1, 1e300, HUGE_VAL, std::nan("")}) {
-    contact.peak = peak;
+    contact.peak_force = peak;
     const auto fault = find_fault(contact, kAnyArm);
     ASSERT_TRUE(fault) << peak;
     EXPECT_THAT(fault->reason, testing::HasSubstr("N is outside 0 to 1000 N"));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "support/programs.hpp"
+#include "support/requests.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/backend.hpp>
@@ -39,33 +40,33 @@ class ProcessBackend : public InFolder {
     return error_of([&] { start(command)->tap(request(1)); });
   }
 
-  static TapRequest request(int number) { return {number, {0.1, 0.2}, {}, {}}; }
+  static TapRequest request(int number) { return request_at({0.1, 0.2}, number); }
 
-  static Contact tap(Backend& backend, int number) { return backend.tap(request(number)); }
+  static TapResult tap(Backend& backend, int number) { return backend.tap(request(number)); }
 
-  static void expect_contact(const Contact& contact) {
+  static void expect_contact(const TapResult& contact) {
     EXPECT_EQ(contact.outcome, Outcome::contact);
-    EXPECT_EQ(contact.height, 0.07);
+    EXPECT_EQ(contact.height(), 0.07);
     EXPECT_EQ(contact.seconds, 5.5);
     EXPECT_EQ(contact.reason, "");
     EXPECT_FALSE(contact.ends_run);
   }
 
-  static void expect_failure(const Contact& contact, Outcome outcome, const std::string& reason) {
+  static void expect_failure(const TapResult& contact, Outcome outcome, const std::string& reason) {
     EXPECT_EQ(contact.outcome, outcome);
     EXPECT_EQ(contact.reason, reason);
-    EXPECT_EQ(contact.height, 0.0);
+    EXPECT_TRUE(contact.contacts.empty());
     EXPECT_GE(contact.seconds, 0.0);
   }
 
   /// A program that answers every tap but the second, for which it does `odd`; the others it answers in one piece.
-  Contact second_tap(const std::string& odd, bool kept, const std::string& more = "") {
+  TapResult second_tap(const std::string& odd, bool kept, const std::string& more = "") {
     const auto backend =
         open("for ask in asks():\n    if ask['tap'] != 2: contact(ask)\n    else:\n        " + odd + "\n", more);
-    const Contact first = tap(*backend, 1);
+    const TapResult first = tap(*backend, 1);
     expect_contact(first);
-    Contact second = tap(*backend, 2);
-    const Contact third = tap(*backend, 3);
+    TapResult second = tap(*backend, 2);
+    const TapResult third = tap(*backend, 3);
     expect_contact(third);
     EXPECT_EQ(first.force == third.force, kept) << "whether the same process goes on";
     EXPECT_EQ(running(pid_in(first.force)), kept);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Mean and variance of whole runs against a computation with 50 digits that shares nothing with ours: the covariance
 // is built from the recorded taps, factorised and solved anew after every tap, in Boost.Multiprecision over MPFR.
-#include "experiment/from_above.hpp"
+#include "experiment/height_map.hpp"
 #include "support/arrays.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
@@ -24,11 +24,14 @@ struct Worst {
   int hits = 0;
 };
 
+/// What is compared.
+const QuantitySet kRead{quantity::kHeightMean, quantity::kHeightStd, quantity::kLabelMean};
+
 /// Follows a run, and compares both processes with the oracle at every candidate, whenever they have taken in a tap.
-class Comparison final : public Journal {
+class Comparison final : public Observer {
  public:
-  Comparison(FromAbove& experiment, double length_scale)
-      : experiment_(experiment),
+  Comparison(HeightMap& belief, double length_scale)
+      : belief_(belief),
         oracle_(
             // The squared-exponential kernel of unit variance, point by point.
             [length_scale](const Target& a, const Target& b) {
@@ -36,7 +39,7 @@ class Comparison final : public Journal {
               const Real dy = (Real(a.y) - b.y) / length_scale;
               return Real(exp(-(dx * dx + dy * dy) / 2));
             },
-            Real(1e-4 * 1e-4), experiment.candidates().points, 2) {}
+            Real(1e-4 * 1e-4), belief.grid().points, 2) {}
 
   Worst worst;
 
@@ -44,20 +47,22 @@ class Comparison final : public Journal {
     if (worst.hits + misses_ > 0) compare();
   }
   void record(const TapRecord& tap, const std::array<double, kPhases>&) override {
-    oracle_.add(tap.target, {Real(tap.contact.height), Real(*tap.on_object ? 1 : 0)});
-    ++(*tap.on_object ? worst.hits : misses_);
+    const bool on_object = tap.reading->on_object;
+    oracle_.add(tap.target(), {Real(tap.result.height()), Real(on_object ? 1 : 0)});
+    ++(on_object ? worst.hits : misses_);
   }
 
   /// Once for each tap, the last one after the run.
   void compare() {
-    experiment_.ask(Quantity::height | Quantity::weight);
-    const TapBelief& belief = experiment_.belief();
+    belief_.update();
+    belief_.infer(kRead);
+    const HeightModels& models = belief_.models();
     const Eigen::VectorXd variance = oracle_.variance();
     worst.mean = std::max(
-        {worst.mean, apart(oracle_.mean(0), belief.height_mean()), apart(oracle_.mean(1), belief.weight_mean())});
+        {worst.mean, apart(oracle_.mean(0), models.height_mean()), apart(oracle_.mean(1), models.label_map().mean())});
     Eigen::VectorXd of_weights(variance.size());
-    belief.label_gp().process->read_variance(0, of_weights);
-    worst.variance = std::max({worst.variance, apart(variance, belief.height_variance()), apart(variance, of_weights)});
+    models.label_gp().process->read_variance(0, of_weights);
+    worst.variance = std::max({worst.variance, apart(variance, models.height_variance()), apart(variance, of_weights)});
     // An upper bound of the condition number: trace (n + noise) over the smallest eigenvalue, which is at least the
     // noise variance; the smallest pivot squared bounds it closer where that is larger, up to the factor n.
     const Real least = *std::min_element(oracle_.pivots.begin(), oracle_.pivots.end());
@@ -66,7 +71,7 @@ class Comparison final : public Journal {
   }
 
  private:
-  FromAbove& experiment_;
+  HeightMap& belief_;
   Textbook<Real> oracle_;
   int misses_ = 0;
 };
@@ -76,8 +81,8 @@ Worst errors_of_run(const std::string& length_scale, double metres, const std::s
   std::vector<std::string> overrides{"kernel.length_scale=" + length_scale, "acquisition=" + acquisition,
                                      "seed=" + std::to_string(seed)};
   overrides.insert(overrides.end(), more.begin(), more.end());
-  Prepared prepared("paper/object_i_right.yaml", overrides);
-  Comparison comparison(prepared.experiment, metres);
+  Prepared prepared("paper/object_i_right.yaml", overrides, nullptr, shared_host(), kRead);
+  Comparison comparison(prepared.belief(), metres);
   prepared.experiment.run(comparison);
   comparison.compare();
   return comparison.worst;

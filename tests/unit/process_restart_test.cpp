@@ -22,14 +22,14 @@ struct Gone {
 class ProgramThatIsGone : public ProcessBackend, public testing::WithParamInterface<Gone> {
  protected:
   /// Two taps of a program that notes each of its starts.
-  Contact second_tap_of(const std::string& more) {
+  TapResult second_tap_of(const std::string& more) {
     backend_ = plain(command("print('begin', file=sys.stderr, flush=True)\n"
                              "for ask in asks():\n    if ask['tap'] != 2: contact(ask)\n    else:\n        " +
                              GetParam().odd),
                      ", deadline: " + GetParam().deadline + more);
-    const Contact first = tap(*backend_, 1);
+    const TapResult first = tap(*backend_, 1);
     expect_contact(first);
-    Contact second = tap(*backend_, 2);
+    TapResult second = tap(*backend_, 2);
     EXPECT_FALSE(running(pid_in(first.force)));
     return second;
   }
@@ -38,7 +38,7 @@ class ProgramThatIsGone : public ProcessBackend, public testing::WithParamInterf
 };
 
 TEST_P(ProgramThatIsGone, EndsARunWhoseTapsCannotBeRepeated) {
-  const Contact contact = second_tap_of("");
+  const TapResult contact = second_tap_of("");
   EXPECT_TRUE(contact.ends_run);
   expect_failure(contact, GetParam().outcome, GetParam().reason + kSeeToIt);
   EXPECT_EQ(diary(), "begin\n");
@@ -47,7 +47,7 @@ TEST_P(ProgramThatIsGone, EndsARunWhoseTapsCannotBeRepeated) {
 TEST_P(ProgramThatIsGone, IsStartedAgainIfTheConfigSaysSo) {
   for (const char* more : {", restart: true", ", repeatable: true"}) {
     fs::remove(folder_.path() / "record" / "process.stderr.txt");
-    const Contact contact = second_tap_of(more);
+    const TapResult contact = second_tap_of(more);
     EXPECT_FALSE(contact.ends_run);
     expect_failure(contact, GetParam().outcome, GetParam().reason);
     expect_contact(tap(*backend_, 3));
@@ -99,7 +99,7 @@ time.sleep(60)
 TEST_F(ProgramLeftBehind, KeepsTheNextOneFromBeingStarted) {
   const auto other = leave_behind();
   for (const char* more : {", start: 200 ms", ", start: 200 ms, restart: true"}) {
-    const Contact contact = tap(*plain(command(kBody), more), 1);
+    const TapResult contact = tap(*plain(command(kBody), more), 1);
     EXPECT_TRUE(contact.ends_run);
     expect_failure(contact, Outcome::aborted,
                    "the program of an earlier attempt, process " + std::to_string(other->pid()) +
@@ -112,7 +112,7 @@ TEST_F(ProgramLeftBehind, IsWaitedForAndThenTheNextOneIsStarted) {
   const auto other = leave_behind();
   const auto backend = plain(command(kBody), ", start: 60 s");
   std::thread end([&] { other->signal(SIGKILL); });
-  const Contact contact = tap(*backend, 1);
+  const TapResult contact = tap(*backend, 1);
   end.join();
   expect_contact(contact);
   EXPECT_EQ(text_of(folder_.path() / "record" / "process.lock"), std::to_string(pid_in(contact.force)) + "\n");
@@ -126,7 +126,7 @@ TEST_F(ProgramLeftBehind, DoesNotDisturbOneWhoseTapsAreRepeatable) {
 TEST_F(ProgramLeftBehind, IsNoLongerWaitedForWhenTheUserWantsToStop) {
   const auto other = leave_behind();
   interrupted_ = true;
-  const Contact contact = tap(*plain(command(kBody), ", start: 60 s"), 1);
+  const TapResult contact = tap(*plain(command(kBody), ", start: 60 s"), 1);
   expect_failure(contact, Outcome::aborted, "interrupted");
   EXPECT_FALSE(contact.ends_run);
 }

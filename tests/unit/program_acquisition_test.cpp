@@ -2,6 +2,7 @@
 // The acquisition `program` against programs that behave and programs that do not.
 #include "support/mocks.hpp"
 #include "support/programs.hpp"
+#include "support/runs.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/acquisition.hpp>
@@ -20,14 +21,17 @@ using testing::StartsWith;
 /// Six candidates in two rows.
 WrittenBelief written() {
   WrittenBelief out;
-  out.count = 4;
-  out.places.resize(6, 2);
-  out.places << 0.01, 0.05, 0.02, 0.05, 0.03, 0.05, 0.01, 0.06, 0.02, 0.06, 0.03, 0.06;
-  out.u = Eigen::VectorXd{{1.0, 0.5, 0.2, 0.0, 0.8, 0.1}};
-  out.w = Eigen::VectorXd{{0.1, 1.2, -0.3, 0.5, 0.0, 0.25}};
-  out.p = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0, 0.9, 0.75}};
-  out.mean = 0.1 * out.p;
-  out.variance = out.u.cwiseProduct(out.u);
+  out.taps = {4, 3};
+  out.lines.starts.setZero(6, 3);
+  out.lines.starts.col(0) << 0.01, 0.02, 0.03, 0.01, 0.02, 0.03;
+  out.lines.starts.col(1) << 0.05, 0.05, 0.05, 0.06, 0.06, 0.06;
+  out.lines.from_above = true;
+  out.lines.rows = 2;
+  out.lines.columns = 3;
+  out.arrays[quantity::kUncertainty] = Eigen::VectorXd{{1.0, 0.5, 0.2, 0.0, 0.8, 0.1}};
+  out.arrays[quantity::kLabelMean] = Eigen::VectorXd{{0.1, 1.2, -0.3, 0.5, 0.0, 0.25}};
+  out.arrays[quantity::kObjectProbability] = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0, 0.9, 0.75}};
+  out.arrays[quantity::kHeightStd] = out.arrays[quantity::kUncertainty];
   return out;
 }
 
@@ -107,9 +111,12 @@ TEST_F(ProgramAcquisition, SendsTheArraysThatTheProgramNamesAndTakesItsScores) {
                    "    sys.stderr.write(json.dumps(ask) + str(places[:4]) + '\\n')\n"
                    "    answer([a * b for a, b in zip(*maps)])\n",
                    "\"height_std\", 'object_probability',\n  \"desk_position\""));
-  EXPECT_EQ(acquisition->reads(), Quantity::height | Quantity::probability) << "the models of others are not built";
+  EXPECT_EQ(acquisition->reads(),
+            (QuantitySet{quantity::kHeightStd, quantity::kObjectProbability, quantity::kDeskPosition}))
+      << "the models of others are not built";
   const WrittenBelief belief = written();
-  const Eigen::VectorXd expected = belief.u.cwiseProduct(belief.p);  // u is the standard deviation there
+  const Eigen::VectorXd expected =
+      belief.arrays.at(quantity::kHeightStd).cwiseProduct(belief.arrays.at(quantity::kObjectProbability));
   EXPECT_EQ(scores(*acquisition), std::vector<double>(expected.data(), expected.data() + 6));
   EXPECT_EQ(diary(),
             R"({"palpate": 1, "tap": 5, "initial_taps": 3, "rows": 2, "columns": 3, "candidates": 6, )"
@@ -207,8 +214,8 @@ TEST_F(ProgramAcquisition, SaysWhatIsWrongWithItsOptionsBeforeAnythingStarts) {
   EXPECT_EQ(refusal(command("")), "accepted");
   EXPECT_THAT(refusal(command("", "\"height\"")),
               AllOf(HasSubstr("plugin.command: reads=[...] in '"),
-                    HasSubstr("has 'height', which is not one of uncertainty, label_mean, "),
-                    HasSubstr("contacts (from above); uncertainty, surface_std, ")))
+                    HasSubstr("has 'height', which is not one of uncertainty, label_mean, "), HasSubstr(", contacts, "),
+                    HasSubstr(", surface_std, ")))
       << "the config has no reads";
   EXPECT_THAT(refusal(command(""), ", reads: height"), HasSubstr("plugin.reads: has 'height', which is not one of "));
   EXPECT_THAT(refusal(command("reads=['height_mean']")), HasSubstr("the program has several reads=[...]"));
@@ -219,8 +226,13 @@ TEST_F(ProgramAcquisition, SaysWhatIsWrongWithItsOptionsBeforeAnythingStarts) {
   folder_.write("own/own.py", "# reads=[\"uncertainty\"]\n");
   EXPECT_THAT(refusal("python3 own/own.py", ", folder: " + yaml_quoted((folder_.path() / "own").string())),
               HasSubstr("so call palpate in '" + folder_.path().string() + "'"));
-  EXPECT_THAT(refusal(command("", "\"height_mean\", \"surface_std\"")),
-              HasSubstr("names arrays of taps from above and arrays of taps from any side"));
+  const std::string both = command("", "\"height_mean\", \"surface_std\"");
+  EXPECT_EQ(refusal(both), "accepted");
+  const std::vector<std::string> words{"acquisition={type: program, command: " + yaml_quoted(both) + "}"};
+  EXPECT_THAT(error_of([&] { Prepared("default.yaml", words); }),
+              HasSubstr("acquisition: program reads surface_std, which the belief height_map does not offer"));
+  EXPECT_THAT(error_of([&] { Prepared("any_side.yaml", words); }),
+              HasSubstr("acquisition: program reads height_mean, which the belief solids does not offer"));
   EXPECT_THAT(refusal("nobody-has-this x", ", reads: uncertainty"), HasSubstr("there is no program 'nobody-has-this'"));
   EXPECT_THAT(refusal(command(""), ", checksum: other"), HasSubstr("restore the program that the run started with"));
 }

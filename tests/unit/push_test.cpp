@@ -79,16 +79,17 @@ TEST(Push, HappensWithItsProbabilityAndKeepsObjectsApartAndOnTheArea) {
 TEST(Push, ChangesTheNextTapsAndTheErrorsOfTheRun) {
   // The push is farther than the object is wide: the position of tap 15 is bare from tap 16 on.
   const TappingBench bench(kCylinder, "{push: {after: 15, distance: 7 cm}}", "{type: paper}");
-  EXPECT_GT(bench.tap(0.115, 0.115, 15).height, 0.04);
-  EXPECT_EQ(bench.tap(0.115, 0.115, 16).height, 0.0);
+  EXPECT_GT(bench.tap(0.115, 0.115, 15).height(), 0.04);
+  EXPECT_EQ(bench.tap(0.115, 0.115, 16).height(), 0.0);
   test::Prepared run("default.yaml",
                      {"scene=cylinder", "taps=17", "scene.effects={push: {after: 15, distance: 2 cm, turn: 0deg}}"});
   std::vector<Eigen::VectorXd> truths;
-  run.journal.announcing = [&](const TapRecord&) { truths.push_back(run.experiment.truth()->height); };
+  const auto truth = [&] { return truth_at(run.grid(), *run.experiment.truth()).height; };
+  run.journal.announcing = [&](const TapRecord&) { truths.push_back(truth()); };
   run.run();
   EXPECT_EQ(truths[0], truths[14]);
   EXPECT_NE(truths[14], truths[15]) << "errors after tap 15 refer to the new position";
-  EXPECT_EQ(truths[15], run.experiment.truth()->height);
+  EXPECT_EQ(truths[15], truth());
 }
 
 /// Taps of a bar that stood at y = 0.09 for the first four and stands at 0.12 for the others.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Whether a contact was with an object is read again when more is known of what the arm adds to all heights.
-#include "experiment/tap_belief.hpp"
+#include "experiment/height_map.hpp"
 
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"
@@ -13,21 +12,34 @@
 namespace palpate::test {
 namespace {
 
-/// The belief of the default, of heights to which nothing or something is added.
+/// The models of the default, of heights to which nothing or something is added.
 struct Reader {
   explicit Reader(const std::vector<std::string>& words = {})
       : config(shipped_config("default.yaml", words)),
         scene(build_scene(config.options.scene, 1, shared_host())),
         context{shared_host(), *scene, 1, nullptr, {}},
         candidates(grid_by_count(scene->area(), 21)),
-        belief(config.options, candidates, context, clock) {}
+        models(config.options, candidates, context, clock) {}
+
+  /// Has models of these quantities built, and brings their arrays up to date.
+  void build(const QuantitySet& quantities) {
+    models.build(models.models_of(quantities));
+    update();
+  }
+  void tap(const Target& place, double height) {
+    models.add(request_at(place, models.log().taps() + 1), contact_at(height));
+  }
+  void update() {
+    models.update();
+    models.infer();
+  }
 
   ResolvedConfig config;
   std::unique_ptr<const Scene> scene;
   Context context;
-  Candidates candidates;
+  CandidateGrid candidates;
   PhaseClock clock;
-  TapBelief belief;
+  HeightModels models;
 };
 
 /// Six taps on a plate of 1.4 cm, then three beside it.
@@ -39,22 +51,26 @@ const std::vector<Touch>& taps_of_a_plate() {
   return taps;
 }
 
-constexpr Quantities kAll = Quantity::height | Quantity::probability | Quantity::weight | Quantity::uncertainty;
+const QuantitySet kAll{quantity::kHeightMean, quantity::kHeightStd, quantity::kObjectProbability, quantity::kLabelMean,
+                       quantity::kUncertainty};
 
 TEST(ReadAgain, APlateTakenForTheDeskIsKnownAsAnObjectOnceTheDeskWasTouched) {
   Reader one;
-  one.belief.ask(kAll);
+  one.build(kAll);
   std::vector<std::size_t> hits;
   for (const Touch& tap : taps_of_a_plate()) {
-    one.belief.observe(tap.place, contact_at(tap.height));
-    one.belief.update();
-    hits.push_back(one.belief.log().object_contacts().size());
+    one.tap(tap.place, tap.height);
+    one.update();
+    hits.push_back(one.models.log().object_contacts().size());
   }
   EXPECT_THAT(hits, testing::ElementsAre(0, 0, 0, 0, 0, 0, 0, 6, 6));
-  EXPECT_EQ(one.belief.log().first_hit_tap(), 1);
+  const ContactLog& log = one.models.log();
+  const auto first =
+      std::find_if(log.contacts().begin(), log.contacts().end(), [](const Touch& tap) { return tap.on; });
+  EXPECT_EQ(log.tap_numbers().at(static_cast<std::size_t>(first - log.contacts().begin())), 1);
   const int middle = one.candidates.nearest(0.115, 0.115, one.scene->area());
-  EXPECT_GT(one.belief.probability()(middle), 0.95);
-  EXPECT_NEAR(one.belief.height_mean()(middle), 0.014, 0.002);
+  EXPECT_GT(one.models.probability()(middle), 0.95);
+  EXPECT_NEAR(one.models.height_mean()(middle), 0.014, 0.002);
 }
 
 TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
@@ -64,19 +80,19 @@ TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
         {"height.outlier_probability=none", "fitting=ceres", "surface=single"}}) {
     Reader late(words);
     Reader soon(words);
-    soon.belief.ask(kAll);
+    soon.build(kAll);
     for (const Touch& tap : taps_of_a_plate()) {
-      for (Reader* reader : {&late, &soon}) reader->belief.observe(tap.place, contact_at(tap.height));
-      soon.belief.update();
+      for (Reader* reader : {&late, &soon}) reader->tap(tap.place, tap.height);
+      soon.update();
     }
-    late.belief.ask(kAll);
-    EXPECT_EQ(soon.belief.probability(), late.belief.probability());
-    EXPECT_EQ(soon.belief.weight(), late.belief.weight());
+    late.build(kAll);
+    EXPECT_EQ(soon.models.probability(), late.models.probability());
+    EXPECT_EQ(soon.models.label_map().weight(), late.models.label_map().weight());
     for (std::size_t i = 0; i < taps_of_a_plate().size(); ++i)
-      EXPECT_EQ(soon.belief.outlier_probability(i), late.belief.outlier_probability(i));
+      EXPECT_EQ(soon.models.outlier_probability(i), late.models.outlier_probability(i));
     if (words.size() < 3) {  // of a fit the heights, whose process is not made anew, remember what they were then
-      EXPECT_LT((soon.belief.height_mean() - late.belief.height_mean()).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_LT((soon.belief.height_variance() - late.belief.height_variance()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LT((soon.models.height_mean() - late.models.height_mean()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LT((soon.models.height_variance() - late.models.height_variance()).cwiseAbs().maxCoeff(), 1e-12);
     }
   }
 }
@@ -86,8 +102,8 @@ int flips(const Finished& run) {
   int out = 0;
   std::size_t contact = 0;
   for (const TapRecord& tap : run.taps) {
-    if (!tap.on_object) continue;
-    out += run.experiment.belief().touches()[contact++].on != *tap.on_object ? 1 : 0;
+    if (!tap.reading) continue;
+    out += run.belief().readings()[contact++].on_object != tap.reading->on_object ? 1 : 0;
   }
   return out;
 }
@@ -104,7 +120,7 @@ TEST(ReadAgain, AResumedRunGoesOnAsTheUnbrokenOne) {
   Finished unbroken("default.yaml", words);
   ASSERT_GT(flips(unbroken), 0);
   const RunResult result = unbroken.experiment.result();
-  EXPECT_EQ(result.object_taps, static_cast<int>(unbroken.experiment.belief().log().object_contacts().size()));
+  EXPECT_EQ(result.object_taps, static_cast<int>(unbroken.models().log().object_contacts().size()));
   EXPECT_EQ(result.object_taps + result.desk_taps + result.failed_taps, result.taps);
   for (std::size_t cut = 0; cut < unbroken.taps.size(); cut += brief() ? 13 : 3) {
     Prepared rest("default.yaml", words);
@@ -116,24 +132,25 @@ TEST(ReadAgain, AResumedRunGoesOnAsTheUnbrokenOne) {
 
 TEST(Outliers, KeepTheirProbabilitiesAfterAHundredContactsOnAnObjectAndLaterContactsAreTrusted) {
   Reader one({"height.offset=none", "footprint=gp_regression", "taps=120"});
-  one.belief.ask(Quantity::height);
+  one.build({quantity::kHeightMean, HeightModels::kOutliers});
   // A plate of 5 cm with a contact at 10 cm among the first hundred, and another among the next twenty.
   constexpr std::size_t kEarly = 44;
   constexpr std::size_t kLate = 110;
   Eigen::VectorXd early;
   for (std::size_t i = 0; i < 120; ++i) {
     const Target place{0.02 + 0.015 * static_cast<double>(i % 12), 0.02 + 0.018 * static_cast<double>(i / 12)};
-    one.belief.observe(place, contact_at(i == kEarly || i == kLate ? 0.10 : 0.05));
+    one.tap(place, i == kEarly || i == kLate ? 0.10 : 0.05);
     if (i != 99) continue;
-    one.belief.update();
-    early = one.belief.outliers()->probabilities();
+    one.update();
+    early = one.models.surface()->outliers()->probabilities();
   }
-  one.belief.update();
+  one.update();
+  const OutlierModel& outliers = *one.models.surface()->outliers();
   EXPECT_GT(early(kEarly), 0.9);
-  EXPECT_EQ(one.belief.outliers()->probabilities().head(100), early);
-  EXPECT_EQ(one.belief.outlier_probability(kLate), 0.0);
-  ASSERT_EQ(one.belief.suspected_outliers().size(), 1U);
-  EXPECT_EQ(one.belief.suspected_outliers().front().tap, static_cast<int>(kEarly) + 1);
+  EXPECT_EQ(outliers.probabilities().head(100), early);
+  EXPECT_EQ(one.models.outlier_probability(kLate), 0.0);
+  ASSERT_EQ(outliers.suspected(one.models.log()).size(), 1U);
+  EXPECT_EQ(outliers.suspected(one.models.log()).front().tap, static_cast<int>(kEarly) + 1);
 }
 
 }  // namespace

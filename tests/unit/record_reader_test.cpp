@@ -3,10 +3,10 @@
 // carried on.
 #include "record/record_reader.hpp"
 
+#include "record/fields.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
-#include "record/tap_row.hpp"
 #include "support/parts.hpp"
 #include "support/testing.hpp"
 
@@ -32,10 +32,10 @@ std::string joined(const Lines& lines) {
 
 TapRecord made(int number) {
   TapRecord out;
-  out.number = number;
-  out.target = {0.1 * number, 0.05};
-  out.contact = {Outcome::contact, 0.09, 8.0, 5.5, {}};
-  out.on_object = true;
+  out.request.number = number;
+  out.request.line = line_from_above({0.1 * number, 0.05});
+  out.result = contact_on(out.request.line, 0.09, 8.0, 5.5);
+  out.reading.emplace().on_object = true;
   return out;
 }
 

@@ -2,8 +2,8 @@
 // What satisfies a condition: the one rule, and that everything in core asks it.
 #include "config/relation.hpp"
 
+#include "record/checkpoint.hpp"
 #include "record/json.hpp"
-#include "record/occasion.hpp"
 #include "support/testing.hpp"
 
 #include <cmath>
@@ -46,9 +46,9 @@ TEST(Satisfies, ReadsTheSignsThatItWrites) {
   for (const char* other : {"", "=", "=>", "<>", ">= "}) EXPECT_FALSE(relation_of(other)) << other;
 }
 
-TEST(Occasion, NeverComesForAnErrorThatIsNotFinite) {
-  const Occasion good = Occasion::once("rmse_m=8 mm");
-  const Occasion covered = Occasion::once("footprint_iou=0.5");
+TEST(Checkpoint, NeverComesForAnErrorThatIsNotFinite) {
+  const Checkpoint good = Checkpoint::once("rmse_m=8 mm");
+  const Checkpoint covered = Checkpoint::once("footprint_iou=0.5");
   for (const double value : {kNoNumber, kBeyond, -kBeyond}) {
     Row summary;
     summary.add("rmse_m", value);

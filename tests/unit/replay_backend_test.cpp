@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/requests.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/backend.hpp>
@@ -27,13 +28,15 @@ class ReplayBackend : public InFolder {
     return error_of([&] { open(text); });
   }
 
-  static Contact tap(Backend& backend, int number, double x, double y) { return backend.tap({number, {x, y}, {}, {}}); }
+  static TapResult tap(Backend& backend, int number, double x, double y) {
+    return backend.tap(request_at({x, y}, number));
+  }
 };
 
 TEST_F(ReplayBackend, AnswersByPlaceWithAllThatWasRecorded) {
-  const Contact contact = tap(*open(kRecord), 17, 0.05, 0.05);
+  const TapResult contact = tap(*open(kRecord), 17, 0.05, 0.05);
   EXPECT_EQ(contact.outcome, Outcome::contact);
-  EXPECT_EQ(contact.height, 0.001);
+  EXPECT_EQ(contact.height(), 0.001);
   EXPECT_EQ(contact.force, 8.0);
   EXPECT_EQ(contact.seconds, 3.5);
   EXPECT_EQ(contact.reason, "");
@@ -48,14 +51,14 @@ TEST_F(ReplayBackend, ReadsATableWithAByteOrderMarkAndBlankLinesAtItsEnd) {
 
 TEST_F(ReplayBackend, TapsOfOnePlaceAreToldApartByTheirNumberWhateverCameBefore) {
   const auto backend = open(kRecord);
-  EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height, 0.09);
-  EXPECT_EQ(tap(*backend, 3, 0.1, 0.1).height, 0.08);
-  EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height, 0.09);
+  EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height(), 0.09);
+  EXPECT_EQ(tap(*backend, 3, 0.1, 0.1).height(), 0.08);
+  EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height(), 0.09);
   // No tap of that number there: the first one.
-  EXPECT_EQ(tap(*backend, 9, 0.1, 0.1).height, 0.09);
+  EXPECT_EQ(tap(*backend, 9, 0.1, 0.1).height(), 0.09);
   EXPECT_EQ(tap(*backend, 1, 0.15, 0.15).outcome, Outcome::unreachable);
-  EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height, 0.09);
-  EXPECT_EQ(tap(*backend, 2, 0.05, 0.05).height, 0.001) << "the number does not count at another place";
+  EXPECT_EQ(tap(*backend, 2, 0.1, 0.1).height(), 0.09);
+  EXPECT_EQ(tap(*backend, 2, 0.05, 0.05).height(), 0.001) << "the number does not count at another place";
 }
 
 TEST_F(ReplayBackend, ANumberOfATapThatIsNoneIsRefused) {
@@ -80,8 +83,8 @@ TEST_F(ReplayBackend, CellsInQuotesMayHoldCommasQuotesAndLineEnds) {
       "x,y,outcome,height,\"a \"\"note\"\", long\"\r\n"
       "0.1,0.1,\"contact\",0.07,\"said \"\"no\"\",\nthen yes\"\r\n"
       "0.2,0.2,contact,0.08,\r\n");
-  EXPECT_EQ(tap(*backend, 1, 0.1, 0.1).height, 0.07);
-  EXPECT_EQ(tap(*backend, 1, 0.2, 0.2).height, 0.08);
+  EXPECT_EQ(tap(*backend, 1, 0.1, 0.1).height(), 0.07);
+  EXPECT_EQ(tap(*backend, 1, 0.2, 0.2).height(), 0.08);
   EXPECT_THAT(refusal("x,y,outcome,height,note\n1,1,contact,1,\"a\nb\"\n1,1,touched,1,\n"),
               HasSubstr("scan.csv:4: unknown outcome 'touched'"));
   EXPECT_THAT(refusal("x,y,outcome,height,\"=note\"\n1,1,\"contact,1,1\n"),
@@ -95,15 +98,15 @@ TEST_F(ReplayBackend, TakesTheApostropheAwayThatKeepsSpreadsheetsFromComputing) 
 }
 
 TEST_F(ReplayBackend, RecordedFailureStaysAFailure) {
-  const Contact contact = tap(*open(kRecord), 4, 0.2, 0.2);
+  const TapResult contact = tap(*open(kRecord), 4, 0.2, 0.2);
   EXPECT_EQ(contact.outcome, Outcome::timeout);
-  EXPECT_EQ(contact.height, 0.0);
+  EXPECT_TRUE(contact.contacts.empty());
   EXPECT_EQ(contact.seconds, 30.0);
   EXPECT_NE(contact.reason, "");
 }
 
 TEST_F(ReplayBackend, PlaceThatWasNotRecordedIsUnreachable) {
-  const Contact contact = tap(*open(kRecord), 1, 0.15, 0.15);
+  const TapResult contact = tap(*open(kRecord), 1, 0.15, 0.15);
   EXPECT_EQ(contact.outcome, Outcome::unreachable);
   EXPECT_EQ(contact.reason, "no tap was recorded at this place");
 }
@@ -120,20 +123,20 @@ TEST_F(ReplayBackend, ToleranceDecidesWhatIsNear) {
 
 TEST_F(ReplayBackend, NearestPlaceWithinTheToleranceAnswers) {
   const auto backend = open("x,y,outcome,height\n0.1,0.1,contact,0.01\n0.104,0.1,contact,0.02\n", ", tolerance: 1 cm");
-  EXPECT_EQ(tap(*backend, 1, 0.101, 0.1).height, 0.01);
-  EXPECT_EQ(tap(*backend, 1, 0.103, 0.1).height, 0.02);
+  EXPECT_EQ(tap(*backend, 1, 0.101, 0.1).height(), 0.01);
+  EXPECT_EQ(tap(*backend, 1, 0.103, 0.1).height(), 0.02);
 }
 
 TEST_F(ReplayBackend, ColumnsMayComeInAnyOrderWithOthersAndQuotedCommas) {
   const auto backend = open("reason,height,outcome,y,x\r\n\"none, all well\",0.03,contact,0.2,0.1\r\n");
-  EXPECT_EQ(tap(*backend, 1, 0.1, 0.2).height, 0.03);
+  EXPECT_EQ(tap(*backend, 1, 0.1, 0.2).height(), 0.03);
   EXPECT_EQ(tap(*backend, 1, 0.1, 0.2).seconds, 0.0);
 }
 
 TEST_F(ReplayBackend, NumbersMayHaveASignAndBlanksBeforeThem) {
-  const Contact contact = tap(*open("x,y,outcome,height\n +0.1,\t0.2,contact,\t+1.2e-2\n"), 1, 0.1, 0.2);
+  const TapResult contact = tap(*open("x,y,outcome,height\n +0.1,\t0.2,contact,\t+1.2e-2\n"), 1, 0.1, 0.2);
   EXPECT_EQ(contact.outcome, Outcome::contact);
-  EXPECT_EQ(contact.height, 0.012);
+  EXPECT_EQ(contact.height(), 0.012);
 }
 
 TEST_F(ReplayBackend, IsRepeatableAndSaysWhatItIsTold) {

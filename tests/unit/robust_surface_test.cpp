@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-Candidates lattice_of(int columns, int rows) {
+CandidateGrid lattice_of(int columns, int rows) {
   return product_grid(Eigen::VectorXd::LinSpaced(columns, 0.0, 0.2), Eigen::VectorXd::LinSpaced(rows, 0.0, 0.15));
 }
 
@@ -19,7 +19,7 @@ class RobustMaps : public testing::TestWithParam<int> {};
 
 TEST_P(RobustMaps, EqualTheSurfaceAtEachCandidate) {
   const int taps = GetParam();
-  const Candidates candidates = lattice_of(19, 17);  // not a multiple of the batch
+  const CandidateGrid candidates = lattice_of(19, 17);  // not a multiple of the batch
   const std::shared_ptr<Kernel> kernel = test::make<Kernel>(test::shared_host(), "rbf", "{length_scale: 3 cm}");
   test::GaussianProcess process(kernel, GpSettings{0.1, 0.006, 0.02, 1.0}, candidates);
   for (int i = 0; i < taps; ++i) {
@@ -44,7 +44,7 @@ TEST_P(RobustMaps, EqualTheSurfaceAtEachCandidate) {
 
 /// Taps of a GP with so little noise that the forms need jitter.
 struct ExactTaps {
-  Candidates candidates = lattice_of(5, 5);
+  CandidateGrid candidates = lattice_of(5, 5);
   std::shared_ptr<Kernel> kernel;
   test::GaussianProcess process;
   ExactTaps(const char* length_scale, double rough, double noise = 1e-9)

@@ -2,8 +2,8 @@
 #include "record/run_directory.hpp"
 
 #include "children/child_process.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 #include "support/parts.hpp"
 #include "support/shortage.hpp"
 #include "support/testing.hpp"
@@ -18,10 +18,10 @@ namespace {
 
 TapRecord tap(int number, double height) {
   TapRecord out;
-  out.number = number;
-  out.target = {0.1 * number, 0.05};
-  out.contact = {Outcome::contact, height, 8.0, 5.5, {}};
-  out.on_object = height > 0.01;
+  out.request.number = number;
+  out.request.line = line_from_above({0.1 * number, 0.05});
+  out.result = contact_on(out.request.line, height, 8.0, 5.5);
+  out.reading.emplace().on_object = height > 0.01;
   return out;
 }
 
@@ -53,11 +53,11 @@ TEST_F(RunFolder, RecoversTheTapsThatWereRecorded) {
     const fs::path run = folder_.path() / (announce ? "announced" : "plain");
     write_three(run, announce);
     RunDirectory again(run);
-    const std::vector<PastTap> past = again.recover();
+    const std::vector<TapRecord> past = again.recover();
     ASSERT_EQ(past.size(), 3U);
-    EXPECT_EQ(past[1].target.x, 0.2);
-    EXPECT_EQ(past[1].contact.height, 0.09);
-    EXPECT_EQ(past[1].contact.outcome, Outcome::contact);
+    EXPECT_EQ(past[1].target().x, 0.2);
+    EXPECT_EQ(past[1].result.height(), 0.09);
+    EXPECT_EQ(past[1].result.outcome, Outcome::contact);
     EXPECT_EQ(again.rows().size(), 3U);
     EXPECT_DOUBLE_EQ(again.total_seconds()[0], 1.5);
     EXPECT_DOUBLE_EQ(again.total_seconds()[4], 0.1875);
@@ -70,10 +70,10 @@ TEST_F(RunFolder, AnIntentWithoutResultBecomesATapOfUnknownOutcomeOnce) {
   for (int i = 0; i < 2; ++i) {
     RunDirectory run(folder_.path() / "run");
     set_up(run, true);
-    const std::vector<PastTap> past = run.recover();
+    const std::vector<TapRecord> past = run.recover();
     ASSERT_EQ(past.size(), 4U);
-    EXPECT_EQ(past[3].contact.outcome, Outcome::unknown);
-    EXPECT_EQ(past[3].target.x, 0.4);
+    EXPECT_EQ(past[3].result.outcome, Outcome::unknown);
+    EXPECT_EQ(past[3].target().x, 0.4);
   }
 }
 
@@ -250,13 +250,14 @@ TEST_F(RunFolder, CanBeEndedAsFailedAtAnyTime) {
 
 TEST(TapRow, ReadsBackAsTheTapThatItTells) {
   TapRecord record = tap(5, 0.1 + 0.2);
-  record.source = Source::fallback;
+  record.request.source = Source::fallback;
   record.why = "no score is positive";
   const Row row = *parse_json_row(to_json_line(tap_row(record)));
-  const PastTap back = past_taps({row}, "here").front();
-  EXPECT_EQ(back.source, Source::fallback);
-  EXPECT_EQ(back.target.x, record.target.x);
-  EXPECT_EQ(back.contact.height, 0.1 + 0.2) << "to the last bit";
+  const TapRecord back = read_taps({row}, "here").front();
+  EXPECT_EQ(back.request.source, Source::fallback);
+  EXPECT_EQ(back.why, record.why);
+  EXPECT_EQ(back.target().x, record.target().x);
+  EXPECT_EQ(back.result.height(), 0.1 + 0.2) << "to the last bit";
 }
 
 TEST(TapRow, AnIntentHoldsNoResult) {

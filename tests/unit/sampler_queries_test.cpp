@@ -49,7 +49,7 @@ TEST(Sampler, SamplesParticlesWithUndiscoveredPrimitivesThatOverlapThem) {
                                    test::touch_at(0.09, 0.14, false), test::touch_at(0.12, 0.05, false)};
   for (const Touch& touch : touches) belief.add(touch);
   for (const Points& where : {test::lattice(23, 23), test::lattice(130, 4), test::scattered(200)}) {
-    OutlineSample sample;
+    HypothesisSample sample;
     belief.sample(where, kSample, sample);
     ASSERT_EQ(sample.count, kSample);
     Eigen::VectorXd probability(where.rows());
@@ -85,7 +85,7 @@ TEST(Sampler, TakesEveryParticleForSomeOfItsSmallerSamples) {
   for (int tap = 0; tap < 8; ++tap) {
     belief.add(test::touch_at(0.02 + 0.01 * tap, 0.2, false));
     ASSERT_EQ(belief.size(), kCount);
-    OutlineSample sample;
+    HypothesisSample sample;
     belief.sample(where, kSample, sample);
     // Two of three particles from a first one on: the sample is one of these, with other primitives beside.
     int possible = 0;
@@ -124,15 +124,15 @@ TEST(Sampler, ExpectsToFindTheExtentOfThePriorAndLessBesideAnObject) {
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(places.rows());
   Eigen::VectorXd beside = Eigen::VectorXd::Zero(places.rows());
   constexpr int kRuns = 10;
-  OutlineSample sample;
+  HypothesisSample sample;
   for (int run = 0; run < kRuns; ++run) {
     Sampler belief = sampler_of(100, 20, 0.02, 40 + static_cast<std::uint64_t>(run));
     belief.sample(places, 64, sample);
-    mean += sample.to_find / kRuns;
+    mean += sample.expected_discovery_area / kRuns;
     belief.add(test::touch_at(places(0, 0), places(0, 1), true));
     belief.sample(places, 64, sample);
-    beside += sample.to_find / kRuns;
-    EXPECT_EQ(sample.to_find(0), 0.0) << "the primitives there are known";
+    beside += sample.expected_discovery_area / kRuns;
+    EXPECT_EQ(sample.expected_discovery_area(0), 0.0) << "the primitives there are known";
   }
   // Five standard errors: a run has 4096 draws of the prior.
   const Eigen::ArrayXd variance = (squares - exact.cwiseAbs2()) * (1.0 / (4096.0 * kRuns) + 1.0 / draws);

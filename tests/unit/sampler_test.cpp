@@ -136,7 +136,7 @@ TEST(Sampler, IsTheSameForOneSeedOnEveryInstructionSet) {
     how.push_probability = 0.05;
     Sampler belief(Prior(default_prior()), how, Random(seed, "sampler test: instructions"));
     for (const Touch& touch : test::disc_touches(12)) belief.add(touch);
-    std::pair<std::vector<Hypothesis>, OutlineSample> out(hypotheses(belief), {});
+    std::pair<std::vector<Hypothesis>, HypothesisSample> out(hypotheses(belief), {});
     belief.sample(positions, 256, out.second);
     return out;
   };
@@ -145,9 +145,9 @@ TEST(Sampler, IsTheSameForOneSeedOnEveryInstructionSet) {
     const auto [others, other_sample] = after(set, 8);
     EXPECT_TRUE(std::equal(some.begin(), some.end(), others.begin(), others.end(), equal_hypotheses));
     EXPECT_EQ(sample.holds, other_sample.holds);
-    EXPECT_EQ(sample.to_find, other_sample.to_find);
+    EXPECT_EQ(sample.expected_discovery_area, other_sample.expected_discovery_area);
   }
-  EXPECT_NE(sample.to_find, after(Instructions::baseline, 9).second.to_find);
+  EXPECT_NE(sample.expected_discovery_area, after(Instructions::baseline, 9).second.expected_discovery_area);
 }
 
 TEST(Sampler, HasFewLabelErrorsIfAHypothesisExplainsTheLabels) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 #include "scene/scene_options.hpp"
 #include "support/testing.hpp"
 
@@ -15,8 +15,8 @@ TEST(Scene, OnSurfaceIsStrictlyAboveTheMargin) {
   EXPECT_DOUBLE_EQ(scene->height(0.1, 0.1), 0.2);
 }
 
-TEST(Candidates, AreCellCentresRowByRow) {
-  const Candidates candidates = grid_by_count({0.4, 0.2}, 2);
+TEST(CandidateGrid, AreCellCentresRowByRow) {
+  const CandidateGrid candidates = grid_by_count({0.4, 0.2}, 2);
   ASSERT_EQ(candidates.size(), 4);
   EXPECT_DOUBLE_EQ(candidates.points(0, 0), 0.1);
   EXPECT_DOUBLE_EQ(candidates.points(0, 1), 0.05);
@@ -24,16 +24,16 @@ TEST(Candidates, AreCellCentresRowByRow) {
   EXPECT_DOUBLE_EQ(candidates.points(2, 1), 0.15);
 }
 
-TEST(Candidates, FiveMillimetresGive46PerSideOf23Centimetres) {
-  const Candidates candidates = grid_by_spacing({0.23, 0.23}, 0.005);
+TEST(CandidateGrid, FiveMillimetresGive46PerSideOf23Centimetres) {
+  const CandidateGrid candidates = grid_by_spacing({0.23, 0.23}, 0.005);
   EXPECT_EQ(candidates.columns, 46);
   EXPECT_EQ(candidates.rows, 46);
 }
 
-TEST(Candidates, EveryOneIsNearestToItself) {
+TEST(CandidateGrid, EveryOneIsNearestToItself) {
   const Area area{0.23, 0.17};
   for (const int count : {1, 2, 46, 47, 231}) {
-    const Candidates candidates = grid_by_count(area, count);
+    const CandidateGrid candidates = grid_by_count(area, count);
     for (int i = 0; i < candidates.size(); ++i) {
       const Target at = candidates.target(i);
       ASSERT_EQ(candidates.nearest(at.x, at.y, area), i);

@@ -13,12 +13,12 @@ namespace {
 
 const Area kArea{0.23, 0.23};
 
-const Contact kDesk = contact_at(0.0);
-const Contact kObject = contact_at(0.05);
-const Contact kRefused{Outcome::unreachable, 0.0, 0.0, 0.0, "because the test says so"};
+const TapResult kDesk = contact_at(0.0);
+const TapResult kObject = contact_at(0.05);
+const TapResult kRefused = tap_without_contact(Outcome::unreachable, 0.0, "because the test says so");
 
 /// The first `count` places of a search that meets nothing.
-std::vector<int> sequence(double smallest, const Candidates& candidates, std::uint64_t seed, int count) {
+std::vector<int> sequence(double smallest, const CandidateGrid& candidates, std::uint64_t seed, int count) {
   Search search(smallest, candidates, kArea, Random(seed, "initial"));
   std::vector<int> out;
   for (int i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ std::vector<int> sequence(double smallest, const Candidates& candidates, std::ui
 
 /// Taps until a `length` x `width` box was hit, drawn anywhere on the area: the mean over `boxes`, whatever the tap.
 template <class Sequence>
-double mean_first_hit(double length, double width, const Candidates& candidates, const Sequence& places_of) {
+double mean_first_hit(double length, double width, const CandidateGrid& candidates, const Sequence& places_of) {
   constexpr int kBoxes = 300;
   double sum = 0.0;
   for (int i = 0; i < kBoxes; ++i) {
@@ -56,7 +56,7 @@ double mean_first_hit(double length, double width, const Candidates& candidates,
 }
 
 TEST(Search, FindsThePapersObjectsSoonerThanTheIssueAsksAndSmallOnesSoonerThanChance) {
-  const Candidates candidates = grid_by_count(kArea, 47);
+  const CandidateGrid candidates = grid_by_count(kArea, 47);
   std::vector<std::vector<int>> searches;
   for (std::uint64_t seed = 0; seed < 20; ++seed) searches.push_back(sequence(0.02, candidates, seed, 60));
   const auto searched = [&](std::uint64_t seed) { return searches[seed]; };
@@ -73,7 +73,7 @@ TEST(Search, FindsThePapersObjectsSoonerThanTheIssueAsksAndSmallOnesSoonerThanCh
 TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
   // The discs anew, from the same stream by the rule of the header, and counted one by one.
   const double smallest = 0.04;
-  const Candidates candidates = grid_by_spacing({0.23, 0.10}, 0.01);
+  const CandidateGrid candidates = grid_by_spacing({0.23, 0.10}, 0.01);
   const Area area{0.23, 0.10};
   Random random(9, "initial");
   std::vector<std::array<double, 4>> discs;
@@ -107,7 +107,7 @@ TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
 
 TEST(Search, GoesIntoTheLargestGapOnceNoDiscIsLeft) {
   // Objects of 22 cm and more hold the middle of the area: one tap there, and only what is smaller can be left.
-  const Candidates candidates = grid_by_count(kArea, 23);
+  const CandidateGrid candidates = grid_by_count(kArea, 23);
   const std::vector<int> places = sequence(0.22, candidates, 1, 6);
   std::vector<Target> taps{candidates.target(places[0])};
   EXPECT_DOUBLE_EQ(taps[0].x, 0.115);
@@ -126,7 +126,7 @@ TEST(Search, GoesIntoTheLargestGapOnceNoDiscIsLeft) {
 }
 
 TEST(Search, LooksEverywhereOnceAndOnlyWhereItMay) {
-  const Candidates candidates = grid_by_count(kArea, 6);
+  const CandidateGrid candidates = grid_by_count(kArea, 6);
   const std::vector<int> places = sequence(0.02, candidates, 4, candidates.size());
   EXPECT_EQ(std::set<int>(places.begin(), places.end()).size(), 36U);
   Search search(0.02, candidates, kArea, Random(4, "initial"));
@@ -139,17 +139,17 @@ TEST(InitialSearch, EndsWithTheFirstHitAndLeavesTheRestToTheAcquisition) {
   const Finished run("paper/object_i.yaml", {"initial.design=search", "taps=8"},
                      scripted({kDesk, kDesk, kRefused, kDesk, kObject}));
   ASSERT_EQ(run.taps.size(), 8U);
-  const std::vector<int> expected = sequence(0.02, run.experiment.candidates(), run.config.options.seed, 5);
+  const std::vector<int> expected = sequence(0.02, run.grid(), run.config.options.seed, 5);
   std::set<int> places;
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(run.taps[i].source, i < 5 ? Source::initial : Source::acquisition) << "tap " << i + 1;
+    EXPECT_EQ(run.taps[i].request.source, i < 5 ? Source::initial : Source::acquisition) << "tap " << i + 1;
     if (i < 5) {
       EXPECT_EQ(run.taps[i].candidate, expected[i]) << "a failed tap was a look";
     }
     places.insert(run.taps[i].candidate);
   }
   EXPECT_EQ(places.size(), 8U);
-  EXPECT_EQ(run.experiment.belief().initial_taps(), 5);
+  EXPECT_EQ(run.belief().counts().initial, 5);
   EXPECT_EQ(*run.experiment.counts().first_hit_tap, 5);
 }
 
@@ -159,11 +159,11 @@ TEST(InitialSearch, ThatMeetsNothingSpendsTheBudgetOrLooksEverywhere) {
   ASSERT_EQ(run.taps.size(), 12U);
   std::set<int> places;
   for (std::size_t i = 0; i < 9; ++i) {
-    EXPECT_EQ(run.taps[i].source, Source::initial);
+    EXPECT_EQ(run.taps[i].request.source, Source::initial);
     places.insert(run.taps[i].candidate);
   }
   EXPECT_EQ(places.size(), 9U);
-  EXPECT_NE(run.taps[9].source, Source::initial) << "it has looked everywhere";
+  EXPECT_NE(run.taps[9].request.source, Source::initial) << "it has looked everywhere";
   EXPECT_EQ(run.experiment.counts().stop_reason, "tap budget");
 }
 

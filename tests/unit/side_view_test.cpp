@@ -2,7 +2,8 @@
 // A look from one side, at a cup.
 #include "space/view.hpp"
 
-#include "space/from_any_side.hpp"
+#include "experiment/experiment.hpp"
+#include "space/cloud.hpp"
 #include "space_bench.hpp"
 #include "support/testing.hpp"
 
@@ -92,15 +93,15 @@ TEST(SideView, IsThinnedToRaysOfEachKindOfWhichThoseOnTheObjectLieApart) {
 TEST(SideView, IsRefusedWhereAnotherWorldIsTappedThanTheScene) {
   class Elsewhere final : public Backend {
    public:
-    Contact tap(const TapRequest&) override { return {}; }
+    TapResult tap(const TapRequest&) override { return {}; }
     bool repeatable() const override { return true; }
-    bool reaches(const Approach&) const override { return true; }
+    bool taps_any_line() const override { return true; }
     bool scene_is_truth() const override { return false; }
   };
   std::vector<std::string> words = cup();
   words.emplace_back("space.view={}");
   const ResolvedConfig config = shipped_config("any_side.yaml", words);
-  const auto begin = [&] { FromAnySide(config.options, shared_host(), nullptr, std::make_shared<Elsewhere>()); };
+  const auto begin = [&] { Experiment(config.options, {shared_host(), nullptr, std::make_shared<Elsewhere>()}); };
   EXPECT_THAT(error_of(begin), testing::HasSubstr("space.view: uses the scene of the config"));
 }
 

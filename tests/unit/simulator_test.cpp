@@ -35,8 +35,9 @@ TEST(Simulator, IsAsExactWhereAWrongPredictionLetsATrailingArmHitTheSurface) {
   // The arm still presses when its set-point is clear again: it has to be waited for.
   const TappingBench bench(kObjectI, kLikeBaxter, "{type: continuous, speed: 6 cm/s, adaptive_hover: {}}");
   for (int i = 1; i <= 50; ++i) {
-    const TapRequest request{i, {0.115, 0.05 + 0.0025 * i}, {}, Prediction{0.0, 0.0}};
-    EXPECT_NEAR(bench.backend().tap(request).height, bench.scene().height(0.115, 0.05 + 0.0025 * i), 0.0035) << i;
+    TapRequest request = request_at({0.115, 0.05 + 0.0025 * i}, i);
+    request.predicted = Prediction{0.0, 0.0};
+    EXPECT_NEAR(bench.backend().tap(request).height(), bench.scene().height(0.115, 0.05 + 0.0025 * i), 0.0035) << i;
   }
 }
 
@@ -44,10 +45,10 @@ TEST(Simulator, SinksInByTheFineThresholdOverTheStiffnessAndBacksOffUntilTheTipI
   const TappingBench bench(kBare, "{stiffness: {object: 1000 N/m}}",
                            "{type: two_stage, fine_speed: 1 mm/s, fine_threshold: 5 N}");
   // Three periods at 1 mm/s are 0.03 mm.
-  EXPECT_NEAR(bench.tap(0.1, 0.1).height, -0.005, 0.00005);
+  EXPECT_NEAR(bench.tap(0.1, 0.1).height(), -0.005, 0.00005);
   const TappingBench soft(kBare, "{stiffness: {object: 300 N/m}, joint_lag: {}}",
                           "{type: two_stage, fine_speed: 5 mm/s, overrun: 8 cm}");
-  EXPECT_NEAR(soft.tap(0.1, 0.1).height, -6.0 / 300.0, 0.001);
+  EXPECT_NEAR(soft.tap(0.1, 0.1).height(), -6.0 / 300.0, 0.001);
 }
 
 TEST(Simulator, FindsTheOnsetOfSoftObjectsHoweverDeepTheTipSinksIn) {
@@ -56,7 +57,7 @@ TEST(Simulator, FindsTheOnsetOfSoftObjectsHoweverDeepTheTipSinksIn) {
                              "{type: continuous, speed: 6 cm/s, overrun: 8 cm}");
     for (const auto& one : bench.taps(20)) {
       ASSERT_EQ(one.contact.outcome, Outcome::contact) << stiffness;
-      EXPECT_NEAR(one.contact.height, one.truth, 1e-5) << stiffness;
+      EXPECT_NEAR(one.contact.height(), one.truth, 1e-5) << stiffness;
     }
   }
 }
@@ -76,8 +77,8 @@ TEST(Simulator, WaitsForAnArmThatTrailsByWholeSeconds) {
 
 TEST(Simulator, SeesTheArmsOwnStiffnessInTheForceAndNotInTheHeight) {
   const TappingBench bench(kBare, "{stiffness: {object: 1e7 N/m, arm: 1000 N/m}}", "{type: paper, step: 1 cm}");
-  const Contact contact = bench.tap(0.1, 0.1);
-  EXPECT_NEAR(contact.height, 0.0, 1e-5);
+  const TapResult contact = bench.tap(0.1, 0.1);
+  EXPECT_NEAR(contact.height(), 0.0, 1e-5);
   EXPECT_GT(contact.force, 10.0);
 }
 
@@ -90,17 +91,17 @@ TEST(Simulator, AnswersAlikeWhateverWasTappedBefore) {
   const auto first = bench.taps(50);
   for (int i = 50; i-- > 0;) {
     const auto& known = first[static_cast<std::size_t>(i)];
-    TapRequest request{i + 1, known.place, {}, {}};
-    if (i > 0) request.previous = first[static_cast<std::size_t>(i - 1)].place;
-    const Contact again = other.backend().tap(request);
+    TapRequest request = request_at(known.place, i + 1);
+    if (i > 0) request.previous = line_from_above(first[static_cast<std::size_t>(i - 1)].place);
+    const TapResult again = other.backend().tap(request);
     expect_same(again, known.contact);
   }
 }
 
 TEST(Simulator, DrawsOtherNoiseFromAnotherSeed) {
   const char* noisy = "{pose_noise: {}}";
-  EXPECT_NE(TappingBench(kBare, noisy, "{type: paper}", 1).tap(0.1, 0.1).height,
-            TappingBench(kBare, noisy, "{type: paper}", 2).tap(0.1, 0.1).height);
+  EXPECT_NE(TappingBench(kBare, noisy, "{type: paper}", 1).tap(0.1, 0.1).height(),
+            TappingBench(kBare, noisy, "{type: paper}", 2).tap(0.1, 0.1).height());
 }
 
 TEST(Simulator, NoiseOfThePoseHasTheDeviationsOfTheConfig) {
@@ -110,7 +111,7 @@ TEST(Simulator, NoiseOfThePoseHasTheDeviationsOfTheConfig) {
   double squares = 0.0;
   constexpr int kTaps = 4000;
   for (int i = 0; i < kTaps; ++i) {
-    const double error = bench.tap(0.115, 0.115, i + 1).height - 0.05;
+    const double error = bench.tap(0.115, 0.115, i + 1).height() - 0.05;
     squares += error * error / kTaps;
   }
   const double expected = std::hypot(0.001, 0.003 * 0.06 / 0.20);
@@ -133,7 +134,7 @@ TEST(Simulator, FeelsFalseContactsAboveTheSurfaceUnlessTheMotionMakesSure) {
   const char* jerks = "{false_contacts: {probability: 0.3}}";
   const auto high = [](const std::vector<TappingBench::Tapped>& taps) {
     return std::count_if(taps.begin(), taps.end(), [](const auto& one) {
-      return one.contact.outcome == Outcome::contact && one.contact.height > one.truth + 0.002;
+      return one.contact.outcome == Outcome::contact && one.contact.height() > one.truth + 0.002;
     });
   };
   const auto fooled = high(TappingBench(kObjectI, jerks, "{type: paper}").taps(500));
@@ -159,18 +160,18 @@ TEST(Simulator, HearsTheForceLateAndFindsTheOnsetLowerByTheTimeTimesTheSpeed) {
 
 TEST(Simulator, AddsAnOffsetAndADriftOverTheArmsTimeToEveryHeight) {
   const TappingBench bench(kBare, "{height_offset: {constant: 8 mm, drift: 1 mm/min}}", "{type: paper}");
-  TapRequest request{1, {0.1, 0.1}, {}, {}};
-  EXPECT_NEAR(bench.backend().tap(request).height, 0.008, 1e-12);
+  TapRequest request = request_at({0.1, 0.1});
+  EXPECT_NEAR(bench.backend().tap(request).height(), 0.008, 1e-12);
   request.elapsed = 90.0;
-  EXPECT_NEAR(bench.backend().tap(request).height, 0.008 + 0.0015, 1e-12);
+  EXPECT_NEAR(bench.backend().tap(request).height(), 0.008 + 0.0015, 1e-12);
 }
 
 TEST(Simulator, HasTheDeskAsSoftAsTheConfigSaysWhateverObjectsAre) {
   const char* soft_desk = "{stiffness: {object: 5000 N/m, desk: 1000 N/m}}";
   const char* motion = "{type: two_stage, fine_speed: 1 mm/s, fine_threshold: 5 N}";
-  EXPECT_NEAR(TappingBench(kBare, soft_desk, motion).tap(0.1, 0.1).height, -0.005, 0.0001);
+  EXPECT_NEAR(TappingBench(kBare, soft_desk, motion).tap(0.1, 0.1).height(), -0.005, 0.0001);
   const TappingBench block("[{type: block, length: 20 cm, width: 20 cm, height: 5 cm}]", soft_desk, motion);
-  EXPECT_NEAR(block.tap(0.115, 0.115).height, 0.05 - 0.001, 0.0001);
+  EXPECT_NEAR(block.tap(0.115, 0.115).height(), 0.05 - 0.001, 0.0001);
 }
 
 TEST(Simulator, MeetsThingsThatAreNotOfTheSceneOnAShareOfTheSquaresAndAlikeAtEveryTouch) {
@@ -181,8 +182,8 @@ TEST(Simulator, MeetsThingsThatAreNotOfTheSceneOnAShareOfTheSquaresAndAlikeAtEve
     for (int column = 0; column < kSide; ++column) {
       const double x = 0.01 * column;
       const double y = 0.01 * row;
-      const double height = bench.tap(x + 0.002, y + 0.002, 1).height;
-      EXPECT_EQ(height, bench.tap(x + 0.007, y + 0.004, 2).height) << "the same square, another tap";
+      const double height = bench.tap(x + 0.002, y + 0.002, 1).height();
+      EXPECT_EQ(height, bench.tap(x + 0.007, y + 0.004, 2).height()) << "the same square, another tap";
       EXPECT_LE(height, 0.02);
       EXPECT_GE(height, 0.0);
       met += height > 0.0 ? 1 : 0;
@@ -195,20 +196,20 @@ TEST(Simulator, MeetsThingsThatAreNotOfTheSceneOnAShareOfTheSquaresAndAlikeAtEve
 TEST(Simulator, KnowsTheTruePeakOfTheForceOfATapThatFailedToo) {
   const TappingBench blind(kBare, "{stiffness: {object: 1000 N/m}, missed_contacts: {probability: 1}}",
                            "{type: continuous, overrun: 3 cm}");
-  const Contact missed = blind.tap(0.1, 0.1);
+  const TapResult missed = blind.tap(0.1, 0.1);
   EXPECT_EQ(missed.outcome, Outcome::no_contact);
-  EXPECT_NEAR(missed.peak.value(), 30.0, 0.1) << "3 cm at 1000 N/m";
-  EXPECT_FALSE(TappingBench(kBare, "{}", "{type: paper}").tap(0.1, 0.1).peak) << "no force is simulated";
+  EXPECT_NEAR(missed.peak_force.value(), 30.0, 0.1) << "3 cm at 1000 N/m";
+  EXPECT_FALSE(TappingBench(kBare, "{}", "{type: paper}").tap(0.1, 0.1).peak_force) << "no force is simulated";
 }
 
 TEST(Simulator, StopsByItselfShortOfTheLimitWhateverIsFelt) {
   const TappingBench blind(kBare, "{stiffness: {object: 1000 N/m}, missed_contacts: {probability: 1}}",
                            "{type: continuous, overrun: 3 cm, force_limit: 16 N}");
-  const Contact stopped = blind.tap(0.1, 0.1);
+  const TapResult stopped = blind.tap(0.1, 0.1);
   EXPECT_EQ(stopped.outcome, Outcome::aborted);
   EXPECT_NE(stopped.reason.find("stopped by itself"), std::string::npos);
-  EXPECT_GT(stopped.peak.value(), 12.0);
-  EXPECT_LT(stopped.peak.value(), 16.0);
+  EXPECT_GT(stopped.peak_force.value(), 12.0);
+  EXPECT_LT(stopped.peak_force.value(), 16.0);
 }
 
 TEST(Simulator, TakesForAContactWhatItWasStoppedAtIfTheForceIsHeardAfterAll) {
@@ -219,9 +220,9 @@ TEST(Simulator, TakesForAContactWhatItWasStoppedAtIfTheForceIsHeardAfterAll) {
        TappingBench(kObjectI, late, "{type: continuous, speed: 6 cm/s, brake: 3 cm, force_limit: 16 N}").taps(100)) {
     if (one.contact.outcome == Outcome::aborted) continue;
     ASSERT_EQ(one.contact.outcome, Outcome::contact);
-    EXPECT_LE(one.contact.peak.value(), 16.0);
-    EXPECT_NEAR(one.contact.height, one.truth, 0.012) << "80 ms at 6 cm/s are 5 mm";
-    if (one.contact.peak.value() > 12.0) ++stopped;
+    EXPECT_LE(one.contact.peak_force.value(), 16.0);
+    EXPECT_NEAR(one.contact.height(), one.truth, 0.012) << "80 ms at 6 cm/s are 5 mm";
+    if (one.contact.peak_force.value() > 12.0) ++stopped;
   }
   EXPECT_GT(stopped, 30);
 }
@@ -231,8 +232,8 @@ TEST(Simulator, BrakesATrailingArmSoThatItPressesLessAndFindsTheSameOnset) {
     double most = 0.0;
     for (const auto& one : TappingBench(kObjectI, kLikeBaxter, motion).taps(100)) {
       EXPECT_EQ(one.contact.outcome, Outcome::contact);
-      EXPECT_NEAR(one.contact.height, one.truth, 0.003);
-      most = std::max(most, one.contact.peak.value());
+      EXPECT_NEAR(one.contact.height(), one.truth, 0.003);
+      most = std::max(most, one.contact.peak_force.value());
     }
     return most;
   };
@@ -244,7 +245,7 @@ TEST(Simulator, GoesOnWhereTheForceOfAJerkDoesNotLast) {
     int count = 0;
     const TappingBench bench(kObjectI, "{stiffness: {}, joint_lag: {}, false_contacts: {probability: 0.5}}", motion);
     for (const auto& one : bench.taps(200))
-      count += one.contact.outcome == Outcome::contact && one.contact.height > one.truth + 0.005 ? 1 : 0;
+      count += one.contact.outcome == Outcome::contact && one.contact.height() > one.truth + 0.005 ? 1 : 0;
     return count;
   };
   EXPECT_GT(high("{type: continuous, brake: 3 cm}"), 60);
@@ -253,7 +254,7 @@ TEST(Simulator, GoesOnWhereTheForceOfAJerkDoesNotLast) {
 
 TEST(Simulator, RefusesWhatIsOutOfReachWithoutMoving) {
   const TappingBench bench(kObjectI, "{reach: {base: [-50 cm, 11.5 cm], radius: 70 cm}}", "{type: paper}");
-  const Contact far = bench.tap(0.21, 0.115);
+  const TapResult far = bench.tap(0.21, 0.115);
   EXPECT_EQ(far.outcome, Outcome::unreachable);
   EXPECT_EQ(far.seconds, 0.0);
   EXPECT_EQ(bench.tap(0.19, 0.115).outcome, Outcome::contact);
@@ -361,21 +362,21 @@ TEST(Simulator, HasTheDeskAsSoftAsTheConfigSaysWhereTheSideOfARoundTipTouchesItA
   const Eigen::Vector3d direction = Eigen::Vector3d(0.6, 0.0, -0.8);
   const Line line{Eigen::Vector3d(0.01, 0.005, 0.0) - 0.1 * direction, direction};
   TapRequest request;
-  request.approach = Approach{line, 0.2};
-  const Contact contact = bench.backend().tap(request);
+  request.line = {line.origin, line.direction, 0.2};
+  const TapResult contact = bench.backend().tap(request);
   ASSERT_EQ(contact.outcome, Outcome::contact);
   // The foremost point is higher than the lowest by r (1 - 0.8). The arm goes on for three periods at 2.4 cm/s, 0.7 mm;
   // an object would give way by 20 mm.
-  EXPECT_NEAR(contact.height, 0.005 * (1.0 - 0.8), 0.0008);
+  EXPECT_NEAR(contact.height(), 0.005 * (1.0 - 0.8), 0.0008);
 }
 
 TEST(Simulator, SaysOfATapAlongALineThatFeltNothingThatItCameToItsEnd) {
   const TappingBench bench(kBare, "{missed_contacts: {probability: 1}}", "{type: paper}");
   TapRequest request;
-  request.approach = Approach{{{0.115, 0.115, 0.2}, -Eigen::Vector3d::UnitZ()}, 0.3};
-  const Contact contact = bench.backend().tap(request);
+  request.line = {{0.115, 0.115, 0.2}, -Eigen::Vector3d::UnitZ(), 0.3};
+  const TapResult contact = bench.backend().tap(request);
   EXPECT_EQ(contact.outcome, Outcome::no_contact);
-  EXPECT_EQ(contact.along, 0.3) << "where the object truly was, an arm that felt nothing does not know";
+  EXPECT_EQ(contact.distance, 0.3) << "where the object truly was, an arm that felt nothing does not know";
 }
 
 }  // namespace

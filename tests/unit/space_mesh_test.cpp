@@ -213,12 +213,14 @@ TEST(ClosedMesh, HasNoHoleInAWallOfThreeMillimetresNorOnAPage) {
 TEST(ClosedMesh, SaysHowLargeItsCubesAreWhereTheyHadToGrow) {
   const Piece small{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
   const ClosedMesh fine = close_mesh(Believed({small}).crossings(kFineSide));
-  EXPECT_THAT(mesh_ply(fine, 0.0, "quality", "a box"), testing::HasSubstr("comment a box, of cubes of 2 mm\n"));
+  EXPECT_THAT(mesh_ply(surface_of(fine, 0.0), "quality", "a box"),
+              testing::HasSubstr("comment a box, of cubes of 2 mm\n"));
   const Piece large{Piece::Form::box, {0.2, 0.2, 0.18}, Matrix3d::Identity(), {0.17, 0.17, 0.17}, 0.0};
   const ClosedMesh coarse = close_mesh(Believed({large}).crossings(kFineSide));
   // 34 x 34 x 35 cm are more than four million of 2 mm, and of 2.2 mm.
   EXPECT_DOUBLE_EQ(coarse.side, 1.1 * 1.1 * kFineSide);
-  EXPECT_THAT(mesh_ply(coarse, 0.0, "quality", "a box"), testing::HasSubstr("comment a box, of cubes of 2.42 mm\n"));
+  EXPECT_THAT(mesh_ply(surface_of(coarse, 0.0), "quality", "a box"),
+              testing::HasSubstr("comment a box, of cubes of 2.42 mm\n"));
 }
 
 TEST(ClosedMesh, EndsAtTheDesk) {
@@ -261,7 +263,7 @@ TEST(ClosedMesh, IsAFileOfItsNumbers) {
   const Piece box{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
   ClosedMesh mesh = close_mesh(Believed({box}).crossings(0.01));
   mesh.vertices.front().deviation = 0.003;
-  const std::string file = mesh_ply(mesh, 0.5, "quality", "a box");
+  const std::string file = mesh_ply(surface_of(mesh, 0.5), "quality", "a box");
   EXPECT_THAT(file, testing::HasSubstr("\ncomment a box, of cubes of 10 mm\nelement vertex " +
                                        std::to_string(mesh.vertices.size())));
   const std::size_t body = file.find("end_header\n") + 11;

@@ -10,28 +10,39 @@
 namespace palpate::test {
 namespace {
 
-/// A belief of its own, without a loop around it.
+/// Models of their own, without a loop around them.
 struct Alone {
   explicit Alone(const std::vector<std::string>& overrides)
       : config(shipped_config("paper/object_i.yaml", overrides)),
         scene(build_scene(config.options.scene, 1, test::shared_host())),
         context{test::shared_host(), *scene, 1, nullptr},
         candidates(grid_by_count(scene->area(), 9)),
-        belief(config.options, candidates, context, clock) {
-    belief.ask(Quantity::height | Quantity::probability);
+        models(config.options, candidates, context, clock) {
+    build({quantity::kHeightMean, quantity::kObjectProbability});
   }
 
+  void build(const QuantitySet& quantities) {
+    models.build(models.models_of(quantities));
+    update();
+  }
   void touch(int candidate, double height) {
-    belief.observe(candidates.target(candidate), contact_at(height));
-    belief.update();
+    models.add(request_at(candidates.target(candidate)), contact_at(height));
+    update();
+  }
+  void update() {
+    models.update();
+    models.infer();
+  }
+  Eigen::VectorXd reconstructed() const {
+    return reconstruction({&models.height_mean(), &models.probability(), models.is_two_part(), scene->desk()});
   }
 
   ResolvedConfig config;
   std::unique_ptr<const Scene> scene;
   Context context;
-  Candidates candidates;
+  CandidateGrid candidates;
   PhaseClock clock;
-  TapBelief belief;
+  HeightModels models;
 };
 
 TEST(TwoPart, IsTheObjectFromAWeightOfOneHalfOnAndTheDeskBelow) {
@@ -45,19 +56,19 @@ TEST(TwoPart, IsTheObjectFromAWeightOfOneHalfOnAndTheDeskBelow) {
   for (Alone* one : {&object, &desk}) one->touch(40, -0.21);
   // The level is learnt from a tap of variance 1 + 1e-8 against its own prior of a million.
   const double level = -0.30 + 0.09 * 1e6 / (1e6 + 1.0 + 1e-8);
-  EXPECT_NEAR(reconstruction(object.belief)(0), level, 1e-12);
-  EXPECT_EQ(reconstruction(desk.belief)(0), -0.30);
-  EXPECT_NEAR(desk.belief.height_mean()(0), level, 1e-12) << "the height itself is not gated";
-  EXPECT_NEAR(reconstruction(desk.belief)(40), -0.21, 1e-7) << "where it was touched it is an object";
+  EXPECT_NEAR(object.reconstructed()(0), level, 1e-12);
+  EXPECT_EQ(desk.reconstructed()(0), -0.30);
+  EXPECT_NEAR(desk.models.height_mean()(0), level, 1e-12) << "the height itself is not gated";
+  EXPECT_NEAR(desk.reconstructed()(40), -0.21, 1e-7) << "where it was touched it is an object";
 }
 
 TEST(TwoPart, IsADeskWhileNothingWasHit) {
   Alone one({"surface=two_part"});
   one.touch(3, 0.0);
   one.touch(50, 0.0);
-  EXPECT_TRUE((reconstruction(one.belief).array() == 0.0).all());
-  EXPECT_EQ(one.belief.surface_gp().process->size(), 0);
-  EXPECT_EQ(one.belief.label_gp().process->size(), 2);
+  EXPECT_TRUE((one.reconstructed().array() == 0.0).all());
+  EXPECT_EQ(one.models.surface_gp().process->size(), 0);
+  EXPECT_EQ(one.models.label_gp().process->size(), 2);
 }
 
 TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
@@ -76,10 +87,10 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
     if (height > 0.0) book.add(one.candidates.target(candidate), {height});
   }
   // The oracle takes differences of a million in 19 digits, with a matrix of condition 1e7.
-  EXPECT_LT(apart(one.belief.height_mean(), book.mean()), 1e-10);
-  EXPECT_LT(apart(one.belief.height_variance(), book.variance()), 1e-5);
-  one.belief.ask(Quantity::uncertainty);
-  EXPECT_EQ(one.belief.height_gp().process->size(), 6) << "u comes from all taps";
+  EXPECT_LT(apart(one.models.height_mean(), book.mean()), 1e-10);
+  EXPECT_LT(apart(one.models.height_variance(), book.variance()), 1e-5);
+  one.build({quantity::kUncertainty});
+  EXPECT_EQ(one.models.height_gp().process->size(), 6) << "u comes from all taps";
 }
 
 TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
@@ -91,7 +102,8 @@ TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
     for (std::size_t i = 0; i < single.taps.size(); ++i) {
       EXPECT_EQ(single.taps[i].candidate, parted.taps[i].candidate) << acquisition << ", tap " << i + 1;
       EXPECT_EQ(single.taps[i].score, parted.taps[i].score) << acquisition << ", tap " << i + 1;
-      EXPECT_EQ(single.taps[i].uncertainty, parted.taps[i].uncertainty) << acquisition << ", tap " << i + 1;
+      EXPECT_EQ(number_of(single.taps[i].state, "u"), number_of(parted.taps[i].state, "u"))
+          << acquisition << ", tap " << i + 1;
     }
   }
 }
@@ -99,25 +111,29 @@ TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
 TEST(TwoPart, IsNotBuiltForTheRecordOfATapNorForItsMaps) {
   Prepared prepared("paper/object_i_right.yaml", {"seed=3", "surface=two_part"});
   std::string maps;  // written at every tap, as by log.maps
-  prepared.journal.announcing = [&](const TapRecord&) { maps = maps_csv(prepared.experiment); };
+  prepared.journal.announcing = [&](const TapRecord& tap) { maps = maps_csv(prepared.belief(), tap.state); };
   prepared.run();
+  const auto has = [](const TapRecord& tap, const char* field) { return number_of(tap.state, field).has_value(); };
   for (const TapRecord& tap : prepared.taps) {
-    EXPECT_FALSE(tap.surface_gp || tap.errors.rmse || tap.errors.rmse_object || tap.errors.rmse_height);
-    EXPECT_EQ(tap.max_standard_deviation.has_value(), tap.height_gp.has_value());
-    EXPECT_EQ(tap.errors.footprint_iou.has_value(), tap.label_gp.has_value());
+    EXPECT_FALSE(has(tap, "surface_gp.signal"));
+    EXPECT_FALSE(tap.errors.rmse || tap.errors.rmse_object || tap.errors.rmse_height);
+    EXPECT_EQ(has(tap, "max_standard_deviation"), has(tap, "height_gp.signal"));
+    EXPECT_EQ(tap.errors.footprint_iou.has_value(), has(tap, "label_gp.signal"));
   }
-  EXPECT_TRUE(prepared.taps.back().height_gp && prepared.taps.back().label_gp);
+  EXPECT_TRUE(has(prepared.taps.back(), "height_gp.signal") && has(prepared.taps.back(), "label_gp.signal"));
   EXPECT_EQ(maps.substr(0, maps.find('\n')), "x,y,u,w");
 }
 
 TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyAsksForIt) {
-  Prepared prepared("paper/object_i_right.yaml", {"seed=3", "surface=two_part"});
-  prepared.experiment.ask(Quantity::height);
+  Prepared prepared("paper/object_i_right.yaml", {"seed=3", "surface=two_part"}, nullptr, shared_host(),
+                    {quantity::kHeightMean});
   prepared.run();
   const TapRecord& tap = prepared.taps.back();
-  ASSERT_TRUE(tap.surface_gp && tap.errors.rmse && tap.errors.rmse_height);
-  EXPECT_EQ(tap.surface_gp->settings.mean_ratio, 1000.0);
-  EXPECT_EQ(maps_csv(prepared.experiment).substr(0, 31), "x,y,height_mean,height_variance");
+  ASSERT_TRUE(number_of(tap.state, "surface_gp.signal") && tap.errors.rmse && tap.errors.rmse_height);
+  EXPECT_EQ(prepared.models().surface_gp().process->settings().mean_ratio, 1000.0);
+  prepared.belief().update();
+  const std::string maps = maps_csv(prepared.belief(), prepared.belief().state(0));
+  EXPECT_THAT(maps, testing::StartsWith("x,y,height_mean,height_standard_deviation,"));
 }
 
 TEST(TwoPart, StopsAtTheVeryTapThatTheSingleSurfaceStopsAt) {

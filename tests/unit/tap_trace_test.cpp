@@ -42,7 +42,7 @@ TEST(TapTrace, IsDecidedAsItsVerdictSays) {
     const bool contact = trace.verdict == test::TapTrace::Verdict::contact;
     ++(contact ? contacts : none);
     const Replay replayed = replay(trace);
-    const Contact& result = replayed.tap.result();
+    const HeightResult& result = replayed.tap.result();
     SCOPED_TRACE(file.filename().string() + ": " + trace.what);
     EXPECT_TRUE(replayed.tap.done());
     EXPECT_EQ(result.outcome, contact ? Outcome::contact : Outcome::no_contact) << result.reason;

@@ -4,6 +4,7 @@
 
 #include "scene/scene_options.hpp"
 #include "support/filled.hpp"
+#include "support/requests.hpp"
 #include "support/testing.hpp"
 
 #include <palpate/backend.hpp>
@@ -24,23 +25,24 @@ class TappingBench {
   const Scene& scene() const { return *scene_; }
   Backend& backend() const { return *backend_; }
 
-  Contact tap(double x, double y, int number = 1) const { return backend_->tap({number, {x, y}, {}, {}}); }
+  TapResult tap(double x, double y, int number = 1) const { return backend_->tap(request_at({x, y}, number)); }
 
   /// Taps at `count` random places of the area.
   struct Tapped {
     Target place;
-    Contact contact;
+    TapResult contact;
     double truth;
   };
   std::vector<Tapped> taps(int count) const {
     Random random(7, "places");
     std::vector<Tapped> out;
-    TapRequest request;
+    std::optional<TapLine> previous;
     for (int i = 1; i <= count; ++i) {
-      request.number = i;
-      request.target = {0.23 * random.uniform(), 0.23 * random.uniform()};
-      out.push_back({request.target, backend_->tap(request), scene_->height(request.target.x, request.target.y)});
-      request.previous = request.target;
+      const Target place{0.23 * random.uniform(), 0.23 * random.uniform()};
+      TapRequest request = request_at(place, i);
+      request.previous = previous;
+      out.push_back({place, backend_->tap(request), scene_->height(place.x, place.y)});
+      previous = request.line;
     }
     return out;
   }
@@ -51,9 +53,9 @@ class TappingBench {
   std::shared_ptr<Backend> backend_;
 };
 
-inline void expect_same(const Contact& a, const Contact& b) {
+inline void expect_same(const TapResult& a, const TapResult& b) {
   EXPECT_EQ(a.outcome, b.outcome);
-  EXPECT_EQ(a.height, b.height);
+  EXPECT_EQ(a.height(), b.height());
   EXPECT_EQ(a.force, b.force);
   EXPECT_EQ(a.seconds, b.seconds);
   EXPECT_EQ(a.reason, b.reason);
@@ -75,7 +77,7 @@ inline TapStatistics statistics_of(const std::vector<TappingBench::Tapped>& taps
       ++out.failed;
       continue;
     }
-    const double error = one.contact.height - one.truth;
+    const double error = one.contact.height() - one.truth;
     out.bias += error;
     squares += error * error;
     out.seconds += one.contact.seconds;

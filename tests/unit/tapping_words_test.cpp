@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a person is told of a tap before it is made, motion by motion.
 #include "support/filled.hpp"
+#include "support/requests.hpp"
 #include "support/testing.hpp"
 #include "tapping/motion.hpp"
 
@@ -12,7 +13,12 @@ using ::testing::ElementsAre;
 MotionOptions motion(const std::string& yaml) { return test::filled<MotionOptions>(yaml); }
 
 /// The second tap of a run, at (3, 4) cm, where the models expect 5 +- 1 cm.
-TapRequest second() { return {2, {0.03, 0.04}, Target{0.115, 0.2}, Prediction{0.05, 0.01}}; }
+TapRequest second() {
+  TapRequest out = test::request_at({0.03, 0.04}, 2);
+  out.previous = line_from_above({0.115, 0.2});
+  out.predicted = Prediction{0.05, 0.01};
+  return out;
+}
 
 TEST(ATapInWords, SaysWayDescentAndForceOfEachMotion) {
   EXPECT_THAT(describe(motion("{type: paper}"), 0.0, second(), Target{0.115, 0.2}),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Looking ahead, beside what it is an abbreviation of: the error that is expected after a tap, outline by outline.
+#include "scene/scene_options.hpp"
 #include "support/mocks.hpp"
 #include "support/testing.hpp"
 
@@ -19,18 +20,18 @@ namespace {
 constexpr int kPlaces = 40;
 constexpr int kOutlines = 128;
 
-bool outline_holds(const OutlineSample& sample, int outline, int place) {
+bool outline_holds(const HypothesisSample& sample, int outline, int place) {
   return (sample.holds(outline / 64, place) >> static_cast<unsigned>(outline % 64) & 1U) != 0;
 }
 
 /// Outlines of chance, of which neighbouring places are much alike; a few places are in all or in none.
 WrittenBelief some_belief() {
   WrittenBelief out;
-  out.places = Points::Zero(kPlaces, 2);
-  out.p = Eigen::VectorXd::Constant(kPlaces, 0.3);
+  out.lines.starts = Points3::Zero(kPlaces, 3);
+  out.arrays[quantity::kObjectProbability] = Eigen::VectorXd::Constant(kPlaces, 0.3);
   out.sample.count = kOutlines;
   out.sample.holds.setZero(kOutlines / 64, kPlaces);
-  out.sample.to_find.resize(kPlaces);
+  out.sample.expected_discovery_area.resize(kPlaces);
   Random random(5, "variance reduction test");
   for (int k = 0; k < kOutlines; ++k) {
     bool on = random.uniform() < 0.4;
@@ -40,13 +41,13 @@ WrittenBelief some_belief() {
       if (held) out.sample.holds(k / 64, i) |= std::uint64_t{1} << static_cast<unsigned>(k % 64);
     }
   }
-  for (int i = 0; i < kPlaces; ++i) out.sample.to_find(i) = i % 5 == 0 ? 1e-4 * i : 0.0;
+  for (int i = 0; i < kPlaces; ++i) out.sample.expected_discovery_area(i) = i % 5 == 0 ? 1e-4 * i : 0.0;
   return out;
 }
 
 /// The sum over all places of the square that is expected of the error, where `counts` says which outlines there are:
 /// the best that can be shown is their mean.
-double expected_square(const OutlineSample& sample, const std::vector<int>& outlines) {
+double expected_square(const HypothesisSample& sample, const std::vector<int>& outlines) {
   double sum = 0.0;
   for (int place = 0; place < kPlaces; ++place) {
     double mean = 0.0;
@@ -58,7 +59,7 @@ double expected_square(const OutlineSample& sample, const std::vector<int>& outl
 }
 
 /// What a tap at each place is expected to settle, square metres.
-std::vector<double> expected_to_settle(const WrittenBelief& belief) {
+std::vector<double> expected_to_settle(const WrittenBelief& belief, const Area& area) {
   std::vector<int> all(kOutlines);
   std::iota(all.begin(), all.end(), 0);
   std::vector<double> out;
@@ -71,42 +72,50 @@ std::vector<double> expected_to_settle(const WrittenBelief& belief) {
       gain = expected_square(belief.sample, all) - share * expected_square(belief.sample, with) -
              (1.0 - share) * expected_square(belief.sample, without);
     }
-    out.push_back(gain * belief.desk.width * belief.desk.depth / kPlaces);
+    out.push_back(gain * area.width * area.depth / kPlaces);
   }
   return out;
 }
 
-std::vector<double> scored(const WrittenBelief& belief, double find) {
+/// Returns the scores on a desk of this area.
+std::vector<double> scored(const WrittenBelief& belief, const Area& area, double find) {
+  SceneOptions options;
+  options.area.width = area.width;
+  options.area.depth = area.depth;
+  const auto scene = build_scene(options, 1, shared_host());
+  const Context context{shared_host(), *scene, 1, nullptr};
   Eigen::VectorXd out(kPlaces);
-  make<Acquisition>(shared_host(), "variance_reduction", fmt::format("{{new_object_weight: {}}}", find))
+  context
+      .create<Acquisition>(
+          choose(shared_host(), "acquisition", "variance_reduction", fmt::format("{{new_object_weight: {}}}", find)))
       ->score(belief, out);
   return {out.data(), out.data() + kPlaces};
 }
 
 TEST(VarianceReduction, ScoresByTheErrorThatATapIsExpectedToTakeOffAndByWhatItIsExpectedToFind) {
-  WrittenBelief belief = some_belief();
+  const WrittenBelief belief = some_belief();
   for (const Area& desk : {Area{0.23, 0.23}, Area{0.12, 0.20}}) {
-    belief.desk = desk;
     for (const double find : {0.0, 1.5}) {
-      std::vector<double> expected = expected_to_settle(belief);
-      for (int x = 0; x < kPlaces; ++x) expected[static_cast<std::size_t>(x)] += find * belief.sample.to_find(x);
+      std::vector<double> expected = expected_to_settle(belief, desk);
+      for (int x = 0; x < kPlaces; ++x)
+        expected[static_cast<std::size_t>(x)] += find * belief.sample.expected_discovery_area(x);
       const double most = *std::max_element(expected.begin(), expected.end());
       for (double& one : expected) one /= most;
-      EXPECT_THAT(scored(belief, find), testing::Pointwise(testing::DoubleNear(1e-9), expected));
+      EXPECT_THAT(scored(belief, desk, find), testing::Pointwise(testing::DoubleNear(1e-9), expected));
     }
   }
 }
 
 TEST(VarianceReduction, FindsBeforeItSettlesOnADeskWhereMoreThingsMayBe) {
   WrittenBelief belief = some_belief();
-  belief.desk = {0.46, 0.46};
-  const std::vector<double> settles = expected_to_settle(belief);
+  const Area desk{0.46, 0.46};
+  const std::vector<double> settles = expected_to_settle(belief, desk);
   const double settled = *std::max_element(settles.begin(), settles.end());
   // Twice the worth, as the sides are twice as long; and a score above 1, up to 2, where most is to be found.
   for (const auto& [worth, most] : {std::pair{0.1, 1.0}, {1.4, 1.4}, {10.0, 2.0}}) {
-    belief.sample.to_find.setZero();
-    belief.sample.to_find(9) = worth * settled / (2.0 * 1.5);  // a place of which nothing is known else
-    const std::vector<double> scores = scored(belief, 1.5);
+    belief.sample.expected_discovery_area.setZero();
+    belief.sample.expected_discovery_area(9) = worth * settled / (2.0 * 1.5);  // a place of which nothing is known else
+    const std::vector<double> scores = scored(belief, desk, 1.5);
     EXPECT_NEAR(*std::max_element(scores.begin(), scores.end()), most, 1e-9);
     EXPECT_NEAR(scores[9], worth > 2.0 ? 2.0 : worth, 1e-9);
   }
@@ -114,8 +123,8 @@ TEST(VarianceReduction, FindsBeforeItSettlesOnADeskWhereMoreThingsMayBe) {
 
 TEST(VarianceReduction, TakesEachPlaceForItselfWhereTheFootprintKnowsNoOutlines) {
   WrittenBelief belief;
-  belief.places = Points::Zero(4, 2);
-  belief.p = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0}};
+  belief.lines.starts = Points3::Zero(4, 3);
+  belief.arrays[quantity::kObjectProbability] = Eigen::VectorXd{{0.0, 0.25, 0.5, 1.0}};
   Eigen::VectorXd out(4);
   make<Acquisition>(shared_host(), "variance_reduction", "{}")->score(belief, out);
   EXPECT_THAT(std::vector<double>(out.data(), out.data() + 4), testing::ElementsAre(0.0, 0.75, 1.0, 0.0));
@@ -124,7 +133,7 @@ TEST(VarianceReduction, TakesEachPlaceForItselfWhereTheFootprintKnowsNoOutlines)
 TEST(VarianceReduction, IsFlatWhereAllIsSettledAndNothingIsLeft) {
   WrittenBelief belief = some_belief();
   belief.sample.holds.setZero();
-  belief.sample.to_find.setZero();
+  belief.sample.expected_discovery_area.setZero();
   Eigen::VectorXd out(kPlaces);
   make<Acquisition>(shared_host(), "variance_reduction", "{}")->score(belief, out);
   EXPECT_EQ(out, Eigen::VectorXd::Zero(kPlaces));

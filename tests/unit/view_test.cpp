@@ -225,9 +225,9 @@ TEST_F(SeenHalf, SendsTheTapsWhereTheCameraWasBlind) {
   int all = 0;
   for (int seed = 1; seed <= 4; ++seed) {
     const Finished run("default.yaml", words(seed, 6));
-    EXPECT_EQ(run.taps.front().source, Source::acquisition) << "what the search would look for has been seen";
+    EXPECT_EQ(run.taps.front().request.source, Source::acquisition) << "what the search would look for has been seen";
     for (const TapRecord& tap : run.taps) {
-      far += tap.target.y > 0.1 ? 1 : 0;
+      far += tap.target().y > 0.1 ? 1 : 0;
       ++all;
     }
   }
@@ -237,16 +237,15 @@ TEST_F(SeenHalf, SendsTheTapsWhereTheCameraWasBlind) {
 TEST_F(SeenHalf, IsKnownToEveryModelBeforeTheFirstTap) {
   for (const std::string strategy : {"default", "weighted", "uncertainty", "weighted_two_part"}) {
     Prepared prepared("default.yaml", {"strategy=" + strategy, "backend=simulator", words(1, 5).front(), "taps=5"});
-    FromAbove& experiment = prepared.experiment;
-    experiment.ask(Quantity::uncertainty | Quantity::probability | Quantity::height);
-    const TapBelief& belief = experiment.belief();
+    prepared.read({quantity::kUncertainty, quantity::kObjectProbability, quantity::kHeightMean});
+    const HeightMap& belief = prepared.belief();
     double near = 0.0;
     double far = 0.0;
-    for (int i = 0; i < experiment.candidates().size(); ++i)
-      (experiment.candidates().target(i).y < 0.1 ? near : far) += belief.uncertainty()(i);
+    for (int i = 0; i < prepared.grid().size(); ++i)
+      (prepared.grid().target(i).y < 0.1 ? near : far) += belief.values(quantity::kUncertainty)(i);
     EXPECT_LT(near, 0.5 * far) << strategy;
-    EXPECT_GT(belief.probability().maxCoeff(), 0.8) << strategy;
-    EXPECT_TRUE(belief.touches().empty()) << "no tap has been made";
+    EXPECT_GT(belief.values(quantity::kObjectProbability).maxCoeff(), 0.8) << strategy;
+    EXPECT_TRUE(belief.readings().empty()) << "no tap has been made";
     prepared.run();
     EXPECT_EQ(prepared.taps.size(), 5U) << strategy;
   }

@@ -35,7 +35,8 @@ struct Scale {
   std::string number(const std::optional<double>& value) const { return value ? number(*value) : "-"; }
   /// Returns the number with its sign, for example "+0.3". A number that is rounded to 0 has no sign.
   std::string difference(double value) const;
-  /// Returns "3.21 [3.02, 3.40]" of a mean with its interval, "-" of no values: see analysis/mean_output.hpp.
+  /// Returns for example "3.21 [3.02, 3.40]" for a mean and its interval; "-" without values. See
+  /// analysis/mean_output.hpp.
   template <class Mean>
   std::string estimate(const Mean& mean) const;
   /// Returns for example "5 mm".

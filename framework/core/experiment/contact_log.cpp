@@ -32,28 +32,28 @@ const Touch& ContactLog::datum(int row) const {
                             : contacts_[static_cast<std::size_t>(row - prior_size())];
 }
 
-ContactLog::Reading ContactLog::read(const Contact& contact, int motion) const {
-  if (!offset_) return {contact.height, scene_.on_object(contact.height)};
+ContactLog::Reading ContactLog::read(const TapResult& result, int motion) const {
+  if (!offset_) return {result.height(), scene_.on_object(result.height())};
   // While the offset is uncertain, a contact that is hardly higher than the desk is more probably the desk than so low
   // an object.
   const Systematic::Estimate estimate = offset_->at(seconds_, motion);
-  const double height = contact.height - estimate.value;
+  const double height = result.height() - estimate.value;
   const double unsure = Systematic::kClearly * std::sqrt(estimate.variance + offset_->noise() * offset_->noise());
   return {height, scene_.on_object(height) && height - scene_.desk() > unsure};
 }
 
-void ContactLog::add(const Target& place, const Contact& contact, const Manner& manner, double noise) {
-  targets_.push_back(place);
-  initial_taps_ += manner.initial ? 1 : 0;
+void ContactLog::add(const TapRequest& request, const TapResult& result, double noise) {
+  ++taps_;
+  const Target place = request.line.target();
   const double began = seconds_;
-  const Reading reading = read(contact, manner.motion);
-  seconds_ += contact.seconds;
-  if (contact.outcome != Outcome::contact) return;
+  const Reading reading = read(result, request.motion);
+  seconds_ += result.seconds;
+  if (!result.is_contact()) return;
   contacts_.push_back({place, reading.height - scene_.desk(), reading.on});
   tap_numbers_.push_back(taps());
-  motions_.push_back(manner.motion);
-  const double share =
-      manner.roughness > 0.0 ? noise * noise / (noise * noise + manner.roughness * manner.roughness) : 1.0;
+  motions_.push_back(request.motion);
+  const double more = request.height_noise;
+  const double share = more > 0.0 ? noise * noise / (noise * noise + more * more) : 1.0;
   shares_.push_back(std::round(share * kTrustSteps) / kTrustSteps);
   uneven_ = uneven_ || shares_.back() < 1.0;
   if (reading.on) {
@@ -61,10 +61,9 @@ void ContactLog::add(const Target& place, const Contact& contact, const Manner& 
     object_rows_.push_back(size() - 1);
   }
   if (!offset_) return;
-  first_labels_.push_back(reading.on);
-  raw_heights_.push_back(contact.height - scene_.desk());
+  raw_heights_.push_back(result.height() - scene_.desk());
   begins_.push_back(began);
-  offset_->add(place, began, raw_heights_.back(), manner.motion);
+  offset_->add(place, began, raw_heights_.back(), request.motion);
   read_again();
 }
 
@@ -85,21 +84,6 @@ void ContactLog::read_again() {
     if (on) object_contacts_.push_back(contact);
   }
   find_object_rows();
-}
-
-std::optional<int> ContactLog::first_hit_tap() const {
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (contacts_[i].on) return tap_numbers_[i];
-  }
-  return std::nullopt;
-}
-
-std::vector<Relabelled> ContactLog::relabelled() const {
-  std::vector<Relabelled> out;
-  for (std::size_t i = 0; i < first_labels_.size(); ++i) {
-    if (contacts_[i].on != first_labels_[i]) out.push_back({tap_numbers_[i], contacts_[i].on});
-  }
-  return out;
 }
 
 Eigen::VectorXd ContactLog::trust(const Eigen::VectorXd& outlier_probability, double noise) const {

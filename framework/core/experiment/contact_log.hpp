@@ -8,7 +8,7 @@
 #include "view/view.hpp"
 
 #include <palpate/scene.hpp>
-#include <palpate/types.hpp>
+#include <palpate/tap.hpp>
 
 #include <Eigen/Core>
 
@@ -16,13 +16,6 @@
 #include <vector>
 
 namespace palpate {
-
-/// How a tap was made.
-struct Manner {
-  bool initial = false;    ///< chosen by the initial design
-  int motion = 0;          ///< index of the backend's motion
-  double roughness = 0.0;  ///< standard deviation that this motion adds to the height, metres
-};
 
 /// Taps, and the data that models learn from: first the points of the prior view, then the contacts. A row is the index
 /// of a datum. Heights are metres above the desk.
@@ -37,7 +30,7 @@ class ContactLog {
     bool on = false;      ///< on an object
   };
   /// Returns how the contact of the next tap would be read. Changes nothing.
-  Reading read(const Contact& contact, int motion) const;
+  Reading read(const TapResult& result, int motion) const;
   /// Whether the config estimates the offset of arm and motions (`height.offset`).
   bool has_offset() const { return offset_.has_value(); }
   /// Returns the variance of that estimate now, which all heights share, square metres; 0 without.
@@ -45,25 +38,18 @@ class ContactLog {
 
   /// Adds a tap, and reads all contacts again if offsets are estimated. `noise`: standard deviation of a height by the
   /// most precise motion, metres.
-  void add(const Target& place, const Contact& contact, const Manner& manner, double noise);
+  void add(const TapRequest& request, const TapResult& result, double noise);
 
   /// Whether the label of a contact before the latest has changed since reset_changed_labels().
   bool has_changed_labels() const { return changed_; }
   void reset_changed_labels() { changed_ = false; }
 
-  // All taps, in their order.
-  int taps() const { return static_cast<int>(targets_.size()); }
-  int initial_taps() const { return initial_taps_; }
-  const std::vector<Target>& targets() const { return targets_; }
+  int taps() const { return taps_; }
 
-  // The contacts, in their order, and of each the tap's number and motion.
+  // The contacts, in their order, and the number of the tap of each.
   const std::vector<Touch>& contacts() const { return contacts_; }
   const std::vector<Touch>& object_contacts() const { return object_contacts_; }
   const std::vector<int>& tap_numbers() const { return tap_numbers_; }
-  const std::vector<int>& motions() const { return motions_; }
-  std::optional<int> first_hit_tap() const;
-  /// Returns the contacts whose label differs from that at their tap, by ascending tap.
-  std::vector<Relabelled> relabelled() const;
 
   // The data.
   int size() const { return prior_size() + static_cast<int>(contacts_.size()); }
@@ -85,8 +71,7 @@ class ContactLog {
   void find_object_rows();
 
   const Scene& scene_;
-  std::vector<Target> targets_;
-  int initial_taps_ = 0;
+  int taps_ = 0;
   double seconds_ = 0.0;  ///< robot time of all taps
   std::optional<Systematic> offset_;
   std::vector<ViewedSquare> prior_;
@@ -98,7 +83,6 @@ class ContactLog {
   // Of each contact.
   std::vector<int> tap_numbers_, motions_;
   std::vector<double> raw_heights_, begins_;  ///< above the desk as measured; robot time before the tap
-  std::vector<bool> first_labels_;            ///< only where labels may change
   std::vector<double> shares_;                ///< variance of the most precise motion over that of its own
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Read this file first: it is the program. After the paper (Sun and Min 2021, section III): tap, add the point, update
-// both processes, choose the next tap by the exploration function.
+// the models, choose the next tap by the exploration function.
 #include "experiment/experiment.hpp"
 
-#include "config/relation.hpp"
-#include "experiment/tap_belief.hpp"
+#include "experiment/make_belief.hpp"
+#include "experiment/stop_rules.hpp"
+#include "experiment/unreached.hpp"
 #include "math/instructions.hpp"
 
 #include <palpate/error.hpp>
@@ -13,88 +14,214 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
 
-/// Whether it is said of a tap along an approach how far the tool came, and it may have come so far. Of one that met
-/// nothing it may be left out: all of the way is free then. Of others nothing is learnt.
-bool ends_on_its_way(const Approach& approach, const Contact& contact) {
-  if (contact.outcome != Outcome::contact && contact.outcome != Outcome::no_contact) return true;
-  if (!contact.along) return contact.outcome == Outcome::no_contact;
-  return *contact.along >= 0.0 && *contact.along <= approach.length;
+/// Whether the distance of a result lies on the line. It may be absent on lines from above, and for a free line.
+bool ends_on_line(const TapLine& line, const TapResult& result) {
+  if (result.outcome != Outcome::contact && result.outcome != Outcome::no_contact) return true;
+  if (!result.distance) return line.from_above || result.outcome == Outcome::no_contact;
+  return *result.distance >= 0.0 && *result.distance <= line.length;
 }
 
 }  // namespace
 
-void Experiment::run(Journal& journal, int most_taps) {
-  while (std::optional<TapRecord> tap = begin(journal, most_taps)) {
-    tap->contact = touch(*tap);
-    if (is_broken_off(tap->contact)) return stop(kStoppedByUser);
-    end(*tap, journal);
+void Experiment::run(Observer& observer, int most_taps) {
+  while (std::optional<TapRecord> tap = begin(observer, most_taps)) {
+    tap->result = make_tap(tap->request);
+    if (is_broken_off(tap->result)) return stop(kStoppedByUser);
+    end(*tap, observer);
   }
 }
 
-std::optional<TapRecord> Experiment::begin(Journal& journal, int most_taps, const Wish* wish) {
-  update();  // fit, infer
-  const std::int64_t budget = std::min<std::int64_t>(options_.taps, most_taps);
-  std::optional<std::string> reason = stop_reason(budget, wish != nullptr ? Source::caller : Source::acquisition);
+std::optional<TapRecord> Experiment::begin(Observer& observer, int most_taps, const TapOverride* override) {
+  belief_->update();  // take in the last tap, fit
+  show();
+  std::optional<std::string> reason;
   std::optional<TapRecord> tap;
-  if (!reason) {
-    try {
-      tap = choose_next(wish);
-      if (!tap) reason = "no candidate is left";
-    } catch (const Error&) {
-      // A program that is interrupted over its scores is no failure.
-      if (!stop_wished()) throw;
-      reason = kStoppedByUser;
-    }
+  try {
+    reason = reason_to_stop(most_taps, override);
+    if (!reason && !(tap = choose_next(override))) reason = "no candidate is left";
+  } catch (const Error&) {
+    // An interrupted program of an acquisition is no failure.
+    if (!is_stop_wished()) throw;
+    reason = kStoppedByUser;
   }
-  if (tap && !journal.permits(*tap)) reason = kStoppedByUser;
+  if (tap && !observer.permits(*tap, *this)) reason = kStoppedByUser;
   if (reason) {
     stop(*reason);
     return std::nullopt;
   }
-  journal.announce(*tap);
+  observer.announce(*tap);
   return tap;
 }
 
-void Experiment::end(TapRecord& tap, Journal& journal) {
-  if (tap.contact.outcome == Outcome::contact) read(tap);
+std::optional<std::string> Experiment::reason_to_stop(int most_taps, const TapOverride* override) {
+  if (is_stop_wished()) return kStoppedByUser;
+  if (counts().taps >= std::min<std::int64_t>(options_.taps, most_taps)) return "tap budget";
+  if (auto reason = stop_before_inference(options_.stop, counts())) return reason;
+  const bool is_starting = selector_.is_starting(*belief_);
+  prepare(override);
+  return is_starting ? std::nullopt : stop_after_inference(options_.stop, *belief_);
+}
+
+void Experiment::prepare(const TapOverride* override) {
+  begin_stages(selector_.next_source(*belief_, override));
+  infer();
+}
+
+std::optional<TapRecord> Experiment::choose_next(const TapOverride* override) {
+  TapRecord tap;
+  complete(tap.request);
+  {
+    const PhaseClock::Scope acquire(clock_, Phase::acquire);
+    prepare(override);
+    if (!selector_.choose(*belief_, stages_, tap, override)) return std::nullopt;
+    if (motions_) motions_->choose(*belief_, tap);
+  }
+  complete(tap.request);
+  tap.unreached = unreached_;
+  if (const QuantitySet reads = backend_->predicts(); !reads.empty())
+    tap.request.predicted = belief_->predict(tap.candidate, reads.count(quantity::kObjectProbability) != 0);
+  const PhaseClock::Scope log(clock_, Phase::log);
+  monitor_.describe(tap, *belief_);
+  return tap;
+}
+
+void Experiment::end(TapRecord& tap, Observer& observer) {
+  tap.reading = belief_->read(tap.request, tap.result);
   // Before any model takes it in: whatever a plugin does with it, a tap that was made is not lost.
-  journal.record(tap, clock_.take());
-  observe(tap);
+  observer.record(tap, clock_.take());
+  take_in(tap);
   check_backend(tap);
 }
 
-std::optional<std::string> Experiment::stop_reason(std::int64_t budget, Source source) {
-  if (stop_wished()) return kStoppedByUser;
-  if (counts().taps >= budget) return "tap budget";
-  const StopOptions& stop = options_.stop;
-  if (stop.robot_time && satisfies(counts().robot_seconds, Relation::at_least, *stop.robot_time)) return "robot_time";
-  return stop_rule(source);
+void Experiment::take_in(TapRecord tap) {
+  complete(tap.request);
+  belief_->add(tap.request, tap.result);
+  selector_.take_in(tap, *belief_);
+  if (motions_) motions_->take_in(tap, *belief_);
+  monitor_.take_in(tap, *belief_);
+  previous_ = tap.request.line;
 }
 
-Contact Experiment::touch(const TapRecord& tap) {
+void Experiment::resume(const std::vector<TapRecord>& taps) {
+  for (const TapRecord& tap : taps) {
+    belief_->update();
+    begin_stages(tap.is_of_caller() ? Source::caller : tap.request.source);
+    if (tap.request.source == Source::fallback) stages_.begin(*belief_, Stage::first_fallback);
+    belief_->update();
+    take_in(tap);
+  }
+}
+
+void Experiment::infer() {
+  belief_->update();
+  draw_candidates();
+  belief_->infer(stages_.reads());
+}
+
+void Experiment::begin_stages(Source source) {
+  stages_.begin(*belief_, source);
+  const std::vector<TapReading>& readings = belief_->readings();
+  if (std::any_of(readings.begin(), readings.end(), [](const TapReading& one) { return one.on_object; }))
+    stages_.begin(*belief_, Stage::first_object_contact);
+}
+
+void Experiment::show() {
+  if (counts().taps == 0) return;
+  stages_.begin(*belief_, Stage::first_tap);
+  infer();
+  const PhaseClock::Scope log(clock_, Phase::log);
+  backend_->show(*belief_);
+}
+
+void Experiment::draw_candidates() {
+  std::size_t tries = 0;
+  std::string rejected;
+  belief_->draw_candidates([&](const Candidates& lines, BoolOut out) {
+    backend_->reaches(lines, out);
+    for (Eigen::Index i = 0; i < out.size(); ++i, ++tries) {
+      if (!out(i)) mark_unreached(rejected, tries);
+    }
+  });
+  if (tries > 0) unreached_ = rejected;
+}
+
+void Experiment::complete(TapRequest& request) const {
+  request.number = monitor_.counts().taps + 1;
+  request.previous = previous_;
+  request.elapsed = monitor_.counts().robot_seconds;
+  request.height_noise = motions_ ? motions_->height_noise(request.motion) : 0.0;
+}
+
+void Experiment::look() {
+  stages_.begin(*belief_, Stage::first_tap);
+  infer();
+  truth();
+}
+
+RunResult Experiment::result() {
+  belief_->update();
+  stages_.begin(*belief_, Stage::summary);
+  infer();
+  return monitor_.result(*belief_);
+}
+
+Eigen::VectorXd Experiment::scores() {
+  stages_.begin(*belief_, Source::acquisition);
+  infer();
+  return selector_.scores(*belief_);
+}
+
+Preview Experiment::preview(const TapRecord& tap) const {
+  Preview out{tap.request.predicted, backend_->describe(tap.request)};
+  const bool is_built = belief_->available().count(quantity::kHeightMean) != 0;
+  if (!out.expected && is_built) out.expected = belief_->predict(tap.candidate, false);
+  return out;
+}
+
+ReadPlan Experiment::make_plan(const ReadPlan& more) const {
+  ReadPlan plan;
+  selector_.add_readers(plan);
+  palpate::add_readers(options_.stop, plan);
+  const std::string backend = "backend " + options_.backend.type;
+  const QuantitySet predicts = backend_->predicts();
+  if (!predicts.empty()) plan.readers.push_back({backend, predicts, Stage::first_tap, true});
+  if (motions_) plan.readers.push_back({backend, MotionSelector::reads(), Stage::first_tap, true});
+  plan.readers.push_back({backend, backend_->reads(), Stage::first_tap});
+  plan.readers.insert(plan.readers.end(), more.readers.begin(), more.readers.end());
+  plan.surface_from = more.surface_from;
+  const bool is_needed = backend_->scene_is_truth() || options_.log.surface;
+  if (!plan.surface_from && is_needed) plan.surface_from = Stage::summary;
+  return plan;
+}
+
+TapResult Experiment::make_tap(const TapRequest& request) {
   const PhaseClock::Scope robot(clock_, Phase::robot);
-  Contact contact = backend_->tap(request_of(tap));
-  const auto refused = [&](const char* why) -> Contact {
-    return {Outcome::aborted, 0.0, 0.0, std::isfinite(contact.seconds) ? contact.seconds : 0.0, why, contact.ends_run};
+  TapResult result = backend_->tap(request);
+  const double seconds = std::isfinite(result.seconds) ? result.seconds : 0.0;
+  const auto refused = [&](const char* why) {
+    return tap_without_contact(Outcome::aborted, seconds, why, result.ends_run);
   };
-  if (contact.outcome == Outcome::contact && !std::isfinite(contact.height)) return refused(kHeightRefused);
-  if (tap.approach && !ends_on_its_way(*tap.approach, contact)) return refused(kAlongRefused);
-  const bool force_known = contact.outcome != Outcome::contact || std::isfinite(contact.force);
-  if (!force_known || !std::isfinite(contact.seconds) || !std::isfinite(contact.peak.value_or(0.0)))
+  const bool is_contact = result.is_contact();
+  if (is_contact && (result.contacts.empty() || !result.contacts.front().position.allFinite()))
+    return refused(kHeightRefused);
+  if (!ends_on_line(request.line, result)) return refused(kAlongRefused);
+  if ((is_contact && !std::isfinite(result.force)) || !std::isfinite(result.seconds) ||
+      !std::isfinite(result.peak_force.value_or(0.0)))
     return refused(kNumberRefused);
-  return contact;
+  return result;
 }
 
-bool Experiment::is_broken_off(const Contact& contact) const {
-  return stop_wished() && contact.outcome == Outcome::aborted && backend_->repeatable();
+bool Experiment::is_broken_off(const TapResult& result) const {
+  return is_stop_wished() && result.outcome == Outcome::aborted && backend_->repeatable();
 }
 
-void Experiment::check_backend(const PastTap& tap) {
-  const Contact& last = tap.contact;
+void Experiment::check_backend(const TapRecord& tap) {
+  const TapResult& last = tap.result;
   const auto fail = [&](const std::string& reason, const std::string& hint = {}) {
     throw Error("backend/" + options_.backend.type, reason, hint, Error::Kind::run);
   };
@@ -105,9 +232,9 @@ void Experiment::check_backend(const PastTap& tap) {
   if (refused_in_a_row_ == kMostRefused) {
     fail(fmt::format("{} taps in a row failed, the last with: {}", kMostRefused, last.reason), "correct the backend");
   }
-  const bool is_well = last.outcome == Outcome::contact || tap.is_without_contact();
+  const bool is_well = tap.is_contact() || tap.is_free_line();
   if (is_well) failed_in_a_row_ = 0;
-  if (is_well || last.outcome == Outcome::unreachable || stop_wished()) return;
+  if (is_well || last.outcome == Outcome::unreachable || is_stop_wished()) return;
   constexpr std::int64_t kOfARobot = 3;
   const std::optional<std::int64_t> most =
       options_.stop.failed_in_a_row || backend_->repeatable() ? options_.stop.failed_in_a_row : kOfARobot;
@@ -117,13 +244,34 @@ void Experiment::check_backend(const PastTap& tap) {
        "correct the cause, then run 'palpate resume --retry-failed'; stop.failed_in_a_row sets the limit");
 }
 
-Experiment::Experiment(const ExperimentOptions& options, const PluginFactory& factory,
-                       const std::atomic<bool>* interrupted, std::shared_ptr<Backend> backend,
-                       const std::string& directory)
+Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& setup)
     : options_(options),
-      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), factory)),
-      context_{factory,     *scene_,   static_cast<std::uint64_t>(options.seed),
-               interrupted, directory, math::choose_instructions()},
-      backend_(backend ? std::move(backend) : context_.create<Backend>(options.backend)) {}
+      scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), setup.factory)),
+      context_{setup.factory,     *scene_,         static_cast<std::uint64_t>(options.seed),
+               setup.interrupted, setup.directory, math::choose_instructions()},
+      backend_(setup.backend ? setup.backend : context_.create<Backend>(options.backend)),
+      belief_(make_belief(options_, context_, clock_)),
+      selector_(options_, *belief_, context_),
+      stages_({}),
+      monitor_(*scene_, backend_->scene_is_truth()) {
+  if (auto motions = setup.factory.motions(options_.backend, *scene_))
+    motions_.emplace(std::move(motions), scene_->desk());
+  stages_ = ReadStages(make_plan(setup.readers));
+  require_offered(stages_.plan(), *belief_, belief_name(options_));
+  if (!belief_->candidates().fixed && !backend_->taps_any_line()) {
+    throw Error("backend",
+                fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
+                            belief_name(options_)),
+                "choose another backend, or a scene with touch: top");
+  }
+  if (options_.space && options_.space->view && !backend_->scene_is_truth()) {
+    throw Error("space.view",
+                fmt::format("uses the scene of the config, but backend {} taps another scene", options_.backend.type),
+                "remove it, or choose backend=simulator");
+  }
+  models_ = belief_->plan(stages_.plan());
+  belief_->update();
+  draw_candidates();
+}
 
 }  // namespace palpate

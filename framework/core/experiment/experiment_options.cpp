@@ -2,7 +2,7 @@
 #include "experiment/experiment_options.hpp"
 
 #include "config/keys.hpp"
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 
 #include <fmt/format.h>
 
@@ -40,11 +40,8 @@ void refuse_what_is_from_above(const ExperimentOptions& options, Fields& fields)
   only("engine.tolerance", options.engine.tolerance == usual.engine.tolerance);
   only("fitting.type", options.fitting.type == usual.fitting.type);
   only("footprint.type", options.footprint.type == usual.footprint.type);
-  only("fallback", options.fallback == usual.fallback);
   only("repeat", options.repeat == usual.repeat);
   only("engine.accuracy", options.engine.accuracy == usual.engine.accuracy);
-  only("stop.max_standard_deviation", !options.stop.max_standard_deviation);
-  only("stop.expected_rmse", !options.stop.expected_rmse);
   only("log.maps", options.log.maps == usual.log.maps);
   only("prior", !options.prior);
   only("engine.threads", options.engine.threads == usual.engine.threads);

@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-FootprintModel::FootprintModel(const PluginChoice& choice, const Candidates& candidates, const Context& context)
+FootprintModel::FootprintModel(const PluginChoice& choice, const CandidateGrid& candidates, const Context& context)
     : choice_(choice), candidates_(candidates), context_(context), footprint_(context.create<Footprint>(choice)) {}
 
 bool FootprintModel::show(bool hypotheses) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "experiment/contact_log.hpp"
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 
 #include <palpate/footprint.hpp>
 #include <palpate/plugin.hpp>
@@ -17,7 +17,7 @@ namespace palpate {
 class FootprintModel {
  public:
   /// `candidates` and `context` must outlive it.
-  FootprintModel(const PluginChoice& choice, const Candidates& candidates, const Context& context);
+  FootprintModel(const PluginChoice& choice, const CandidateGrid& candidates, const Context& context);
 
   /// Whether the footprint is the label GP, clipped: then nothing below is called.
   bool is_label_gp() const { return footprint_->is_weight(); }
@@ -37,7 +37,7 @@ class FootprintModel {
 
   /// M values; empty before the first update().
   const Eigen::VectorXd& probability() const { return probability_; }
-  const OutlineSample& hypotheses() const { return hypotheses_; }
+  const HypothesisSample& hypotheses() const { return hypotheses_; }
 
   /// The positions of all data now, a row each: objects may have been pushed since.
   const Points& positions() const { return positions_now_; }
@@ -48,14 +48,14 @@ class FootprintModel {
   void find_positions(const ContactLog& log);
 
   PluginChoice choice_;
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   const Context& context_;
   std::shared_ptr<Footprint> footprint_;
   bool shown_ = false;
   bool shows_hypotheses_ = false;
   int taken_ = 0;  ///< number of data that the plugin has
   Eigen::VectorXd probability_;
-  OutlineSample hypotheses_;
+  HypothesisSample hypotheses_;
   Points positions_, positions_now_;  ///< as made, and now
 };
 

@@ -14,7 +14,7 @@
 namespace palpate {
 
 GpModel::GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const GpSettings& settings,
-                 const EngineSettings& posterior, const Candidates& candidates, const Context& context)
+                 const EngineSettings& posterior, const CandidateGrid& candidates, const Context& context)
     : data_(data),
       kernel_choice_(kernel),
       fitting_choice_(fitting),

@@ -5,7 +5,7 @@
 
 #include "experiment/contact_log.hpp"
 #include "experiment/phases.hpp"
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 #include "gp/gaussian_process.hpp"
 
 #include <palpate/plugin.hpp>
@@ -28,13 +28,15 @@ class GpModel {
   /// Creates the plugins. `candidates` and `context` must outlive the model. Throws Error if the fitting or the engine
   /// cannot work with the kernel.
   GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const GpSettings& settings,
-          const EngineSettings& posterior, const Candidates& candidates, const Context& context);
+          const EngineSettings& posterior, const CandidateGrid& candidates, const Context& context);
 
   /// Adds a second output, the labels. Only before show().
   void add_labels(const GpSettings& settings) { outputs_.push_back(settings); }
 
   /// Whether a fit is due after any of the first `taps` contacts.
   bool is_fitted_within(int taps) const;
+
+  const EngineSettings& engine() const { return posterior_; }
 
   /// Builds the posterior, with the maps of an output from 0. Returns whether anything was missing.
   bool show(int output);
@@ -79,7 +81,7 @@ class GpModel {
   Data data_;
   PluginChoice kernel_choice_, fitting_choice_;
   EngineSettings posterior_;
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   const Context& context_;
   std::shared_ptr<Kernel> kernel_;
   std::shared_ptr<Fitting> fitting_;

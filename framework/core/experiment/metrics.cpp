@@ -42,15 +42,9 @@ struct Misses {
   Sum all, on_object;
 };
 
-Eigen::VectorXd gated(const SurfaceMaps& maps) {
-  if (!maps.two_part) return *maps.height;
-  const Eigen::VectorXd desk = Eigen::VectorXd::Constant(maps.height->size(), maps.desk);
-  return (maps.probability->array() >= 0.5).select(*maps.height, desk);
-}
-
 }  // namespace
 
-Truth truth_at(const Candidates& candidates, const Scene& scene) {
+Truth truth_at(const CandidateGrid& candidates, const Scene& scene) {
   Truth truth{Eigen::VectorXd(candidates.size()), Eigen::Array<bool, Eigen::Dynamic, 1>(candidates.size()),
               Eigen::ArrayXi(candidates.size()), scene.objects()};
   for (int i = 0; i < candidates.size(); ++i) {
@@ -60,16 +54,6 @@ Truth truth_at(const Candidates& candidates, const Scene& scene) {
     truth.object(i) = truth.on(i) ? scene.object(at.x, at.y) : Scene::kNoObject;
   }
   return truth;
-}
-
-void require_finite(const Errors& errors, int taps) {
-  for (const std::optional<double>& one :
-       {errors.rmse, errors.rmse_object, errors.rmse_height, errors.footprint_iou, errors.surface_distance,
-        errors.rms_surface_distance, errors.f_score, errors.coverage, errors.volume_iou}) {
-    if (std::isfinite(one.value_or(0.0))) continue;
-    throw Error("maps", fmt::format("their errors are not finite numbers after tap {}", taps),
-                "check for heights that no arm can report, or choose a larger height.noise", Error::Kind::run);
-  }
 }
 
 std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_object) {
@@ -92,12 +76,11 @@ double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth) {
   return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
 }
 
-SurfaceMaps maps_of(const TapBelief& belief, Quantities known) {
-  return {known.has(Quantity::height) ? &belief.height_mean() : nullptr,
-          known.has(Quantity::probability) ? &belief.probability() : nullptr, belief.two_part(), belief.desk()};
+Eigen::VectorXd reconstruction(const SurfaceMaps& maps) {
+  if (!maps.two_part) return *maps.height;
+  const Eigen::VectorXd desk = Eigen::VectorXd::Constant(maps.height->size(), maps.desk);
+  return (maps.probability->array() >= 0.5).select(*maps.height, desk);
 }
-
-Eigen::VectorXd reconstruction(const TapBelief& belief) { return gated(maps_of(belief, belief.surface_reads())); }
 
 Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   Errors out;
@@ -108,7 +91,7 @@ Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
       out.rmse = of_height.all.rms();
       out.rmse_object = out.rmse_height;
     } else if (maps.probability != nullptr) {
-      const Misses of_surface(gated(maps), truth);
+      const Misses of_surface(reconstruction(maps), truth);
       out.rmse = of_surface.all.rms();
       out.rmse_object = of_surface.on_object.rms();
     }
@@ -117,15 +100,13 @@ Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   return out;
 }
 
-Calibration calibration(const TapBelief& belief, const Truth& truth, const std::vector<bool>& tapped) {
-  const Eigen::VectorXd& mean = belief.height_mean();
-  const Eigen::VectorXd& variance = belief.height_variance();
-  const double noise = belief.height_noise() * belief.height_noise();
+Calibration calibration(const Eigen::VectorXd& mean, const Eigen::VectorXd& variance, double noise, const Truth& truth,
+                        const std::vector<bool>& tapped) {
   double log_density = 0.0;
   int inside = 0;
   int cells = 0;
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
-    const double spread = variance(i) + noise;
+    const double spread = variance(i) + noise * noise;
     if (!truth.on(i) || tapped[static_cast<std::size_t>(i)]) continue;
     const double error = truth.height(i) - mean(i);
     log_density += -0.5 * (kLogTwoPi + math::log(spread) + error * error / spread);  // not finite when spread is 0

@@ -10,7 +10,7 @@ namespace {
 /// The cells of a grid and who is beside whom.
 class Grid {
  public:
-  explicit Grid(const Candidates& candidates) : columns_(candidates.columns), rows_(candidates.rows) {}
+  explicit Grid(const CandidateGrid& candidates) : columns_(candidates.columns), rows_(candidates.rows) {}
 
   int size() const { return columns_ * rows_; }
 
@@ -65,7 +65,7 @@ bool has_a_fifth(int part, int whole) { return part > 0 && 5 * part >= whole; }
 
 class ObjectsSeen {
  public:
-  ObjectsSeen(const SurfaceMaps& maps, const Truth& truth, const Candidates& candidates)
+  ObjectsSeen(const SurfaceMaps& maps, const Truth& truth, const CandidateGrid& candidates)
       : maps_(maps), truth_(truth), candidates_(candidates), grid_(candidates) {
     out_.resize(static_cast<std::size_t>(truth.objects));
     for (int cell = 0; cell < grid_.size(); ++cell) {
@@ -164,14 +164,14 @@ class ObjectsSeen {
 
   const SurfaceMaps& maps_;
   const Truth& truth_;
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   Grid grid_;
   std::vector<ObjectErrors> out_;
 };
 
 }  // namespace
 
-std::vector<ObjectErrors> object_errors(const SurfaceMaps& maps, const Truth& truth, const Candidates& candidates) {
+std::vector<ObjectErrors> object_errors(const SurfaceMaps& maps, const Truth& truth, const CandidateGrid& candidates) {
   return ObjectsSeen(maps, truth, candidates).take();
 }
 

@@ -16,19 +16,7 @@
 
 namespace palpate {
 
-/// Of one object.
-struct ObjectErrors {
-  int cells = 0;
-  bool merged = false;  ///< with another, whichever
-  bool split = false;
-  /// Its cells that are predicted, over its cells and those that are predicted for nothing: on no object, and nearer to
-  /// a cell of this one than to any of another. So what is predicted too much counts once, and a cell of another object
-  /// never. Absent if it has no cell, as under a larger object, or nobody asked for the probability.
-  std::optional<double> iou;
-  std::optional<double> rmse_height;  ///< metres, the height mean over its cells; likewise
-};
-
 /// One for each object of the scene.
-std::vector<ObjectErrors> object_errors(const SurfaceMaps& maps, const Truth& truth, const Candidates& candidates);
+std::vector<ObjectErrors> object_errors(const SurfaceMaps& maps, const Truth& truth, const CandidateGrid& candidates);
 
 }  // namespace palpate

@@ -28,7 +28,7 @@ class OutlierModel {
   static constexpr double kRetapThreshold = 0.1;
 
   /// `prior`: probability that a contact is an outlier, in (0, 1). `candidates` must outlive it.
-  OutlierModel(double prior, const Candidates& candidates) : prior_(prior), surface_(candidates) {}
+  OutlierModel(double prior, const CandidateGrid& candidates) : prior_(prior), surface_(candidates) {}
 
   /// Computes the probabilities again; returns false if they were kept, as so many contacts are known. `objects`: the
   /// GP of the heights on objects, built and with all data. `footprint`: knows the probabilities of wrong labels; null:

@@ -32,12 +32,12 @@ std::vector<int> draw_random(int count, int candidates, Random& random) {
 }
 
 /// Adds the candidate nearest to (x, y) unless it was taken before.
-void take(std::vector<int>& design, const Candidates& candidates, double x, double y, const Area& area) {
+void take(std::vector<int>& design, const CandidateGrid& candidates, double x, double y, const Area& area) {
   const int index = candidates.nearest(x, y, area);
   if (std::find(design.begin(), design.end(), index) == design.end()) design.push_back(index);
 }
 
-std::vector<int> draw_sobol(std::size_t count, const Candidates& candidates, const Area& area, Random& random) {
+std::vector<int> draw_sobol(std::size_t count, const CandidateGrid& candidates, const Area& area, Random& random) {
   // A digital shift (Owen 2003): one random pattern of bits an axis, added without carry to every point. Unlike a
   // shift modulo 1 it keeps the even spread over halves, quarters, ... and still depends on the seed.
   const std::array<std::uint64_t, 2> shift{random.bits(), random.bits()};
@@ -53,7 +53,7 @@ std::vector<int> draw_sobol(std::size_t count, const Candidates& candidates, con
   return design;
 }
 
-std::vector<int> draw_lattice(std::size_t count, const Candidates& candidates, const Area& area) {
+std::vector<int> draw_lattice(std::size_t count, const CandidateGrid& candidates, const Area& area) {
   const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
   std::vector<int> design;
   for (int i = 0; i < side * side && design.size() < count; ++i) {
@@ -109,7 +109,18 @@ bool any_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Is
 
 }  // namespace
 
-std::vector<int> initial_design(const InitialOptions& options, const Candidates& candidates, const Area& area,
+CandidateGrid grid_of(const Candidates& candidates) {
+  CandidateGrid out;
+  out.columns = candidates.columns;
+  out.rows = candidates.rows;
+  out.points = candidates.starts.leftCols<2>();
+  out.xs = out.points.col(0).head(out.columns);
+  out.ys = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>(out.points.col(1).data(), out.rows,
+                                                                      Eigen::InnerStride<>(out.columns));
+  return out;
+}
+
+std::vector<int> initial_design(const InitialOptions& options, const CandidateGrid& candidates, const Area& area,
                                 std::uint64_t seed) {
   const auto count = static_cast<std::size_t>(options.count);
   Random random(seed, "initial");

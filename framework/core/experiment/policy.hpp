@@ -4,8 +4,9 @@
 #pragma once
 
 #include "experiment/experiment_options.hpp"
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 
+#include <palpate/belief.hpp>
 #include <palpate/random.hpp>
 #include <palpate/types.hpp>
 
@@ -15,10 +16,13 @@
 
 namespace palpate {
 
+/// Returns the grid of fixed candidates.
+CandidateGrid grid_of(const Candidates& candidates);
+
 /// The candidates of the first taps, all different, of a design that counts them. Depends on the design, the candidates
 /// and the seed alone, so that strategies with equal seeds start alike. There are as many candidates: the field list of
 /// the config refuses fewer.
-std::vector<int> initial_design(const InitialOptions& options, const Candidates& candidates, const Area& area,
+std::vector<int> initial_design(const InitialOptions& options, const CandidateGrid& candidates, const Area& area,
                                 std::uint64_t seed);
 
 /// The outcome of a choice among scored candidates.

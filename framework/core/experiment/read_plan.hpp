@@ -1,59 +1,49 @@
 // SPDX-License-Identifier: MIT
-// The readers of the belief: which quantities each reads, and from which tap on. The plan is fixed before the first
-// tap; no other model is built for the choice of taps.
+// The stages of a run at which the readers of the belief begin to read.
 #pragma once
-
-#include "experiment/tap_record.hpp"
 
 #include <palpate/belief.hpp>
 
+#include <set>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace palpate {
 
-/// When a reader begins to read. Its models take in the taps so far then.
-enum class Stage {
-  first_tap,
-  second_tap,
-  first_scored_tap,       ///< the first tap that scores choose, of the acquisition or of a caller
-  first_acquisition_tap,  ///< the first tap that the acquisition's scores choose
-  first_fallback,
-  first_object_contact
-};
-
-class ReadPlan {
+/// The plan of a run, and which of its stages have begun.
+class ReadStages {
  public:
-  struct Reader {
-    std::string name;  ///< such as "acquisition weighted"
-    Quantities reads;
-    Stage from;
-  };
+  explicit ReadStages(ReadPlan plan) : plan_(std::move(plan)) {}
 
-  void add(std::string name, Quantities reads, Stage from) { readers_.push_back({std::move(name), reads, from}); }
-  const std::vector<Reader>& readers() const { return readers_; }
+  const ReadPlan& plan() const { return plan_; }
 
-  /// Returns all that is read from this stage on.
-  Quantities reads(Stage from) const {
-    Quantities out;
-    for (const Reader& one : readers_) {
-      if (one.from == from) out = out | one.reads;
-    }
-    return out;
+  /// Begins a stage of `belief`, unless it has begun.
+  void begin(Belief& belief, Stage stage) {
+    if (begun_.insert(stage).second) belief.begin(stage);
   }
-  /// Returns all that is read of the belief to choose a tap by this source.
-  Quantities reads(Source source) const {
-    Quantities out = reads(Stage::first_tap);
-    if (source == Source::initial) return out;
-    out = out | reads(Stage::first_scored_tap);
-    if (source == Source::caller) return out;
-    out = out | reads(Stage::first_acquisition_tap);
-    return source == Source::fallback ? out | reads(Stage::first_fallback) : out;
+  /// Begins the stages of a tap by this source.
+  void begin(Belief& belief, Source source) {
+    begin(belief, Stage::first_tap);
+    if (source == Source::initial) return;
+    begin(belief, Stage::first_scored_tap);
+    if (source == Source::caller) return;
+    begin(belief, Stage::first_acquisition_tap);
+    if (source == Source::fallback) begin(belief, Stage::first_fallback);
+  }
+
+  /// Returns what is read in arrays by the stages that have begun.
+  QuantitySet reads() const {
+    QuantitySet out;
+    for (const Stage stage : begun_) out = out | plan_.reads(stage);
+    return out;
   }
 
  private:
-  std::vector<Reader> readers_;
+  ReadPlan plan_;
+  std::set<Stage> begun_;
 };
+
+/// Throws Error for a reader of a quantity that `belief`, by its `name`, does not offer.
+void require_offered(const ReadPlan& plan, const Belief& belief, const std::string& name);
 
 }  // namespace palpate

@@ -48,7 +48,7 @@ double step_of(const Eigen::VectorXd& places) { return places.size() > 1 ? place
 
 }  // namespace
 
-Search::Search(double smallest, const Candidates& candidates, const Area& area, Random random)
+Search::Search(double smallest, const CandidateGrid& candidates, const Area& area, Random random)
     : smallest_(smallest), candidates_(candidates), area_(area), random_(random) {}
 
 void Search::draw_discs() {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "experiment/policy.hpp"
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
@@ -28,7 +28,7 @@ namespace palpate {
 class Search {
  public:
   /// `smallest`: metres, above 0 and below both sides of the area. `candidates` form a grid and outlive the search.
-  Search(double smallest, const Candidates& candidates, const Area& area, Random random);
+  Search(double smallest, const CandidateGrid& candidates, const Area& area, Random random);
 
   /// There was a tap that hit nothing. A place that cannot be reached counts, too: the arm need not try the neighbours
   /// at once, and the discs beside it stay.
@@ -54,7 +54,7 @@ class Search {
   double room(const Target& place) const;
 
   double smallest_;
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   Area area_;
   Random random_;
   std::vector<Disc> discs_;  ///< those of some weight

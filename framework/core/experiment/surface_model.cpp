@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-SurfaceModel::SurfaceModel(GpModel gp, const std::optional<double>& outlier_probability, const Candidates& candidates,
-                           double desk)
+SurfaceModel::SurfaceModel(GpModel gp, const std::optional<double>& outlier_probability,
+                           const CandidateGrid& candidates, double desk)
     : gp_(std::move(gp)), desk_(desk) {
   if (outlier_probability) outliers_.emplace(*outlier_probability, candidates);
 }

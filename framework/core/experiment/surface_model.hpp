@@ -17,7 +17,8 @@ namespace palpate {
 class SurfaceModel {
  public:
   /// `outlier_probability`: prior, of a contact; none: there are no outliers. `desk`: its height, metres.
-  SurfaceModel(GpModel gp, const std::optional<double>& outlier_probability, const Candidates& candidates, double desk);
+  SurfaceModel(GpModel gp, const std::optional<double>& outlier_probability, const CandidateGrid& candidates,
+               double desk);
 
   GpModel& gp() { return gp_; }
   const GpModel& gp() const { return gp_; }

@@ -29,12 +29,6 @@
 
 namespace palpate {
 
-/// A contact with another label now than when it was made: what is added to all heights has become known better.
-struct Relabelled {
-  int tap = 0;             ///< its number, from 1
-  bool on_object = false;  ///< as it is read now
-};
-
 class Systematic {
  public:
   /// Prior standard deviations, metres and metres a second, and that of the noise of a contact with the desk, metres.

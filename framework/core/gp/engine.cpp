@@ -17,7 +17,7 @@ struct KindChoice {
   std::string reason;
 };
 
-KindChoice choose_kind(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates,
+KindChoice choose_kind(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates,
                        double error) {
   if (settings.engine != Kind::automatic) return {settings.engine, "chosen by engine.type"};
   if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
@@ -45,14 +45,14 @@ KindChoice choose_kind(const EngineSettings& settings, const Kernel& kernel, con
 
 }  // namespace
 
-std::string objection(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates) {
+std::string objection(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates) {
   if (settings.engine == Kind::automatic || settings.engine == Kind::dense) return {};
   if (!kernel.separable()) return "the kernel is not a product of a factor along x and a factor along y";
   if (!candidates.is_grid()) return "the candidates are not a product grid";
   return {};
 }
 
-EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates,
+EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates,
                            double error) {
   KindChoice choice = choose_kind(settings, kernel, candidates, error);
   const std::shared_ptr<Workers>& workers = settings.workers;

@@ -60,8 +60,8 @@ class Engine {
   const Maps& maps() const { return maps_; }
 
  protected:
-  Engine(const char* name, const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates,
-         const Tiling& tiling)
+  Engine(const char* name, const std::shared_ptr<Workers>& workers, const Kernel& kernel,
+         const CandidateGrid& candidates, const Tiling& tiling)
       : name_(name), workers_(workers), kernel_(kernel), candidates_(candidates), maps_(tiling, workers) {}
 
   /// Removes all rows.
@@ -70,19 +70,19 @@ class Engine {
   const char* name_;
   std::shared_ptr<Workers> workers_;
   const Kernel& kernel_;
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   Maps maps_;
 };
 
 /// Create an engine. `kernel` and `candidates` must outlive the engine, and the hyperparameters of the kernel must not
 /// change. `grid` and `lowrank` need a separable kernel and a product grid.
 std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
-                                   const Candidates& candidates);
+                                   const CandidateGrid& candidates);
 std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
-                                  const Candidates& candidates);
+                                  const CandidateGrid& candidates);
 /// `tolerance`: residual variance of the basis relative to the largest variance; see axis_basis().
 std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
-                                     const Candidates& candidates, double tolerance);
+                                     const CandidateGrid& candidates, double tolerance);
 
 /// Block `engine` of a config.
 struct EngineSettings {
@@ -104,12 +104,12 @@ struct EngineChoice {
 
 /// Returns the reason why the settings cannot be used with this kernel and these candidates, as the end of a sentence.
 /// Empty if they can. `grid` and `lowrank` need a separable kernel and a product grid.
-std::string objection(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates);
+std::string objection(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates);
 
 /// Creates the engine of the settings, or for `automatic` the fastest admissible engine. `lowrank` is not admissible if
 /// its error bound `error` exceeds the accuracy. There must be no objection() to the settings. Kernel and candidates
 /// must outlive the engine.
-EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const Candidates& candidates,
+EngineChoice choose_engine(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates,
                            double error = 0.0);
 
 }  // namespace palpate

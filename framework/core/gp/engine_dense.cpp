@@ -13,7 +13,7 @@ constexpr Eigen::Index kCandidatesPerCall = Eigen::Index{kBlocksPerCall} * loops
 
 class Dense final : public Engine {
  public:
-  Dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates)
+  Dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates)
       : Engine("dense", workers, kernel, candidates, Tiling::blocks(candidates.size())),
         rows_(maps_.tiling().strips() * loops::kBlock, loops::kBlock, loops::kBlock) {
     for (int i = 0; i < workers->threads(); ++i) covariances_.emplace_back(kCandidatesPerCall);
@@ -47,14 +47,14 @@ class Dense final : public Engine {
  private:
   void clear() override { rows_.clear(); }
 
-  loops::Panels rows_;                     ///< V, one panel per block of candidates
-  std::vector<loops::Lines> covariances_;  ///< scratch per worker: of a group of blocks with the last tap
+  loops::Panels rows_;                            ///< V, one panel per block of candidates
+  std::vector<loops::AlignedArray> covariances_;  ///< scratch per worker: of a group of blocks with the last tap
 };
 
 }  // namespace
 
 std::unique_ptr<Engine> make_dense(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
-                                   const Candidates& candidates) {
+                                   const CandidateGrid& candidates) {
   return std::make_unique<Dense>(workers, kernel, candidates);
 }
 

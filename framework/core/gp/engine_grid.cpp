@@ -12,7 +12,7 @@ constexpr int kGroup = 4;
 
 class Grid final : public Engine {
  public:
-  Grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates)
+  Grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates)
       : Engine("grid", workers, kernel, candidates, Tiling::grid(candidates)),
         along_x_(candidates.columns, loops::kPanelLines * kLine, kLine),
         along_y_(candidates.rows, loops::kStripRows, loops::kStripRows),
@@ -22,7 +22,7 @@ class Grid final : public Engine {
   void reserve(int rows) override {
     along_x_.reserve(rows);
     along_y_.reserve(rows);
-    for (loops::Lines& one : scaled_) one = loops::Lines(scaled_size(rows));
+    for (loops::AlignedArray& one : scaled_) one = loops::AlignedArray(scaled_size(rows));
   }
   bool needs_inverse() const override { return true; }
 
@@ -31,7 +31,7 @@ class Grid final : public Engine {
     append(1, candidates_.ys, row, along_y_);
     const int depth = along_x_.rows();
     if (scaled_.front().size() < scaled_size(depth)) {
-      for (loops::Lines& one : scaled_) one = loops::Lines(scaled_size(2 * depth));
+      for (loops::AlignedArray& one : scaled_) one = loops::AlignedArray(scaled_size(2 * depth));
     }
     const int strips = maps_.tiling().strips();
     workers_->for_each((strips + kGroup - 1) / kGroup, [&](int group, int worker) {
@@ -72,13 +72,13 @@ class Grid final : public Engine {
   loops::Panels along_x_;  ///< f_x(x_i, X), one row per tap
   loops::Panels along_y_;  ///< f_y(y_i, Y), one row per tap and one panel per strip
   Eigen::VectorXd column_;
-  std::vector<loops::Lines> scaled_;  ///< scratch per worker
+  std::vector<loops::AlignedArray> scaled_;  ///< scratch per worker
 };
 
 }  // namespace
 
 std::unique_ptr<Engine> make_grid(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
-                                  const Candidates& candidates) {
+                                  const CandidateGrid& candidates) {
   return std::make_unique<Grid>(workers, kernel, candidates);
 }
 

@@ -39,7 +39,8 @@ struct Axis {
 /// v = U_y S U_x^T with S = P_y^T diag(c) P_x. The product with U_x^T takes most of the time.
 class Lowrank final : public Engine {
  public:
-  Lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const Candidates& candidates, Axis x, Axis y)
+  Lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel, const CandidateGrid& candidates, Axis x,
+          Axis y)
       : Engine("lowrank", workers, kernel, candidates,
                x.basis.mirrored ? Tiling::mirrored_grid(candidates) : Tiling::grid(candidates)),
         x_(std::move(x)),
@@ -116,7 +117,7 @@ class Lowrank final : public Engine {
     const int depth = in_x_.rows();
     const auto needed = static_cast<std::size_t>(depth) * kRows;
     if (scaled_.size() < needed)
-      scaled_ = loops::Lines(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
+      scaled_ = loops::AlignedArray(std::max(2 * needed, static_cast<std::size_t>(reserved_) * kRows));
     const int lines = in_x_.padded() / kLine;
     double* c = shares_.data();
     for (int strip = 0; strip < in_y_.panels(); ++strip) {
@@ -163,21 +164,21 @@ class Lowrank final : public Engine {
   Axis y_;
   Eigen::VectorXd errors_;  ///< of covariances, one per tap, with reserved memory
   int reserved_ = 0;
-  loops::Panels in_x_;           ///< P_x, one row per tap
-  loops::Panels in_y_;           ///< P_y
-  loops::Panels basis_x_;        ///< U_x^T
-  loops::Panels basis_y_;        ///< U_y^T
-  loops::Lines scaled_;          ///< scratch: eight columns of P_y times c
-  loops::Lines shares_;          ///< S
-  loops::Lines shares_by_x_;     ///< S^T
-  loops::Lines rows_;            ///< S^T U_y^T
-  std::vector<loops::Lines> a_;  ///< scratch per worker
+  loops::Panels in_x_;                  ///< P_x, one row per tap
+  loops::Panels in_y_;                  ///< P_y
+  loops::Panels basis_x_;               ///< U_x^T
+  loops::Panels basis_y_;               ///< U_y^T
+  loops::AlignedArray scaled_;          ///< scratch: eight columns of P_y times c
+  loops::AlignedArray shares_;          ///< S
+  loops::AlignedArray shares_by_x_;     ///< S^T
+  loops::AlignedArray rows_;            ///< S^T U_y^T
+  std::vector<loops::AlignedArray> a_;  ///< scratch per worker
 };
 
 }  // namespace
 
 std::unique_ptr<Engine> make_lowrank(const std::shared_ptr<Workers>& workers, const Kernel& kernel,
-                                     const Candidates& candidates, double tolerance) {
+                                     const CandidateGrid& candidates, double tolerance) {
   return std::make_unique<Lowrank>(workers, kernel, candidates, Axis(kernel, 0, candidates.xs, tolerance),
                                    Axis(kernel, 1, candidates.ys, tolerance));
 }

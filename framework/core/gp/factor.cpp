@@ -14,10 +14,10 @@ namespace palpate {
 void Factor::reserve(int rows) {
   if (rows <= capacity_) return;
   const int padded = loops::round_up(rows, loops::kLine);
-  const loops::Lines old = std::move(rows_);
-  rows_ = loops::Lines(loops::packed_row(padded));
+  const loops::AlignedArray old = std::move(rows_);
+  rows_ = loops::AlignedArray(loops::packed_row(padded));
   std::copy_n(old.data(), loops::packed_row(size_), rows_.data());
-  scratch_ = loops::Lines(static_cast<std::size_t>(padded));
+  scratch_ = loops::AlignedArray(static_cast<std::size_t>(padded));
   largest_.vector.conservativeResize(rows);
   smallest_.vector.conservativeResize(rows);
   capacity_ = rows;

@@ -52,8 +52,8 @@ class Factor {
 
   int size_ = 0;
   int capacity_ = 0;
-  loops::Lines rows_;     ///< packed: see loops.hpp
-  loops::Lines scratch_;  ///< an aligned vector
+  loops::AlignedArray rows_;     ///< packed: see loops.hpp
+  loops::AlignedArray scratch_;  ///< an aligned vector
   double log_determinant_ = 0.0;
   Extreme largest_;
   Extreme smallest_;

@@ -19,7 +19,7 @@ bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
 }  // namespace
 
 GaussianProcess::GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs,
-                                 const Candidates& candidates, EngineSettings engine)
+                                 const CandidateGrid& candidates, EngineSettings engine)
     : kernel_(std::move(kernel)),
       outputs_(std::move(outputs)),
       maps_(*kernel_, candidates, std::move(engine), static_cast<int>(outputs_.size()),

@@ -55,7 +55,7 @@ class GaussianProcess {
  public:
   /// `candidates` must outlive the GP. All `outputs` have the same noise / signal and mean_ratio, which may differ
   /// from 0 only for a single output. Throws Error if there is an objection() to `engine`.
-  GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs, const Candidates& candidates,
+  GaussianProcess(std::shared_ptr<Kernel> kernel, std::vector<GpSettings> outputs, const CandidateGrid& candidates,
                   EngineSettings engine = {});
 
   /// Adds a tap with one value per output.

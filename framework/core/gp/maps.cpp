@@ -12,7 +12,7 @@ Tiling Tiling::blocks(int candidates) {
   return out;
 }
 
-Tiling Tiling::grid(const Candidates& candidates) {
+Tiling Tiling::grid(const CandidateGrid& candidates) {
   Tiling out;
   out.candidates_ = candidates.size();
   out.columns_ = candidates.columns;
@@ -23,7 +23,7 @@ Tiling Tiling::grid(const Candidates& candidates) {
   return out;
 }
 
-Tiling Tiling::mirrored_grid(const Candidates& candidates) {
+Tiling Tiling::mirrored_grid(const CandidateGrid& candidates) {
   Tiling out = grid(candidates);
   out.tile((out.columns_ + 1) / 2);
   out.mirror_ = static_cast<std::ptrdiff_t>(out.strip_size_);
@@ -44,8 +44,8 @@ Maps::Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers)
 void Maps::restart(int means, const VectorView& prior) {
   means_ = means;
   for (int k = 0; k < means; ++k) {
-    loops::Lines& map = mean_[static_cast<std::size_t>(k)];
-    if (map.size() == 0) map = loops::Lines(tiling_.size());
+    loops::AlignedArray& map = mean_[static_cast<std::size_t>(k)];
+    if (map.size() == 0) map = loops::AlignedArray(tiling_.size());
     std::fill_n(map.data(), map.size(), 0.0);
   }
   std::fill_n(variance_.data(), variance_.size(), 0.0);
@@ -76,7 +76,7 @@ loops::Update Maps::update(int strip, const double* coefficients) {
   return out;
 }
 
-void Maps::read(const loops::Lines& map, const loops::Reading& reading, double* out) const {
+void Maps::read(const loops::AlignedArray& map, const loops::Reading& reading, double* out) const {
   workers_->for_each(tiling_.strips(), [&](int strip, int) {
     tiling_.for_blocks(strip, [&](const MapBlock& block) {
       loops::read({map.data() + block.cell, block.width, out + block.candidate, block.columns, block.rows, block.count,

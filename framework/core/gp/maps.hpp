@@ -2,7 +2,7 @@
 // Memory of the maps over the candidates, in the layout of the loops (loops.hpp), and its order against the candidates.
 #pragma once
 
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 #include "gp/panels.hpp"
 #include "gp/workers.hpp"
 
@@ -32,13 +32,13 @@ struct MapBlock {
 /// is a sequence of tiles, one tile per panel of the columns.
 class Tiling {
  public:
-  /// Candidates at any positions: strips of one tile with kBlock consecutive candidates.
+  /// CandidateGrid at any positions: strips of one tile with kBlock consecutive candidates.
   static Tiling blocks(int candidates);
   /// A product grid: strips of loops::kStripRows rows, with the tiles of loops::Product.
-  static Tiling grid(const Candidates& candidates);
+  static Tiling grid(const CandidateGrid& candidates);
   /// A product grid with the tiles of loops::MirroredProduct: columns of the left half of the grid, and their mirror
   /// images in the right half.
-  static Tiling mirrored_grid(const Candidates& candidates);
+  static Tiling mirrored_grid(const CandidateGrid& candidates);
 
   int strips() const { return strips_; }
   /// Number of cells in a strip and in a map, padding included.
@@ -102,13 +102,13 @@ class Maps {
   const Tiling& tiling() const { return tiling_; }
 
  private:
-  void read(const loops::Lines& map, const loops::Reading& reading, double* out) const;
+  void read(const loops::AlignedArray& map, const loops::Reading& reading, double* out) const;
 
   Tiling tiling_;
   std::shared_ptr<Workers> workers_;
   int means_ = 0;
-  std::array<loops::Lines, loops::kMeans> mean_;
-  loops::Lines variance_;
+  std::array<loops::AlignedArray, loops::kMeans> mean_;
+  loops::AlignedArray variance_;
 };
 
 }  // namespace palpate

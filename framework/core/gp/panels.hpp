@@ -14,11 +14,11 @@ namespace palpate::loops {
 constexpr int round_up(int value, int unit) { return (value + unit - 1) / unit * unit; }
 
 /// Array of numbers, aligned to a cache line and not initialised, so that unused memory costs nothing.
-class Lines {
+class AlignedArray {
  public:
-  Lines() = default;
+  AlignedArray() = default;
   /// Throws std::bad_alloc.
-  explicit Lines(std::size_t size)
+  explicit AlignedArray(std::size_t size)
       : numbers_(static_cast<double*>(::operator new(size * sizeof(double), kAlignment))), size_(size) {}
 
   std::size_t size() const { return size_; }
@@ -58,10 +58,10 @@ class Panels {
   /// Reserves memory for this many rows. Keeps the rows.
   void reserve(int rows) {
     if (rows <= capacity_) return;
-    const Lines old = std::move(numbers_);
+    const AlignedArray old = std::move(numbers_);
     const std::size_t old_stride = stride();
     capacity_ = rows;
-    numbers_ = Lines(static_cast<std::size_t>(panels_) * stride());
+    numbers_ = AlignedArray(static_cast<std::size_t>(panels_) * stride());
     for (int p = 0; p < panels_; ++p) {
       const auto count = static_cast<std::ptrdiff_t>(rows_) * width(p);
       std::copy_n(old.data() + static_cast<std::size_t>(p) * old_stride, count, panel(p));
@@ -93,7 +93,7 @@ class Panels {
   int panels_ = 0;
   int rows_ = 0;
   int capacity_ = 0;
-  Lines numbers_;
+  AlignedArray numbers_;
 };
 
 }  // namespace palpate::loops

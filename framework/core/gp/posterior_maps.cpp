@@ -19,8 +19,8 @@ constexpr loops::Reading kUnchanged{-kUnbounded, kUnbounded, 1.0, 0.0};
 
 }  // namespace
 
-PosteriorMaps::PosteriorMaps(const Kernel& kernel, const Candidates& candidates, EngineSettings settings, int outputs,
-                             bool unknown_mean)
+PosteriorMaps::PosteriorMaps(const Kernel& kernel, const CandidateGrid& candidates, EngineSettings settings,
+                             int outputs, bool unknown_mean)
     : kernel_(kernel),
       candidates_(candidates),
       settings_(std::move(settings)),

@@ -2,7 +2,7 @@
 // Posterior means and variance of a GP over the candidates, updated by an engine (engine.hpp).
 #pragma once
 
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 #include "gp/engine.hpp"
 #include "gp/factor.hpp"
 
@@ -44,7 +44,7 @@ struct EngineState {
 class PosteriorMaps {
  public:
   /// `kernel` and `candidates` must outlive the maps. Throws Error if there is an objection() to `settings`.
-  PosteriorMaps(const Kernel& kernel, const Candidates& candidates, EngineSettings settings, int outputs,
+  PosteriorMaps(const Kernel& kernel, const CandidateGrid& candidates, EngineSettings settings, int outputs,
                 bool unknown_mean);
 
   /// Number of columns of FactoredTaps::solved.
@@ -90,7 +90,7 @@ class PosteriorMaps {
   void with_prior(const Use& use) const;
 
   const Kernel& kernel_;
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   EngineSettings settings_;
   int outputs_;
   bool unknown_mean_;

@@ -2,7 +2,7 @@
 // The surface of a GP without outliers, and its maps over the candidates.
 #pragma once
 
-#include "gp/candidates.hpp"
+#include "gp/candidate_grid.hpp"
 #include "gp/gaussian_process.hpp"
 #include "gp/outlier_posterior.hpp"
 
@@ -11,7 +11,7 @@ namespace palpate {
 class RobustSurface {
  public:
   /// `candidates` must outlive the surface.
-  explicit RobustSurface(const Candidates& candidates) : candidates_(candidates) {}
+  explicit RobustSurface(const CandidateGrid& candidates) : candidates_(candidates) {}
 
   /// Computes the outlier probabilities of all taps of `gp`. `prior`: probability of an outlier per tap, before the
   /// heights are compared. `extra_variance`: variance per tap beside the noise; empty for none. Without noise no tap
@@ -52,7 +52,7 @@ class RobustSurface {
  private:
   void update_covariances(const GaussianProcess& gp);
 
-  const Candidates& candidates_;
+  const CandidateGrid& candidates_;
   OutlierPosterior posterior_;
   FactorReport report_;
   int clamped_ = 0;

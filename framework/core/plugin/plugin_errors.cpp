@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace palpate {
@@ -28,39 +29,29 @@ class Undeclared final : public Error {
 };
 
 /// A belief that allows a plugin to read only the quantities that it declared.
-class Declared final : public Belief {
+class Declared final : public BeliefView {
  public:
-  /// `belief` and `name`, the name of the plugin, must outlive this object.
-  Declared(const Belief& belief, Quantities reads, const std::string& name)
-      : belief_(belief), reads_(reads), name_(name) {}
-  const Points& candidates() const override { return belief_.candidates(); }
-  Area area() const override { return belief_.area(); }
-  int taps() const override { return belief_.taps(); }
-  int initial_taps() const override { return belief_.initial_taps(); }
-  const std::vector<Target>& targets() const override { return belief_.targets(); }
-  const std::vector<Touch>& touches() const override { return belief_.touches(); }
-  const Eigen::VectorXd& uncertainty() const override {
-    return declared(Quantity::uncertainty, "the uncertainty u").uncertainty();
+  /// `belief` and the plugin's `name` must outlive it.
+  Declared(const BeliefView& belief, QuantitySet reads, const std::string& name)
+      : belief_(belief), reads_(std::move(reads)), name_(name) {}
+  const Candidates& candidates() const override { return belief_.candidates(); }
+  TapCounts counts() const override { return belief_.counts(); }
+  const std::vector<TapReading>& readings() const override { return belief_.readings(); }
+  const Eigen::VectorXd& values(std::string_view quantity) const override {
+    return declared(quantity).values(quantity);
   }
-  const Eigen::VectorXd& weight() const override { return declared(Quantity::weight, "the weight w").weight(); }
-  const Eigen::VectorXd& probability() const override {
-    return declared(Quantity::probability, "the probability p").probability();
-  }
-  const OutlineSample& outlines() const override { return declared(Quantity::outlines, "the outlines").outlines(); }
-  const Eigen::VectorXd& height_mean() const override { return declared(Quantity::height, "the height").height_mean(); }
-  const Eigen::VectorXd& height_variance() const override {
-    return declared(Quantity::height, "the height").height_variance();
-  }
+  std::optional<double> scalar(std::string_view quantity) const override { return declared(quantity).scalar(quantity); }
+  const HypothesisSample& hypotheses() const override { return declared(quantity::kHypotheses).hypotheses(); }
 
  private:
-  const Belief& declared(Quantity one, const char* name) const {
-    if (reads_.has(one)) return belief_;
-    throw Undeclared(name_, std::string("reads ") + name + ", which its reads() does not list", "add it there",
+  const BeliefView& declared(std::string_view quantity) const {
+    if (reads_.find(quantity) != reads_.end()) return belief_;
+    throw Undeclared(name_, "reads " + std::string(quantity) + ", which its reads() does not list", "add it there",
                      Error::Kind::run);
   }
 
-  const Belief& belief_;
-  Quantities reads_;
+  const BeliefView& belief_;
+  QuantitySet reads_;
   const std::string& name_;
 };
 
@@ -119,7 +110,7 @@ class Wrapper : public Interface {
   }
 
   /// Returns `belief` with the access that the plugin has declared.
-  Declared declared(const Belief& belief) const { return Declared(belief, call(&Interface::reads), name_); }
+  Declared declared(const BeliefView& belief) const { return Declared(belief, call(&Interface::reads), name_); }
 
  private:
   std::string name_;
@@ -184,13 +175,9 @@ class WrappedKernel final : public Wrapper<Kernel> {
 class WrappedAcquisition final : public Wrapper<Acquisition> {
  public:
   using Wrapper::Wrapper;
-  Quantities reads() const override { return call(&Acquisition::reads); }
-  void score(const Belief& belief, VectorOut out) const override { call(&Acquisition::score, declared(belief), out); }
-  bool from_above() const override { return call(&Acquisition::from_above); }
-  bool any_side() const override { return call(&Acquisition::any_side); }
-  Quantities reads_of_approaches() const override { return call(&Acquisition::reads_of_approaches); }
-  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
-    call(&Acquisition::score_approaches, belief, out);
+  QuantitySet reads() const override { return call(&Acquisition::reads); }
+  void score(const BeliefView& belief, VectorOut out) const override {
+    call(&Acquisition::score, declared(belief), out);
   }
   double prior_scale() const override { return finite("prior_scale()", call(&Acquisition::prior_scale)); }
 };
@@ -220,9 +207,9 @@ class WrappedFootprint final : public Wrapper<Footprint> {
     call(&Footprint::probability, places, out);
     require_finite("probability()", out);
   }
-  void sample(const PointsView& places, OutlineSample& out) const override {
+  void sample(const PointsView& places, HypothesisSample& out) const override {
     call(&Footprint::sample, places, out);
-    require_finite("sample()", out.to_find);
+    require_finite("sample()", out.expected_discovery_area);
   }
   void doubt(VectorOut out) const override {
     call(&Footprint::doubt, out);
@@ -242,14 +229,15 @@ class WrappedFootprint final : public Wrapper<Footprint> {
 class WrappedBackend final : public Wrapper<Backend> {
  public:
   using Wrapper::Wrapper;
-  Contact tap(const TapRequest& request) override { return call(&Backend::tap, request); }
+  TapResult tap(const TapRequest& request) override { return call(&Backend::tap, request); }
   bool repeatable() const override { return call(&Backend::repeatable); }
   std::vector<std::string> describe(const TapRequest& request) override { return call(&Backend::describe, request); }
   std::vector<Learnt> learnt() const override { return call(&Backend::learnt); }
-  bool reaches(const Approach& approach) const override { return call(&Backend::reaches, approach); }
-  Quantities expects() const override { return call(&Backend::expects); }
-  Quantities reads() const override { return call(&Backend::reads); }
-  void show(const Belief& belief) override { call(&Backend::show, declared(belief)); }
+  bool taps_any_line() const override { return call(&Backend::taps_any_line); }
+  void reaches(const Candidates& lines, BoolOut out) const override { call(&Backend::reaches, lines, out); }
+  QuantitySet predicts() const override { return call(&Backend::predicts); }
+  QuantitySet reads() const override { return call(&Backend::reads); }
+  void show(const BeliefView& belief) override { call(&Backend::show, declared(belief)); }
   bool scene_is_truth() const override { return call(&Backend::scene_is_truth); }
 };
 

@@ -5,9 +5,9 @@
 #include "record/distinctions.hpp"
 #include "record/files.hpp"
 #include "record/record_reader.hpp"
+#include "record/recorded_run.hpp"
 #include "record/resolved.hpp"
 #include "record/run_directory.hpp"
-#include "record/session.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

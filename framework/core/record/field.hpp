@@ -51,6 +51,23 @@ struct RecordField {
   bool first_look = false;
 };
 
+/// Reads the cells of one row. Errors name `where`, the file and the tap.
+class RowReader {
+ public:
+  RowReader(const Row& row, std::string where) : row_(row), where_(std::move(where)) {}
+
+  const Row& row() const { return row_; }
+  /// Returns the number of a field, `absent` for null. Throws Error for something else.
+  double number(const char* name, double absent) const;
+  /// Returns the index of a text among `names`. Throws Error for another text.
+  std::size_t index(const char* name, const std::vector<const char*>& names) const;
+  [[noreturn]] void refuse(const std::string& reason) const;
+
+ private:
+  const Row& row_;
+  std::string where_;
+};
+
 /// The fields of the record that is made of a `Record`, in their order.
 template <class Record>
 class FieldList {
@@ -84,6 +101,18 @@ class FieldList {
     return insert(RecordField(std::move(pattern), std::move(meaning)), true, std::move(write));
   }
 
+  /// Has the latest field read what it writes.
+  void read_by(std::function<void(Record&, const RowReader&)> read) { entries_.back().read = std::move(read); }
+
+  /// Returns the record of a row, as far as fields read what they write. Throws Error for a cell that is damaged.
+  Record read(const RowReader& row) const {
+    Record out;
+    for (const Entry& one : entries_) {
+      if (one.read) one.read(out, row);
+    }
+    return out;
+  }
+
   /// A record as a row.
   Row row(const Record& record) const {
     Row out;
@@ -106,6 +135,7 @@ class FieldList {
     RecordField field;
     bool family;
     std::function<void(Row&, const Record&)> write;
+    std::function<void(Record&, const RowReader&)> read;
   };
 
   template <class T>
@@ -119,7 +149,7 @@ class FieldList {
   }
 
   RecordField& insert(RecordField field, bool family, std::function<void(Row&, const Record&)> write) {
-    entries_.push_back({std::move(field), family, std::move(write)});
+    entries_.push_back({std::move(field), family, std::move(write), nullptr});
     return entries_.back().field;
   }
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "record/fields.hpp"
 
+#include "experiment/unreached.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/sample.hpp"
-#include "record/tap_row.hpp"
 
 #include <fmt/format.h>
 #include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -99,44 +100,14 @@ const std::vector<ErrorField>& error_list() {
 
 std::optional<std::string> if_any(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
 
-/// The fields of a process, their names beginning with `name`: null where there is none, kernel and fit left out.
-void add_process(Row& row, const std::string& name, const std::optional<GpState>& state) {
-  if (state) {
-    for (const KernelParameter& one : state->kernel) row.add(name + ".kernel." + one.name, one.value);
-  }
-  const auto add = [&](const char* field, auto get) {
-    row.add(name + "." + field, state ? std::optional(get(*state)) : std::nullopt);
-  };
-  add("signal", [](const GpState& s) { return s.settings.signal; });
-  add("noise", [](const GpState& s) { return s.settings.noise; });
-  add("mean", [](const GpState& s) { return s.settings.mean; });
-  add("log_marginal_likelihood", [](const GpState& s) { return s.log_marginal_likelihood; });
-  add("jitter", [](const GpState& s) { return s.jitter; });
-  add("condition", [](const GpState& s) { return s.condition; });
-  add("engine", [](const GpState& s) { return s.engine; });
-  add("error_bound", [](const GpState& s) { return s.error_bound; });
-  if (state && state->fit) {
-    row.add(name + ".fit.changed", state->fit->changed);
-    row.add(name + ".fit.objective", state->fit->objective);
-    row.add(name + ".fit.evaluations", state->fit->evaluations);
-    row.add(name + ".fit.reason", state->fit->reason);
-  }
+/// Returns the number at `name` in the state of a belief.
+std::optional<double> number_of(const BeliefState& state, const std::string& name) {
+  const Scalar* const value = state.find(name);
+  const double* const number = value != nullptr ? std::get_if<double>(value) : nullptr;
+  return number != nullptr ? std::optional(*number) : std::nullopt;
 }
 
-/// "footprint.<number>" and "footprint.remark"; none where there is none.
-void add_footprint(Row& row, const std::optional<FootprintState>& state) {
-  if (!state) return;
-  for (const FootprintNumber& one : state->numbers) row.add("footprint." + one.name, one.value);
-  row.add("footprint.remark", if_any(state->remark));
-}
-
-/// Probabilities with two decimals; none for an empty list.
-std::optional<JsonList> list_of(const std::vector<SuspectedOutlier>& suspected) {
-  std::vector<Row> rows;
-  for (const SuspectedOutlier& one : suspected)
-    rows.push_back({{{"tap", std::int64_t{one.tap}}, {"probability", std::round(100.0 * one.probability) / 100.0}}});
-  return rows.empty() ? std::nullopt : std::optional(list_of(rows));
-}
+bool has(const BeliefState& state, const std::string& name) { return state.find(name) != nullptr; }
 
 constexpr const char* kObject = "object";
 
@@ -148,39 +119,37 @@ std::string words(const std::vector<Relabelled>& relabelled) {
   return out;
 }
 
-/// Where the loop lays the state of its models down, in a tap and in a result alike.
+/// The state of the models, in a tap and in a result alike.
 template <class Record>
-void list_models(FieldList<Record>& list, bool reasons) {
-  const auto process = [&](const char* name, const char* meaning, std::optional<GpState> ModelState::*state) {
-    list.add_family(std::string(name) + ".*", meaning, [=](Row& row, const Record& record) {
-      const std::optional<GpState>& of = record.*state;
-      if (!of && state == &ModelState::surface_gp) return;
-      add_process(row, name, of);
-      if (reasons) row.add(std::string(name) + ".engine_reason", of ? std::optional(of->engine_reason) : std::nullopt);
+void list_models(FieldList<Record>& list) {
+  const auto family = [&](const std::string& name, const char* meaning) {
+    list.add_family(name + ".*", meaning, [prefix = name + "."](Row& row, const Record& record) {
+      for (const auto& [field, value] : record.state.fields) {
+        if (boost::starts_with(field, prefix)) row.add(field, value);
+      }
     });
   };
-  process("height_gp",
-          "state of the height GP: hyperparameters by the names of their options (`kernel.kernels.0.length_scale`), "
-          "`log_marginal_likelihood`, and `jitter` as a variance. `condition` is a lower bound of the condition "
-          "number, most often within a factor of 3. `engine` computes the posterior. `error_bound` limits the error "
-          "that `engine` adds to the rounding of `dense`: of means in signals or of variances in signals squared, "
-          "whichever is larger. `fit.*` describes the fit after the latest tap, if one was due: `changed` (false if "
-          "the old hyperparameters stay), `objective` (larger is better), `evaluations`, and `reason` for its end",
-          &ModelState::height_gp);
-  process("label_gp", "state of the label GP, with the same fields as `height_gp`", &ModelState::label_gp);
-  process("surface_gp",
-          "state of the GP over the heights of taps on an object, with the fields of `height_gp`. Present only with "
-          "`surface: two_part`, and only if the strategy, a stop rule or the backend reads the height",
-          &ModelState::surface_gp);
-  list.add_family("footprint.*",
-                  "numbers that the footprint reports about itself, and `remark` if their computation needs a comment; "
-                  "absent with `footprint: gp_regression`",
-                  [](Row& row, const Record& record) { add_footprint(row, record.footprint); });
+  family("height_gp",
+         "state of the height GP: hyperparameters by the names of their options (`kernel.kernels.0.length_scale`), "
+         "`log_marginal_likelihood`, and `jitter` as a variance. `condition` is a lower bound of the condition "
+         "number, most often within a factor of 3. `engine` computes the posterior. `error_bound` limits the error "
+         "that `engine` adds to the rounding of `dense`: of means in signals or of variances in signals squared, "
+         "whichever is larger. `fit.*` describes the fit after the latest tap, if one was due: `changed` (false if "
+         "the old hyperparameters stay), `objective` (larger is better), `evaluations`, and `reason` for its end");
+  family("label_gp", "state of the label GP, with the same fields as `height_gp`");
+  family("surface_gp",
+         "state of the GP over the heights of taps on an object, with the fields of `height_gp`. Present only with "
+         "`surface: two_part`, and only if the strategy, a stop rule or the backend reads the height");
+  family("footprint",
+         "numbers that the footprint reports about itself, and `remark` if their computation needs a comment; "
+         "absent with `footprint: gp_regression`");
   list.add_family("suspected_outliers",
                   "list of `tap` and `probability` of the contacts whose height or label is an outlier with a "
                   "probability of 0.1 or more. Null if there are none; only with `height.outlier_probability`",
                   [](Row& row, const Record& record) {
-                    if (record.suspected_outliers) row.add("suspected_outliers", list_of(*record.suspected_outliers));
+                    for (const auto& [field, value] : record.state.fields) {
+                      if (field == "suspected_outliers") row.add(field, value);
+                    }
                   });
 }
 
@@ -189,119 +158,202 @@ auto part(const std::optional<T>& whole, Member T::*member) {
   return whole ? std::optional<Member>((*whole).*member) : std::nullopt;
 }
 
-/// A number of a contact, which only a touch has.
-std::optional<double> if_touched(const TapRecord& tap, double value) {
-  return tap.contact.outcome == Outcome::contact ? std::optional(value) : std::nullopt;
+/// Returns `value` if the tap made contact, else nullopt.
+std::optional<double> if_contact(const TapRecord& tap, double value) {
+  return tap.is_contact() ? std::optional(value) : std::nullopt;
+}
+
+const std::vector<const char*> kSources{"initial", "acquisition", "fallback", "caller"};
+const std::vector<const char*> kOutcomes{"contact", "no_contact", "unreachable", "timeout", "aborted", "unknown"};
+
+/// The line of the tool, and its result along it.
+void list_line(FieldList<TapRecord>& list) {
+  using Tap = TapRecord;
+  const auto of_line = [&](const char* name, const char* meaning, auto get, Unit unit) {
+    list.add_where([](const Tap& t) { return !t.request.line.from_above; }, name, meaning,
+                   [get](const Tap& t) { return std::optional<double>(get(t.request.line)); })
+        .in(unit);
+  };
+  list.add("x", "x of the target", [](const Tap& t) { return t.request.line.start.x(); }).in(Unit::metre);
+  list.read_by([](Tap& t, const RowReader& in) {
+    t.request.line = line_from_above({in.number("x", 0.0), in.number("y", 0.0)});
+  });
+  list.add("y", "y of the target", [](const Tap& t) { return t.request.line.start.y(); }).in(Unit::metre);
+  of_line(
+      "z", "from any side: z of the start of the tool, as are `x` and `y`",
+      [](const TapLine& line) { return line.start.z(); }, Unit::metre);
+  list.read_by([](Tap& t, const RowReader& in) {
+    constexpr std::array<const char*, 5> kParts{"z", "direction.x", "direction.y", "direction.z", "length"};
+    const auto known = std::count_if(kParts.begin(), kParts.end(),
+                                     [&](const char* part) { return in.row().number(part).has_value(); });
+    if (known == 0) return;
+    if (known < std::ptrdiff_t{kParts.size()}) in.refuse("has some of z, direction and length, but not all");
+    TapLine& line = t.request.line;
+    line.from_above = false;
+    line.start.z() = in.number("z", 0.0);
+    line.direction << in.number("direction.x", 0.0), in.number("direction.y", 0.0), in.number("direction.z", 0.0);
+    line.length = in.number("length", 0.0);
+  });
+  of_line(
+      "direction.x", "x of the unit vector along which the tool moves",
+      [](const TapLine& line) { return line.direction.x(); }, Unit::none);
+  of_line(
+      "direction.y", "y of the same unit vector", [](const TapLine& line) { return line.direction.y(); }, Unit::none);
+  of_line(
+      "direction.z", "z of the same unit vector", [](const TapLine& line) { return line.direction.z(); }, Unit::none);
+  list.add_where([](const Tap& t) { return !t.unreached.empty(); }, "unreached",
+                 "from any side: the drawn approaches that the backend rejected, if any, as hexadecimal digits. Each "
+                 "digit stands for four approaches in their order, its highest bit for the first",
+                 [](const Tap& t) { return t.unreached; });
+  list.read_by([](Tap& t, const RowReader& in) {
+    t.unreached = in.row().text("unreached");
+    if (t.unreached.find_first_not_of(kHexDigits) != std::string::npos) in.refuse("has no valid 'unreached'");
+  });
+  of_line(
+      "length", "largest distance that the tool may move along its approach",
+      [](const TapLine& line) { return line.length; }, Unit::metre);
+  list.add_where([](const Tap& t) { return t.result.distance.has_value(); }, "along",
+                 "distance that the tool moved along its approach", [](const Tap& t) { return t.result.distance; })
+      .in(Unit::metre);
+  list.read_by([](Tap& t, const RowReader& in) { t.result.distance = in.row().number("along"); });
+}
+
+/// What came of the tap.
+void list_result(FieldList<TapRecord>& list) {
+  using Tap = TapRecord;
+  list.add("outcome", "result of the tap: `contact`, `no_contact`, `unreachable`, `timeout`, `aborted` or `unknown`",
+           [](const Tap& t) { return outcome_name(t.result.outcome); });
+  list.read_by([](Tap& t, const RowReader& in) {
+    t.result.outcome = static_cast<Outcome>(in.index("outcome", kOutcomes));
+    const bool is_whole = t.request.line.from_above || !t.is_contact() || t.result.distance;
+    if (!is_whole) in.refuse("has no number 'along', how far the tool went to its contact");
+  });
+  list.add("reason", "cause of the failure, if the tap failed", [](const Tap& t) { return if_any(t.result.reason); });
+  list.read_by([](Tap& t, const RowReader& in) { t.result.reason = in.row().text("reason"); });
+  list.add(
+      "on_object",
+      "whether a contact was classified as on an object right after the tap. `relabelled` in the summary lists "
+      "the taps that are classified differently at the end",
+      [](const Tap& t) { return t.reading && t.is_contact() ? std::optional(t.reading->on_object) : std::nullopt; });
+  list.add("height", "height of the contact", [](const Tap& t) { return if_contact(t, t.result.height()); })
+      .in(Unit::metre);
+  list.read_by([](Tap& t, const RowReader& in) {
+    const double height = in.number("height", 0.0);
+    if (!t.is_contact()) return;
+    Eigen::Vector3d at = t.request.line.at(t.result.distance.value_or(0.0));
+    at.z() = height;
+    t.result.contacts = {{at}};
+    t.reading.emplace();
+    t.reading->position = at;
+    t.reading->on_object = in.row().flag("on_object").value_or(false);
+  });
+  list.add_where([](const Tap& t) { return t.reading && t.reading->is_corrected; }, "corrected_height",
+                 "`height` minus the offset that motion and arm add to all heights, as estimated at the time of the "
+                 "tap; only with `height.offset`",
+                 [](const Tap& t) { return t.reading->position.z(); })
+      .in(Unit::metre);
+  list.add("force", "largest force measured in a contact (the threshold, if the scene has no effects)",
+           [](const Tap& t) { return if_contact(t, t.result.force); })
+      .in(Unit::newton);
+  list.read_by([](Tap& t, const RowReader& in) { t.result.force = in.number("force", 0.0); });
+  list.add_where([](const Tap& t) { return t.result.peak_force.has_value(); }, "peak_force",
+                 "largest force against the tool during the whole tap, also of a failed tap: the true force from a "
+                 "simulator, else the measured one. Present only if forces are simulated or measured",
+                 [](const Tap& t) { return t.result.peak_force; })
+      .in(Unit::newton);
+  list.read_by([](Tap& t, const RowReader& in) { t.result.peak_force = in.row().number("peak_force"); });
+  list.add("robot_seconds", "robot time of this tap: travel, rest, descent, contact, retreat",
+           [](const Tap& t) { return t.result.seconds; })
+      .in(Unit::second);
+  list.read_by([](Tap& t, const RowReader& in) { t.result.seconds = in.number("robot_seconds", 0.0); });
+}
+
+/// The choice, and the state of the models before the tap.
+void list_choice(FieldList<TapRecord>& list) {
+  using Tap = TapRecord;
+  const auto of_state = [&](const char* name, const char* meaning) -> RecordField& {
+    return list.add(name, meaning, [=](const Tap& t) { return number_of(t.state, name); });
+  };
+  list.add("score", "score of the chosen candidate", &Tap::score);
+  list.read_by([](Tap& t, const RowReader& in) { t.score = in.row().number("score"); });
+  of_state("u", "relative variance u of the height GP at the chosen candidate, before the tap");
+  of_state("w", "mean w of the label GP (the weight) at the chosen candidate, before the tap, not clipped");
+  of_state("e", "product of `u` and `w`");
+  list.add_where([](const Tap& t) { return has(t.state, "p"); }, "p",
+                 "footprint's probability of an object at the chosen candidate. Absent with `footprint: "
+                 "gp_regression`, whose probability is the clipped `w`",
+                 [](const Tap& t) { return number_of(t.state, "p"); });
+  list.add("ties", "number of candidates tied for the best score, including the best", &Tap::ties);
+  list.read_by([](Tap& t, const RowReader& in) {
+    if (const auto ties = in.row().number("ties")) t.ties = static_cast<int>(*ties);
+  });
+  list.add("runner_up.x", "x of the best other candidate", [](const Tap& t) { return part(t.runner_up, &Target::x); })
+      .in(Unit::metre);
+  list.read_by([](Tap& t, const RowReader& in) {
+    if (const auto x = in.row().number("runner_up.x"))
+      t.runner_up = Target{*x, in.row().number("runner_up.y").value_or(0.0)};
+  });
+  list.add("runner_up.y", "y of the best other candidate", [](const Tap& t) { return part(t.runner_up, &Target::y); })
+      .in(Unit::metre);
+  list.add("runner_up.score", "score of the best other candidate", &Tap::runner_up_score);
+  list.read_by([](Tap& t, const RowReader& in) { t.runner_up_score = in.row().number("runner_up.score"); });
+  of_state("max_standard_deviation", "largest standard deviation of the height GP over the candidates, before the tap")
+      .in(Unit::metre);
+  of_state("mean_standard_deviation", "mean standard deviation of the height GP over the candidates, before the tap")
+      .in(Unit::metre);
+  of_state("min_weight", "smallest `w` over the candidates, before the tap, not clipped");
+  of_state("max_weight", "largest `w` over the candidates, before the tap, not clipped");
+  const auto is_chosen = [](const Tap& t) { return t.expected_seconds.has_value(); };
+  list.add_where(is_chosen, "motion", "index of the tap's motion in `motion.of`, from 0; only with `type: per_tap`",
+                 [](const Tap& t) { return t.request.motion; });
+  list.read_by([](Tap& t, const RowReader& in) {
+    t.request.motion = static_cast<int>(in.row().number("motion").value_or(0.0));
+  });
+  list.add_where(is_chosen, "expected_seconds", "expected robot time of the tap; only with `type: per_tap`",
+                 [](const Tap& t) { return t.expected_seconds; })
+      .in(Unit::second);
+  const auto is_predicted = [](const Tap& t) { return t.request.predicted.has_value(); };
+  list.add_where(is_predicted, "predicted.height",
+                 "height that the models predicted at the target, in the frame of the scene; only with "
+                 "`adaptive_hover` or `type: per_tap`",
+                 [](const Tap& t) { return t.request.predicted->height; })
+      .in(Unit::metre);
+  list.read_by([](Tap& t, const RowReader& in) {
+    if (const std::optional<double> height = in.row().number("predicted.height")) {
+      t.request.predicted =
+          Prediction{*height, in.number("predicted.standard_deviation", 0.0), in.row().number("predicted.probability")};
+    }
+  });
+  list.add_where(is_predicted, "predicted.standard_deviation", "standard deviation of the predicted height",
+                 [](const Tap& t) { return t.request.predicted->standard_deviation; })
+      .in(Unit::metre);
+  list.add_where(
+      [](const Tap& t) { return t.request.predicted && t.request.predicted->probability; }, "predicted.probability",
+      "predicted probability of an object at the target; only with `adaptive_hover.certainty` or `type: per_tap`",
+      [](const Tap& t) { return t.request.predicted->probability; });
 }
 
 FieldList<TapRecord> make_tap_list() {
   using Tap = TapRecord;
   FieldList<Tap> list;
-  list.add("tap", "number of the tap, from 1", &Tap::number);
+  list.add("tap", "number of the tap, from 1", [](const Tap& t) { return t.number(); });
+  list.read_by(
+      [](Tap& t, const RowReader& in) { t.request.number = static_cast<int>(in.row().number("tap").value_or(0.0)); });
   list.add("source",
            "origin of the choice: `initial`, `acquisition`, `fallback`, or `caller` (scores of a calling program)",
-           [](const Tap& t) { return source_name(t.source); });
+           [](const Tap& t) { return source_name(t.request.source); });
+  list.read_by(
+      [](Tap& t, const RowReader& in) { t.request.source = static_cast<Source>(in.index("source", kSources)); });
   list.add("why", "reason for the fallback, if there was one", [](const Tap& t) { return if_any(t.why); });
-  list.add("x", "x of the target", [](const Tap& t) { return t.target.x; }).in(Unit::metre);
-  list.add("y", "y of the target", [](const Tap& t) { return t.target.y; }).in(Unit::metre);
-  const auto of_approach = [&](const char* name, const char* meaning, auto get, Unit unit) {
-    list.add_where([](const Tap& t) { return t.approach.has_value(); }, name, meaning,
-                   [get](const Tap& t) { return std::optional<double>(get(*t.approach)); })
-        .in(unit);
-  };
-  of_approach(
-      "z", "from any side: z of the start of the tool, as are `x` and `y`",
-      [](const Approach& a) { return a.line.origin.z(); }, Unit::metre);
-  of_approach(
-      "direction.x", "x of the unit vector along which the tool moves",
-      [](const Approach& a) { return a.line.direction.x(); }, Unit::none);
-  of_approach(
-      "direction.y", "y of the same unit vector", [](const Approach& a) { return a.line.direction.y(); }, Unit::none);
-  of_approach(
-      "direction.z", "z of the same unit vector", [](const Approach& a) { return a.line.direction.z(); }, Unit::none);
-  list.add_where([](const Tap& t) { return !t.unreached.empty(); }, "unreached",
-                 "from any side: the drawn approaches that the backend rejected, if any, as hexadecimal digits. Each "
-                 "digit stands for four approaches in their order, its highest bit for the first",
-                 [](const Tap& t) { return t.unreached; });
-  of_approach(
-      "length", "largest distance that the tool may move along its approach",
-      [](const Approach& a) { return a.length; }, Unit::metre);
-  list.add_where([](const Tap& t) { return t.contact.along.has_value(); }, "along",
-                 "distance that the tool moved along its approach", [](const Tap& t) { return t.contact.along; })
-      .in(Unit::metre);
-  list.add("outcome", "result of the tap: `contact`, `no_contact`, `unreachable`, `timeout`, `aborted` or `unknown`",
-           [](const Tap& t) { return outcome_name(t.contact.outcome); });
-  list.add("reason", "cause of the failure, if the tap failed", [](const Tap& t) { return if_any(t.contact.reason); });
-  list.add("on_object",
-           "whether a contact was classified as on an object right after the tap. `relabelled` in the summary lists "
-           "the taps that are classified differently at the end",
-           &Tap::on_object);
-  list.add("height", "height of the contact", [](const Tap& t) { return if_touched(t, t.contact.height); })
-      .in(Unit::metre);
-  list.add_where([](const Tap& t) { return t.corrected.has_value(); }, "corrected_height",
-                 "`height` minus the offset that motion and arm add to all heights, as estimated at the time of the "
-                 "tap; only with `height.offset`",
-                 [](const Tap& t) { return t.corrected; })
-      .in(Unit::metre);
-  list.add("force", "largest force measured in a contact (the threshold, if the scene has no effects)",
-           [](const Tap& t) { return if_touched(t, t.contact.force); })
-      .in(Unit::newton);
-  list.add_where([](const Tap& t) { return t.contact.peak.has_value(); }, "peak_force",
-                 "largest force against the tool during the whole tap, also of a failed tap: the true force from a "
-                 "simulator, else the measured one. Present only if forces are simulated or measured",
-                 [](const Tap& t) { return t.contact.peak; })
-      .in(Unit::newton);
-  list.add("robot_seconds", "robot time of this tap: travel, rest, descent, contact, retreat",
-           [](const Tap& t) { return t.contact.seconds; })
-      .in(Unit::second);
-
-  list.add("score", "score of the chosen candidate", &Tap::score);
-  list.add("u", "relative variance u of the height GP at the chosen candidate, before the tap", &Tap::uncertainty);
-  list.add("w", "mean w of the label GP (the weight) at the chosen candidate, before the tap, not clipped",
-           &Tap::weight);
-  list.add("e", "product of `u` and `w`", &Tap::exploration);
-  list.add_where([](const Tap& t) { return t.footprint.has_value(); }, "p",
-                 "footprint's probability of an object at the chosen candidate. Absent with `footprint: "
-                 "gp_regression`, whose probability is the clipped `w`",
-                 &Tap::probability);
-  list.add("ties", "number of candidates tied for the best score, including the best", &Tap::ties);
-  list.add("runner_up.x", "x of the best other candidate", [](const Tap& t) { return part(t.runner_up, &Target::x); })
-      .in(Unit::metre);
-  list.add("runner_up.y", "y of the best other candidate", [](const Tap& t) { return part(t.runner_up, &Target::y); })
-      .in(Unit::metre);
-  list.add("runner_up.score", "score of the best other candidate", &Tap::runner_up_score);
-  list.add("max_standard_deviation", "largest standard deviation of the height GP over the candidates, before the tap",
-           &Tap::max_standard_deviation)
-      .in(Unit::metre);
-  list.add("mean_standard_deviation", "mean standard deviation of the height GP over the candidates, before the tap",
-           &Tap::mean_standard_deviation)
-      .in(Unit::metre);
-  list.add("min_weight", "smallest `w` over the candidates, before the tap, not clipped", &Tap::min_weight);
-  list.add("max_weight", "largest `w` over the candidates, before the tap, not clipped", &Tap::max_weight);
-  const auto is_chosen = [](const Tap& t) { return t.expected_seconds.has_value(); };
-  list.add_where(is_chosen, "motion", "index of the tap's motion in `motion.of`, from 0; only with `type: per_tap`",
-                 &Tap::motion);
-  list.add_where(is_chosen, "expected_seconds", "expected robot time of the tap; only with `type: per_tap`",
-                 [](const Tap& t) { return t.expected_seconds; })
-      .in(Unit::second);
-  const auto is_predicted = [](const Tap& t) { return t.predicted.has_value(); };
-  list.add_where(is_predicted, "predicted.height",
-                 "height that the models predicted at the target, in the frame of the scene; only with "
-                 "`adaptive_hover` or `type: per_tap`",
-                 [](const Tap& t) { return t.predicted->height; })
-      .in(Unit::metre);
-  list.add_where(is_predicted, "predicted.standard_deviation", "standard deviation of the predicted height",
-                 [](const Tap& t) { return t.predicted->standard_deviation; })
-      .in(Unit::metre);
-  list.add_where(
-      [](const Tap& t) { return t.predicted && t.predicted->probability; }, "predicted.probability",
-      "predicted probability of an object at the target; only with `adaptive_hover.certainty` or `type: per_tap`",
-      [](const Tap& t) { return t.predicted->probability; });
-  list_models(list, false);
-  list.add_where([](const Tap& t) { return t.forecast.has_value(); }, kExpectedError,
+  list.read_by([](Tap& t, const RowReader& in) { t.why = in.row().text("why"); });
+  list_line(list);
+  list_result(list);
+  list_choice(list);
+  list_models(list);
+  list.add_where([](const Tap& t) { return has(t.state, kExpectedError); }, kExpectedError,
                  "RMSE over the scene that the models expect. Present only with `stop.expected_rmse`; null before the "
                  "first contact with an object",
-                 [](const Tap& t) { return t.forecast->rmse; })
+                 [](const Tap& t) { return number_of(t.state, kExpectedError); })
       .in(Unit::metre);
   list.add("true_on_object", "whether the target truly is on an object", &Tap::true_on_object).absent(kNoTruth);
   list.add_shared(error_fields(), [](Row& row, const Tap& t) { add_errors(row, t.errors); });
@@ -323,8 +375,8 @@ bool is_read_again(const Summary& summary) {
 /// How often a run took such a step.
 auto diagnostics(const std::string& kind) {
   return [kind](const Summary& s) {
-    const auto found = s.diagnostics.find(kind);
-    return found != s.diagnostics.end() ? found->second : 0;
+    const auto found = s.state.diagnostics.find(kind);
+    return found != s.state.diagnostics.end() ? found->second : 0;
   };
 }
 
@@ -455,7 +507,7 @@ FieldList<Summary> make_summary_list() {
   list.add(kExpectedError,
            "`rmse_m` as the final models expect it, without the truth: root of the expected mean square error over the "
            "candidates",
-           &Summary::expected_rmse)
+           [](const Summary& s) { return number_of(s.state, kExpectedError); })
       .in(Unit::metre)
       .less()
       .absent("no object was found, nothing read the models of the surface, or taps come from any side")
@@ -463,14 +515,14 @@ FieldList<Summary> make_summary_list() {
   list.add("nlpd",
            "mean negative log predictive density of the true height (natural logarithm), noise included, over the "
            "untapped cells on an object",
-           [](const Summary& s) { return s.calibration.nlpd; })
+           [](const Summary& s) { return number_of(s.state, "nlpd"); })
       .less()
       .absent(no_cell)
       .called("negative log predictive density")
       .headline();
   list.add("coverage_95",
            "share of the untapped cells on an object whose true height lies in the central 95 % interval, best at 0.95",
-           [](const Summary& s) { return s.calibration.coverage_95; })
+           [](const Summary& s) { return number_of(s.state, "coverage_95"); })
       .absent(no_cell)
       .called("95 % coverage")
       .headline();
@@ -489,7 +541,9 @@ FieldList<Summary> make_summary_list() {
             [i](const Summary& s) { return s.phases ? std::optional((*s.phases)[i]) : std::nullopt; })
         .measured();
   }
-  list.add("jitter_max", "largest jitter of the final models, as a variance", &Summary::jitter_max).less();
+  list.add("jitter_max", "largest jitter of the final models, as a variance",
+           [](const Summary& s) { return s.state.jitter_max; })
+      .less();
   for (const auto& [name, meaning] : {
            std::pair{"fallback", "taps that the fallback chose"},
            std::pair{"fit_failed",
@@ -514,7 +568,7 @@ FieldList<Summary> make_summary_list() {
   list.add_where(is_from_any_side, "diagnostics.violated_free_paths",
                  "from any side: free paths that the final surface still crosses", diagnostics("violated_free_paths"))
       .less();
-  list_models(list, true);
+  list_models(list);
   list.add("peak_rss_bytes", "peak memory of the process", &Summary::peak_rss_bytes).less().measured();
   return list;
 }
@@ -536,6 +590,63 @@ FieldList<TapTimes> make_timing_list() {
 }
 
 }  // namespace
+
+const char* outcome_name(Outcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }
+
+const char* source_name(Source source) { return kSources[static_cast<std::size_t>(source)]; }
+
+double RowReader::number(const char* name, double absent) const {
+  if (const std::optional<double> value = row_.number(name); value && !row_.flag(name)) return *value;
+  if (const Scalar* value = row_.find(name); value != nullptr && *value == Scalar()) return absent;
+  refuse(std::string("has no number '") + name + "'");
+}
+
+std::size_t RowReader::index(const char* name, const std::vector<const char*>& names) const {
+  const std::string text = row_.text(name);
+  const auto found = std::find(names.begin(), names.end(), text);
+  if (found == names.end()) refuse(std::string("has no valid '") + name + "'");
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void RowReader::refuse(const std::string& reason) const { throw Error(where_, reason, "the file is damaged"); }
+
+Row tap_row(const TapRecord& tap) { return tap_list().row(tap); }
+
+Row intent_row(const TapRecord& tap) {
+  TapRecord before = tap;
+  before.result = {};
+  before.reading.reset();
+  Row row = tap_row(before);
+  row.fields.front().first = "intent";
+  return row;
+}
+
+std::optional<bool> label_now(const Row& row, const RunResult& counts) {
+  const std::optional<bool> then = row.flag("on_object");
+  if (!then) return std::nullopt;
+  const auto number = static_cast<int>(row.number("tap").value_or(0.0));
+  const bool changed = std::any_of(counts.relabelled.begin(), counts.relabelled.end(),
+                                   [&](const Relabelled& one) { return one.tap == number; });
+  return changed != *then;
+}
+
+Row unknown_result_of(const Row& intent) {
+  Row row = intent;
+  row.fields.front().first = "tap";
+  for (auto& [name, value] : row.fields) {
+    if (name == "reason") value = std::string("the program ended during this tap");
+  }
+  return row;
+}
+
+std::vector<TapRecord> read_taps(const std::vector<Row>& rows, const std::filesystem::path& file) {
+  std::vector<TapRecord> out;
+  for (const Row& row : rows) {
+    const std::string where = fmt::format("{}: tap {}", file.string(), out.size() + 1);
+    out.push_back(tap_list().read({row, where}));
+  }
+  return out;
+}
 
 const FieldList<TapRecord>& tap_list() {
   static const FieldList<TapRecord> list = make_tap_list();

@@ -68,6 +68,23 @@ bool depends_on_machine(const std::string& name);
 /// Whether a field of a tap or of the summary has a value only where the truth is known.
 bool needs_truth(const std::string& name);
 
+// Taps as lines of record.jsonl and rows of taps.csv.
+
+/// Returns the row of a tap after it was made.
+Row tap_row(const TapRecord& tap);
+/// Returns the row of a tap before it is made: its first field is `intent`, and its result is null or left out.
+Row intent_row(const TapRecord& tap);
+/// Returns an intent as a tap whose result is unknown.
+Row unknown_result_of(const Row& intent);
+/// Returns the taps of recorded rows, as far as a resumed run needs them: their state and errors stay in the rows.
+/// Throws Error, naming `file` and the tap, for a damaged row.
+std::vector<TapRecord> read_taps(const std::vector<Row>& rows, const std::filesystem::path& file);
+/// Returns whether the contact of a row is on an object as `counts` reads it; nullopt without a contact.
+std::optional<bool> label_now(const Row& row, const RunResult& counts);
+
+const char* outcome_name(Outcome outcome);
+const char* source_name(Source source);
+
 /// How far a surface is from the truth, best known first: the fields that a tap and a summary share.
 const std::vector<RecordField>& error_fields();
 

@@ -3,6 +3,8 @@
 // nests by the dots, CSV keeps them.
 #pragma once
 
+#include <palpate/record_fields.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,18 +14,8 @@
 
 namespace palpate {
 
-/// A list or a map, as JSON: `[{"tap": 8, "probability": 0.93}]`.
-struct JsonList {
-  std::string text;
-  bool operator==(const JsonList& other) const { return text == other.text; }
-  bool operator!=(const JsonList& other) const { return text != other.text; }
-};
-
-/// null, truth value, whole number, real number, text or list.
-using Scalar = std::variant<std::monostate, bool, std::int64_t, double, std::string, JsonList>;
-
 struct Row {
-  std::vector<std::pair<std::string, Scalar>> fields;
+  RecordFields fields;
 
   void add(std::string name, Scalar value) { fields.emplace_back(std::move(name), std::move(value)); }
   template <class T>

@@ -5,7 +5,6 @@
 #include "config/hash.hpp"
 #include "record/build_info.hpp"
 #include "record/json.hpp"
-#include "record/tap_row.hpp"
 
 #include <palpate/error.hpp>
 
@@ -142,14 +141,14 @@ void RunDirectory::set_up(bool announce, const Tree& models) {
   if (sync_) record_.sync_name();
 }
 
-std::vector<PastTap> RunDirectory::recover() {
+std::vector<TapRecord> RunDirectory::recover() {
   const RunRecord& before = record_.before();
   rows_ = before.taps;
   for (const TapTimes& tap : before.timings) {
     for (std::size_t i = 0; i < kPhases; ++i) total_[i] += tap.seconds[i];
   }
   if (before.intent) rows_.push_back(unknown_result_of(*before.intent));
-  std::vector<PastTap> out = past_taps(rows_, before.file);
+  std::vector<TapRecord> out = read_taps(rows_, before.file);
   if (before.intent) record_.add_tap(rows_.back(), true);
   return out;
 }
@@ -163,7 +162,7 @@ void RunDirectory::record(const TapRecord& tap, const std::array<double, kPhases
   Row row = tap_row(tap);
   record_.add_tap(row, sync_);
   rows_.push_back(std::move(row));
-  record_.add_timing({tap.number, seconds, tap.expected_rmse});
+  record_.add_timing({tap.number(), seconds, tap.shown_expected_rmse});
   for (std::size_t i = 0; i < kPhases; ++i) total_[i] += seconds[i];
 }
 

@@ -70,7 +70,7 @@ RunStatus read_status(const std::filesystem::path& directory);
 const char* state_name(RunStatus::State state);
 
 /// A run directory held by this process. Keeps the lock for its lifetime.
-class RunDirectory final : public Journal {
+class RunDirectory final {
  public:
   /// Makes the directory if need be and locks it. Throws Error of kind `busy` if another process holds it.
   explicit RunDirectory(const std::filesystem::path& directory);
@@ -100,13 +100,13 @@ class RunDirectory final : public Journal {
 
   /// The taps that are recorded. One that was announced, and of which nobody saw the end, becomes a tap of outcome
   /// `unknown`. Throws Error for a tap that is none.
-  std::vector<PastTap> recover();
+  std::vector<TapRecord> recover();
 
   /// Throws Error where the directory is no longer the one that was opened: nothing more can be recorded.
   void check_in_place() const { record_.check_in_place(); }
 
-  void announce(const TapRecord& tap) override;
-  void record(const TapRecord& tap, const std::array<double, kPhases>& seconds) override;
+  void announce(const TapRecord& tap);
+  void record(const TapRecord& tap, const std::array<double, kPhases>& seconds);
 
   /// What the taps have shown of the robot.
   void note_learnt(const std::string& name, const std::string& value);

@@ -2,10 +2,11 @@
 #include "record/summary.hpp"
 
 #include "record/row.hpp"
+#include "space/mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <ctime>
 #include <utility>
 #include <vector>
@@ -36,7 +37,7 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
     return text;
   };
   std::vector<std::string> xs;
-  for (int column = 0; column < candidates.columns; ++column) xs.push_back(text_of(candidates.points(column, 0)) + ",");
+  for (int column = 0; column < candidates.columns; ++column) xs.push_back(text_of(candidates.starts(column, 0)) + ",");
   std::vector<std::size_t> first;  // of the columns with the same map
   for (const Column& column : columns) {
     const auto same = [&](const Column& other) { return other.second == column.second; };
@@ -44,14 +45,14 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   }
   std::vector<std::pair<std::size_t, std::size_t>> cells(columns.size());  // places in `out`, and lengths
   for (int row = 0, cell = 0; row < candidates.rows; ++row) {
-    const std::string y = text_of(candidates.points(cell, 1));
+    const std::string y = text_of(candidates.starts(cell, 1));
     for (int column = 0; column < candidates.columns; ++column, ++cell) {
       out.append(xs[static_cast<std::size_t>(column)]).append(y);
       for (std::size_t i = 0; i < columns.size(); ++i) {
         out += ',';
         const Eigen::VectorXd* const map = columns[i].second;
-        const bool again =
-            map != nullptr && cell > 0 && std::memcmp(&(*map)(cell), &(*map)(cell - 1), sizeof(double)) == 0;
+        const bool again = map != nullptr && cell > 0 && (*map)(cell) == (*map)(cell - 1) &&
+                           std::signbit((*map)(cell)) == std::signbit((*map)(cell - 1));
         if (first[i] < i || again) {
           const auto [place, length] = cells[first[i]];
           out.append(out, place, length);
@@ -67,18 +68,25 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
   return out;
 }
 
-std::string surface_csv(FromAbove& experiment) {
-  experiment.ask(Quantity::height | Quantity::probability);
-  const TapBelief& belief = experiment.belief();
-  const Eigen::VectorXd deviation = belief.height_variance().cwiseSqrt();
-  const Eigen::VectorXd gated = belief.two_part() ? reconstruction(belief) : Eigen::VectorXd();
-  const Truth* truth = experiment.truth();
-  return grid_csv(experiment.candidates(),
-                  {{"height_mean", &belief.height_mean()},
-                   {"height_standard_deviation", &deviation},
-                   {"object_probability", &belief.probability()},
-                   {"reconstructed_height", belief.two_part() ? &gated : &belief.height_mean()},
-                   {"true_height", truth != nullptr ? &truth->height : nullptr}});
+/// Returns the array of a quantity, null if the belief has none.
+const Eigen::VectorXd* array_of(Belief& belief, const char* quantity) {
+  if (belief.available().count(quantity) == 0) return nullptr;
+  belief.infer({quantity});
+  return &belief.values(quantity);
+}
+
+std::string surface_csv(Experiment& experiment, const Eigen::VectorXd& heights) {
+  Belief& belief = experiment.belief();
+  const Candidates& candidates = belief.candidates();
+  const Eigen::VectorXd* const mean = array_of(belief, quantity::kHeightMean);
+  const bool is_mean = mean != nullptr && *mean == heights;
+  const Scene* const truth = experiment.truth();
+  const Eigen::VectorXd truly = truth != nullptr ? true_heights(candidates, *truth) : Eigen::VectorXd();
+  return grid_csv(candidates, {{"height_mean", mean},
+                               {"height_standard_deviation", array_of(belief, quantity::kHeightStd)},
+                               {"object_probability", array_of(belief, quantity::kObjectProbability)},
+                               {"reconstructed_height", is_mean ? mean : &heights},
+                               {"true_height", truth != nullptr ? &truly : nullptr}});
 }
 
 }  // namespace
@@ -95,25 +103,31 @@ std::int64_t peak_rss_bytes() {
   return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
-std::pair<std::string, std::string> surface_file(Experiment& experiment) {
-  if (auto* const any_side = dynamic_cast<FromAnySide*>(&experiment)) return {"surface.ply", any_side->surface_ply()};
-  return {"surface.csv", surface_csv(from_above_of(experiment, ""))};
+Eigen::VectorXd true_heights(const Candidates& candidates, const Scene& scene) {
+  Eigen::VectorXd out(candidates.size());
+  for (Eigen::Index i = 0; i < candidates.size(); ++i)
+    out(i) = scene.height(candidates.starts(i, 0), candidates.starts(i, 1));
+  return out;
 }
 
-std::string maps_csv(const FromAbove& experiment) {
-  const TapBelief& belief = experiment.belief();
-  const Quantities known = belief.recorded();
+std::pair<std::string, std::string> surface_file(Experiment& experiment) {
+  const Surface surface = experiment.belief().surface();
+  if (surface.heights.size() > 0) return {"surface.csv", surface_csv(experiment, surface.heights)};
+  return {"surface.ply", mesh_ply(surface, "standard_deviation", "metres, in the frame of the area")};
+}
+
+std::string maps_csv(Belief& belief, const BeliefState& state) {
+  if (!belief.candidates().fixed) return "";
   std::vector<Column> columns;
-  if (known.has(Quantity::height)) {
-    columns.insert(columns.end(),
-                   {{"height_mean", &belief.height_mean()}, {"height_variance", &belief.height_variance()}});
+  for (const auto& [column, quantity] :
+       {std::pair{"height_mean", quantity::kHeightMean}, std::pair{"height_standard_deviation", quantity::kHeightStd},
+        std::pair{"u", quantity::kUncertainty}, std::pair{"w", quantity::kLabelMean},
+        std::pair{"p", quantity::kObjectProbability}}) {
+    const bool is_of_label_gp = quantity == quantity::kObjectProbability && state.find("p") == nullptr;
+    if (is_of_label_gp) continue;  // the label GP's probability follows from w
+    if (const Eigen::VectorXd* const map = array_of(belief, quantity)) columns.emplace_back(column, map);
   }
-  if (known.has(Quantity::uncertainty)) columns.emplace_back("u", &belief.uncertainty());
-  if (known.has(Quantity::weight)) columns.emplace_back("w", &belief.weight());
-  if (known.has(Quantity::probability) && !belief.footprint_is_weight()) {
-    columns.emplace_back("p", &belief.probability());
-  }
-  return columns.empty() ? "" : grid_csv(experiment.candidates(), columns);
+  return columns.empty() ? "" : grid_csv(belief.candidates(), columns);
 }
 
 }  // namespace palpate

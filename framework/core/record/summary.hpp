@@ -2,7 +2,7 @@
 // What is measured for the summary of a run, and its surface; the fields of the summary are in fields.cpp.
 #pragma once
 
-#include "space/from_any_side.hpp"
+#include "experiment/experiment.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -26,11 +26,15 @@ class Stopwatch {
 /// The most memory that this process has had.
 std::int64_t peak_rss_bytes();
 
-/// What the surface came to, as a file and its content: surface.csv (the candidate grid: x, y, height mean and standard
-/// deviation, on-surface probability, reconstruction, truth), or, of a run from any side, surface.ply.
+/// Returns the name and the content of the file of the reconstructed surface: surface.csv (a row per candidate:
+/// position, mean and standard deviation of the height, object probability, reconstruction, truth), or for a mesh
+/// surface.ply. In the stage `summary`.
 std::pair<std::string, std::string> surface_file(Experiment& experiment);
 
-/// The maps of the models that are recorded, as CSV; "" if there are none.
-std::string maps_csv(const FromAbove& experiment);
+/// Returns the true heights at fixed candidates, metres.
+Eigen::VectorXd true_heights(const Candidates& candidates, const Scene& scene);
+
+/// Returns the arrays that the readers of a run have now, as CSV; "" if there are none, or no fixed candidates.
+std::string maps_csv(Belief& belief, const BeliefState& state);
 
 }  // namespace palpate

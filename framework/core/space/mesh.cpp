@@ -315,21 +315,29 @@ ClosedMesh close_mesh(const Crossings& crossings) {
   return out;
 }
 
-std::string mesh_ply(const ClosedMesh& mesh, double desk, const std::string& deviation, const std::string& comment) {
+Surface surface_of(const ClosedMesh& mesh, double desk) {
+  Surface out;
+  out.resolution = mesh.side;
+  out.triangles = mesh.triangles;
+  for (const Crossings::Vertex& one : mesh.vertices)
+    out.vertices.push_back({one.at + Eigen::Vector3d(0.0, 0.0, desk), one.normal, one.deviation});
+  return out;
+}
+
+std::string mesh_ply(const Surface& mesh, const std::string& deviation, const std::string& comment) {
   std::string out = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment {}, of cubes of {:.3g} mm\nelement vertex {}\nproperty float "
       "x\nproperty float y\n"
       "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float {}\n"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      comment, 1e3 * mesh.side, mesh.vertices.size(), deviation, mesh.triangles.size());
+      comment, 1e3 * mesh.resolution, mesh.vertices.size(), deviation, mesh.triangles.size());
   const auto append = [&](const auto& value) {
     out.append(reinterpret_cast<const char*>(value.data()), sizeof(value[0]) * value.size());
   };
   out.reserve(out.size() + 28 * mesh.vertices.size() + 13 * mesh.triangles.size());
-  for (const Crossings::Vertex& one : mesh.vertices) {
+  for (const Surface::Vertex& one : mesh.vertices) {
     Eigen::Matrix<float, 7, 1> numbers;
-    numbers << one.at.cast<float>(), one.normal.cast<float>(), static_cast<float>(one.deviation);
-    numbers(2) = static_cast<float>(one.at.z() + desk);
+    numbers << one.position.cast<float>(), one.normal.cast<float>(), static_cast<float>(one.standard_deviation);
     append(numbers);
   }
   for (const std::array<int, 3>& triangle : mesh.triangles) {

@@ -10,6 +10,8 @@
 #include "space/skin.hpp"
 #include "space/solids.hpp"
 
+#include <palpate/surface.hpp>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -57,13 +59,15 @@ struct ClosedMesh {
   double side = 0.0;  ///< of the cubes
 };
 ClosedMesh close_mesh(const Crossings& crossings);
+/// Returns the mesh in the frame of the scene; `desk`: its height, metres.
+Surface surface_of(const ClosedMesh& mesh, double desk);
 
 /// The side of the cubes of a mesh to be kept: walls of 3 mm have no holes, as long as it need not be larger.
 inline constexpr double kFineSide = 0.002;
 
 /// PLY 1.0, binary with the least byte first, for a large mesh: vertices of x, y, z, nx, ny, nz and `deviation`, as the
-/// property is called, in single precision, and triangles. `desk` is the height that is added. `comment` is one
+/// property is called, in single precision, and triangles. `comment` is one
 /// line, to which the side of the cubes is added.
-std::string mesh_ply(const ClosedMesh& mesh, double desk, const std::string& deviation, const std::string& comment);
+std::string mesh_ply(const Surface& mesh, const std::string& deviation, const std::string& comment);
 
 }  // namespace palpate

@@ -382,7 +382,7 @@ void Skin::fit(const Composition& solids, const std::vector<SurfaceTouch>& touch
 template <class Use>
 void Skin::for_pieces(const Places& places, const Use& use) const {
   const Eigen::Index n = known_.table.at.rows();
-  loops::Lines numbers(static_cast<std::size_t>(n * loops::kBlock));
+  loops::AlignedArray numbers(static_cast<std::size_t>(n * loops::kBlock));
   const Eigen::Map<MatrixXd> rows(numbers.data(), loops::kBlock, n);
   Points apart = Points::Zero(n * loops::kBlock, 2);
   for (std::size_t first = 0; first < places.size(); first += loops::kBlock) {
@@ -406,7 +406,7 @@ VectorXd Skin::means(const Places& places) const {
 Skin::Posterior Skin::posterior(const Places& places) const {
   const auto all = static_cast<Eigen::Index>(places.size());
   Posterior out{VectorXd(all), VectorXd(all)};
-  loops::Lines left(loops::kBlock);
+  loops::AlignedArray left(loops::kBlock);
   for_pieces(places, [&](Eigen::Index first, Eigen::Index count, Eigen::Map<MatrixXd> k) {
     out.mean.segment(first, count).noalias() = k.topRows(count) * known_.weights;
     std::fill_n(left.data(), loops::kBlock, deviation() * deviation());

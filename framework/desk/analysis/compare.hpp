@@ -8,7 +8,7 @@
 #include "analysis/column.hpp"
 #include "analysis/signed_rank.hpp"
 #include "analysis/statistics.hpp"
-#include "record/occasion.hpp"
+#include "record/checkpoint.hpp"
 #include "sweep/condition.hpp"
 #include "sweep/sweep.hpp"
 
@@ -76,11 +76,11 @@ struct Comparison {
   std::size_t compared = 0;  ///< number of groups with jobs; groups that the condition leaves out entirely have no
                              ///< pairs
   bool one_baseline = false;
-  bool scenes_apart = false;         ///< whether the scene is one of the keys; groups of different scenes form no pair
-  bool ratios = false;               ///< whether ratios were requested
-  std::optional<Occasion> occasion;  ///< the point of a run at which the jobs are compared; nullopt: their ends
-  int jobs = 0;                      ///< number of jobs of the sweep
-  StatusCounts left_out;             ///< jobs that the condition leaves out, by the status that they would have
+  bool scenes_apart = false;  ///< whether the scene is one of the keys; groups of different scenes form no pair
+  bool ratios = false;        ///< whether ratios were requested
+  std::optional<Checkpoint> occasion;  ///< the point of a run at which the jobs are compared; nullopt: their ends
+  int jobs = 0;                        ///< number of jobs of the sweep
+  StatusCounts left_out;               ///< jobs that the condition leaves out, by the status that they would have
 };
 
 /// Number of groups per scene up to which all pairs are compared. With more groups, only pairs with the baseline are;

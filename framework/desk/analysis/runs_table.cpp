@@ -4,13 +4,13 @@
 #include "analysis/groups.hpp"
 #include "analysis/mean_output.hpp"
 #include "analysis/table.hpp"
-#include "launch/conduct.hpp"
+#include "launch/execute_jobs.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/files.hpp"
 #include "record/record_reader.hpp"
+#include "record/run.hpp"
 #include "record/run_directory.hpp"
-#include "record/session.hpp"
 #include "sweep/sweep.hpp"
 
 #include <fmt/format.h>

@@ -57,13 +57,13 @@ std::string words(const Estimated& one, double unit, const char* name) {
 
 /// A recorded run, its simulated rerun, and the result of the rerun.
 struct CalibrationRun {
-  const Recording& recording;
+  const RecordedRun& recording;
   std::unique_ptr<const Scene> scene;
   SimulatedRerun rerun;
   SimulatedRerun::Result made;  ///< with the assumed effects
   std::size_t contacts = 0;
 
-  CalibrationRun(const Workshop& workshop, const Recording& from)
+  CalibrationRun(const Workshop& workshop, const RecordedRun& from)
       : recording(from),
         scene(build_scene(from.config.options.scene, static_cast<std::uint64_t>(from.config.options.seed),
                           workshop.host)),
@@ -79,8 +79,8 @@ struct Sums {
 
 class Calibrated {
  public:
-  Calibrated(const Workshop& workshop, const std::vector<Recording>& recordings) {
-    for (const Recording& recording : recordings) {
+  Calibrated(const Workshop& workshop, const std::vector<RecordedRun>& recordings) {
+    for (const RecordedRun& recording : recordings) {
       runs_.emplace_back(workshop, recording);
       add(runs_.back());
     }
@@ -132,7 +132,7 @@ class Calibrated {
   }
 
  private:
-  /// Throws Error for a run whose scene does not match its config.
+  /// Throws Error for a run whose scene does not stand as its config says.
   void check_scenes() const {
     constexpr const char* kRemedy = "use taps on a scene that stands as in its config";
     std::size_t next = 0;
@@ -167,7 +167,7 @@ class Calibrated {
     const std::vector<TapRequest> requests = requests_of(pair.recording);
     double variance = 0.0;
     for (std::size_t i = 0; i < requests.size(); ++i) {
-      const Contact& contact = pair.recording.taps[i].contact;
+      const TapResult& contact = pair.recording.taps[i].result;
       if (contact.outcome == Outcome::unreachable) continue;
       ++sums_.taps;
       variance += made.variance[i];
@@ -176,11 +176,11 @@ class Calibrated {
         continue;
       }
       ++sums_.contacts;
-      const Target& place = requests[i].target;
+      const Target place = requests[i].line.target();
       const double there = pair.scene->height(place.x, place.y);
       sums_.on_desk += pair.scene->on_object(there) ? 0.0 : 1.0;
       ++pair.contacts;
-      contacts_.push_back({pair.scene.get(), place, requests[i].elapsed, contact.height - made.error[i]});
+      contacts_.push_back({pair.scene.get(), place, requests[i].elapsed, contact.height() - made.error[i]});
     }
     simulated_variance_ +=
         (variance / static_cast<double>(requests.size()) - simulated_variance_) / static_cast<double>(runs_.size());
@@ -221,8 +221,9 @@ class Calibrated {
       std::vector<double> expected;
       for (const TapRequest& request : requests_of(pair.recording)) {
         expected.push_back(pair.made.error[expected.size()] + offset_at(request.elapsed));
-        const Contact& contact = pair.recording.taps[expected.size() - 1].contact;
-        const double off = contact.height - pair.scene->height(request.target.x, request.target.y);
+        const TapResult& contact = pair.recording.taps[expected.size() - 1].result;
+        const Target target = request.line.target();
+        const double off = contact.height() - pair.scene->height(target.x, target.y);
         if (contact.outcome != Outcome::contact || std::abs(off - expected.back()) > SimulatedRerun::kFarOff) continue;
         error += off;
         ++near;
@@ -248,7 +249,7 @@ class Calibrated {
 
 }  // namespace
 
-std::string calibrate(const Workshop& workshop, const std::vector<Recording>& recordings) {
+std::string calibrate(const Workshop& workshop, const std::vector<RecordedRun>& recordings) {
   return Calibrated(workshop, recordings).file();
 }
 

@@ -2,7 +2,7 @@
 // Calibration of the simulator's effects to the recorded taps of an arm.
 #pragma once
 
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 
 #include <string>
 #include <vector>
@@ -17,6 +17,6 @@ namespace palpate {
 /// not stand as in its config. This is so if more than a fifth of a run's contacts differ by more than 1 cm from all
 /// heights within 1 cm of their positions, if more than a twentieth (and more than one) are that far below, or if the
 /// offset of all runs exceeds 3 cm.
-std::string calibrate(const Workshop& workshop, const std::vector<Recording>& recordings);
+std::string calibrate(const Workshop& workshop, const std::vector<RecordedRun>& recordings);
 
 }  // namespace palpate

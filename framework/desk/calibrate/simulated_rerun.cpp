@@ -37,10 +37,10 @@ RerunErrors draw_taps(const Workshop& workshop, const Scene& scene, const Plugin
     const Context context{workshop.host, scene, draw, nullptr};
     const auto backend = context.create<Backend>(choice);
     for (std::size_t i = 0; i < requests.size(); ++i) {
-      const Contact contact = backend->tap(requests[i]);
-      const Target& place = requests[i].target;
+      const TapResult contact = backend->tap(requests[i]);
+      const Target place = requests[i].line.target();
       if (contact.outcome == Outcome::contact) {
-        out.errors[i].push_back(contact.height - scene.height(place.x, place.y));
+        out.errors[i].push_back(contact.height() - scene.height(place.x, place.y));
       } else if (contact.outcome != Outcome::unreachable) {
         ++out.failed;
       }
@@ -51,22 +51,22 @@ RerunErrors draw_taps(const Workshop& workshop, const Scene& scene, const Plugin
 
 }  // namespace
 
-std::vector<TapRequest> requests_of(const Recording& recording) {
+std::vector<TapRequest> requests_of(const RecordedRun& recording) {
   std::vector<TapRequest> out;
   TapRequest request;
-  for (const PastTap& tap : recording.taps) {
-    request.target = tap.target;
-    request.predicted = tap.predicted;
-    request.motion = tap.motion;
+  for (const TapRecord& tap : recording.taps) {
+    request.line = tap.request.line;
+    request.predicted = tap.request.predicted;
+    request.motion = tap.request.motion;
     out.push_back(request);
     ++request.number;
-    request.previous = tap.target;
-    request.elapsed += tap.contact.seconds;
+    request.previous = tap.request.line;
+    request.elapsed += tap.result.seconds;
   }
   return out;
 }
 
-SimulatedRerun::SimulatedRerun(const Workshop& workshop, const Recording& recording)
+SimulatedRerun::SimulatedRerun(const Workshop& workshop, const RecordedRun& recording)
     : workshop_(workshop), recording_(recording), config_(recording.config.tree) {
   if (config_.find("motion") == nullptr) {
     throw Error(recording.directory.string(),

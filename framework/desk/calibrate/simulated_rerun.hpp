@@ -2,7 +2,7 @@
 // Simulation of a run's recorded taps: the errors of their heights, and the share of failures.
 #pragma once
 
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 
 #include <vector>
 
@@ -12,7 +12,7 @@ class SimulatedRerun {
  public:
   /// `workshop` and `recording` must outlive the object. Throws Error for a run whose backend has no `motion`, and for
   /// a config that the simulator rejects.
-  SimulatedRerun(const Workshop& workshop, const Recording& recording);
+  SimulatedRerun(const Workshop& workshop, const RecordedRun& recording);
 
   /// Errors of the taps over several draws of the effects.
   struct Result {
@@ -30,11 +30,11 @@ class SimulatedRerun {
 
  private:
   const Workshop& workshop_;
-  const Recording& recording_;
+  const RecordedRun& recording_;
   Tree config_;
 };
 
 /// Returns the requests of a recording's taps.
-std::vector<TapRequest> requests_of(const Recording& recording);
+std::vector<TapRequest> requests_of(const RecordedRun& recording);
 
 }  // namespace palpate

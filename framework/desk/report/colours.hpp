@@ -19,7 +19,7 @@ inline constexpr std::array<const char*, 8> kLineColoursOnDark{"#56b4e9", "#e69f
 /// Colour scales of maps. Their lightness grows evenly, so equal differences look equal, also in grey and to people
 /// with a colour vision deficiency.
 enum class Palette {
-  viridis,  ///< dark blue over green to yellow: values that guide the taps
+  viridis,  ///< dark blue over green to yellow: values that say where to tap
   cividis,  ///< dark blue over grey to yellow: uncertainties
 };
 
@@ -36,7 +36,7 @@ struct Colours {
 };
 
 /// Returns the scale for standard deviations of the height from `least` to `most` metres, in centimetres. If the ratio
-/// of the two is large, the scale is logarithmic: on a linear scale all touched places would look alike, next to the
+/// of the two is large, the scale is logarithmic: on a linear scale all touched places would look alike beside the
 /// places without a tap, whose standard deviation is up to a hundred times as large.
 Colours deviation_colours(double least, double most);
 

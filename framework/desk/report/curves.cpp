@@ -38,38 +38,49 @@ std::vector<Curve> named_curves(const History& history, const RowAt& row_at) {
 
 struct NamedState {
   const char* name;
-  std::optional<GpState> RunResult::*state;
+  const char* field;  ///< in the record, with the dot
 };
 constexpr std::array<NamedState, 3> kStates{
-    {{"height GP", &RunResult::height_gp}, {"label GP", &RunResult::label_gp}, {"surface GP", &RunResult::surface_gp}}};
+    {{"height GP", "height_gp."}, {"label GP", "label_gp."}, {"surface GP", "surface_gp."}}};
 
 Row likelihoods_of(const RunAtTap& moment) {
+  const Row state{moment.result.state.fields};
   Row out;
   for (const NamedState& one : kStates) {
-    if (const auto& state = moment.result.*one.state) out.add(one.name, state->log_marginal_likelihood);
+    if (const auto value = state.number(std::string(one.field) + "log_marginal_likelihood")) out.add(one.name, *value);
   }
   return out;
 }
 
-Row parameters_of(const std::optional<GpState>& state) {
-  if (!state) return {};
-  Row out{{{"signal", state->settings.signal}, {"noise", state->settings.noise}}};
-  for (const KernelParameter& one : state->kernel) out.add(one.name, one.value);
-  return out;
-}
-
-Row numbers_of(const std::optional<FootprintState>& state) {
+/// Returns the numbers of the state whose names begin with `prefix`, without it.
+Row numbers_below(const RunAtTap& moment, const std::string& prefix) {
   Row out;
-  if (!state) return out;
-  for (auto [name, value] : state->numbers) {
-    std::replace(name.begin(), name.end(), '_', ' ');
-    out.add(name, value);
+  for (const auto& [name, value] : moment.result.state.fields) {
+    const double* const number = std::get_if<double>(&value);
+    if (number != nullptr && name.compare(0, prefix.size(), prefix) == 0) out.add(name.substr(prefix.size()), *number);
   }
+  return out;
+}
+
+Row parameters_of(const RunAtTap& moment, const std::string& gp) {
+  const Row state{moment.result.state.fields};
+  Row out;
+  for (const char* name : {"signal", "noise"}) {
+    if (const auto value = state.number(gp + name)) out.add(name, *value);
+  }
+  const Row kernel = numbers_below(moment, gp + "kernel.");
+  out.fields.insert(out.fields.end(), kernel.fields.begin(), kernel.fields.end());
+  return out;
+}
+
+Row footprint_numbers(const RunAtTap& moment) {
+  Row out = numbers_below(moment, "footprint.");
+  for (auto& field : out.fields) std::replace(field.first.begin(), field.first.end(), '_', ' ');
   return out;
 }
 
 /// Returns the milliseconds of each tap by phase. A tap during which the program was killed has no values.
-std::vector<Curve> times(const Recording& recording, const History& history) {
+std::vector<Curve> times(const RecordedRun& recording, const History& history) {
   std::vector<Curve> out;
   for (const char* phase : kPhaseNames)
     out.push_back({phase, std::vector<std::optional<double>>(history.moments.size())});
@@ -148,8 +159,9 @@ std::vector<CurvePanel> error_panels(const ExperimentOptions& options, const His
       out.push_back({error.label, "", CurveAxis::share, {std::move(curve)}});
     }
   }
-  lengths.push_back(curve_of(history, find_summary_field(kExpectedError)->label,
-                             [&](const RunAtTap& moment) { return in_millimetres(moment.result.expected_rmse); }));
+  lengths.push_back(curve_of(history, find_summary_field(kExpectedError)->label, [&](const RunAtTap& moment) {
+    return in_millimetres(Row{moment.result.state.fields}.number(kExpectedError));
+  }));
   out.front() = {surface_error_title(options), "mm", CurveAxis::from_zero, std::move(lengths)};
   return out;
 }
@@ -172,7 +184,7 @@ Curves without_constants(std::vector<CurvePanel> panels) {
 
 }  // namespace
 
-Curves curves_of(const Recording& recording, const History& history) {
+Curves curves_of(const RecordedRun& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
   const bool any_side = options.scene.touch == SceneOptions::Touch::any;
   std::vector<CurvePanel> panels = error_panels(options, history);
@@ -192,10 +204,10 @@ Curves curves_of(const Recording& recording, const History& history) {
   add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
   for (const NamedState& state : kStates) {
     add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
-        named_curves(history, [&](const RunAtTap& moment) { return parameters_of(moment.result.*state.state); }));
+        named_curves(history, [&](const RunAtTap& moment) { return parameters_of(moment, state.field); }));
   }
   add(fmt::format("Numbers of footprint/{}", options.footprint.type), "", CurveAxis::free,
-      named_curves(history, [](const RunAtTap& moment) { return numbers_of(moment.result.footprint); }));
+      named_curves(history, [](const RunAtTap& moment) { return footprint_numbers(moment); }));
   add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
   if (history.moments.back().result.robot_seconds > 0.0)
     add("Robot time so far", "s", CurveAxis::from_zero,

@@ -42,6 +42,6 @@ struct Curves {
 
 /// Returns panels of errors, standard deviations, shares, likelihoods, hyperparameters, numbers of the footprint and
 /// times. Quantities that the run lacks are left out; panels without any change become constants.
-Curves curves_of(const Recording& recording, const History& history);
+Curves curves_of(const RecordedRun& recording, const History& history);
 
 }  // namespace palpate

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "report/history.hpp"
 
-#include "experiment/metrics.hpp"
-#include "record/tap_row.hpp"
+#include "record/fields.hpp"
+#include "record/summary.hpp"
+#include "report/beliefs.hpp"
 
 #include <fmt/format.h>
 
@@ -14,13 +15,13 @@
 namespace palpate {
 namespace {
 
-TapMark mark_of(const Recording& recording, std::size_t index, double desk, const RunResult& counts) {
-  const PastTap& tap = recording.taps[index];
-  TapMark mark{static_cast<int>(index) + 1, TapMark::Kind::failed, tap.target.x, tap.target.y, desk};
-  if (tap.contact.outcome != Outcome::contact) return mark;
+TapMark mark_of(const RecordedRun& recording, std::size_t index, double desk, const RunResult& counts) {
+  const TapRecord& tap = recording.taps[index];
+  TapMark mark{static_cast<int>(index) + 1, TapMark::Kind::failed, tap.target().x, tap.target().y, desk};
+  if (!tap.is_contact()) return mark;
   const Row& row = recording.rows[index];
   mark.kind = label_now(row, counts).value_or(false) ? TapMark::Kind::on : TapMark::Kind::off;
-  mark.height = row.number("corrected_height").value_or(tap.contact.height);
+  mark.height = row.number("corrected_height").value_or(tap.result.height());
   return mark;
 }
 
@@ -31,37 +32,39 @@ bool own_scores(const MapsAtTap& now) {
 }
 
 /// Returns the maps after the taps that `playback` has replayed, the first ones of `recording`.
-MapsAtTap maps_of(Playback& playback, const Recording& recording) {
-  FromAbove& experiment = playback.from_above();
-  const TapBelief& belief = experiment.belief();
+MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
+  Experiment& experiment = playback.experiment();
+  HeightMap& belief = height_map_of(experiment);
   MapsAtTap out;
   out.taps = playback.taps();
   for (int i = 0; i < out.taps; ++i)
     out.marks.push_back(
         mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk(), experiment.counts()));
-  out.next = experiment.choose_next();
-  out.is_next_known = out.next || experiment.has_scores();
-  out.has_scores = experiment.has_scores();
-  out.scores = experiment.scores();
-  experiment.ask(Quantity::uncertainty | Quantity::height | Quantity::probability);
-  out.surface = reconstruction(belief);
-  out.deviation = belief.height_variance().cwiseSqrt();
-  out.uncertainty = belief.uncertainty();
-  if (belief.footprint_is_weight()) {
-    out.weight = belief.weight();
-    out.least_weight = belief.weight_mean().minCoeff();
-    out.most_weight = belief.weight_mean().maxCoeff();
+  out.next = playback.next();
+  out.has_scores = !recording.scored_by_program();
+  out.is_next_known = out.next || out.has_scores;
+  out.scores = out.has_scores ? experiment.scores() : Eigen::VectorXd::Zero(belief.candidates().size());
+  experiment.look();
+  out.surface = belief.surface().heights;
+  out.deviation = belief.values(quantity::kHeightStd);
+  out.uncertainty = belief.values(quantity::kUncertainty);
+  if (is_footprint_weight(belief)) {
+    out.weight = belief.values(quantity::kLabelMean);
+    out.least_weight = belief.models().label_map().mean().minCoeff();
+    out.most_weight = belief.models().label_map().mean().maxCoeff();
   } else {
-    out.probability = belief.probability();
+    out.probability = belief.values(quantity::kObjectProbability);
   }
-  out.largest_deviation = std::sqrt(belief.all_taps_variance().maxCoeff());
+  out.largest_deviation = belief.values(quantity::kMeasurementStd).maxCoeff();
   out.result = playback.result();
+  if (recording.config.options.height.outlier_probability)
+    out.suspected_outliers = belief.models().suspected_outliers();
   return out;
 }
 
 }  // namespace
 
-std::vector<MapsAtTap> maps_at_taps(Playback& playback, const Recording& recording, const std::vector<int>& taps) {
+std::vector<MapsAtTap> maps_at_taps(RunReplay& playback, const RecordedRun& recording, const std::vector<int>& taps) {
   std::vector<MapsAtTap> out;
   for (const int count : taps) {
     playback.advance_to(count);
@@ -76,20 +79,20 @@ std::string count_words(const RunResult& result) {
   return out;
 }
 
-HistoryBuilder::HistoryBuilder(const Workshop& workshop, const Recording& recording)
+HistoryBuilder::HistoryBuilder(const Workshop& workshop, const RecordedRun& recording)
     : recording_(recording),
-      playback_(workshop, recording),
-      any_side_(dynamic_cast<FromAnySide*>(&playback_.experiment())) {
+      playback_(workshop, recording, page_readers(recording)),
+      any_side_(is_any_side(recording)) {
   history_.truth_lost = playback_.truth_lost();
-  if (any_side_ != nullptr) {
+  if (any_side_) {
     add_surface();
     return;
   }
-  const Candidates& all = playback_.from_above().candidates();
+  const CandidateGrid& all = height_map_of(playback_.experiment()).grid();
   stride_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
   history_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
   history_.y = all.ys(Eigen::seq(0, Eigen::last, stride_));
-  const bool weight = playback_.from_above().belief().footprint_is_weight();
+  const bool weight = is_footprint_weight(height_map_of(playback_.experiment()));
   for (const char* name : {"height", "deviation", "u", weight ? "w" : "p", "score"})
     history_.maps.push_back({name, {}});
   add();
@@ -97,23 +100,24 @@ HistoryBuilder::HistoryBuilder(const Workshop& workshop, const Recording& record
 
 void HistoryBuilder::advance() {
   playback_.advance_to(playback_.taps() + 1);
-  any_side_ != nullptr ? add_surface() : add();
+  any_side_ ? add_surface() : add();
 }
 
 void HistoryBuilder::add_surface() {
-  FromAnySide& experiment = *any_side_;
+  Experiment& experiment = playback_.experiment();
+  const SolidsBelief& belief = solids_of(experiment);
   constexpr double kSide = 0.0025;  // cell width, metres; walls of 3 mm are complete at this width
   RunAtTap now;
   now.taps = playback_.taps();
-  now.next = experiment.choose_next();
-  now.is_next_known = now.next || experiment.has_scores();
-  if (now.next) now.next_along = experiment.belief().meeting(*now.next->approach, experiment.belief().solids().best());
+  now.next = playback_.next();
+  now.is_next_known = now.next || !recording_.scored_by_program();
+  if (now.next) now.next_along = belief.distance(now.next->request.line, belief.solids().best());
   now.result = playback_.result();
-  history_.surfaces.push_back(experiment.crossings(kSide));
+  history_.surfaces.push_back(belief.crossings(kSide));
   for (const Crossings::Vertex& one : history_.surfaces.back().vertices)
     now.largest_deviation = std::max(now.largest_deviation, one.deviation);
   if (history_.true_contours.empty() || experiment.scene().effects().push)
-    history_.true_contours = experiment.true_contours();
+    history_.true_contours = true_contours(experiment);
   history_.shown.push_back(now.taps);
   history_.moments.push_back(now);
   // Largest number of values: more than a page can carry, and for a thousand taps gigabytes.
@@ -128,13 +132,14 @@ void HistoryBuilder::add() {
   for (std::size_t i = 0; i < std::size(maps); ++i) history_.maps[i].frames.push_back(shown(*maps[i]));
   own_scores_ = own_scores_ || own_scores(now);
   largest_ = std::max(largest_, now.largest_deviation);
-  if (const Truth* truth = playback_.from_above().truth()) truth_ = shown(truth->height);
+  if (const Scene* const truth = playback_.experiment().truth())
+    truth_ = shown(true_heights(playback_.experiment().belief().candidates(), *truth));
   history_.shown.push_back(now.taps);
   history_.moments.push_back(now);
 }
 
 Eigen::VectorXf HistoryBuilder::shown(const Eigen::VectorXd& map) {
-  const Candidates& all = playback_.from_above().candidates();
+  const Candidates& all = playback_.experiment().belief().candidates();
   const auto some = Eigen::seq(0, Eigen::last, stride_);
   const Eigen::MatrixXd cells = map.reshaped<Eigen::RowMajor>(all.rows, all.columns)(some, some);
   return cells.reshaped<Eigen::RowMajor>().cast<float>();
@@ -178,7 +183,7 @@ History HistoryBuilder::finished(History history) const {
   return history;
 }
 
-History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress) {
+History make_history(const Workshop& workshop, const RecordedRun& recording, const OnProgress& progress) {
   const auto last = static_cast<int>(recording.taps.size());
   HistoryBuilder builder(workshop, recording);
   progress(0, last);

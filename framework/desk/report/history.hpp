@@ -3,7 +3,10 @@
 // taps, so runs need not store their maps.
 #pragma once
 
-#include "record/recording.hpp"
+#include "experiment/outlier_model.hpp"
+#include "record/run_replay.hpp"
+#include "space/contours.hpp"
+#include "space/mesh.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/types.hpp>
@@ -33,6 +36,7 @@ struct RunAtTap {
   bool is_next_known = true;         ///< false if a program chooses: reports do not start programs
   std::optional<double> next_along;  ///< from any side: path length of the next tap up to the surface of the most
                                      ///< probable composition
+  std::optional<std::vector<SuspectedOutlier>> suspected_outliers;  ///< with an outlier model
   double largest_deviation = 0.0;  ///< greatest standard deviation, metres: of the candidates' heights given all taps;
                                    ///< from any side of the surface
   /// Range of the label GP's mean over the candidates; nullopt if the footprint is not the weight.
@@ -56,7 +60,7 @@ struct MapsAtTap : RunAtTap {
 };
 
 /// Returns the maps after each of these numbers of taps, which ascend from 1 to the number of all taps.
-std::vector<MapsAtTap> maps_at_taps(Playback& playback, const Recording& recording, const std::vector<int>& taps);
+std::vector<MapsAtTap> maps_at_taps(RunReplay& playback, const RecordedRun& recording, const std::vector<int>& taps);
 
 /// Returns "7 on the object, 10 on the desk, 1 failed"; without failed taps the last part is missing.
 std::string count_words(const RunResult& result);
@@ -80,7 +84,7 @@ struct History {
   /// The contours of the true surface are those at the last moment; empty if the truth is unknown.
   std::vector<Crossings> surfaces;
   std::vector<Ring> true_contours;
-  /// Reason why the truth is no longer known (Playback::truth_lost()); the errors are then those of the record.
+  /// Reason why the truth is no longer known (RunReplay::truth_lost()); the errors are then those of the record.
   std::optional<Error> truth_lost;
 };
 
@@ -94,8 +98,8 @@ inline constexpr int kMostCellsAcross = 128;
 class HistoryBuilder {
  public:
   /// Begins before the first tap. `workshop` and `recording` must outlive the object; `recording` has at least one tap
-  /// and may grow. Throws Error as Playback does.
-  HistoryBuilder(const Workshop& workshop, const Recording& recording);
+  /// and may grow. Throws Error as RunReplay does.
+  HistoryBuilder(const Workshop& workshop, const RecordedRun& recording);
 
   /// Returns the number of taps that were added.
   int taps() const { return playback_.taps(); }
@@ -117,17 +121,17 @@ class HistoryBuilder {
   History finished(History history) const;
   Eigen::VectorXf shown(const Eigen::VectorXd& map);
 
-  const Recording& recording_;
-  Playback playback_;
-  FromAnySide* any_side_;  ///< the experiment, if it taps from any side; else null
-  int stride_ = 1;         ///< maps show every stride_-th column and row
+  const RecordedRun& recording_;
+  RunReplay playback_;
+  bool any_side_;
+  int stride_ = 1;  ///< maps show every stride_-th column and row
   bool own_scores_ = false;
   std::optional<Eigen::VectorXf> truth_;  ///< after the taps so far; pushed objects change it
   double largest_ = 0.0;                  ///< greatest standard deviation of the height GP at any moment
   History history_;                       ///< with unlimited deviations; finished() limits them
 };
 
-/// Builds the history of a whole recorded run. Throws Error as Playback does.
-History make_history(const Workshop& workshop, const Recording& recording, const OnProgress& progress);
+/// Builds the history of a whole recorded run. Throws Error as RunReplay does.
+History make_history(const Workshop& workshop, const RecordedRun& recording, const OnProgress& progress);
 
 }  // namespace palpate

@@ -8,8 +8,8 @@
 namespace palpate {
 
 /// A run or a sweep with a page. The page begins with page() and asks for news() again and again, with its position in
-/// the record: letters, digits and dots that only this object interprets. No member throws Error; the page shows
-/// errors of the record.
+/// the record: letters, digits and dots that only this object interprets. No member throws Error; its page shows what
+/// is wrong with a record.
 class LiveRecord {
  public:
   virtual ~LiveRecord() = default;

@@ -2,10 +2,10 @@
 #include "watch/run_follower.hpp"
 
 #include "config/catch_error.hpp"
+#include "record/fields.hpp"
 #include "record/json.hpp"
+#include "record/run.hpp"
 #include "record/run_directory.hpp"
-#include "record/session.hpp"
-#include "record/tap_row.hpp"
 #include "report/page/page.hpp"
 #include "report/page/run_page.hpp"
 
@@ -107,11 +107,11 @@ void RunFollower::add_times() {
 
 void RunFollower::replay_next_tap() {
   if (!recording_) {
-    recording_ = std::make_unique<Recording>(
-        Recording{directory_, load_run(workshop_.host, directory_), {}, {}, {}, manifest_, {}});
+    recording_ = std::make_unique<RecordedRun>(
+        RecordedRun{directory_, load_run(workshop_.host, directory_), {}, {}, {}, manifest_, {}});
   }
   add_times();
-  recording_->taps.push_back(past_taps({pending_.front()}, log_.file()).front());
+  recording_->taps.push_back(read_taps({pending_.front()}, log_.file()).front());
   recording_->rows.push_back(std::move(pending_.front()));
   pending_.pop_front();
   if (!builder_) builder_ = std::make_unique<HistoryBuilder>(workshop_, *recording_);

@@ -2,7 +2,7 @@
 // A run that goes on, replayed tap by tap while its record grows.
 #pragma once
 
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 #include "report/history.hpp"
 #include "watch/growing_log.hpp"
 #include "watch/live_record.hpp"
@@ -42,7 +42,7 @@ class RunFollower final : public LiveRecord {
   std::optional<Tree> manifest_;
   std::vector<TapTimes> timings_;
   std::deque<Row> pending_;                  ///< recorded taps that are not yet in recording_
-  std::unique_ptr<Recording> recording_;     ///< null before the first tap
+  std::unique_ptr<RecordedRun> recording_;   ///< null before the first tap
   std::unique_ptr<HistoryBuilder> builder_;  ///< has as many taps as recording_
   std::string trouble_;                      ///< error of the present record, "" for none
   std::string standing_;                     ///< lock and summary at the last look

@@ -2,7 +2,7 @@
 // The pages of a directory: that of a run, or those of a sweep and its jobs.
 #pragma once
 
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "sweep/sweep.hpp"
 #include "watch/live_record.hpp"
 

@@ -3,33 +3,13 @@
 #pragma once
 
 #include <palpate/belief.hpp>
-#include <palpate/types.hpp>
+#include <palpate/tap.hpp>
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace palpate {
-
-/// What the models expect of a place: mean and standard deviation of the height, metres, in the frame of the scene.
-/// For `surface: two_part` of the height that an object would have there.
-struct Prediction {
-  double height = 0.0;
-  double standard_deviation = 0.0;
-  std::optional<double> probability = std::nullopt;  ///< of an object there, for a backend that asks for it
-};
-
-/// One tap as it is asked for. It says all that a simulated answer may depend on beside options and seed, so that a
-/// resumed run goes on exactly as the unbroken one would have.
-struct TapRequest {
-  int number = 1;                                   ///< of the tap within the run, from 1
-  Target target;                                    ///< within the scene's area
-  std::optional<Target> previous;                   ///< the target of the tap before, none for the first
-  std::optional<Prediction> predicted;              ///< only for a backend that wants it
-  double elapsed = 0.0;                             ///< robot time of all taps before, seconds
-  int motion = 0;                                   ///< in which way, where the backend has several: see motions.hpp
-  std::optional<Approach> approach = std::nullopt;  ///< the way of the tool; none: straight down, at the target
-};
 
 /// Laws, of which the contract tests check those that need no robot: a failed tap is an outcome, never a made-up
 /// height; the destructor leaves a robot in a safe state; no method moves anything but tap(); a repeatable backend
@@ -45,16 +25,19 @@ class Backend {
   virtual ~Backend() = default;
 
   /// Taps the world and returns when the tool is clear again. A tap that failed says so in its outcome, and if it must
-  /// be the last, in Contact::ends_run. An Error ends the run, too, but the tap is then lost to the record: it is for
+  /// be the last, in TapResult::ends_run. An Error ends the run, too, but the tap is then lost to the record: it is for
   /// trouble in which nothing was tapped.
-  virtual Contact tap(const TapRequest& request) = 0;
+  virtual TapResult tap(const TapRequest& request) = 0;
 
   /// Whether a tap can be made again at no risk. If not, each tap is announced in the log and synced before it moves.
   virtual bool repeatable() const = 0;
 
-  /// Whether a tap can be made along this approach, as far as that is known before: whether arm and shaft get there and
-  /// stay clear of the desk. A backend that only comes from above says no to all.
-  virtual bool reaches(const Approach& /*approach*/) const { return false; }
+  /// Whether the backend taps along lines that are not from above. If not, beliefs with such lines are rejected.
+  virtual bool taps_any_line() const { return false; }
+
+  /// Returns for each line that is not from above whether a tap can be made along it, as far as that is known before
+  /// the tap: whether arm and shaft reach it and stay clear of the desk.
+  virtual void reaches(const Candidates& /*lines*/, BoolOut out) const { out.setConstant(true); }
 
   /// What tap() would do with `request`, for a person who is asked before every tap (`palpate run --step`): a few lines
   /// without line ends, as where the tool comes from, how deep and fast it goes, which forces end it. Empty: nothing is
@@ -69,16 +52,16 @@ class Backend {
   /// What the taps of this process have shown of what the config left open, noted in the manifest when the run ends.
   virtual std::vector<Learnt> learnt() const { return {}; }
 
-  /// What taps depend on of all that the models expect, the same from birth to death: nothing, the height, or the
-  /// height and the probability of an object. The loop builds the models for it.
-  virtual Quantities expects() const { return {}; }
+  /// Returns the quantities of TapRequest::predicted on which taps depend, the same from birth to death: none,
+  /// `height_mean` and `height_std`, or these and `object_probability`.
+  virtual QuantitySet predicts() const { return {}; }
 
-  /// What show() reads, the same from birth to death.
-  virtual Quantities reads() const { return {}; }
+  /// Returns the quantities that show() reads, the same from birth to death.
+  virtual QuantitySet reads() const { return {}; }
 
   /// Called after every tap, once it is recorded and the belief has it, and at the start of a run that is carried on:
   /// for a robot whose surface people watch. Whatever it reads, the taps are the same. An Error ends the run.
-  virtual void show(const Belief& /*belief*/) {}
+  virtual void show(const BeliefView& /*belief*/) {}
 
   /// Whether the scene of the config is the very world that is tapped, so that errors against it mean something.
   virtual bool scene_is_truth() const = 0;

@@ -1,85 +1,181 @@
 // SPDX-License-Identifier: MIT
-// What the taps so far say, as plugins see it.
+// The belief: what the taps so far say of the scene, and of the lines along which the next tap may be made.
 #pragma once
 
+#include <palpate/errors.hpp>
+#include <palpate/quantity.hpp>
+#include <palpate/record_fields.hpp>
 #include <palpate/scene.hpp>
-#include <palpate/types.hpp>
+#include <palpate/surface.hpp>
+#include <palpate/tap.hpp>
 
+#include <Eigen/Core>
+
+#include <functional>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace palpate {
 
-/// What there is to read of a belief beside places and counts.
-enum class Quantity : unsigned {
-  uncertainty = 1,  ///< u
-  weight = 2,       ///< w
-  probability = 4,  ///< p
-  height = 8,       ///< mean and variance
-  doubt = 16,       ///< which contacts are believed; nothing that a plugin reads
-  outlines = 32,    ///< some of the outlines that p is the mean of
-  // From any side, of a SurfaceBelief:
-  expected_discovery = 64,  ///< expected_discovery
-  deviation = 128,          ///< deviation and incidence_cosine
-  std_reduction = 256       ///< std_reduction
+using Points3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/// M lines among which the next tap is chosen; ties go to the lowest index.
+struct Candidates {
+  Points3 starts;           ///< M x 3, metres
+  Points3 directions;       ///< M x 3 unit vectors, or one row if all are equal
+  Eigen::VectorXd lengths;  ///< M values, metres, or one if all are equal
+  bool from_above = false;  ///< TapLine::from_above of all of them
+  bool fixed = true;        ///< for the whole run; else drawn before each tap
+  int rows = 0;             ///< of a grid of fixed lines, row after row: M = rows x columns
+  int columns = 0;
+
+  Eigen::Index size() const { return starts.rows(); }
+  TapLine line(Eigen::Index index) const {
+    return {starts.row(index), directions.row(directions.rows() == 1 ? 0 : index),
+            lengths(lengths.size() == 1 ? 0 : index), from_above};
+  }
 };
 
-/// A set of quantities: `Quantity::uncertainty | Quantity::weight`, or {} for none.
-class Quantities {
- public:
-  constexpr Quantities() = default;
-  constexpr Quantities(Quantity one) : bits_(static_cast<unsigned>(one)) {}  // NOLINT: one of them is a set of one
-  constexpr bool has(Quantity one) const { return (bits_ & static_cast<unsigned>(one)) != 0; }
-  friend constexpr Quantities operator|(Quantities a, Quantities b) {
-    a.bits_ |= b.bits_;
-    return a;
-  }
-  friend constexpr bool operator==(Quantities a, Quantities b) { return a.bits_ == b.bits_; }
-  friend constexpr bool operator!=(Quantities a, Quantities b) { return a.bits_ != b.bits_; }
-
- private:
-  unsigned bits_ = 0;
+/// Numbers of taps so far, failed taps included.
+struct TapCounts {
+  int all = 0;
+  int initial = 0;  ///< chosen by the initial design
 };
-constexpr Quantities operator|(Quantity a, Quantity b) { return Quantities(a) | Quantities(b); }
 
-/// What is believed after the taps so far, over the candidates. The models behind it are built for those who say that
-/// they read them: a plugin may read the quantities of its reads(), and any other throws Error, which names both.
-/// References stay valid until the next tap. M is the number of candidates.
-class Belief {
+/// The part of a belief that acquisitions and backends read. References stay valid until the next tap.
+class BeliefView {
  public:
-  virtual ~Belief() = default;
+  virtual ~BeliefView() = default;
 
-  /// M x 2, metres. Fixed for the whole run; ties are broken by the lowest row.
-  virtual const Points& candidates() const = 0;
-  virtual Area area() const = 0;
+  virtual const Candidates& candidates() const = 0;
+  virtual TapCounts counts() const = 0;
+  /// Returns the readings of the taps in their order, as they are read now. Failed taps have none.
+  virtual const std::vector<TapReading>& readings() const = 0;
+  /// Returns M values of a quantity. Throws Error for a quantity that the reader did not declare.
+  virtual const Eigen::VectorXd& values(std::string_view quantity) const = 0;
+  /// Returns a quantity that is one number; nullopt while it has no value.
+  virtual std::optional<double> scalar(std::string_view quantity) const = 0;
+  /// For readers of `hypotheses`.
+  virtual const HypothesisSample& hypotheses() const = 0;
+};
 
-  /// Taps made so far, failed ones included, and how many of them the initial design chose.
-  virtual int taps() const = 0;
-  virtual int initial_taps() const = 0;
+/// From when on a reader reads.
+enum class Stage {
+  first_tap,
+  first_object_contact,
+  first_scored_tap,       ///< the first tap that scores choose, of the acquisition or of a calling program
+  first_acquisition_tap,  ///< the first tap that the acquisition's scores choose
+  first_fallback,
+  summary,
+};
 
-  /// Where all taps so far were sent, failed ones included, in their order.
-  virtual const std::vector<Target>& targets() const = 0;
-  /// Those that made contact, in their order, as they read now: a height may be corrected by what later taps tell.
-  virtual const std::vector<Touch>& touches() const = 0;
-  /// Over which place the arm stands; none before the first tap.
-  std::optional<Target> arm() const {
-    return targets().empty() ? std::nullopt : std::optional<Target>(targets().back());
+/// The readers of a belief, fixed before the first tap.
+struct ReadPlan {
+  struct Reader {
+    std::string name;  ///< such as "acquisition weighted"
+    QuantitySet reads;
+    Stage from = Stage::first_acquisition_tap;
+    bool at_one_candidate = false;  ///< by predict() alone
+  };
+  std::vector<Reader> readers;
+  /// From when on errors, expected RMSE and surface are read; nullopt: never.
+  std::optional<Stage> surface_from = Stage::summary;
+
+  /// Returns what is read in arrays from a stage on.
+  QuantitySet reads(Stage from) const {
+    QuantitySet out;
+    for (const Reader& one : readers) {
+      if (one.from == from && !one.at_one_candidate) out.insert(one.reads.begin(), one.reads.end());
+    }
+    return out;
+  }
+};
+
+/// A model of a run, such as "label GP", and a reader because of which it is built.
+struct PlannedModel {
+  std::string model;
+  std::string reader;
+};
+
+using BoolOut = Eigen::Ref<Eigen::Array<bool, Eigen::Dynamic, 1>>;
+
+/// What displays show of a reconstruction.
+struct ShownErrors {
+  Errors errors;
+  std::optional<double> expected_rmse;  ///< metres
+};
+
+/// Returns for each line whether the backend can tap along it.
+using LineFilter = std::function<void(const Candidates& lines, BoolOut out)>;
+
+/// Laws, checked by the contract tests for every belief: the same plan, stages and taps give the same bytes, on any
+/// number of threads. infer(), surface(), errors() and all reading change no later value. Random numbers come from
+/// Context::random() alone. Numerical trouble is counted in state(). infer() throws Error for values that are not
+/// finite.
+class Belief : public BeliefView {
+ public:
+  static constexpr const char* kKind = "belief";
+
+  /// Returns every quantity that the belief offers, the same from birth to death.
+  virtual std::vector<Quantity> offers() const = 0;
+
+  /// Takes the readers of the run, before the first tap, and returns the models that those before the summary need. No
+  /// model without a reader is ever built. The belief offers every quantity of the plan.
+  virtual std::vector<PlannedModel> plan(const ReadPlan& plan) = 0;
+
+  /// The readers of `stage` read from now on. Stages begin in any order, each once; all that is read from then on
+  /// belongs to the record.
+  virtual void begin(Stage stage) = 0;
+
+  /// Returns the reading of a result as the belief stands, nullopt for a failed tap. Changes nothing.
+  virtual std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const = 0;
+
+  /// Takes the result of a tap. A failed tap is counted and teaches nothing. A second tap along one line is one more
+  /// datum.
+  virtual void add(const TapRequest& request, const TapResult& result) = 0;
+
+  /// Brings the models of all begun stages up to the last tap, fits included.
+  virtual void update() = 0;
+
+  /// Computes the arrays of quantities that begun stages read, after update().
+  virtual void infer(const QuantitySet& quantities) = 0;
+
+  /// Returns the quantities whose arrays begun stages have, among them those of models that other quantities needed.
+  virtual QuantitySet available() const = 0;
+
+  /// Draws the lines of the next tap, unless they are fixed. `filter` says which of them the backend reaches.
+  virtual void draw_candidates(const LineFilter& /*filter*/) {}
+
+  /// Whether scores mean anything yet; until then the initial design goes on.
+  virtual bool is_ready() const { return true; }
+
+  /// Returns height and, if `probability`, the object probability at a candidate. A reader at one candidate has
+  /// declared them.
+  virtual Prediction predict(Eigen::Index candidate, bool probability) const {
+    Prediction out{values(quantity::kHeightMean)(candidate), values(quantity::kHeightStd)(candidate)};
+    if (probability) out.probability = values(quantity::kObjectProbability)(candidate);
+    return out;
   }
 
-  /// u: variance of the height GP relative to its prior, noise excluded; M values in [0, 1].
-  virtual const Eigen::VectorXd& uncertainty() const = 0;
-  /// w: mean of the label GP, or that mean clipped to [0, 1] if the config says `label: {clip: true}`.
-  /// Unclipped it leaves [0, 1] in nearly every run.
-  virtual const Eigen::VectorXd& weight() const = 0;
-  /// p: the probability that a candidate is on an object, by the config's footprint; M values in [0, 1].
-  virtual const Eigen::VectorXd& probability() const = 0;
-  /// Outlines that p is the mean of, some of them: what p alone does not tell, that places are on an object together.
-  /// Empty where the footprint has none.
-  virtual const OutlineSample& outlines() const = 0;
-  /// Mean of the height GP, metres.
-  virtual const Eigen::VectorXd& height_mean() const = 0;
-  /// Variance of the height GP, noise excluded, square metres.
-  virtual const Eigen::VectorXd& height_variance() const = 0;
+  /// Returns the record of the models that readers of begun stages have: at a candidate for a tap, without one for the
+  /// summary.
+  virtual BeliefState state(std::optional<Eigen::Index> candidate) const = 0;
+
+  /// Sets the true scene as it stands now; null if it is not known. It stays valid until the next call.
+  virtual void set_truth(const Scene* scene) = 0;
+  /// Returns the errors against the truth, as far as begun stages read the arrays for them.
+  virtual Errors errors() = 0;
+  /// Returns errors and expected RMSE for displays, by all models that are built; nullopt if one is missing. The record
+  /// stays as it is.
+  virtual std::optional<ShownErrors> shown_errors() = 0;
+  /// Returns the errors of each object of the scene, in its order; empty for a belief that has none.
+  virtual std::vector<ObjectErrors> object_errors() { return {}; }
+
+  /// Returns the reconstructed surface; in the stage `summary`.
+  virtual Surface surface() = 0;
 };
 
 }  // namespace palpate

@@ -44,7 +44,7 @@ class Footprint {
 
   /// Samples outlines from the posterior, at `places`, M x 2 metres. The samples lack objects without a contact that
   /// overlap no known object. Leaves `out` empty if the footprint has no samples.
-  virtual void sample(const PointsView& /*places*/, OutlineSample& out) const { out = {}; }
+  virtual void sample(const PointsView& /*places*/, HypothesisSample& out) const { out = {}; }
 
   /// Computes the probability of a wrong label for each touch so far, in [0, 1], in their order. 0 for a footprint
   /// without a model of label errors.

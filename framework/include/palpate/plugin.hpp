@@ -26,7 +26,7 @@
 namespace palpate {
 
 /// Version of the plugin interface, increased with every change of its meaning or its memory layout.
-constexpr std::uint32_t kPluginAbi = 22;
+constexpr std::uint32_t kPluginAbi = 23;
 
 struct Context;
 

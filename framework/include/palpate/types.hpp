@@ -39,13 +39,6 @@ inline double distance_down_to(double height, const Line& line) {
   return down < 0.0 ? (height - line.origin.z()) / down : std::numeric_limits<double>::infinity();
 }
 
-/// The way of a tool towards what it is to touch: from the origin of the line, `length` metres along its direction, its
-/// shaft straight behind it. In the frame of the area, z as heights are. A tap from above is the one straight down.
-struct Approach {
-  Line line;
-  double length = 0.0;
-};
-
 /// A contact as the models see it.
 struct Touch {
   Target place;
@@ -53,42 +46,14 @@ struct Touch {
   bool on = false;      ///< on an object, by the scene's rule (`min_object_height`)
 };
 
-/// Some outlines, drawn as probably as they are believed in, over M places: of each place, a column, which of them hold
-/// it. Outline k is bit k % 64 of row k / 64.
-struct OutlineSample {
-  int count = 0;  ///< a multiple of 64; 0 where nothing is believed of whole outlines
+/// Hypotheses of the footprint, drawn as often as they are probable, and which candidates are on an object in each: so
+/// that candidates are together on one object, which M probabilities do not show.
+struct HypothesisSample {
+  int count = 0;  ///< a multiple of 64; 0 without hypotheses
+  /// count / 64 x M: bit k % 64 of row k / 64 says whether hypothesis k has an object at a candidate.
   Eigen::Matrix<std::uint64_t, Eigen::Dynamic, Eigen::Dynamic> holds;
-  /// What a tap at a place is expected to find, apart from all that was touched so far: its extent, square metres.
-  Eigen::VectorXd to_find;
-};
-
-/// What became of one tap. Only `contact` reaches the models; all others are recorded and leave the belief as it was.
-enum class Outcome {
-  contact,      ///< the tool touched something; the height is valid
-  no_contact,   ///< the descent ended at its floor without a touch
-  unreachable,  ///< the place cannot be reached; nothing moved, or the arm turned back
-  timeout,      ///< the motion did not end in its time
-  aborted,      ///< stopped by the user or by a safety rule
-  unknown,      ///< the program died between moving and recording; found by `resume`
-};
-
-/// The answer of a backend to one tap.
-struct Contact {
-  Outcome outcome = Outcome::unknown;
-  double height =
-      0.0;             ///< of the touched point, metres, in the frame of `Scene::desk()`; meaningful only for `contact`
-  double force = 0.0;  ///< at contact, newtons; meaningful only for `contact`
-  double seconds = 0.0;  ///< robot time that the tap took, whatever its outcome
-  std::string reason;    ///< why a tap failed or the run ends, one line; else empty
-  /// No other tap can be made until somebody has seen to the robot. The tap is recorded like any other, then the run
-  /// fails with `reason`; `palpate resume --retry-failed` goes on after it.
-  bool ends_run = false;
-  /// The largest force against the tool in all of the tap, newtons, of failed taps, too: the true one where a simulator
-  /// knows it, else the largest that was felt. None where no force is simulated or felt.
-  std::optional<double> peak = std::nullopt;
-  /// Of a tap along an approach, how far along it the tool was when it touched, metres; the height is that of the tip
-  /// there. Of one that met nothing, how far it went.
-  std::optional<double> along = std::nullopt;
+  /// M values, square metres: expected area of objects that a tap discovers, beside all that was touched so far.
+  Eigen::VectorXd expected_discovery_area;
 };
 
 }  // namespace palpate

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <memory>
 #include <optional>
 
 namespace palpate {
@@ -20,9 +21,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Takes the lock of the job; nullopt if another process has it.
-std::optional<RunDirectory> hold(const fs::path& directory) {
-  std::optional<RunDirectory> held;
-  const std::optional<Error> trouble = catch_error([&] { held.emplace(directory); });
+std::shared_ptr<RunDirectory> hold(const fs::path& directory) {
+  std::shared_ptr<RunDirectory> held;
+  const std::optional<Error> trouble = catch_error([&] { held = std::make_shared<RunDirectory>(directory); });
   if (trouble && trouble->kind() != Error::Kind::busy) throw *trouble;
   return held;
 }
@@ -33,12 +34,12 @@ void write_failure(RunDirectory& held, const std::string& reason) {
 }
 
 /// Makes one attempt at the job, whose lock is held.
-JobEnd attempt_job(const Workshop& workshop, RunDirectory& held, const ResumeOptions& options) {
-  const fs::path& directory = held.path();
+JobEnd attempt_job(const Workshop& workshop, const std::shared_ptr<RunDirectory>& held, const ResumeOptions& options) {
+  const fs::path& directory = held->path();
   JobEnd end = JobEnd::failed;
   const std::optional<Error> trouble = catch_error([&] {
     const ResolvedConfig config = load_run(workshop.host, directory);
-    end = resume_held(workshop, config, held, options, nullptr).interrupted ? JobEnd::interrupted : JobEnd::done;
+    end = Run::resume(workshop, config, held, options)->run().interrupted ? JobEnd::interrupted : JobEnd::done;
   });
   if (trouble) {  // an error ends only this job, not the sweep
     // Another process uses the arm. The job has not failed and stays open.
@@ -47,7 +48,7 @@ JobEnd attempt_job(const Workshop& workshop, RunDirectory& held, const ResumeOpt
     // The job is done, and only files made from its record are missing, which is not a failure.
     if (read_ending(directory).state == RunStatus::State::done) throw *trouble;
     // An error before the start of the run has left no end in the record.
-    write_failure(held, trouble->what());
+    write_failure(*held, trouble->what());
   }
   return end;
 }
@@ -62,7 +63,7 @@ JobEnd run_job(const Workshop& workshop, const fs::path& directory, const Resume
     throw Error(directory.string(), "is missing", "it has no config.yaml: run 'palpate sweep' to restore it",
                 Error::Kind::run);
   }
-  std::optional<RunDirectory> held = hold(directory);
+  const std::shared_ptr<RunDirectory> held = hold(directory);
   if (!held) return JobEnd::busy;
   const RunStatus now = read_ending(directory);
   const bool failed = now.state == RunStatus::State::failed;
@@ -82,7 +83,7 @@ JobEnd run_job(const Workshop& workshop, const fs::path& directory, const Resume
     if (trouble && !failed) throw *trouble;
     return failed ? JobEnd::failed : JobEnd::done;
   }
-  return attempt_job(workshop, *held, options);
+  return attempt_job(workshop, held, options);
 }
 
 bool has_ended(const fs::path& directory) { return read_ending(directory).end.has_value(); }
@@ -90,7 +91,7 @@ bool has_ended(const fs::path& directory) { return read_ending(directory).end.ha
 int attempts_of(const fs::path& directory) { return attempts_in_row(directory); }
 
 void record_failure(const fs::path& directory, const std::string& reason) {
-  if (std::optional<RunDirectory> held = hold(directory)) write_failure(*held, reason);
+  if (const std::shared_ptr<RunDirectory> held = hold(directory)) write_failure(*held, reason);
 }
 
 }  // namespace palpate

@@ -9,7 +9,7 @@
 //    which can be resumed.
 #pragma once
 
-#include "record/session.hpp"
+#include "record/run.hpp"
 
 #include <filesystem>
 #include <string>

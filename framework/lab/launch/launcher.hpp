@@ -7,7 +7,7 @@
 // the table of lab/CMakeLists.txt.
 #pragma once
 
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "sweep/sweep.hpp"
 
 #include <array>

@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 /// Returns the row of a job after the taps of `occasion`. `rows` has one row per tap.
-Row row_at(const Occasion& occasion, const std::vector<Row>& rows) {
+Row row_at(const Checkpoint& occasion, const std::vector<Row>& rows) {
   std::size_t taps = 1;
   while (taps < rows.size() && !occasion.has_come(static_cast<int>(taps), rows[taps - 1])) ++taps;
   Row row = rows[taps - 1];
@@ -25,10 +25,10 @@ Row row_at(const Occasion& occasion, const std::vector<Row>& rows) {
 
 }  // namespace
 
-std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, const std::vector<Occasion>& occasions,
+std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, const std::vector<Checkpoint>& occasions,
                                                         const std::function<bool(const TapSummaries&)>& complete) {
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  for (const Occasion& one : occasions) fewest = std::min(fewest, static_cast<std::size_t>(one.taps().value_or(0)));
+  for (const Checkpoint& one : occasions) fewest = std::min(fewest, static_cast<std::size_t>(one.taps().value_or(0)));
   std::vector<std::vector<std::optional<Row>>> at(occasions.size(), std::vector<std::optional<Row>>(sweep.jobs.size()));
   const TapSummaries summaries(
       sweep,
@@ -38,7 +38,7 @@ std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, cons
       fewest);
   std::size_t most = 0;
   for (const std::optional<Row>& summary : summaries.whole()) most = std::max(most, summary ? taps_made(*summary) : 0);
-  for (const Occasion& one : occasions) {
+  for (const Checkpoint& one : occasions) {
     if (most == 0 || static_cast<std::size_t>(one.taps().value_or(0)) <= most) continue;
     throw Error("command line", fmt::format("--at: no job made {} taps", *one.taps()),
                 fmt::format("the most are {}", most));

@@ -2,7 +2,7 @@
 // The results of a sweep after fewer taps.
 #pragma once
 
-#include "record/occasion.hpp"
+#include "record/checkpoint.hpp"
 #include "sweep/tap_summaries.hpp"
 
 #include <functional>
@@ -20,7 +20,7 @@ inline constexpr const char* kReached = "reached";
 ///
 /// `complete` must compute the missing summaries; if it returns false, the result is nullopt. Throws Error for a number
 /// of taps that no job made, and for a damaged sweep.
-std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, const std::vector<Occasion>& occasions,
+std::optional<std::vector<std::vector<Row>>> results_at(const Sweep& sweep, const std::vector<Checkpoint>& occasions,
                                                         const std::function<bool(const TapSummaries&)>& complete);
 
 }  // namespace palpate

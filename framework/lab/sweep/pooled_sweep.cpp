@@ -6,7 +6,7 @@
 #include "record/catalogue.hpp"
 #include "record/record_reader.hpp"
 #include "record/resolved.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "sweep/pooled_settings.hpp"
 
 #include <palpate/error.hpp>

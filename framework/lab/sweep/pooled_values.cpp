@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "config/keys.hpp"
 #include "record/resolved.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "sweep/description.hpp"
 #include "sweep/pooled_settings.hpp"
 

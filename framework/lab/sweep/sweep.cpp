@@ -7,7 +7,7 @@
 #include "record/files.hpp"
 #include "record/json.hpp"
 #include "record/resolved.hpp"
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "sweep/read_jobs.hpp"
 
 #include <palpate/error.hpp>

@@ -5,7 +5,7 @@
 #include "config/hash.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 
 #include <palpate/error.hpp>
 
@@ -71,7 +71,7 @@ void TapSummaries::compute(const Workshop& workshop, std::size_t job) const {
   refuse_link(directory.parent_path());
   refuse_link(directory);
   const Row& whole = *summaries_[job];
-  const Recording recording = read_recording(workshop, directory);
+  const RecordedRun recording = read_recorded_run(workshop.host, directory);
   if (recording.rows.size() < taps_made(whole)) {
     throw Error(directory.string(), "its record has fewer taps than its summary",
                 "the file is damaged, run the job again");

@@ -5,7 +5,7 @@
 // computed again.
 #pragma once
 
-#include "record/session.hpp"
+#include "record/run.hpp"
 #include "sweep/sweep.hpp"
 
 #include <cstddef>

@@ -28,9 +28,9 @@ HeightBounds height_bounds(double desk, double overrun, double hover) {
   return {desk - overrun - kBelowFloor, desk + hover, "1 cm below desk - overrun to desk + hover"};
 }
 
-std::optional<AnswerFault> find_fault(const Contact& answer, const HeightBounds& bounds) {
-  if (answer.outcome == Outcome::contact && !is_within(answer.height, bounds.lowest, bounds.highest)) {
-    return AnswerFault{fmt::format("height {:.6g} m is outside {:.4g} to {:.4g} m ({})", answer.height, bounds.lowest,
+std::optional<AnswerFault> find_fault(const TapResult& answer, const HeightBounds& bounds) {
+  if (answer.is_contact() && !is_within(answer.height(), bounds.lowest, bounds.highest)) {
+    return AnswerFault{fmt::format("height {:.6g} m is outside {:.4g} to {:.4g} m ({})", answer.height(), bounds.lowest,
                                    bounds.highest, bounds.meaning),
                        "give metres in the scene's frame (are these millimetres?)"};
   }
@@ -38,8 +38,8 @@ std::optional<AnswerFault> find_fault(const Contact& answer, const HeightBounds&
     return AnswerFault{fmt::format("force {:.6g} N is outside 0 to {:g} N", answer.force, kMostForce),
                        "give the size of the push in newtons (are these millinewtons?)"};
   }
-  if (answer.peak && !is_within(*answer.peak, 0.0, kMostForce)) {
-    return AnswerFault{fmt::format("peak force {:.6g} N is outside 0 to {:g} N", *answer.peak, kMostForce),
+  if (answer.peak_force && !is_within(*answer.peak_force, 0.0, kMostForce)) {
+    return AnswerFault{fmt::format("peak force {:.6g} N is outside 0 to {:g} N", *answer.peak_force, kMostForce),
                        "give the largest push in newtons (are these millinewtons?)"};
   }
   if (!is_within(answer.seconds, 0.0, kMostSeconds)) {

@@ -3,7 +3,7 @@
 // backend `replay`.
 #pragma once
 
-#include <palpate/types.hpp>
+#include <palpate/tap.hpp>
 
 #include <optional>
 #include <string>
@@ -33,7 +33,7 @@ struct AnswerFault {
 
 /// Returns the first value of an answer that is out of its bounds or not finite, or nullopt. The height of a contact
 /// has to be within `bounds`, force and peak force within 0 to 1000 N, the duration within 0 to 86400 s, one day.
-std::optional<AnswerFault> find_fault(const Contact& answer, const HeightBounds& bounds);
+std::optional<AnswerFault> find_fault(const TapResult& answer, const HeightBounds& bounds);
 
 /// Returns the outcome with this name. Returns nullopt for other names and for `unknown`, which stands for a missing
 /// answer.

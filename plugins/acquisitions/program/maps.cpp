@@ -39,9 +39,9 @@ std::string npy(const RowMajor& rows) {
 }
 
 /// Returns one row per outline and one truth value per candidate.
-std::string hypotheses(const Belief& belief) {
-  const OutlineSample& sample = belief.outlines();
-  const Eigen::Index places = belief.candidates().rows();
+std::string hypotheses(const BeliefView& belief) {
+  const HypothesisSample& sample = belief.hypotheses();
+  const Eigen::Index places = belief.candidates().size();
   constexpr Eigen::Index kBits = 64;
   std::string out(static_cast<std::size_t>(sample.count * places), '\0');
   for (Eigen::Index k = 0; k < sample.count; ++k) {
@@ -54,71 +54,63 @@ std::string hypotheses(const Belief& belief) {
 }
 
 /// Returns one row per contact: x, y, height, and 1 on an object or 0 on the desk.
-std::string contacts(const Belief& belief) {
-  const std::vector<Touch>& touches = belief.touches();
-  RowMajor out(static_cast<Eigen::Index>(touches.size()), 4);
+std::string contacts(const BeliefView& belief, double desk) {
+  std::vector<TapReading> all;
+  for (const TapReading& one : belief.readings()) {
+    if (one.is_contact) all.push_back(one);
+  }
+  RowMajor out(static_cast<Eigen::Index>(all.size()), 4);
   for (Eigen::Index i = 0; i < out.rows(); ++i) {
-    const Touch& one = touches[static_cast<std::size_t>(i)];
-    out.row(i) << one.place.x, one.place.y, one.height, one.on ? 1.0 : 0.0;
+    const TapReading& one = all[static_cast<std::size_t>(i)];
+    out.row(i) << one.position.x(), one.position.y(), one.position.z() - desk, one.on_object ? 1.0 : 0.0;
   }
   return npy(out);
 }
 
-template <class Part>
-std::string lines(const SurfaceBelief& belief, const Part& part) {
-  RowMajor out(static_cast<Eigen::Index>(belief.approaches().size()), 3);
-  for (Eigen::Index i = 0; i < out.rows(); ++i)
-    out.row(i) = part(belief.approaches()[static_cast<std::size_t>(i)].line).transpose();
-  return npy(out);
+template <const char* const& kName>
+std::string values(const BeliefView& belief, double) {
+  return npy(belief.values(kName));
 }
 
-/// Returns the score of the acquisition `uncertainty`: variance relative to the largest, along normals.
-std::string relative_variance(const SurfaceBelief& belief) {
-  constexpr double kAlong = 0.999;
-  const double most = belief.deviation().maxCoeff();
-  const double scale = most > 0.0 ? 1.0 / most : 0.0;
-  const Eigen::ArrayXd share = (scale * belief.deviation().array()).square();
-  return npy(Eigen::VectorXd((belief.incidence_cosine().array() > kAlong).select(share, 0.0)));
+std::string discovery_area(const BeliefView& belief, double) {
+  const HypothesisSample& sample = belief.hypotheses();
+  return npy(sample.count > 0 ? sample.expected_discovery_area : Eigen::VectorXd::Zero(belief.candidates().size()));
+}
+
+/// Returns the map of a quantity that is an array.
+template <const char* const& kName>
+Map map_of() {
+  return {kName, {kName}, values<kName>};
 }
 
 }  // namespace
 
 const std::vector<Map>& maps() {
-  using B = const Belief&;
-  using S = const SurfaceBelief&;
+  using B = const BeliefView&;
   static const std::vector<Map> all{
-      {"uncertainty", Quantity::uncertainty, [](B b) { return npy(b.uncertainty()); }, Quantity::deviation,
-       relative_variance},
-      {"label_mean", Quantity::weight, [](B b) { return npy(b.weight()); }, {}, nullptr},
-      {"object_probability", Quantity::probability, [](B b) { return npy(b.probability()); }, {}, nullptr},
-      {"height_mean", Quantity::height, [](B b) { return npy(b.height_mean()); }, {}, nullptr},
-      {"height_std",
-       Quantity::height,
-       [](B b) { return npy(Eigen::VectorXd(b.height_variance().cwiseMax(0.0).cwiseSqrt())); },
-       {},
-       nullptr},
-      {"hypotheses", Quantity::outlines, hypotheses, {}, nullptr},
-      {"expected_discovery_area",
-       Quantity::outlines,
-       [](B b) {
-         const OutlineSample& sample = b.outlines();
-         return npy(sample.count > 0 ? sample.to_find : Eigen::VectorXd::Zero(b.candidates().rows()));
-       },
-       {},
-       nullptr},
-      {"desk_position", {}, [](B b) { return npy(RowMajor(b.candidates())); }, {}, nullptr},
-      {"contacts", {}, contacts, {}, nullptr},
-      {"surface_std", {}, nullptr, Quantity::deviation, [](S s) { return npy(s.deviation()); }},
-      {"incidence_cosine", {}, nullptr, Quantity::deviation, [](S s) { return npy(s.incidence_cosine()); }},
-      {"expected_discovery",
-       {},
-       nullptr,
-       Quantity::expected_discovery,
-       [](S s) { return npy(s.expected_discovery()); }},
-      {"std_reduction", {}, nullptr, Quantity::std_reduction, [](S s) { return npy(s.std_reduction()); }},
-      {"expected_distance", {}, nullptr, {}, [](S s) { return npy(s.way()); }},
-      {"start", {}, nullptr, {}, [](S s) { return lines(s, [](const Line& one) { return one.origin; }); }},
-      {"direction", {}, nullptr, {}, [](S s) { return lines(s, [](const Line& one) { return one.direction; }); }}};
+      map_of<quantity::kUncertainty>(),
+      map_of<quantity::kLabelMean>(),
+      map_of<quantity::kObjectProbability>(),
+      map_of<quantity::kHeightMean>(),
+      map_of<quantity::kHeightStd>(),
+      map_of<quantity::kMeasurementStd>(),
+      {quantity::kHypotheses, {quantity::kHypotheses}, [](B b, double) { return hypotheses(b); }},
+      {"expected_discovery_area", {quantity::kHypotheses}, discovery_area},
+      {quantity::kDeskPosition,
+       {quantity::kDeskPosition},
+       [](B b, double) { return npy(RowMajor(b.candidates().starts.leftCols<2>())); }},
+      {"contacts", {}, contacts},
+      map_of<quantity::kSurfaceStd>(),
+      map_of<quantity::kIncidenceCosine>(),
+      map_of<quantity::kExpectedDiscovery>(),
+      map_of<quantity::kStdReduction>(),
+      map_of<quantity::kExpectedDistance>(),
+      {"start", {}, [](B b, double) { return npy(RowMajor(b.candidates().starts)); }},
+      {"direction", {}, [](B b, double) {
+         const Candidates& lines = b.candidates();
+         return npy(RowMajor(lines.directions.rows() == 1 ? Points3(lines.directions.replicate(lines.size(), 1))
+                                                          : lines.directions));
+       }}};
   return all;
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <palpate/belief.hpp>
-#include <palpate/surface_belief.hpp>
 #include <palpate/types.hpp>
 
 #include <cstddef>
@@ -13,13 +12,11 @@
 
 namespace palpate::program {
 
-/// An array that a program may read. Members for a belief without this array are null.
+/// An array that a program may read.
 struct Map {
   const char* name;
-  Quantities reads;                     ///< quantities of a Belief
-  std::string (*above)(const Belief&);  ///< returns an NPY file; null: not available for taps from above
-  Quantities reads_of_approaches;       ///< quantities of a SurfaceBelief
-  std::string (*any_side)(const SurfaceBelief&);
+  QuantitySet reads;
+  std::string (*npy)(const BeliefView& belief, double desk);  ///< returns an NPY file; `desk`: its height, metres
 };
 
 /// Returns all available arrays.

@@ -73,13 +73,9 @@ std::set<std::string> declarations(const std::string& program) {
 
 /// Returns the names of all arrays: "uncertainty, label_mean (from above); uncertainty, surface_std (from any side)".
 std::string all_names() {
-  std::vector<const char*> above;
-  std::vector<const char*> any_side;
-  for (const program::Map& one : program::maps()) {
-    if (one.above != nullptr) above.push_back(one.name);
-    if (one.any_side != nullptr) any_side.push_back(one.name);
-  }
-  return fmt::format("{} (from above); {} (from any side)", fmt::join(above, ", "), fmt::join(any_side, ", "));
+  std::vector<const char*> names;
+  for (const program::Map& one : program::maps()) names.push_back(one.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// Returns whether a word of the command is a file in the parent of `folder` but not in `folder`.
@@ -177,47 +173,26 @@ class ProgramAcquisition final : public Acquisition {
   /// In a run, throws Error if the program does not exist or its checksum differs from the option.
   ProgramAcquisition(const Options& options, const Context& context) : options_(options), context_(context) {
     for (const std::string& name : names_in(options.reads)) maps_.push_back(program::find_map(name));
-    if (!from_above() && !any_side()) {
-      throw Error("reads", "names arrays of taps from above and arrays of taps from any side",
-                  "choose arrays of one kind, see strategies.md");
-    }
     if (context.directory.empty()) return;
     words_ = programs::split_command(options.command).value();
     file_ = programs::find_checked(options.command, words_, options.folder, options.checksum);
   }
 
-  Quantities reads() const override {
-    Quantities out;
+  QuantitySet reads() const override {
+    QuantitySet out;
     for (const program::Map* one : maps_) out = out | one->reads;
     return out;
   }
-  Quantities reads_of_approaches() const override {
-    Quantities out;
-    for (const program::Map* one : maps_) out = out | one->reads_of_approaches;
-    return out;
-  }
-  bool from_above() const override {
-    return std::all_of(maps_.begin(), maps_.end(), [](const program::Map* one) { return one->above != nullptr; });
-  }
-  bool any_side() const override {
-    return std::all_of(maps_.begin(), maps_.end(), [](const program::Map* one) { return one->any_side != nullptr; });
-  }
 
-  void score(const Belief& belief, VectorOut out) const override {
-    const Points& places = belief.candidates();
-    Eigen::Index columns = 0;  // number of columns of the grid
-    while (columns < places.rows() && places(columns, 1) == places(0, 1)) ++columns;
+  void score(const BeliefView& belief, VectorOut out) const override {
     std::vector<std::string> arrays;
-    for (const program::Map* one : maps_) arrays.push_back(one->above(belief));
-    exchange(fmt::format(R"("tap":{},"initial_taps":{},"rows":{},"columns":{})", belief.taps() + 1,
-                         belief.initial_taps(), places.rows() / columns, columns),
-             arrays, out);
-  }
-
-  void score_approaches(const SurfaceBelief& belief, VectorOut out) const override {
-    std::vector<std::string> arrays;
-    for (const program::Map* one : maps_) arrays.push_back(one->any_side(belief));
-    exchange(fmt::format(R"("tap":{})", belief.taps() + 1), arrays, out);
+    for (const program::Map* one : maps_) arrays.push_back(one->npy(belief, context_.scene.desk()));
+    const Candidates& candidates = belief.candidates();
+    std::string fields = fmt::format(R"("tap":{})", belief.counts().all + 1);
+    if (candidates.fixed)
+      fields += fmt::format(R"(,"initial_taps":{},"rows":{},"columns":{})", belief.counts().initial, candidates.rows,
+                            candidates.columns);
+    exchange(fields, arrays, out);
   }
 
   /// The size of scores before the first tap is unknown.

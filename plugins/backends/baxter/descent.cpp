@@ -162,10 +162,11 @@ struct Tapper::DescentState {
   Joints at(double height) const { return column.at(plan.hover + kFromAbove - height); }
 };
 
-Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions& wanted, const Path& column) {
+tapping::HeightResult Tapper::descend(const TapRequest& request, const tapping::MotionOptions& wanted,
+                                      const Path& column) {
   if (!friction_) measure_friction(column);
   rest_from_above(column);
-  const double stiffness = stiffness_at(request.target);
+  const double stiffness = stiffness_at(request.line.target());
   update_timing();
   const tapping::MotionOptions motion = bounded(wanted, stiffness);
   note_(fmt::format(
@@ -181,7 +182,7 @@ Contact Tapper::descend(const TapRequest& request, const tapping::MotionOptions&
     update(way);
     step(way.command);
   }
-  const Contact contact = way.tap.tap().result();
+  const tapping::HeightResult contact = way.tap.tap().result();
   retreat(column.back(plan.hover + kFromAbove - height()), way.tap.sign(), way.tap.zero(), contact);
   return contact.outcome == Outcome::contact ? accept(way, contact) : contact;
 }
@@ -250,8 +251,8 @@ void Tapper::tare(DescentState& way) {
   guard_.set_tare(zero_);
 }
 
-/// Evaluates a new reading during the descent. `felt`: force along z minus `beside` (N), the part that the motion
-/// causes.
+/// Evaluates a new reading during the descent. `felt`: measured force along z without the force of the motion (N).
+/// `beside`: force of the motion (N).
 void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool coming_down) {
   const double zero = way.tap.zero();
   const double against = sign_ == 0.0 ? std::abs(felt - zero) : sign_ * (felt - zero);
@@ -282,7 +283,7 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
 
 /// Accepts the contact if the force at rest equals that before the tap. Sideways the limit is larger, because the
 /// robot's estimate is worst there. Learns from an accepted contact.
-Contact Tapper::accept(const DescentState& way, const Contact& contact) {
+tapping::HeightResult Tapper::accept(const DescentState& way, const tapping::HeightResult& contact) {
   rest_from_above(way.column);
   const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;
   const double most = std::max(kLeastZeroChange, 0.5 * way.motion.threshold);

@@ -148,7 +148,7 @@ double Tapper::greatest_rise() const {
 }
 
 /// Rises from a contact or its end, where only a pull is a fault. `zero`: force along z at the contact, N.
-void Tapper::retreat(const Path& up, double sign, double zero, const Contact& contact) {
+void Tapper::retreat(const Path& up, double sign, double zero, const tapping::HeightResult& contact) {
   guard_.forget_tare();
   const double touched = contact.outcome == Outcome::contact ? contact.height : height() + kGentleRise - kClearance;
   rise(up, std::clamp(touched - height(), 0.0, kMostGentleRise) + kClearance, sign, zero);

@@ -127,8 +127,8 @@ class MotionGuard {
   static constexpr double kStateFresh = 0.5;  ///< s, largest age of /robot/state
   static constexpr double kLate = 0.3;        ///< s by which a stamp may be older than the best so far
   static constexpr double kDrift = 1e-3;      ///< s per second, drift between the robot's clock and this computer's
-  static constexpr int kFrozen = 10;          ///< renewal periods of the force without a change; or
-  static constexpr int kFewestFrozen = 4;     ///< fewer such periods, if they take kFrozenFor
+  static constexpr int kFrozen = 10;          ///< renewal periods without a change of the force are a fault
+  static constexpr int kFewestFrozen = 4;     ///< so many periods are a fault if they take kFrozenFor
   static constexpr double kFrozenFor = 0.1;   ///< s
   static constexpr double kJump = 0.06;      ///< rad between two readings; 4 rad/s of the wrist are 0.04 rad per period
   static constexpr double kFollowing = 0.2;  ///< rad from the last set-point

@@ -164,7 +164,7 @@ std::vector<std::string> Tapper::describe(const TapRequest& request) {
     out.push_back("before it, a calibration tap on the bare desk at " + tapping::place(desk_target()));
   }
   const tapping::MotionOptions& wanted = options_.motion.of_request(request);
-  const double stiffness = stiffness_at(request.target);
+  const double stiffness = stiffness_at(request.line.target());
   tapping::MotionOptions motion = wanted;
   update_timing();
   try {

@@ -85,24 +85,27 @@ class Baxter final : public Backend {
     if (options.view) view_ = make_view(*robot_, options.scene_pose, scene_.area(), scene_.desk());
   }
 
-  Contact tap(const TapRequest& request) override {
+  TapResult tap(const TapRequest& request) override {
     if (options_.bag && !begun_ && log_.kept()) robot_->record(log_.new_bag());
-    if (view_) view_->target(request.target);
+    if (view_) view_->target(request.line.target());
     const RealTime real_time(!robot_->read().simulated);
     if (!begun_ && !real_time.status().empty()) log_.note(real_time.status());
     begun_ = true;
-    Contact contact = tapper_.tap(request);
+    const tapping::HeightResult result = tapper_.tap(request);
     log_.write();
-    return contact;
+    return tapping::result_on(request.line, result);
   }
 
   std::vector<std::string> describe(const TapRequest& request) override { return tapper_.describe(request); }
 
-  Quantities reads() const override { return view_ ? Quantity::height : Quantities(); }
-  void show(const Belief& belief) override {
+  QuantitySet reads() const override {
+    return view_ ? QuantitySet{quantity::kHeightMean, quantity::kHeightStd} : QuantitySet();
+  }
+  void show(const BeliefView& belief) override {
     if (!view_) return;
-    view_->contacts(belief.touches());
-    view_->surface(belief.candidates(), belief.height_mean(), belief.height_variance().cwiseMax(0.0).cwiseSqrt());
+    view_->contacts(belief.readings());
+    view_->surface(belief.candidates().starts.leftCols<2>(), belief.values(quantity::kHeightMean),
+                   belief.values(quantity::kHeightStd));
   }
 
   std::vector<Learnt> learnt() const override {
@@ -113,7 +116,7 @@ class Baxter final : public Backend {
   /// A dry run moves nothing, so its taps can be repeated.
   bool repeatable() const override { return options_.dry_run; }
   bool scene_is_truth() const override { return false; }
-  Quantities expects() const override { return tapping::expects(options_.motion); }
+  QuantitySet predicts() const override { return tapping::predicts(options_.motion); }
   static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene) {
     return tapping::motions(options.motion, scene.desk());
   }

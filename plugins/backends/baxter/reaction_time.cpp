@@ -21,9 +21,9 @@ constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: a longer rise 
 /// Two standard deviations of the initial assumption, s, and its weight, 1/s^2.
 constexpr double kFirst = ReactionTime::kFirstNoticing - kLeastNoticing;
 constexpr double kFirstWeight = 4.0 / (kFirst * kFirst);
-/// Least lag of the joints of a Baxter in s (measured: 0.3 to 0.4 s). kGoOn is the share of the lag for which a
-/// critically damped joint moves on after a stop, 1 / (2 e).
+/// Least lag of the joints of a Baxter in s (measured: 0.3 to 0.4 s).
 constexpr double kLeastLag = 0.3;
+/// Distance of a critically damped joint after a stop, in lags at its speed before the stop: 1 / (2 e).
 constexpr double kGoOn = 0.184;
 
 template <typename Value>

@@ -67,13 +67,13 @@ Tapper::Tapper(const BaxterOptions& options, const Scene& scene, Robot& robot, c
             : options.sign() == ForceSign::positive ? 1.0
                                                     : -1.0) {}
 
-Contact Tapper::failed(Outcome outcome, const std::string& reason, bool ends_run) {
+tapping::HeightResult Tapper::failed(Outcome outcome, const std::string& reason, bool ends_run) {
   return {outcome, 0.0, 0.0, 0.0, reason, ends_run};
 }
 
-Contact Tapper::tap(const TapRequest& request) {
+tapping::HeightResult Tapper::tap(const TapRequest& request) {
   const double begin = robot_.read().now;
-  Contact contact;
+  tapping::HeightResult contact;
   peak_.reset();
   try {
     contact = attempt(request);
@@ -85,36 +85,36 @@ Contact Tapper::tap(const TapRequest& request) {
     contact = failed(Outcome::aborted, fmt::format("{}; {}", trouble.what(), kSilent), true);
   }
   contact.seconds = std::max(0.0, robot_.read().now - begin);
-  contact.peak = peak_;
+  contact.peak_force = peak_;
   const std::string touched =
       fmt::format("contact at {}, at most {}", centimetres(contact.height), newtons(contact.force));
   note_(fmt::format("tap {}: {}", request.number, contact.reason.empty() ? touched : contact.reason));
   return contact;
 }
 
-Contact Tapper::attempt(const TapRequest& request) {
+tapping::HeightResult Tapper::attempt(const TapRequest& request) {
   recovering_ = false;
   motion_log_.reset();
   motion_ = options_.motion.of_request(request);
-  Path down = column(request.target);
+  Path down = column(request.line.target());
   if (options_.dry_run) return failed(Outcome::aborted, "dry run: the place can be reached, nothing moved");
   if (options_.calibration && !calibrated_) {
     TapRequest desk;
-    desk.target = desk_target();
-    const Path way = column(desk.target);
+    desk.line = line_from_above(desk_target());
+    const Path way = column(desk.line.target());
     go_to(way.front());
     calibrate(descend(desk, gentle(motion_), way));
     learn_sign();
-    down = column(request.target);
+    down = column(request.line.target());
   }
   go_to(down.front());
-  Contact contact = descend(request, motion_, down);
+  tapping::HeightResult contact = descend(request, motion_, down);
   if (contact.outcome == Outcome::contact) learn_sign();
   return contact;
 }
 
 /// Moves the origin of the scene to the measured height of the bare desk.
-void Tapper::calibrate(const Contact& contact) {
+void Tapper::calibrate(const tapping::HeightResult& contact) {
   if (contact.outcome != Outcome::contact) {
     throw Fault{"the calibration tap found no desk: " + contact.reason, Then::hold};
   }

@@ -6,6 +6,7 @@
 #include "baxter/path.hpp"
 #include "baxter/reaction_time.hpp"
 #include "tapping/guarded_tap.hpp"
+#include "tapping/height_result.hpp"
 
 #include <palpate/backend.hpp>
 #include <palpate/scene.hpp>
@@ -31,7 +32,7 @@ class Tapper {
 
   /// Performs one tap. Failures are outcomes: `unreachable` before any motion, or `aborted` after a fault. The reason
   /// of `aborted` ends with the final position of the arm; `ends_run` is set if a person must fix the robot.
-  Contact tap(const TapRequest& request);
+  tapping::HeightResult tap(const TapRequest& request);
 
   /// Returns the plan of tap() in words, starting from the current position of the arm.
   std::vector<std::string> describe(const TapRequest& request);
@@ -58,16 +59,16 @@ class Tapper {
   /// m of a path over which largest_pull() measures the rotation of the joints
   static constexpr double kRotationWindow = 0.01;
 
-  Contact attempt(const TapRequest& request);
-  Contact descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
+  tapping::HeightResult attempt(const TapRequest& request);
+  tapping::HeightResult descend(const TapRequest& request, const tapping::MotionOptions& motion, const Path& column);
   struct DescentState;
   void update(DescentState& way);
   void expect_following(const DescentState& way) const;
   void slow_down(DescentState& way);
   void tare(DescentState& way);
   void evaluate_force(DescentState& way, double felt, double beside, bool coming_down);
-  Contact accept(const DescentState& way, const Contact& contact);
-  void calibrate(const Contact& contact);
+  tapping::HeightResult accept(const DescentState& way, const tapping::HeightResult& contact);
+  void calibrate(const tapping::HeightResult& contact);
   void check_robot() const;
   std::optional<Fault> check_rates();
   void await_readiness(bool moving);
@@ -76,7 +77,7 @@ class Tapper {
   void follow(const Path& path, double speed, double end);
   void settle(const Joints& goal);
   void rest_from_above(const Path& column);
-  void retreat(const Path& up, double sign, double zero, const Contact& contact);
+  void retreat(const Path& up, double sign, double zero, const tapping::HeightResult& contact);
   void rise(const Path& up, double gently, double sign, const std::optional<double>& zero);
   void measure_friction(const Path& column);
   double largest_pull(const Path& way, double along) const;
@@ -89,7 +90,7 @@ class Tapper {
   double greatest_rise() const;
   Eigen::Vector3d force_at_rest(const Joints& joints);
   std::string recover(const Fault& fault);
-  static Contact failed(Outcome outcome, const std::string& reason, bool ends_run = false);
+  static tapping::HeightResult failed(Outcome outcome, const std::string& reason, bool ends_run = false);
   void await_reflex_end();
   Path way_up() const;
   void climb(const Path& up, double sign, const std::optional<double>& zero);

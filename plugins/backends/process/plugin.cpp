@@ -74,7 +74,7 @@ class Process final : public Backend {
         words_(programs::split_command(options.command).value()),
         file_(programs::find_checked(options.command, words_, {}, options.checksum)) {}
 
-  Contact tap(const TapRequest& request) override {
+  TapResult tap(const TapRequest& request) override {
     const auto begin = Clock::now();
     double seconds = options_.deadline;
     // The program starts with the first tap, because the folder of the record does not exist earlier.
@@ -85,16 +85,16 @@ class Process final : public Backend {
     process::Answer answer = child_ ? ask(request, patience(begin, seconds)) : left_behind();
     if (!answer.in_step) {
       child_.reset();
-      if (answer.contact.ends_run)
-        answer.contact.reason += "; check the robot, then run 'palpate resume --retry-failed'";
+      if (answer.result.ends_run) answer.result.reason += "; check the robot, then run 'palpate resume --retry-failed'";
     }
-    if (!answer.accepted) answer.contact.seconds = Seconds(Clock::now() - begin).count();
-    return std::move(answer.contact);
+    if (!answer.accepted) answer.result.seconds = Seconds(Clock::now() - begin).count();
+    return std::move(answer.result);
   }
 
   std::vector<std::string> describe(const TapRequest& request) override {
+    const std::optional<Target> from = request.previous ? std::optional(request.previous->target()) : std::nullopt;
     std::vector<std::string> out =
-        tapping::describe(options_.motion.of_request(request), context_.scene.desk(), request, request.previous);
+        tapping::describe(options_.motion.of_request(request), context_.scene.desk(), request, from);
     out.insert(out.begin(),
                fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
                            programs::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
@@ -103,7 +103,7 @@ class Process final : public Backend {
 
   bool repeatable() const override { return options_.repeatable; }
   bool scene_is_truth() const override { return options_.scene_is_truth; }
-  Quantities expects() const override { return tapping::expects(options_.motion); }
+  QuantitySet predicts() const override { return tapping::predicts(options_.motion); }
   static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene) {
     return tapping::motions(options.motion, scene.desk());
   }
@@ -139,7 +139,7 @@ class Process final : public Backend {
     if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
     process::Answer answer = failed("of an earlier attempt, process " + programs::read_holder(recorded(kLock)) +
                                     ", is still running: end it");
-    answer.contact.ends_run = true;
+    answer.result.ends_run = true;
     return answer;
   }
 
@@ -162,9 +162,9 @@ class Process final : public Backend {
     }
     switch (heard) {
       case Child::ReadResult::complete:
-        answer = process::read_answer(line, request.number, bounds_of(options_.motion.of_request(request)));
+        answer = process::read_answer(line, request, bounds_of(options_.motion.of_request(request)));
         answered_ = true;
-        if (!answer.in_step && !may_restart()) answer.contact.ends_run = true;
+        if (!answer.in_step && !may_restart()) answer.result.ends_run = true;
         return answer;
       case Child::ReadResult::ended:
         return failed(child_->describe_end());
@@ -186,10 +186,12 @@ class Process final : public Backend {
            (answered_ ? "" : " and has never answered, check that it flushes its output after each line");
   }
 
-  static process::Answer interrupted() { return {false, false, {Outcome::aborted, 0.0, 0.0, 0.0, "interrupted"}}; }
+  static process::Answer interrupted() {
+    return {false, false, tap_without_contact(Outcome::aborted, 0.0, "interrupted")};
+  }
 
   process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) const {
-    return {false, false, {outcome, 0.0, 0.0, 0.0, "the program " + what, !may_restart()}};
+    return {false, false, tap_without_contact(outcome, 0.0, "the program " + what, !may_restart())};
   }
 
   Options options_;

@@ -115,13 +115,11 @@ class Reader {
   const Json& answer_;
 };
 
-Contact read_contact(Reader& reader, const HeightBounds& bounds) {
-  Contact out;
-  out.outcome = reader.outcome();
-  out.seconds = reader.number("seconds");
+TapResult read_result(Reader& reader, const TapLine& line, const HeightBounds& bounds) {
+  const Outcome outcome = reader.outcome();  // first: its fault is told before that of the time
+  TapResult out = tap_without_contact(outcome, reader.number("seconds"));
   if (out.outcome == Outcome::contact) {
-    out.height = reader.number("height");
-    if (reader.has("force")) out.force = reader.number("force");
+    out = contact_on(line, reader.number("height"), reader.has("force") ? reader.number("force") : 0.0, out.seconds);
   }
   out.ends_run = reader.flag("ends_run");
   if (out.outcome != Outcome::contact || out.ends_run) out.reason = reader.reason();
@@ -136,7 +134,8 @@ bool wants_end(const Json& answer) {
 }
 
 Answer refused(const std::string& line, const std::string& why, bool in_step, bool ends_run) {
-  return {in_step, false, {Outcome::aborted, 0.0, 0.0, 0.0, "the answer " + why + ": " + shown(line), ends_run}};
+  return {in_step, false,
+          tap_without_contact(Outcome::aborted, 0.0, "the answer " + why + ": " + shown(line), ends_run)};
 }
 
 }  // namespace
@@ -145,10 +144,10 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   Json ask;
   ask["palpate"] = kProtocol;
   ask["tap"] = request.number;
-  ask["x"] = request.target.x;
-  ask["y"] = request.target.y;
+  ask["x"] = request.line.start.x();
+  ask["y"] = request.line.start.y();
   ask["previous"] = nullptr;
-  if (request.previous) ask["previous"] = {{"x", request.previous->x}, {"y", request.previous->y}};
+  if (request.previous) ask["previous"] = {{"x", request.previous->start.x()}, {"y", request.previous->start.y()}};
   ask["predicted"] = nullptr;
   if (request.predicted) {
     ask["predicted"] = {{"height", request.predicted->height},
@@ -164,7 +163,7 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   return ask.dump() + "\n";
 }
 
-Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds) {
+Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) {
     const bool python = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
@@ -173,11 +172,12 @@ Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds)
   if (!json.is_object()) return refused(line, "is not a JSON object", false, false);
   const bool ends_run = wants_end(json);
   if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
-  if (json["tap"] != Json(tap)) return refused(line, "does not belong to tap " + std::to_string(tap), false, ends_run);
+  if (json["tap"] != Json(request.number))
+    return refused(line, "does not belong to tap " + std::to_string(request.number), false, ends_run);
   Reader reader(json);
-  Contact contact = read_contact(reader, bounds);
+  TapResult result = read_result(reader, request.line, bounds);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
-  return {true, true, std::move(contact)};
+  return {true, true, std::move(result)};
 }
 
 }  // namespace palpate::process

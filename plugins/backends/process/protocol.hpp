@@ -21,11 +21,11 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
 /// Result of reading a line as the answer to a tap.
 struct Answer {
   bool in_step = false;   ///< whether the line has the number of the tap
-  bool accepted = false;  ///< whether all fields are valid; if not, `contact` is a failed tap
+  bool accepted = false;  ///< whether all fields are valid; if not, `result` is a failed tap
   /// `ends_run` is set if the program requested it, even in a rejected answer.
-  Contact contact;
+  TapResult result;
 };
-/// Reads `line` as the answer to `tap`. Values that find_fault() reports are rejected.
-Answer read_answer(const std::string& line, int tap, const HeightBounds& bounds);
+/// Reads `line` as the answer to `request`. Values that find_fault() reports are rejected.
+Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds);
 
 }  // namespace palpate::process

@@ -30,18 +30,18 @@ Simulator::Simulator(const Options& options, const Context& context)
   }
 }
 
-Contact Simulator::tap(const TapRequest& request) {
+TapResult Simulator::tap(const TapRequest& request) {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
-  if (request.approach) return tap_along(request);
+  if (!request.line.from_above) return tap_along(request);
   if (!perfect_) {
     if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
     return imperfect_tap(request, down, pushed_ ? *pushed_ : scene_);
   }
-  const double surface = scene_.height(request.target.x, request.target.y);
-  Contact contact = ideal_tap(down, surface);
+  const Target target = request.line.target();
+  tapping::HeightResult contact = ideal_tap(down, scene_.height(target.x, target.y));
   contact.seconds += tapping::travel_seconds(motion, request);
-  return paced(std::move(contact));
+  return paced(tapping::result_on(request.line, contact));
 }
 
 bool Simulator::beyond_reach(double x, double y) const {
@@ -58,19 +58,22 @@ Eigen::Vector3d Simulator::pose_error(const TapRequest& request) const {
   return out;
 }
 
+void Simulator::reaches(const Candidates& lines, BoolOut out) const {
+  for (Eigen::Index i = 0; i < lines.size(); ++i) out(i) = reaches(lines.line(i));
+}
+
 /// Returns whether the tool starts above the desk, with its tip and with all of its shaft.
-bool Simulator::reaches(const Approach& approach) const {
+bool Simulator::reaches(const TapLine& line) const {
   const Effects& effects = scene_.effects();
-  const auto& [line, length] = approach;
-  const double above = line.origin.z() - scene_.desk();
+  const double above = line.start.z() - scene_.desk();
   if (above <= (effects.tip_radius ? effects.tip_radius->radius : 0.0)) return false;
-  if (beyond_reach(line.origin.x(), line.origin.y())) return false;
+  if (beyond_reach(line.start.x(), line.start.y())) return false;
   if (!effects.shaft) return true;
   const double level = std::sqrt(std::max(0.0, 1.0 - line.direction.z() * line.direction.z()));
   return line.direction.z() <= 0.0 && above > effects.shaft->radius * level;
 }
 
-Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
+tapping::HeightResult Simulator::ideal_tap(const Descending& tap, double surface) const {
   const double down = tapping::ideal_seconds(tap.motion, tap.descent, surface);
   const double up = tapping::retreat_seconds(tap.motion, tap.descent, surface);
   if (down > tap.motion.timeout) return {Outcome::timeout, 0.0, 0.0, tap.motion.timeout + up, tapping::kTooLong};
@@ -79,11 +82,12 @@ Contact Simulator::ideal_tap(const Descending& tap, double surface) const {
 
 /// Taps along an approach with the motion of a vertical tap; the remaining length of the approach takes the place of
 /// the height. Pose errors and height offset move the true line.
-Contact Simulator::tap_along(const TapRequest& request) const {
+TapResult Simulator::tap_along(const TapRequest& request) const {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Effects& effects = scene_.effects();
-  const auto& [line, length] = *request.approach;
-  Line true_line{line.origin + pose_error(request), line.direction};
+  const TapLine& line = request.line;
+  const double length = line.length;
+  Line true_line{line.start + pose_error(request), line.direction};
   if (effects.height_offset)
     true_line.origin.z() -= effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
   const std::unique_ptr<const Scene> pushed = scene_.after(request.number - 1);
@@ -98,19 +102,24 @@ Contact Simulator::tap_along(const TapRequest& request) const {
   const Descending way{motion, {length, length, 0.0}};
   const bool met_any = along <= length;
   const double left = met_any ? std::max(0.0, length - along) : -motion.overrun;
-  Contact contact = moves_ ? simulated_tap(request.number, way, left, desk) : ideal_tap(way, std::max(0.0, left));
-  if (!moves_ && !met_any && contact.outcome == Outcome::contact) contact.outcome = Outcome::no_contact;
+  tapping::HeightResult end =
+      moves_ ? simulated_tap(request.number, way, left, desk) : ideal_tap(way, std::max(0.0, left));
+  if (!moves_ && !met_any && end.outcome == Outcome::contact) end.outcome = Outcome::no_contact;
   // Without a contact the arm ends at the full length, whatever the scene has there.
-  contact.along = contact.outcome == Outcome::contact ? length - contact.height : length;
-  contact.height = line.origin.z() + *contact.along * line.direction.z();
-  contact.seconds += tapping::travel_seconds(motion, request);
-  return paced(std::move(contact));
+  const double distance = end.outcome == Outcome::contact ? length - end.height : length;
+  end.height = line.start.z() + distance * line.direction.z();
+  end.seconds += tapping::travel_seconds(motion, request);
+  TapResult out = tapping::result_on(line, end);
+  out.distance = distance;
+  if (out.is_contact()) out.contacts.front().position.head<2>() = line.at(distance).head<2>();
+  return paced(std::move(out));
 }
 
-Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const {
+TapResult Simulator::imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const {
   const Effects& effects = scene_.effects();
-  const Target& target = request.target;
-  if (beyond_reach(target.x, target.y)) return {Outcome::unreachable, 0.0, 0.0, 0.0, "beyond the reach of the arm"};
+  const Target target = request.line.target();
+  if (beyond_reach(target.x, target.y))
+    return tap_without_contact(Outcome::unreachable, 0.0, "beyond the reach of the arm");
   const Eigen::Vector3d error = pose_error(request);
   const double x = target.x + error.x();
   const double y = target.y + error.y();
@@ -120,15 +129,15 @@ Contact Simulator::imperfect_tap(const TapRequest& request, const Descending& ta
     surface =
         std::min(surface + foreign_object_height(*effects.foreign_objects, context_.seed, x, y), tap.descent.hover);
   }
-  Contact contact = moves_ ? simulated_tap(request.number, tap, surface, desk) : ideal_tap(tap, surface);
+  tapping::HeightResult contact = moves_ ? simulated_tap(request.number, tap, surface, desk) : ideal_tap(tap, surface);
   contact.seconds += tapping::travel_seconds(tap.motion, request);
   double dz = error.z();
   if (effects.height_offset) dz += effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
   if (contact.outcome == Outcome::contact) contact.height += dz;
-  return paced(std::move(contact));
+  return paced(tapping::result_on(request.line, contact));
 }
 
-Contact Simulator::simulated_tap(int number, const Descending& tap, double surface, bool desk) const {
+tapping::HeightResult Simulator::simulated_tap(int number, const Descending& tap, double surface, bool desk) const {
   using tapping::GuardedTap;
   const Effects& effects = scene_.effects();
   ContactModel sensor(effects, surface, desk, tap.descent.hover, tap.motion.threshold,
@@ -142,21 +151,21 @@ Contact Simulator::simulated_tap(int number, const Descending& tap, double surfa
     if (limit && sensor.force() > tapping::kOwnStop * *limit && !guarded.stopping()) guarded.give_up(felt.height);
     arm.follow(guarded.next(felt.height, felt.force));
   }
-  Contact contact = guarded.result();
+  tapping::HeightResult contact = guarded.result();
   contact.seconds = guarded.seconds() + tapping::retreat_seconds(tap.motion, tap.descent, felt.height);
-  contact.peak = sensor.peak();
+  contact.peak_force = sensor.peak();
   return contact;
 }
 
 /// Waits for the tap's duration times `pace` in short sleeps. Returns an aborted tap if the user interrupts.
-Contact Simulator::paced(Contact contact) const {
+TapResult Simulator::paced(TapResult contact) const {
   using Clock = std::chrono::steady_clock;
   const double seconds = contact.seconds * options_.pace;
   if (!(seconds > 0.0)) return contact;
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   while (Clock::now() < end) {
     if (context_.interrupted != nullptr && context_.interrupted->load()) {
-      return {Outcome::aborted, 0.0, 0.0, contact.seconds, "interrupted"};
+      return tap_without_contact(Outcome::aborted, contact.seconds, "interrupted");
     }
     std::this_thread::sleep_for(std::min<Clock::duration>(end - Clock::now(), std::chrono::milliseconds(10)));
   }

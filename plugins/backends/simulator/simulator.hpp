@@ -4,6 +4,7 @@
 // period.
 #pragma once
 
+#include "tapping/height_result.hpp"
 #include "tapping/motion.hpp"
 
 #include <palpate/effects.hpp>
@@ -29,11 +30,12 @@ class Simulator final : public Backend {
   /// Throws Error if an object is as high as the height of travel.
   Simulator(const Options& options, const Context& context);
 
-  Contact tap(const TapRequest& request) override;
-  bool reaches(const Approach& approach) const override;
+  TapResult tap(const TapRequest& request) override;
+  bool taps_any_line() const override { return true; }
+  void reaches(const Candidates& lines, BoolOut out) const override;
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return true; }
-  Quantities expects() const override { return tapping::expects(options_.motion); }
+  QuantitySet predicts() const override { return tapping::predicts(options_.motion); }
   static std::unique_ptr<Motions> motions(const Options& options, const Scene& scene) {
     return tapping::motions(options.motion, scene.desk());
   }
@@ -44,14 +46,15 @@ class Simulator final : public Backend {
     const tapping::MotionOptions& motion;
     tapping::Descent descent;
   };
+  bool reaches(const TapLine& line) const;
   bool beyond_reach(double x, double y) const;
   /// Returns the offset of the true position from the requested one, metres, without the height offset.
   Eigen::Vector3d pose_error(const TapRequest& request) const;
-  Contact ideal_tap(const Descending& tap, double surface) const;
-  Contact imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
-  Contact simulated_tap(int number, const Descending& tap, double surface, bool desk) const;
-  Contact tap_along(const TapRequest& request) const;
-  Contact paced(Contact contact) const;
+  tapping::HeightResult ideal_tap(const Descending& tap, double surface) const;
+  TapResult imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
+  tapping::HeightResult simulated_tap(int number, const Descending& tap, double surface, bool desk) const;
+  TapResult tap_along(const TapRequest& request) const;
+  TapResult paced(TapResult contact) const;
 
   SimulatorOptions options_;
   const Context& context_;

@@ -334,7 +334,7 @@ bool GuardedTap::waited(double seconds) const {
   return (static_cast<double>(periods_ - entered_) + 0.5) * kPeriod >= seconds;
 }
 
-void GuardedTap::finish(const Contact& result) {
+void GuardedTap::finish(const HeightResult& result) {
   result_ = result;
   stage_ = Stage::done;
 }

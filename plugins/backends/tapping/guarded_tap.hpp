@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tapping/free_force.hpp"
+#include "tapping/height_result.hpp"
 #include "tapping/motion.hpp"
 
 #include <optional>
@@ -107,7 +108,7 @@ class GuardedTap {
   double even_for() const;
   /// Returns the result of a finished tap, without its duration: `contact` with the largest force above the tare,
   /// `no_contact` at the floor, `timeout` or `aborted`.
-  const Contact& result() const { return result_; }
+  const tapping::HeightResult& result() const { return result_; }
   /// Returns the seconds since the start of the descent.
   double seconds() const { return static_cast<double>(periods_) * kPeriod; }
 
@@ -136,7 +137,7 @@ class GuardedTap {
   bool waited(double seconds) const;
   /// Returns whether the mean of a stage has enough readings.
   bool averaged(int fewest) const { return arm_ == Arm::simulated || summed_ >= fewest; }
-  void finish(const Contact& result);
+  void finish(const tapping::HeightResult& result);
   double threshold() const { return stage_ == Stage::fine ? motion_.fine_threshold : motion_.threshold; }
 
   MotionOptions motion_;
@@ -162,7 +163,7 @@ class GuardedTap {
   int noticed_ = 0;
   int above_ = 0;              ///< consecutive readings above the threshold
   std::vector<Sample> trace_;  ///< samples of the descent, for the onset
-  Contact result_;
+  tapping::HeightResult result_;
 };
 
 }  // namespace palpate::tapping

@@ -196,14 +196,17 @@ void MotionOptions::list_rest(Fields& fields) {
                                .from("16 N: where Baxter's firmware stops the arm"));
 }
 
-Quantities expects(const BackendMotion& motion) {
+QuantitySet predicts(const BackendMotion& motion) {
   const MotionOptions& alone = motion;
-  return motion.of.empty() ? expects(alone) : Quantity::height | Quantity::probability;
+  return motion.of.empty() ? predicts(alone)
+                           : QuantitySet{quantity::kHeightMean, quantity::kHeightStd, quantity::kObjectProbability};
 }
 
-Quantities expects(const MotionOptions& motion) {
+QuantitySet predicts(const MotionOptions& motion) {
   if (!motion.adaptive_hover) return {};
-  return motion.adaptive_hover->certainty ? Quantity::height | Quantity::probability : Quantities(Quantity::height);
+  QuantitySet out{quantity::kHeightMean, quantity::kHeightStd};
+  if (motion.adaptive_hover->certainty) out.insert(quantity::kObjectProbability);
+  return out;
 }
 
 Descent plan_descent(const MotionOptions& motion, double desk, const std::optional<Prediction>& predicted) {
@@ -230,8 +233,9 @@ Descent plan_descent(const MotionOptions& motion, double desk, const std::option
 
 double travel_seconds(const MotionOptions& motion, const TapRequest& request) {
   if (!request.previous) return 0.0;
-  return math::hypot(request.target.x - request.previous->x, request.target.y - request.previous->y) /
-         motion.travel_speed;
+  const Eigen::Vector3d& here = request.line.start;
+  const Eigen::Vector3d& before = request.previous->start;
+  return math::hypot(here.x() - before.x(), here.y() - before.y()) / motion.travel_speed;
 }
 
 double retreat_seconds(const MotionOptions& motion, const Descent& descent, double height) {
@@ -281,7 +285,7 @@ std::string place(const Target& target) {
 std::vector<std::string> describe(const MotionOptions& motion, double desk, const TapRequest& request,
                                   const std::optional<Target>& from) {
   return {fmt::format("travel {}to {} at {} above the desk, {}", from ? "from " + place(*from) + " " : "",
-                      place(request.target), centimetres(motion.hover), per_second(motion.travel_speed)),
+                      place(request.line.target()), centimetres(motion.hover), per_second(motion.travel_speed)),
           descent(motion, desk, request), contact(motion)};
 }
 

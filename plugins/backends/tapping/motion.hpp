@@ -65,8 +65,8 @@ struct BackendMotion : MotionOptions {
 };
 
 /// Return the predictions that a motion, or the choice between motions, uses.
-Quantities expects(const MotionOptions& motion);
-Quantities expects(const BackendMotion& motion);
+QuantitySet predicts(const MotionOptions& motion);
+QuantitySet predicts(const BackendMotion& motion);
 
 /// Heights of one descent in the scene's frame, metres: floor <= start <= hover.
 struct Descent {

@@ -108,7 +108,7 @@ class Primitives final : public Footprint {
     sampler_.probability(places, out);
   }
 
-  void sample(const PointsView& places, OutlineSample& out) const override {
+  void sample(const PointsView& places, HypothesisSample& out) const override {
     if (replaced_at_ > 0) return Footprint::sample(places, out);
     sampler_.sample(places, kSample, out);
   }

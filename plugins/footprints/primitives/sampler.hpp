@@ -132,7 +132,7 @@ class Sampler {
   void probability(const PointsView& positions, VectorOut out);
   /// Draws `count` hypotheses, a multiple of 64, from the particles and the overlapping undiscovered primitives.
   /// Particles are used evenly, starting at a random one.
-  void sample(const PointsView& positions, int count, OutlineSample& out);
+  void sample(const PointsView& positions, int count, HypothesisSample& out);
   /// Sets `out` to the probability that each tap's label is an error. A label that noise of the position explains does
   /// not count as an error.
   void label_errors(VectorOut out) const;

@@ -102,7 +102,7 @@ void Sampler::probability(const PointsView& positions, VectorOut out) {
   out = (1.0 - (1.0 - counts.values(1.0 / size()).array()) * nothing_new.array()).cwiseMax(0.0).cwiseMin(1.0);
 }
 
-void Sampler::sample(const PointsView& positions, int count, OutlineSample& out) {
+void Sampler::sample(const PointsView& positions, int count, HypothesisSample& out) {
   prepare(positions);
   Random random(sample_seed_, "sample", static_cast<std::uint64_t>(likelihood_.taps().size()));
   const double first = random.uniform();
@@ -120,8 +120,8 @@ void Sampler::sample(const PointsView& positions, int count, OutlineSample& out)
   for (Eigen::Index i = 1; i < positions.rows(); ++i) {
     for (Eigen::Index word = 0; word < out.holds.rows(); ++word) out.holds(word, i) ^= out.holds(word, i - 1);
   }
-  out.to_find = undiscovered_.expected_extent();
-  // Undiscovered primitives that overlap no known primitive are other objects, which `to_find` counts.
+  out.expected_discovery_area = undiscovered_.expected_extent();
+  // Undiscovered primitives that overlap no known primitive are other objects, which `expected_discovery_area` counts.
   Grid::Spans spans;
   for (const Undiscovered::Member& one : undiscovered_.draw(count, random)) {
     const ShortList<Primitive>& known = particles_[static_cast<std::size_t>(drawn(one.set))].hypothesis.primitives;

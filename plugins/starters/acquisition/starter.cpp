@@ -19,10 +19,11 @@ class MyAcquisition final : public Acquisition {
   using Options = MyAcquisitionOptions;
   MyAcquisition(const Options& options, const Context&) : options_(options) {}
 
-  Quantities reads() const override { return Quantity::uncertainty | Quantity::probability; }
+  QuantitySet reads() const override { return {quantity::kUncertainty, quantity::kObjectProbability}; }
 
-  void score(const Belief& belief, VectorOut out) const override {
-    out = belief.uncertainty().array() * belief.probability().array().pow(options_.trust);
+  void score(const BeliefView& belief, VectorOut out) const override {
+    const auto probability = belief.values(quantity::kObjectProbability).array();
+    out = belief.values(quantity::kUncertainty).array() * probability.pow(options_.trust);
   }
 
   double prior_scale() const override { return 1.0; }

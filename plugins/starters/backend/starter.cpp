@@ -23,16 +23,13 @@ class MyBackend final : public Backend {
   using Options = MyBackendOptions;
   MyBackend(const Options& options, const Context& context) : options_(options), scene_(context.scene) {}
 
-  Contact tap(const TapRequest& request) override {
-    const double r =
-        math::hypot(request.target.x - scene_.area().width / 2, request.target.y - scene_.area().depth / 2);
+  TapResult tap(const TapRequest& request) override {
+    const Target target = request.line.target();
+    const double r = math::hypot(target.x - scene_.area().width / 2, target.y - scene_.area().depth / 2);
     const double rise = std::sqrt(std::max(0.0, 1 - r * r / (options_.radius * options_.radius)));
-    Contact contact;
-    contact.outcome = Outcome::contact;
-    contact.height = scene_.desk() + options_.height * rise;
-    contact.force = 1.0;
-    contact.seconds = 5.0;
-    return contact;
+    constexpr double kForce = 1.0;    // newtons
+    constexpr double kSeconds = 5.0;  // robot time
+    return contact_on(request.line, scene_.desk() + options_.height * rise, kForce, kSeconds);
   }
 
   bool repeatable() const override { return true; }

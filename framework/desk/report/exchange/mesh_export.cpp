@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "report/exchange/mesh_export.hpp"
 
-#include "experiment/metrics.hpp"
-#include "record/tap_row.hpp"
+#include "experiment/policy.hpp"
+#include "record/fields.hpp"
+#include "record/summary.hpp"
+#include "space/mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +26,7 @@ double descent(const VectorView& heights, const Eigen::VectorXd& places, int ind
 }  // namespace
 
 // Views are passed by value, as in the interfaces. NOLINTNEXTLINE(performance-unnecessary-value-param)
-SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights) {
+SurfaceMesh surface_mesh(const CandidateGrid& candidates, const VectorView& heights) {
   const int columns = candidates.columns;
   const int rows = candidates.rows;
   SurfaceMesh mesh;
@@ -56,12 +58,13 @@ std::string header_text(const std::string& text) {
   return out;
 }
 
-ReconstructedSurface reconstruct(FromAbove& experiment) {
-  experiment.ask(Quantity::height | Quantity::probability);
-  const TapBelief& belief = experiment.belief();
-  ReconstructedSurface out{surface_mesh(experiment.candidates(), reconstruction(belief)),
-                           belief.height_variance().cwiseSqrt(), belief.probability(), std::nullopt};
-  if (const Truth* truth = experiment.truth()) out.true_height = truth->height;
+ReconstructedSurface reconstruct(Experiment& experiment) {
+  experiment.look();
+  Belief& belief = experiment.belief();
+  ReconstructedSurface out{surface_mesh(grid_of(belief.candidates()), belief.surface().heights),
+                           belief.values(quantity::kHeightStd), belief.values(quantity::kObjectProbability),
+                           std::nullopt};
+  if (const Scene* const truth = experiment.truth()) out.true_height = true_heights(belief.candidates(), *truth);
   return out;
 }
 
@@ -90,24 +93,24 @@ std::string surface_ply(const ReconstructedSurface& surface, const std::string& 
   return out;
 }
 
-std::string surface_ply(FromAnySide& experiment, const std::string& run) {
-  return mesh_ply(close_mesh(experiment.crossings(kFineSide)), experiment.scene().desk(), "quality",
+std::string surface_ply(const Surface& mesh, const std::string& run) {
+  return mesh_ply(mesh, "quality",
                   fmt::format("palpate, {}, metres, quality: standard deviation along the normal", header_text(run)));
 }
 
-std::string taps_ply(const Recording& recording, const RunResult& counts, const std::string& run) {
+std::string taps_ply(const RecordedRun& recording, const RunResult& counts, const std::string& run) {
   std::string points;
   int contacts = 0;
   const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
-    const PastTap& tap = recording.taps[i];
-    if (tap.contact.outcome != Outcome::contact) continue;
+    const TapRecord& tap = recording.taps[i];
+    if (!tap.is_contact()) continue;
     const bool hit = label_now(recording.rows[i], counts).value_or(false);
-    Eigen::Vector3d at(tap.target.x, tap.target.y, tap.contact.height);
+    Eigen::Vector3d at = tap.result.contacts.front().position;
     std::string from;
     if (any_side) {
-      const Line& line = approach_of(tap).line;
-      at = line.origin + tap.contact.along.value_or(0.0) * line.direction;
+      const TapLine& line = tap.request.line;
+      at = line.at(tap.result.distance.value_or(0.0));
       from = fmt::format(" {} {} {}", -line.direction.x(), -line.direction.y(), -line.direction.z());
     }
     points += fmt::format("{} {} {}{} {} {}\n", at.x(), at.y(), at.z(), from, i + 1, hit ? 1 : 0);

@@ -3,8 +3,8 @@
 // surface.csv and taps.csv.
 #pragma once
 
-#include "experiment/from_above.hpp"
-#include "record/recording.hpp"
+#include "experiment/experiment.hpp"
+#include "record/run_replay.hpp"
 
 #include <array>
 #include <optional>
@@ -25,7 +25,7 @@ struct SurfaceMesh {
 
 /// Returns the mesh of `heights`, metres, one per candidate of a grid. Normals follow from central differences of the
 /// heights, one-sided at the edges. A direction with a single candidate counts as level.
-SurfaceMesh surface_mesh(const Candidates& candidates, const VectorView& heights);
+SurfaceMesh surface_mesh(const CandidateGrid& candidates, const VectorView& heights);
 
 /// The reconstructed surface with its uncertainty; one value per candidate.
 struct ReconstructedSurface {
@@ -36,7 +36,7 @@ struct ReconstructedSurface {
 };
 
 /// Returns the surface after the taps so far; builds the models that it needs.
-ReconstructedSurface reconstruct(FromAbove& experiment);
+ReconstructedSurface reconstruct(Experiment& experiment);
 
 /// Returns PLY 1.0 in ASCII: x, y, z, nx, ny, nz in double precision; in single precision, which MeshLab requires,
 /// `quality` (the standard deviation), `object_probability` and, if known, `true_height`. ASCII keeps positions exact
@@ -44,11 +44,11 @@ ReconstructedSurface reconstruct(FromAbove& experiment);
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run);
 
 /// Returns the finest closed mesh of a run from any side, in the format of mesh_ply().
-std::string surface_ply(FromAnySide& experiment, const std::string& run);
+std::string surface_ply(const Surface& mesh, const std::string& run);
 
 /// Returns the contacts as points: x, y, z; from any side also nx, ny, nz, the direction towards the tool; `tap`, its
 /// number; `on_object`, 1 or 0, the label in `counts`, the result after all taps.
-std::string taps_ply(const Recording& recording, const RunResult& counts, const std::string& run);
+std::string taps_ply(const RecordedRun& recording, const RunResult& counts, const std::string& run);
 
 /// Returns text that a PLY header can hold: one line of printable ASCII, at most 200 letters, without the word
 /// "end_header".

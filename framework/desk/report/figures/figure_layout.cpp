@@ -53,7 +53,7 @@ int drawn(int count) { return std::clamp(count, 2, kMostDrawn); }
 /// Concatenates `cell`(candidate, column, row) over the drawn cells, with a line end after each row.
 template <class Cell>
 std::string rows_of(const SceneFrame& frame, const Cell& cell) {
-  const Candidates& all = frame.candidates;
+  const CandidateGrid& all = frame.candidates;
   std::string out;
   for (int row = 0; row < drawn(all.rows); ++row) {
     const int from_row = static_cast<int>((row + 0.5) * all.rows / drawn(all.rows));
@@ -82,8 +82,8 @@ std::string gnuplot_palette(Palette palette) {
   return out + ")\n";
 }
 
-SceneFrame scene_frame_of(const FromAbove& experiment) {
-  return {experiment.candidates(), experiment.scene().area(), experiment.scene().desk()};
+SceneFrame scene_frame_of(const Experiment& experiment) {
+  return {grid_of(experiment.belief().candidates()), experiment.scene().area(), experiment.scene().desk()};
 }
 
 double tic_step(double spread, double most) {
@@ -123,9 +123,9 @@ ZRange z_range_of(const std::vector<MapsAtTap>& snapshots, const SceneFrame& fra
 
 MapsAtTap without_hidden_taps(const MapsAtTap& snapshot, const SceneFrame& frame) {
   const Area& area = frame.area;
-  const Candidates& candidates = frame.candidates;
+  const CandidateGrid& candidates = frame.candidates;
   const double step = 0.5 * std::min(area.width / candidates.columns, area.depth / candidates.rows);
-  // A mark reaches above the surface, so only surfaces higher than the tap by this margin hide it.
+  // Ignores what is less than the margin higher than a tap, as the tap's mark reaches above the surface.
   const double height = snapshot.surface.maxCoeff() - snapshot.surface.minCoeff();
   const double margin = 0.06 * height;
   const auto hidden = [&](const TapMark& mark) {
@@ -180,7 +180,7 @@ void FigureLayout::taps(const std::string& name, const MapsAtTap& snapshot) {
         fmt::format("{} {} {} {}\n", centimetres(mark.x), centimetres(mark.y), centimetres(mark.height), mark.tap);
   for (std::size_t i = 0; i < std::size(kKinds); ++i) data(kKinds[i] + name, lines[i]);
   if (snapshot.next)
-    data("next_" + name, centimetres(snapshot.next->target.x) + " " + centimetres(snapshot.next->target.y) + "\n");
+    data("next_" + name, centimetres(snapshot.next->target().x) + " " + centimetres(snapshot.next->target().y) + "\n");
 }
 
 void FigureLayout::text(const std::string& words, double x, double top, int points, Align align) {

@@ -3,7 +3,7 @@
 // at the beginning of the script.
 #pragma once
 
-#include "experiment/from_above.hpp"
+#include "experiment/experiment.hpp"
 #include "report/colours.hpp"
 #include "report/history.hpp"
 
@@ -13,14 +13,14 @@
 
 namespace palpate {
 
-/// Candidates, area and desk, which are the same for all taps of a run.
+/// CandidateGrid, area and desk, which are the same for all taps of a run.
 struct SceneFrame {
-  Candidates candidates;
+  CandidateGrid candidates;
   Area area;
   double desk = 0.0;  ///< metres
 };
 
-SceneFrame scene_frame_of(const FromAbove& experiment);
+SceneFrame scene_frame_of(const Experiment& experiment);
 
 /// A rectangle of the picture, in pixels from its upper left corner.
 struct Box {

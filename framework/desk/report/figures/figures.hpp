@@ -4,7 +4,7 @@
 #pragma once
 
 #include "analysis/group_curves.hpp"
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 #include "report/history.hpp"
 #include "sweep/sweep.hpp"
 
@@ -22,7 +22,7 @@ struct Figures {
 
 /// Draws the figures `surface`, `maps` and `curves` of a run. Throws Error of kind `run` if gnuplot fails; the scripts
 /// remain.
-Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history,
+Figures write_run_figures(const Workshop& workshop, const RecordedRun& recording, const History& history,
                           const std::filesystem::path& folder);
 
 /// Draws the figures of a sweep: `distributions`; `heat_map` if two keys besides the seed are swept; `curves` if the
@@ -42,7 +42,8 @@ std::string write_curves_figure(const GroupCurves& curves, const std::string& ti
                                 const std::filesystem::path& file);
 
 /// Draws `paper_progress` of a run, in the layout of the paper's figure 2. Throws Error as above.
-Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder);
+Figures write_paper_figures(const Workshop& workshop, const RecordedRun& recording,
+                            const std::filesystem::path& folder);
 
 /// Draws the paper's `figure_2` to `figure_5` from a sweep with the jobs that they need. Throws Error as above, and if
 /// jobs are missing for all of them.

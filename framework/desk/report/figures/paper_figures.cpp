@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/groups.hpp"
 #include "record/run_directory.hpp"
+#include "report/beliefs.hpp"
 #include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
 
@@ -104,11 +105,12 @@ void draw_row(FigureLayout& layout, const PanelRow& row, double top, const Box& 
 
 /// Returns the run after these iterations of the paper. Iteration k is the state after k - 1 taps beyond the initial
 /// ones. The first iteration beyond the run's end shows the last tap; later ones are left out.
-Progress progress_of(const Workshop& workshop, const Recording& recording, const std::vector<int>& iterations) {
+Progress progress_of(const Workshop& workshop, const RecordedRun& recording, const std::vector<int>& iterations) {
   const int all = static_cast<int>(recording.taps.size());
-  const auto initial = static_cast<int>(std::count_if(
-      recording.taps.begin(), recording.taps.end(), [](const PastTap& tap) { return tap.source == Source::initial; }));
-  Playback playback(workshop, recording);
+  const auto initial =
+      static_cast<int>(std::count_if(recording.taps.begin(), recording.taps.end(),
+                                     [](const TapRecord& tap) { return tap.request.source == Source::initial; }));
+  RunReplay playback(workshop, recording, page_readers(recording));
   std::vector<int> shown;
   std::vector<int> taps;
   for (const int one : iterations) {
@@ -119,7 +121,7 @@ Progress progress_of(const Workshop& workshop, const Recording& recording, const
     taps.push_back(at);
   }
   return {recording.config.options.acquisition.type, shown, maps_at_taps(playback, recording, taps),
-          scene_frame_of(playback.from_above())};
+          scene_frame_of(playback.experiment())};
 }
 
 /// Draws rows of panels below each other, of one run or of several runs with equally many snapshots. `rows` is not
@@ -192,7 +194,7 @@ struct PaperFigures {
   PaperFigures(const Workshop& from, const Sweep& of) : workshop(from), sweep(of) {}
 
   Progress progress(const Job& job, const std::vector<int>& iterations) const {
-    return progress_of(workshop, read_recording(workshop, job_directory(sweep, job)), iterations);
+    return progress_of(workshop, read_recorded_run(workshop.host, job_directory(sweep, job)), iterations);
   }
 
   /// Adds figure 2 or 3.
@@ -247,7 +249,8 @@ struct PaperFigures {
 
 }  // namespace
 
-Figures write_paper_figures(const Workshop& workshop, const Recording& recording, const std::filesystem::path& folder) {
+Figures write_paper_figures(const Workshop& workshop, const RecordedRun& recording,
+                            const std::filesystem::path& folder) {
   const Progress progress = progress_of(workshop, recording, {1, 8, 10, 14});
   return {write_figures(folder, {progress_figure("paper_progress", recording.config.options.name, progress)}), {}};
 }

@@ -3,6 +3,7 @@
 #include "analysis/mean_output.hpp"
 #include "config/layout.hpp"
 #include "record/fields.hpp"
+#include "report/beliefs.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
@@ -135,7 +136,7 @@ void draw_curves(FigureLayout& layout, const Box& box, double top, const CurvePa
 }
 
 /// Draws the curves over the taps.
-Figure curves_figure(const Recording& recording, const History& history) {
+Figure curves_figure(const RecordedRun& recording, const History& history) {
   constexpr int kColumns = 4;
   constexpr double kWidth = 280;
   constexpr double kHeight = 200;
@@ -175,11 +176,11 @@ Figure curves_figure(const Recording& recording, const History& history) {
 
 }  // namespace
 
-Figures write_run_figures(const Workshop& workshop, const Recording& recording, const History& history,
+Figures write_run_figures(const Workshop& workshop, const RecordedRun& recording, const History& history,
                           const std::filesystem::path& folder) {
-  Playback playback(workshop, recording);
+  RunReplay playback(workshop, recording, page_readers(recording));
   const MapsAtTap last = maps_at_taps(playback, recording, {static_cast<int>(recording.taps.size())}).front();
-  const SceneFrame frame = scene_frame_of(playback.from_above());
+  const SceneFrame frame = scene_frame_of(playback.experiment());
   const ExperimentOptions& options = recording.config.options;
   return {write_figures(folder, {surface_figure(options, frame, last), maps_figure(options, frame, last),
                                  curves_figure(recording, history)}),

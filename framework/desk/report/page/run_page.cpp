@@ -6,9 +6,8 @@
 #include "record/build_info.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
+#include "record/run.hpp"
 #include "record/run_directory.hpp"
-#include "record/session.hpp"
-#include "record/tap_row.hpp"
 #include "report/colours.hpp"
 #include "report/curves.hpp"
 #include "report/page/json.hpp"
@@ -30,7 +29,7 @@
 namespace palpate {
 namespace {
 
-Json json_of_run(const Recording& recording, const History& history) {
+Json json_of_run(const RecordedRun& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
   return {{"name", options.name},
           {"id", recording.config.id},
@@ -46,7 +45,7 @@ Json json_of_run(const Recording& recording, const History& history) {
 }
 
 /// Returns the config as a table of paths, values and origins, the files that config.yaml was composed from.
-Table config_table(const Recording& recording) {
+Table config_table(const RecordedRun& recording) {
   const std::map<std::string, std::string> known = recorded_origins(recording.directory);
   Table table;
   for (const ResolveNotes::Origin& one : recording.config.notes.origins) {
@@ -87,10 +86,15 @@ static std::vector<int> relabelled(const RunAtTap& moment) {
   return out;
 }
 
-static void to_json(Json& out, const SuspectedOutlier& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
+static Json suspected_json(const std::vector<SuspectedOutlier>& all) {
+  Json out = Json::array();
+  for (const SuspectedOutlier& one : all) out.push_back({{"tap", one.tap}, {"words", doubt_words(one)}});
+  return out;
+}
 
 static void to_json(Json& out, const RunAtTap& moment) {
   const RunResult& result = moment.result;
+  const Row state{result.state.fields};
   Row errors;
   add_errors(errors, result.errors);
   out = errors;
@@ -102,26 +106,25 @@ static void to_json(Json& out, const RunAtTap& moment) {
               {"relabelled", relabelled(moment)},
               {"surface_drawn", moment.largest_deviation > 0.0},
               {"robot_seconds", result.robot_seconds},
-              {kExpectedError, result.expected_rmse},
+              {kExpectedError, state.number(kExpectedError)},
               {"least_weight", moment.least_weight},
               {"most_weight", moment.most_weight},
-              {"remark", result.footprint ? result.footprint->remark : ""},
+              {"remark", state.text("footprint.remark")},
               {"is_next_known", moment.is_next_known}});
-  if (result.suspected_outliers) out["suspected_outliers"] = *result.suspected_outliers;
+  if (moment.suspected_outliers) out["suspected_outliers"] = suspected_json(*moment.suspected_outliers);
   if (moment.next) {
-    out["next"] = {{"x", moment.next->target.x},
-                   {"y", moment.next->target.y},
-                   {"source", source_name(moment.next->source)},
+    out["next"] = {{"x", moment.next->target().x},
+                   {"y", moment.next->target().y},
+                   {"source", source_name(moment.next->request.source)},
                    {"score", moment.next->score},
                    {"ties", moment.next->ties}};
-    if (const auto& approach = moment.next->approach) {
-      const Line& line = approach->line;
-      out["next"].update({{"z", line.origin.z()},
+    if (const TapLine& line = moment.next->request.line; !line.from_above) {
+      out["next"].update({{"z", line.start.z()},
                           {"direction.x", line.direction.x()},
                           {"direction.y", line.direction.y()},
                           {"direction.z", line.direction.z()},
                           {"along", moment.next_along},
-                          {"length", approach->length}});
+                          {"length", line.length}});
     }
   }
 }
@@ -214,7 +217,7 @@ static Json json_of_surface(const Crossings& surface) {
 }
 
 /// Returns the status at the time of reading, as for all other data of the page.
-static RunStatus status_of(const Recording& recording) {
+static RunStatus status_of(const RecordedRun& recording) {
   if (recording.summary) {
     const auto state = recording.failed() ? RunStatus::State::failed : RunStatus::State::done;
     return {state, 0, recording.summary->text("stop_reason")};
@@ -224,7 +227,7 @@ static RunStatus status_of(const Recording& recording) {
 }
 
 /// Returns the data that may change with every tap. `history` has at least one moment.
-static Json json_of_standing(const Recording& recording, const History& history) {
+static Json json_of_standing(const RecordedRun& recording, const History& history) {
   const RunStatus status = status_of(recording);
   const Curves curves = curves_of(recording, history);
   return {{"state", state_name(status.state)}, {"stop_reason", status.stop_reason},
@@ -243,7 +246,7 @@ static Json json_of_deviation_colours(const std::vector<Eigen::VectorXf>& frames
   return out;
 }
 
-Json run_data(const Recording& recording, const History& history) {
+Json run_data(const RecordedRun& recording, const History& history) {
   const Tree manifest = recording.manifest.value_or(Tree::map());
   Json data = json_of_run(recording, history);
   data.update(json_of_standing(recording, history));
@@ -288,7 +291,7 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
   return bytes;
 }
 
-std::string run_page(const Recording& recording, const History& history, const OnProgress& progress) {
+std::string run_page(const RecordedRun& recording, const History& history, const OnProgress& progress) {
   Json data = run_data(recording, history);
   const int last = history.moments.back().taps;
   // Maps never compress to a tenth: with more bytes the page would be too large.
@@ -305,7 +308,7 @@ std::string run_page(const Recording& recording, const History& history, const O
   }
 }
 
-std::string live_run_page(const Recording& recording, const History& history, const std::string& at) {
+std::string live_run_page(const RecordedRun& recording, const History& history, const std::string& at) {
   Json data = run_data(recording, history);
   const std::string bytes = add_maps(data, history, 1);
   data["live"] = at;
@@ -317,7 +320,7 @@ std::string waiting_page(const std::string& name, const std::string& id, const s
   return make_page(palpate_asset_run, {{"name", name}, {"id", id}, {"waiting", why}, {"live", at}}, "", PageOf::server);
 }
 
-std::string run_news(const Recording& recording, const History& history, int moments, const std::string& at) {
+std::string run_news(const RecordedRun& recording, const History& history, int moments, const std::string& at) {
   Json news = json_of_standing(recording, history);
   const auto made = history.moments.size();
   const auto known = static_cast<std::size_t>(moments);

@@ -15,11 +15,11 @@ namespace palpate {
 inline constexpr std::size_t kMostPageBytes = 4'000'000;
 
 /// Returns the page of a run. `progress` is also called while maps are packed, which takes as long as computing them.
-std::string run_page(const Recording& recording, const History& history, const OnProgress& progress);
+std::string run_page(const RecordedRun& recording, const History& history, const OnProgress& progress);
 
 /// Returns the page of a run that goes on, for a server. The page asks its server for the moments after those of
 /// `history`, which has as many taps as `recording`. `at` is the position in the record that the page reports.
-std::string live_run_page(const Recording& recording, const History& history, const std::string& at);
+std::string live_run_page(const RecordedRun& recording, const History& history, const std::string& at);
 
 /// Returns the page of a run without anything to show yet; `why` is the reason in words. The page asks its server as
 /// that of live_run_page() does.
@@ -28,7 +28,7 @@ std::string waiting_page(const std::string& name, const std::string& id, const s
 /// Returns an update for a page with the first `moments` moments: JSON on one line with the other moments, their maps,
 /// and all data that may change with a tap. `history` has maps of these moments alone. After the update the page is at
 /// position `at`.
-std::string run_news(const Recording& recording, const History& history, int moments, const std::string& at);
+std::string run_news(const RecordedRun& recording, const History& history, int moments, const std::string& at);
 
 /// Maps in a compact form. Differences of 16-bit numbers between neighbouring cells, with low and high bytes apart,
 /// compress best: smooth maps have small differences.
@@ -47,7 +47,7 @@ PackedMaps pack_maps(const std::vector<Eigen::VectorXf>& frames);
 std::vector<RecordField> page_errors();
 
 /// Returns the data of a run's page without maps and surfaces.
-Json run_data(const Recording& recording, const History& history);
+Json run_data(const RecordedRun& recording, const History& history);
 
 /// Adds the maps or surfaces of every `stride`-th shown moment, counted from the last, to `data`. Returns the bytes of
 /// the maps. `only` selects the map with that name.

@@ -38,7 +38,7 @@ Table standings_table(const std::vector<ComparedRun>& runs, const Json& describe
   for (const ComparedRun& run : runs) {
     const RunResult& last = run.history.moments.back().result;
     add_errors(errors.emplace_back(), last.errors);
-    errors.back().add(kExpectedError, last.expected_rmse);
+    errors.back().add(kExpectedError, Row{last.state.fields}.number(kExpectedError));
   }
   Table table;
   for (std::size_t i = 0; i < runs.size(); ++i) {

@@ -14,7 +14,7 @@ inline constexpr std::size_t kMostRunsOnAPage = 8;
 
 /// A run and its history.
 struct ComparedRun {
-  Recording recording;
+  RecordedRun recording;
   History history;
 };
 

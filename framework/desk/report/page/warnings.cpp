@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/warnings.hpp"
+#include "report/beliefs.hpp"
 
-#include "record/tap_row.hpp"
+#include "record/fields.hpp"
 #include "report/words/words.hpp"
 
 #include <fmt/format.h>
@@ -11,39 +12,35 @@
 namespace palpate {
 namespace {
 
-bool is_any_side(const Recording& recording) {
-  return recording.config.options.scene.touch == SceneOptions::Touch::any;
-}
-
 int diagnostics(const RunResult& result, const char* kind) {
-  const auto found = result.diagnostics.find(kind);
-  return found != result.diagnostics.end() ? found->second : 0;
+  const auto found = result.state.diagnostics.find(kind);
+  return found != result.state.diagnostics.end() ? found->second : 0;
 }
 
-/// Adds a sentence "3 taps" + `what`; nothing if `count` is 0.
+/// Adds "3 taps" with `what` about them; nothing if `count` is 0.
 void add_counted(std::vector<std::string>& out, int count, const char* noun, const char* what) {
   if (count > 0) out.push_back(counted(count, noun) + what);
 }
 
 /// Returns whether two taps at the same position were made along different lines.
-bool other_way(const PastTap& one, const PastTap& other) {
-  if (!one.approach || !other.approach) return one.approach.has_value() != other.approach.has_value();
-  const auto& [a, b] = std::pair(one.approach->line, other.approach->line);
-  return a.origin != b.origin || a.direction != b.direction;
+bool other_way(const TapLine& one, const TapLine& other) {
+  if (one.from_above || other.from_above) return one.from_above != other.from_above;
+  return one.start != other.start || one.direction != other.direction;
 }
 
 /// Returns the first tap that this build would have made elsewhere; 0 if there is none.
-int first_drift(const Recording& recording, const History& history) {
+int first_drift(const RecordedRun& recording, const History& history) {
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const std::optional<TapRecord>& next = history.moments[i].next;
-    const PastTap& made = recording.taps[i];
-    if (!next || next->target.x != made.target.x || next->target.y != made.target.y || other_way(*next, made))
+    const TapRecord& made = recording.taps[i];
+    if (!next || next->target().x != made.target().x || next->target().y != made.target().y ||
+        other_way(next->request.line, made.request.line))
       return static_cast<int>(i) + 1;
   }
   return 0;
 }
 
-void warn_of_end(const Recording& recording, const RunResult& last, std::vector<std::string>& out) {
+void warn_of_end(const RecordedRun& recording, const RunResult& last, std::vector<std::string>& out) {
   if (recording.failed()) {
     const std::string reason = recording.summary->text("stop_reason");
     out.push_back("The run failed" + (reason.empty() ? " without a reason." : ": " + reason));
@@ -62,7 +59,7 @@ void warn_of_end(const Recording& recording, const RunResult& last, std::vector<
                        : " rejected: the reported height is not a number.");
 }
 
-void warn_of_choices(const Recording& recording, const History& history, std::vector<std::string>& out) {
+void warn_of_choices(const RecordedRun& recording, const History& history, std::vector<std::string>& out) {
   const bool any_side = is_any_side(recording);
   const RunResult& last = history.moments.back().result;
   if (const int fallbacks = diagnostics(last, "fallback"); fallbacks > 0) {
@@ -88,7 +85,7 @@ void warn_of_choices(const Recording& recording, const History& history, std::ve
   }
 }
 
-void warn_of_weights(const Recording& recording, const History& history, std::vector<std::string>& out) {
+void warn_of_weights(const RecordedRun& recording, const History& history, std::vector<std::string>& out) {
   if (!history.moments.back().least_weight) return;
   const auto least =
       std::min_element(history.moments.begin(), history.moments.end(),
@@ -111,7 +108,7 @@ void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
     out.push_back(
         fmt::format("Jitter up to {:.1e} was added to the covariance, {}: the taps made it singular in "
                     "double precision. It acts as noise of each tap.",
-                    last.jitter_max, raised == 1 ? "once" : fmt::format("in {} steps", raised)));
+                    last.state.jitter_max, raised == 1 ? "once" : fmt::format("in {} steps", raised)));
   }
   add_counted(out, diagnostics(last, "pivoted"), "factorisation", " needed pivoting as the last resort.");
   if (const int aside = diagnostics(last, "redundant_taps"); aside > 0)
@@ -125,14 +122,13 @@ void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
 
 }  // namespace
 
-std::vector<std::string> warnings_of(const Recording& recording, const History& history) {
+std::vector<std::string> warnings_of(const RecordedRun& recording, const History& history) {
   const RunResult& last = history.moments.back().result;
   std::vector<std::string> out;
   warn_of_end(recording, last, out);
   warn_of_choices(recording, history, out);
-  if (last.footprint && !last.footprint->remark.empty())
-    out.push_back(fmt::format("Remark of the footprint {}: {}.", recording.config.options.footprint.type,
-                              last.footprint->remark));
+  if (const std::string remark = Row{last.state.fields}.text("footprint.remark"); !remark.empty())
+    out.push_back(fmt::format("Remark of the footprint {}: {}.", recording.config.options.footprint.type, remark));
   warn_of_weights(recording, history, out);
   warn_of_numbers(last, out);
   if (history.truth_lost) out.push_back(truth_lost_words(*history.truth_lost) + ".");

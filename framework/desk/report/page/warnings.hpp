@@ -10,6 +10,6 @@
 namespace palpate {
 
 /// Returns one or two sentences per warning, the gravest first; empty for a run without trouble.
-std::vector<std::string> warnings_of(const Recording& recording, const History& history);
+std::vector<std::string> warnings_of(const RecordedRun& recording, const History& history);
 
 }  // namespace palpate

@@ -2,7 +2,7 @@
 #include "report/words/explain.hpp"
 
 #include "config/scale.hpp"
-#include "record/tap_row.hpp"
+#include "record/fields.hpp"
 #include "report/words/explanation.hpp"
 #include "report/words/models.hpp"
 
@@ -37,17 +37,14 @@ class FromAboveExplained final : public Explanation {
 
  private:
   void explain() override {
-    FromAbove& experiment = playback_.from_above();
-    // The quantities that the choice read, and the expected height.
-    experiment.ask(recorded_quantities(row_) | Quantity::height);
-
-    text_.heading(heading(place_words(tap_.target.x, tap_.target.y)));
+    playback_.experiment().look();
+    text_.heading(heading(place_words(tap_.target().x, tap_.target().y)));
     text_.heading("Why there");
     explain_choice();
     text_.heading(fmt::format("The models used for the choice, from {}, {} of them on an object",
                               counted(hits_before() + before().desk_taps, "contact"), hits_before()));
-    if (recorded_quantities(row_) == Quantities()) text_.add("This choice used no model.");
-    explain_models(text_, row_, options_, experiment.choose_next().value_or(TapRecord{}));
+    if (!has_models()) text_.add("This choice used no model.");
+    explain_models(text_, row_, options_, belief().models());
     text_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
@@ -59,19 +56,24 @@ class FromAboveExplained final : public Explanation {
     explain_doubt();
   }
 
-  const RunResult& before() { return playback_.from_above().counts(); }
+  HeightMap& belief() { return height_map_of(playback_.experiment()); }
+  /// Whether the record of the tap has the state of any model.
+  bool has_models() const {
+    const auto has = [&](const char* field) { return row_.number(field).has_value(); };
+    return has("height_gp.signal") || has("label_gp.signal") || has("surface_gp.signal") || has("p");
+  }
+  const RunResult& before() { return playback_.experiment().counts(); }
   int hits_before() { return before().object_taps; }
 
   /// Returns the candidate of a tap.
-  int candidate_of(const PastTap& tap) {
-    const FromAbove& experiment = playback_.from_above();
-    return experiment.candidates().nearest(tap.target.x, tap.target.y, experiment.scene().area());
+  int candidate_of(const TapRecord& tap) {
+    return belief().grid().nearest(tap.target().x, tap.target().y, playback_.experiment().scene().area());
   }
 
   // The choice.
 
   void explain_choice() {
-    switch (tap_.source) {
+    switch (tap_.request.source) {
       case Source::initial:
         explain_design();
         break;
@@ -94,7 +96,7 @@ class FromAboveExplained final : public Explanation {
       text_.add(
           fmt::format("It was made by motion {} of motion.of, which was expected to give the most information per "
                       "second here, in {}.",
-                      tap_.motion, seconds_words(*seconds)));
+                      tap_.request.motion, seconds_words(*seconds)));
     }
   }
 
@@ -116,7 +118,7 @@ class FromAboveExplained final : public Explanation {
   }
 
   double acquisition_scale() {
-    const Context context{workshop_.host, playback_.from_above().scene(), static_cast<std::uint64_t>(options_.seed),
+    const Context context{workshop_.host, playback_.experiment().scene(), static_cast<std::uint64_t>(options_.seed),
                           nullptr};
     return context.create<Acquisition>(options_.acquisition)->prior_scale();
   }
@@ -144,8 +146,8 @@ class FromAboveExplained final : public Explanation {
   int left_out() {
     std::set<int> out;
     for (int i = 0; i < number_ - 1; ++i) {
-      const PastTap& tap = recording_.taps[static_cast<std::size_t>(i)];
-      const bool failed = tap.contact.outcome != Outcome::contact;
+      const TapRecord& tap = recording_.taps[static_cast<std::size_t>(i)];
+      const bool failed = !tap.is_contact();
       if (failed || options_.repeat == ExperimentOptions::Repeat::forbid) out.insert(candidate_of(tap));
     }
     return static_cast<int>(out.size());
@@ -155,7 +157,7 @@ class FromAboveExplained final : public Explanation {
     const auto score = row_.number("score");
     if (!score) return text_.add("The record holds no score.");
     const int out = left_out();
-    const int allowed = playback_.from_above().candidates().size() - out;
+    const int allowed = belief().grid().size() - out;
     const double ties = row_.number("ties").value_or(1.0);
     const auto second = row_.number("runner_up.score");
     const double best = second ? std::max(*score, *second) : *score;
@@ -173,7 +175,7 @@ class FromAboveExplained final : public Explanation {
           ties == allowed ? "All" : fmt::format("{}", ties), counted(allowed, "candidate"), bound);
     }
     text_.add(text);
-    if (tap_.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
+    if (tap_.request.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
     const char* why = options_.repeat == ExperimentOptions::Repeat::forbid
                           ? "because tapped before (repeat: forbid)"
                           : "because a tap failed there; others may be tapped again (repeat: allow)";
@@ -216,20 +218,19 @@ class FromAboveExplained final : public Explanation {
   // The tap.
 
   void explain_expectation() {
-    const TapBelief& belief = playback_.from_above().belief();
     const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
     if (two_part && hits_before() == 0) return text_.add("Expected: nothing, no tap has been on an object yet.");
     const int candidate = candidate_of(tap_);
-    const double height = belief.height_mean()(candidate);
+    const double height = belief().values(quantity::kHeightMean)(candidate);
     text_.add(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
-                          length_words(height), length_words(std::sqrt(belief.height_variance()(candidate))),
+                          length_words(height), length_words(belief().values(quantity::kHeightStd)(candidate)),
                           two_part ? ", if an object is there (the surface GP)" : ""));
     if (!two_part || on_object()) expected_ = height;
   }
 
   void explain_outcome() {
-    const Contact& contact = tap_.contact;
-    if (contact.outcome != Outcome::contact) {
+    const TapResult& contact = tap_.result;
+    if (!contact.is_contact()) {
       text_.add(
           fmt::format("Found: nothing, the tap failed: {}{}. It took {} of robot time. No model uses it, and its "
                       "position is excluded afterwards.",
@@ -244,11 +245,11 @@ class FromAboveExplained final : public Explanation {
 
   bool on_object() const { return row_.flag("on_object").value_or(false); }
 
-  void explain_contact(const Contact& contact, bool on) {
+  void explain_contact(const TapResult& contact, bool on) {
     std::string text =
-        fmt::format("Found: contact at {}, {}", length_words(contact.height), on ? "on an object" : "on the desk");
-    const double height = row_.number("corrected_height").value_or(contact.height);
-    if (height != contact.height)
+        fmt::format("Found: contact at {}, {}", length_words(contact.height()), on ? "on an object" : "on the desk");
+    const double height = row_.number("corrected_height").value_or(contact.height());
+    if (height != contact.height())
       text += fmt::format(", {} after correction for the estimated offset of motion and arm", length_words(height));
     if (const double more = height - expected_.value_or(height); more != 0.0)
       text += fmt::format(", {} {} than expected", length_words(std::abs(more)), more > 0.0 ? "higher" : "lower");
@@ -261,12 +262,12 @@ class FromAboveExplained final : public Explanation {
 
   /// Adds whether the tap is a suspected outlier, right after it and after all taps.
   void explain_doubt() {
-    if (!options_.height.outlier_probability || tap_.contact.outcome != Outcome::contact) return;
+    if (!options_.height.outlier_probability || !tap_.is_contact()) return;
     text_.heading("Is it an outlier?");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
-      playback_.from_above().choose_next();  // makes the models include all taps
-      for (const SuspectedOutlier& one : playback_.from_above().belief().suspected_outliers()) {
+      playback_.experiment().look();
+      for (const SuspectedOutlier& one : belief().models().suspected_outliers()) {
         if (one.tap == number_) return "may be an outlier: " + doubt_words(one);
       }
       return std::string("is not suspected");
@@ -276,12 +277,12 @@ class FromAboveExplained final : public Explanation {
     if (all > number_) text_.add(fmt::format("After all {} taps, it {}.", all, said(all)));
   }
 
-  std::optional<double> expected_;  ///< expected height, metres, that the contact is compared with
+  std::optional<double> expected_;  ///< expected height; the height of an object says nothing about the desk
 };
 
 }  // namespace
 
-std::string explain_tap(const Workshop& workshop, const Recording& recording, int tap) {
+std::string explain_tap(const Workshop& workshop, const RecordedRun& recording, int tap) {
   const auto taps = static_cast<int>(recording.rows.size());
   if (tap < 1 || tap > taps) {
     throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),

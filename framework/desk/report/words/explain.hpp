@@ -2,7 +2,7 @@
 // Explanation of a recorded tap in words.
 #pragma once
 
-#include "record/recording.hpp"
+#include "record/run_replay.hpp"
 
 #include <string>
 
@@ -11,6 +11,6 @@ namespace palpate {
 /// Returns about twenty lines on tap `tap` (from 1) of a recorded run: the reason of its choice, the models at that
 /// time, expectation and result, and the effect of the tap. All values are recorded, except the expected height, which
 /// is computed from the earlier taps. Throws Error if there is no such tap.
-std::string explain_tap(const Workshop& workshop, const Recording& recording, int tap);
+std::string explain_tap(const Workshop& workshop, const RecordedRun& recording, int tap);
 
 }  // namespace palpate

@@ -2,7 +2,6 @@
 // Explanation of a tap from any side.
 #include "config/scale.hpp"
 #include "record/fields.hpp"
-#include "record/tap_row.hpp"
 #include "report/words/explanation.hpp"
 #include "report/words/words.hpp"
 
@@ -19,13 +18,13 @@ namespace {
 using Eigen::Vector3d;
 
 /// Returns "from x 1.00 cm, y 2.00 cm, z 3.00 cm, coming down at 20 degrees".
-std::string line_words(const Line& line) {
+std::string line_words(const TapLine& line) {
   const double degrees = 180.0 / kHalfTurn * std::asin(std::clamp(-line.direction.z(), -1.0, 1.0));
   const std::string slope = degrees > 85.0            ? "straight down"
                             : std::abs(degrees) < 3.0 ? "level"
                                                       : fmt::format("coming {} at {:.0f} degrees",
                                                                     degrees > 0.0 ? "down" : "up", std::abs(degrees));
-  const Vector3d& from = line.origin;
+  const Vector3d& from = line.start;
   return fmt::format("from {}, z {}, {}", place_words(from.x(), from.y()), place_words(from.z()), slope);
 }
 
@@ -47,7 +46,7 @@ class ApproachExplained final : public Explanation {
 
  private:
   void explain() override {
-    text_.heading(heading(line_words(approach_.line)));
+    text_.heading(heading(line_words(line_)));
     text_.heading("Why there");
     explain_choice();
     explain_place();
@@ -59,16 +58,21 @@ class ApproachExplained final : public Explanation {
     explain_outcome();
     text_.heading("Effect of the tap");
     Row before;
-    add_errors(before, experiment_.errors());
+    add_errors(before, errors_now());
     playback_.advance_to(number_);
     Row after;
-    add_errors(after, experiment_.errors());
+    add_errors(after, errors_now());
     explain_errors(before, after);
   }
 
+  Errors errors_now() {
+    experiment_.look();
+    return belief_.shown_errors()->errors;
+  }
+
   void explain_choice() {
-    const std::optional<TapRecord> now = experiment_.choose_next();
-    if (tap_.source == Source::initial) {
+    const std::optional<TapRecord> now = playback_.next();
+    if (tap_.request.source == Source::initial) {
       text_.add(
           number_ <= options_.initial.count
               ? fmt::format("It is initial tap {} of {}, along a random line through the region (seed {}).", number_,
@@ -78,8 +82,8 @@ class ApproachExplained final : public Explanation {
       return;
     }
     text_.add(fmt::format("The acquisition chose it: {}.", acquisition_words()));
-    if (!experiment_.has_scores()) return explain_score();
-    if (!now || !now->approach || now->approach->line.origin != approach_.line.origin)
+    if (recording_.scored_by_program()) return explain_score();
+    if (!now || now->request.line.start != line_.start)
       return text_.add(
           "From the same earlier taps, this build would choose another line: the run used another build or instruction "
           "set, so the other scores are unknown.");
@@ -90,21 +94,22 @@ class ApproachExplained final : public Explanation {
     if (now->ties.value_or(1) > 1)
       text += fmt::format("; {} are tied with it (tie_tolerance), and the first of them is taken", *now->ties - 1);
     text_.add(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
-    explain_gains(scores.size(), now->candidate);
+    explain_gains(now->candidate);
     explain_second(scores, now->candidate);
   }
 
   /// Adds the expected effects of the tap, if the scores use them.
-  void explain_gains(Eigen::Index approaches, int chosen) {
-    const Eigen::VectorXd& expected_discovery = experiment_.belief().expected_discovery();
-    if (expected_discovery.size() == approaches) {
+  void explain_gains(int chosen) {
+    const QuantitySet available = belief_.available();
+    if (available.count(quantity::kExpectedDiscovery) != 0) {
+      const Eigen::VectorXd& expected_discovery = belief_.values(quantity::kExpectedDiscovery);
       text_.add(
           fmt::format("Of one further solid that no contact contradicts, this line is expected to find {} (mean over "
                       "lines from all sides); the best line finds {}.",
                       length_words(expected_discovery(chosen)), length_words(expected_discovery.maxCoeff())));
     }
-    const Eigen::VectorXd& std_reduction = experiment_.belief().std_reduction();
-    if (std_reduction.size() == approaches) {
+    if (available.count(quantity::kStdReduction) != 0) {
+      const Eigen::VectorXd& std_reduction = belief_.values(quantity::kStdReduction);
       text_.add(
           fmt::format("A contact there is expected to reduce the mean standard deviation of the surface by {}; the "
                       "best line reduces it by {}.",
@@ -117,8 +122,7 @@ class ApproachExplained final : public Explanation {
     Eigen::Index second = chosen == 0 ? 1 : 0;
     for (Eigen::Index i = 0; i < scores.size(); ++i)
       if (i != chosen && scores(i) > scores(second)) second = i;
-    const Line& line = experiment_.belief().approaches()[static_cast<std::size_t>(second)].line;
-    explain_runner_up(line_words(line), scores(chosen), scores(second));
+    explain_runner_up(line_words(belief_.candidates().line(second)), scores(chosen), scores(second));
   }
 
   /// Adds the recorded score of a program, which is not started for a report.
@@ -128,30 +132,28 @@ class ApproachExplained final : public Explanation {
                             plain_words(*score)));
   }
 
-  const Composition& best() const { return experiment_.belief().solids().best(); }
+  const Composition& best() const { return belief_.solids().best(); }
 
   /// Returns whether a tool stops after this path length at an object, and not at the desk or nowhere.
   bool met(double along) const {
-    return along < std::min(approach_.length, distance_down_to(experiment_.scene().desk(), approach_.line));
+    return along < std::min(line_.length, distance_down_to(experiment_.scene().desk(), line_.line()));
   }
 
   /// Adds the belief's values where the line meets the surface.
   void explain_place() {
-    const double along = experiment_.belief().meeting(approach_, best());
+    const double along = belief_.distance(line_, best());
     if (!met(along)) return text_.add("According to the most probable particle, no object is there.");
-    const Vector3d at =
-        approach_.line.origin + along * approach_.line.direction - Vector3d(0.0, 0.0, experiment_.scene().desk());
+    const Vector3d at = line_.at(along) - Vector3d(0.0, 0.0, experiment_.scene().desk());
     const Vector3d normal = Skin::normal(best(), at);
-    const double deviation = std::sqrt(experiment_.belief().skin().variance({at, normal}));
+    const double deviation = std::sqrt(belief_.skin().variance({at, normal}));
     text_.add(fmt::format(
         "Where the line meets the surface, the standard deviation along the surface normal is {}; far from all "
         "contacts it is {}. The cosine between line and normal is {:.3f} (1: perpendicular to the surface).",
-        length_words(deviation), length_words(experiment_.belief().skin().signal()),
-        std::abs(normal.dot(approach_.line.direction))));
+        length_words(deviation), length_words(belief_.skin().signal()), std::abs(normal.dot(line_.direction))));
   }
 
   void explain_belief() {
-    const std::vector<Composition>& all = experiment_.belief().solids().compositions();
+    const std::vector<Composition>& all = belief_.solids().compositions();
     const auto [least, most] = std::minmax_element(all.begin(), all.end(), [](const auto& one, const auto& other) {
       return one.parts.size() < other.parts.size();
     });
@@ -164,16 +166,16 @@ class ApproachExplained final : public Explanation {
   }
 
   void explain_expectation() {
-    const std::vector<Composition>& all = experiment_.belief().solids().compositions();
-    const double along = experiment_.belief().meeting(approach_, best());
+    const std::vector<Composition>& all = belief_.solids().compositions();
+    const double along = belief_.distance(line_, best());
     std::vector<double> hits;
     for (const Composition& one : all) {
-      const double hit = experiment_.belief().meeting(approach_, one);
+      const double hit = belief_.distance(line_, one);
       if (met(hit)) hits.push_back(hit);
     }
-    const std::string what = met(along)                 ? fmt::format("an object after {}", length_words(along))
-                             : along < approach_.length ? fmt::format("the desk after {}", length_words(along))
-                                                        : fmt::format("nothing in {}", length_words(along));
+    const std::string what = met(along)             ? fmt::format("an object after {}", length_words(along))
+                             : along < line_.length ? fmt::format("the desk after {}", length_words(along))
+                                                    : fmt::format("nothing in {}", length_words(along));
     std::string text = fmt::format("Expected, by the most probable particle: {}. ", what);
     if (hits.empty()) {
       text += fmt::format("None of {} has an object there.", all.size());
@@ -191,8 +193,8 @@ class ApproachExplained final : public Explanation {
   }
 
   void explain_outcome() {
-    const Contact& contact = tap_.contact;
-    const double along = contact.along.value_or(approach_.length);
+    const TapResult& contact = tap_.result;
+    const double along = contact.distance.value_or(line_.length);
     const std::string robot = fmt::format("{} of robot time", seconds_words(contact.seconds));
     if (contact.outcome == Outcome::no_contact) {
       text_.add(fmt::format("Found: nothing in {}; the whole path is free. {}.", length_words(along), robot));
@@ -202,7 +204,7 @@ class ApproachExplained final : public Explanation {
     } else {
       const bool on = row_.flag("on_object").value_or(false);
       std::string text = fmt::format("Found: contact after {}, at a height of {}, {}", length_words(along),
-                                     length_words(contact.height), on ? "on an object" : "on the desk");
+                                     length_words(contact.height()), on ? "on an object" : "on the desk");
       if (on && expected_ && along != *expected_)
         text += fmt::format(", {} {} than expected", length_words(std::abs(along - *expected_)),
                             along > *expected_ ? "further" : "earlier");
@@ -215,14 +217,15 @@ class ApproachExplained final : public Explanation {
     explain_failure();
   }
 
-  FromAnySide& experiment_ = dynamic_cast<FromAnySide&>(playback_.experiment());
-  const Approach approach_ = approach_of(tap_);
+  Experiment& experiment_ = playback_.experiment();
+  SolidsBelief& belief_ = solids_of(experiment_);
+  const TapLine& line_ = tap_.request.line;
   std::optional<double> expected_;  ///< expected path length to an object
 };
 
 }  // namespace
 
-std::string explain_approach(const Workshop& workshop, const Recording& recording, int tap) {
+std::string explain_approach(const Workshop& workshop, const RecordedRun& recording, int tap) {
   return ApproachExplained(workshop, recording, tap).text();
 }
 

@@ -2,7 +2,7 @@
 // Common parts of explanations of taps from above and from any side.
 #pragma once
 
-#include "record/recording.hpp"
+#include "report/beliefs.hpp"
 #include "report/words/words.hpp"
 
 #include <string>
@@ -12,7 +12,7 @@ namespace palpate {
 class Explanation {
  public:
   /// `tap` is the number of a recorded tap, from 1. `workshop` and `recording` must outlive the object.
-  Explanation(const Workshop& workshop, const Recording& recording, int tap)
+  Explanation(const Workshop& workshop, const RecordedRun& recording, int tap)
       : workshop_(workshop), recording_(recording), number_(tap) {}
   virtual ~Explanation() = default;
   Explanation(const Explanation&) = delete;
@@ -36,16 +36,16 @@ class Explanation {
   void explain_errors(const Row& before, const Row& after);
 
   const Workshop& workshop_;
-  const Recording& recording_;
+  const RecordedRun& recording_;
   int number_;
   const ExperimentOptions& options_ = recording_.config.options;
   const Row& row_ = recording_.rows[static_cast<std::size_t>(number_ - 1)];
-  const PastTap& tap_ = recording_.taps[static_cast<std::size_t>(number_ - 1)];
-  Playback playback_{workshop_, recording_};
+  const TapRecord& tap_ = recording_.taps[static_cast<std::size_t>(number_ - 1)];
+  RunReplay playback_{workshop_, recording_, page_readers(recording_)};
   TextSections text_;
 };
 
 /// Returns the explanation of a tap from any side, as explain_tap() does for taps from above.
-std::string explain_approach(const Workshop& workshop, const Recording& recording, int tap);
+std::string explain_approach(const Workshop& workshop, const RecordedRun& recording, int tap);
 
 }  // namespace palpate

@@ -2,13 +2,13 @@
 // The models of a recorded choice in words.
 #pragma once
 
-#include "experiment/from_above.hpp"
+#include "experiment/height_models.hpp"
 #include "report/words/words.hpp"
 
 namespace palpate {
 
 /// Adds a paragraph per GP in the record of the tap: hyperparameters with their fit, likelihood, condition, engine,
-/// jitter, and range of its map. `now` is the choice computed again, whose models have the units of kernel parameters.
-void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const TapRecord& now);
+/// jitter, and range of its map. `now` are the models of that moment, which know the units of kernel parameters.
+void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const HeightModels& now);
 
 }  // namespace palpate

@@ -2,7 +2,8 @@
 // Numbers in sentences, and texts in sections for terminals.
 #pragma once
 
-#include "experiment/tap_belief.hpp"
+#include "experiment/experiment.hpp"
+#include "experiment/outlier_model.hpp"
 #include "record/row.hpp"
 
 #include <string>
@@ -34,7 +35,7 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
 /// other taps".
 std::string doubt_words(const SuspectedOutlier& one);
 
-/// Returns a sentence, without its full stop, for a run whose truth is no longer known (Playback::truth_lost()).
+/// Returns a sentence, without its full stop, for a run whose truth is no longer known (RunReplay::truth_lost()).
 std::string truth_lost_words(const Error& lost);
 
 /// Returns "1 tap", "3 taps".

@@ -26,8 +26,8 @@ struct ConnectionOptions {
 /// names, missing data, another robot or software version, messages with another md5 sum.
 std::unique_ptr<Robot> connect(const ConnectionOptions& options);
 
-/// Display for a person who watches the experiment: estimated surface, taps, area, and next target. Arguments are in
-/// metres in the scene's frame; the display uses the robot's frame `base`.
+/// Display of the experiment for a spectator: estimated surface, taps, area, and next target. Arguments are in metres
+/// in the scene's frame; the display uses the robot's frame `base`.
 class View {
  public:
   virtual ~View() = default;
@@ -36,7 +36,7 @@ class View {
   virtual void target(const Target& place) = 0;
 
   /// Replaces the displayed contacts, and removes the target.
-  virtual void contacts(const std::vector<Touch>& touches) = 0;
+  virtual void contacts(const std::vector<TapReading>& readings) = 0;
 
   /// Shows the surface: one height and one standard deviation per position.
   virtual void surface(const Points& places, const VectorView& height, const VectorView& deviation) = 0;

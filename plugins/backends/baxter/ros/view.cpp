@@ -45,11 +45,11 @@ class RosView final : public View {
     show_taps();
   }
 
-  void contacts(const std::vector<Touch>& touches) override {
+  void contacts(const std::vector<TapReading>& readings) override {
     on_.clear();
     off_.clear();
-    for (const Touch& one : touches)
-      (one.on ? on_ : off_).push_back(in_base(one.place.x, one.place.y, desk_ + one.height));
+    for (const TapReading& one : readings)
+      (one.on_object ? on_ : off_).push_back(in_base(one.position.x(), one.position.y(), one.position.z()));
     next_.reset();
     show_taps();
   }

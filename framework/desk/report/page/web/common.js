@@ -110,7 +110,7 @@ const extent = (values) => [values.reduce((a, b) => Math.min(a, b), Infinity), v
 // Pages show positions, heights and their standard deviations in centimetres (config/scale.hpp).
 const kCentimetres = 100;
 
-// The colour scales of uncertainties, and of values that guide the taps.
+// The colour scales of uncertainties, and of values that say where to tap.
 const kUnknown = kColours.cividis;
 const kWhere = kColours.viridis;
 
@@ -194,7 +194,7 @@ function inTurn(draw) {
   return inTurn.last;
 }
 
-/// Publishes the number of the drawing, for tests that wait for it.
+/// Publishes what is drawn, for tests that wait for it.
 function publishDrawn(what) {
   document.body.dataset.drawn = String(what);
 }

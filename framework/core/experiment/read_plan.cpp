@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "experiment/read_plan.hpp"
+
+#include <palpate/error.hpp>
+
+#include <fmt/format.h>
+
+namespace palpate {
+
+void require_offered(const ReadPlan& plan, const Belief& belief, const std::string& name) {
+  QuantitySet offered;
+  for (const Quantity& one : belief.offers()) offered.insert(one.name);
+  for (const ReadPlan::Reader& reader : plan.readers) {
+    for (const std::string& quantity : reader.reads) {
+      if (offered.count(quantity) != 0) continue;
+      const std::size_t blank = reader.name.find(' ');
+      const std::string kind = reader.name.substr(0, blank);
+      const bool has_choice = blank != std::string::npos;
+      throw Error(kind,
+                  fmt::format("{} reads {}, which the belief {} does not offer",
+                              has_choice ? reader.name.substr(blank + 1) : kind, quantity, name),
+                  fmt::format("{}; {} offers {}", has_choice ? "choose another " + kind : "remove it", name,
+                              fmt::join(offered, ", ")));
+    }
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "space/solids_belief.hpp"
+
+#include "experiment/belief_state.hpp"
+#include "experiment/policy.hpp"
+#include "space/view.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/math.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace palpate {
+namespace {
+
+/// Nats that a touch costs at most once contacts are known to err: less than a piece that floats, so that one contact
+/// in the air makes none. Two outliers in a hundred, anywhere on the way, are about as much.
+constexpr double kMostCost = 6.5;
+
+SolidsSettings settings_of(const SpaceOptions& options) {
+  SolidsSettings out;
+  out.count = static_cast<int>(options.particles);
+  out.moves = static_cast<int>(options.moves);
+  out.misfit = options.model_discrepancy;
+  return out;
+}
+
+/// Radius of the tip of every tool, whoever moves it.
+double tip_of(const Scene& scene) { return scene.effects().tip_radius ? scene.effects().tip_radius->radius : 0.0; }
+
+}  // namespace
+
+SolidsBelief::SolidsBelief(const ExperimentOptions& options, const Context& context, PhaseClock& clock)
+    : context_(context),
+      clock_(clock),
+      options_(options),
+      region_(context.scene.area()),
+      touches_(context.scene.desk(), tip_of(context.scene), options.scene.min_object_height),
+      solids_(context.scene.area(), settings_of(*options.space), context.random("space/solids")),
+      skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise}),
+      values_(context.scene.desk()),
+      errors_(region_) {
+  lines_.lines.fixed = false;
+  if (!options.space->view) return;
+  constexpr std::size_t kMost = 160;  // rays that are kept: the cost of a touch grows with them
+  const std::vector<SurfaceTouch> view =
+      side_view(*options.space->view, context.scene, region_.centre, region_.radius, context.random("space/view"));
+  object_seen_ = shows_object(view);
+  touches_.look(thinned_view(view, kMost));
+}
+
+std::vector<Quantity> SolidsBelief::offers() const {
+  using namespace quantity;
+  return {{kUncertainty, "variance of the surface where a line along its normal meets it, relative to the largest"},
+          {kMeasurementStd, "standard deviation of the surface along its normal where the line meets it (m)"},
+          {kExpectedDistance, "distance along the line to the most probable particle, the desk or the end (m)"},
+          {kSurfaceStd, "the same as measurement_std (m)"},
+          {kIncidenceCosine, "cosine between line and normal, 0 without an object"},
+          {kExpectedDiscovery, "expected change of the surface by objects that a tap discovers (m)"},
+          {kStdReduction, "expected reduction of the mean standard deviation of the surface by a tap (m)"},
+          {kObjectSeen, "whether a camera saw an object before the first tap"}};
+}
+
+std::vector<PlannedModel> SolidsBelief::plan(const ReadPlan& plan) {
+  surface_from_ = plan.surface_from;
+  return {{"particles", "belief solids"}, {"residual GP", "belief solids"}};
+}
+
+void SolidsBelief::begin(Stage stage) { is_surface_read_ = is_surface_read_ || stage == surface_from_; }
+
+std::optional<TapReading> SolidsBelief::read(const TapRequest& request, const TapResult& result) const {
+  const std::optional<SurfaceTouch> touch = touches_.read(request, result);
+  if (!touch) return std::nullopt;
+  TapReading out;
+  out.tap = request.number;
+  out.position = touch->end() + Eigen::Vector3d(0.0, 0.0, context_.scene.desk());
+  out.is_contact = touch->contact;
+  out.on_object = touch->contact && !touch->desk;
+  return out;
+}
+
+void SolidsBelief::add(const TapRequest& request, const TapResult& result) {
+  ++counts_.all;
+  if (request.source == Source::initial) ++counts_.initial;
+  touches_.add(request, result);
+  readings_ = touches_.readings();
+}
+
+void SolidsBelief::update() {
+  if (updated_for_ == counts_.all) return;
+  updated_for_ = counts_.all;
+  drawn_for_ = -1;
+  const std::vector<SurfaceTouch>& touches = touches_.touches();
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  const auto first = [&](std::size_t count) {
+    return std::vector<SurfaceTouch>(touches.begin(), touches.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  if (taken_in_ < touches_.seen()) {
+    solids_.look(first(touches_.seen()));
+    taken_in_ = touches_.seen();
+  }
+  if (touches_.has_changed()) {
+    // A touch errs by the distance of the solids to the objects, and by the error of its report.
+    const double error = touches_.overtravel().spread();
+    const double spread = error > Overtravel::kLeastSpread ? error : 0.0;
+    solids_.read_again(first(taken_in_), math::hypot(options_.space->model_discrepancy, spread), kMostCost);
+    skin_.set_noise(std::max(options_.height.noise, spread));
+    touches_.set_unchanged();
+  }
+  for (; taken_in_ < touches.size(); ++taken_in_) solids_.add({touches[taken_in_]});
+  skin_.fit(solids_.best(), touches);
+}
+
+void SolidsBelief::draw_candidates(const LineFilter& filter) {
+  if (drawn_for_ == counts_.all) return;
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  // A stream per tap: the lines depend on the touches alone, and a resumed run draws the same.
+  Random random = context_.random("space/approaches", static_cast<std::uint64_t>(counts_.all));
+  const bool is_known = counts_.all > 0 || touches_.seen() > 0;
+  lines_ = sample_lines(region_, context_.scene.desk(), static_cast<std::size_t>(options_.space->approaches),
+                        is_known ? &solids_.best() : nullptr, random, filter);
+  drawn_for_ = counts_.all;
+  inferred_for_ = -1;
+}
+
+void SolidsBelief::infer(const QuantitySet& quantities) {
+  const bool is_new = inferred_for_ != counts_.all ||
+                      !std::includes(inferred_.begin(), inferred_.end(), quantities.begin(), quantities.end());
+  if (quantities.empty() || !is_new) return;
+  inferred_ = quantities;
+  inferred_for_ = counts_.all;
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  values_.compute(lines_, solids_, skin_, quantities,
+                  context_.random("space/unseen", static_cast<std::uint64_t>(counts_.all)));
+  for (const std::string& one : quantities) {
+    if (const Eigen::VectorXd* const values = values_.find(one)) require_finite(*values, one.c_str(), counts_.all);
+  }
+}
+
+bool SolidsBelief::is_ready() const {
+  return object_seen_ ||
+         std::any_of(readings_.begin(), readings_.end(), [](const TapReading& one) { return one.on_object; });
+}
+
+const Eigen::VectorXd& SolidsBelief::values(std::string_view quantity) const {
+  const Eigen::VectorXd* const out = values_.find(quantity);
+  if (out == nullptr || out->size() != lines_.lines.size())
+    throw std::logic_error(std::string(quantity) + " is read, but no begun reader has it");
+  return *out;
+}
+
+std::optional<double> SolidsBelief::scalar(std::string_view quantity) const {
+  return quantity == quantity::kObjectSeen ? std::optional(object_seen_ ? 1.0 : 0.0) : std::nullopt;
+}
+
+const HypothesisSample& SolidsBelief::hypotheses() const {
+  static const HypothesisSample none;
+  return none;
+}
+
+BeliefState SolidsBelief::state(std::optional<Eigen::Index> candidate) const {
+  BeliefState out;
+  if (candidate) return out;
+  FactorReport factors = skin_.report();
+  factors.jitter *= skin_.deviation() * skin_.deviation();
+  factors.add(values_.factors());
+  count_factors(out, factors);
+  out.diagnostics["fit_failed"] = 0;
+  out.diagnostics["variance_clamped"] = values_.variances_clamped();
+  out.diagnostics["violated_free_paths"] = skin_.violated_free_paths();
+  return out;
+}
+
+Errors SolidsBelief::errors() { return is_surface_read_ ? shown_errors()->errors : Errors(); }
+
+std::optional<ShownErrors> SolidsBelief::shown_errors() {
+  return ShownErrors{errors_.compare(is_ready() ? &solids_ : nullptr, skin_), std::nullopt};
+}
+
+Crossings SolidsBelief::crossings(double side) const {
+  if (!is_ready()) return {};
+  Crossings out = cross_surface(solids_.best(), skin_, side);
+  Cloud points;
+  for (const Crossings::Vertex& vertex : out.vertices) points.push_back(vertex.at);
+  const Eigen::VectorXd deviations = surface_std(points, solids_, skin_);
+  require_finite(deviations, "the standard deviation of the surface", counts_.all);
+  for (std::size_t i = 0; i < points.size(); ++i) out.vertices[i].deviation = deviations(static_cast<Eigen::Index>(i));
+  return out;
+}
+
+double SolidsBelief::distance(const TapLine& line, const Composition& particle) const {
+  const Line own{line.start - Eigen::Vector3d(0.0, 0.0, context_.scene.desk()), line.direction};
+  return std::max(0.0, std::min({line.length, distance_down_to(0.0, own), particle.first_intersection(own)}));
+}
+
+Surface SolidsBelief::mesh(double side) const { return surface_of(close_mesh(crossings(side)), context_.scene.desk()); }
+
+}  // namespace palpate

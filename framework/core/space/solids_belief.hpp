@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// The belief `solids`: closed surfaces in space, tapped from any side. Particles made of simple solids, and a residual
+// GP that corrects the best of them.
+#pragma once
+
+#include "experiment/experiment_options.hpp"
+#include "experiment/phases.hpp"
+#include "space/line_sampler.hpp"
+#include "space/line_values.hpp"
+#include "space/mesh.hpp"
+#include "space/skin.hpp"
+#include "space/solids.hpp"
+#include "space/surface_errors.hpp"
+#include "space/touch_log.hpp"
+
+#include <palpate/belief.hpp>
+#include <palpate/plugin.hpp>
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+
+/// Its quantities of a line, by the most probable particle:
+/// - expected_discovery, metres: what a tap is expected to find that nobody has touched yet, were one piece more
+///   expected a priori than is believed: the probability that there is one which no touch so far contradicts and which
+///   the line meets before all that is believed, times how far it moves the surface: the mean over lines from all sides
+///   of how much earlier they are met, of which no line counts more than 3 cm.
+/// - std_reduction, metres: by how much a tap is expected to lower the standard deviation of the believed surface, the
+///   mean over all of it; 0 for lines that meet no object, or meet it at less than 30 degrees.
+/// - surface_std, metres: standard deviation of the surface along its normal where the line meets it; else 0.
+class SolidsBelief final : public Belief {
+ public:
+  /// `options`, `context` and `clock` must outlive it. Throws Error for a kernel that is not one of the distance alone.
+  SolidsBelief(const ExperimentOptions& options, const Context& context, PhaseClock& clock);
+
+  std::vector<Quantity> offers() const override;
+  std::vector<PlannedModel> plan(const ReadPlan& plan) override;
+  void begin(Stage stage) override;
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override;
+  void add(const TapRequest& request, const TapResult& result) override;
+  void update() override;
+  void infer(const QuantitySet& quantities) override;
+  QuantitySet available() const override { return inferred_; }
+  void draw_candidates(const LineFilter& filter) override;
+  bool is_ready() const override;
+
+  const Candidates& candidates() const override { return lines_.lines; }
+  TapCounts counts() const override { return counts_; }
+  const std::vector<TapReading>& readings() const override { return readings_; }
+  const Eigen::VectorXd& values(std::string_view quantity) const override;
+  std::optional<double> scalar(std::string_view quantity) const override;
+  const HypothesisSample& hypotheses() const override;
+
+  BeliefState state(std::optional<Eigen::Index> candidate) const override;
+  void set_truth(const Scene* scene) override { errors_.set_truth(scene); }
+  Errors errors() override;
+  std::optional<ShownErrors> shown_errors() override;
+  Surface surface() override { return mesh(kFineSide); }
+
+  /// Returns the mesh of the believed surface with cubes of `side`; without vertices before an object is known.
+  Surface mesh(double side) const;
+  /// The same without its triangles.
+  Crossings crossings(double side) const;
+
+  /// Returns how far along a line a tool comes if a particle is the truth: to it, to the desk, or to the end; metres.
+  double distance(const TapLine& line, const Composition& particle) const;
+
+  const Solids& solids() const { return solids_; }
+  const Skin& skin() const { return skin_; }
+  const TouchLog& touches() const { return touches_; }
+  const Region& region() const { return region_; }
+
+ private:
+  const Context& context_;
+  PhaseClock& clock_;
+  const ExperimentOptions& options_;
+  Region region_;
+  TouchLog touches_;
+  Solids solids_;
+  Skin skin_;
+  SampledLines lines_;
+  LineValues values_;
+  SurfaceErrors errors_;
+  std::optional<Stage> surface_from_;
+  bool is_surface_read_ = false;
+  bool object_seen_ = false;                                   ///< by a camera before the first tap
+  std::size_t taken_in_ = 0;                                   ///< of the touches, by the solids
+  int updated_for_ = -1, drawn_for_ = -1, inferred_for_ = -1;  ///< taps after which that was done
+  QuantitySet inferred_;
+  TapCounts counts_;
+  std::vector<TapReading> readings_;
+};
+
+}  // namespace palpate

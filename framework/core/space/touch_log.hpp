@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The touches so far, as they are read now: how far the tool came before it met the surface, and whether that was the
+// desk. Later contacts with the desk show how deep contacts are reported, and change how earlier ones are read.
+#pragma once
+
+#include "space/overtravel.hpp"
+#include "space/surface_touch.hpp"
+
+#include <palpate/tap.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace palpate {
+
+class TouchLog {
+ public:
+  /// `desk`: its height, metres; `tip`: radius of the tool's round tip, metres; no contact higher than `most` above the
+  /// desk is with the desk.
+  TouchLog(double desk, double tip, double most) : desk_(desk), overtravel_(tip, most) {}
+
+  /// Takes the rays of a camera, before the first tap.
+  void look(const std::vector<SurfaceTouch>& seen);
+
+  /// Returns how a result is read now; nullopt if it teaches nothing: of a failed tap, and of one that felt nothing of
+  /// the desk, and so would have felt nothing of an object.
+  std::optional<SurfaceTouch> read(const TapRequest& request, const TapResult& result) const;
+
+  /// Takes the result of a tap. All contacts so far are read again.
+  void add(const TapRequest& request, const TapResult& result);
+
+  /// Touches as they are read now, lengths relative to the desk: first those that were seen.
+  const std::vector<SurfaceTouch>& touches() const { return touches_; }
+  std::size_t seen() const { return seen_; }
+  /// Returns the readings of the taps among them.
+  std::vector<TapReading> readings() const;
+
+  /// Whether touches were read again, or their spread changed, since set_unchanged().
+  bool has_changed() const { return has_changed_; }
+  void set_unchanged() { has_changed_ = false; }
+  const Overtravel& overtravel() const { return overtravel_; }
+
+ private:
+  struct Reported {
+    SurfaceTouch touch;  ///< as the arm reported it
+    double force;
+    int tap;
+  };
+  std::optional<Reported> reported(const TapRequest& request, const TapResult& result) const;
+
+  double desk_;
+  Overtravel overtravel_;
+  std::vector<Reported> reported_;
+  std::vector<SurfaceTouch> touches_;
+  std::size_t seen_ = 0;
+  bool has_changed_ = false;
+};
+
+}  // namespace palpate

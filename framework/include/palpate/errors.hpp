@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Errors of a reconstruction against the true scene. runs/README.md has the formulas.
+#pragma once
+
+#include <optional>
+
+namespace palpate {
+
+/// Absent values: no such cell or point, or the models are not built.
+struct Errors {
+  std::optional<double> rmse = std::nullopt;           ///< metres, of the reconstructed heights, desk included
+  std::optional<double> rmse_object = std::nullopt;    ///< metres, of the same over the true objects
+  std::optional<double> rmse_height = std::nullopt;    ///< metres, of the mean height over the true objects
+  std::optional<double> footprint_iou = std::nullopt;  ///< 1 if both footprints are empty
+  // Of closed surfaces.
+  std::optional<double> surface_distance = std::nullopt;      ///< metres, mean symmetric distance
+  std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the same distances
+  std::optional<double> f_score = std::nullopt;               ///< at 5 mm
+  std::optional<double> coverage = std::nullopt;              ///< of the 95 % intervals of the surface
+  std::optional<double> volume_iou = std::nullopt;            ///< absent if nothing is solid
+
+  /// Returns the root mean square error of the whole reconstruction, metres.
+  std::optional<double> overall() const { return rmse ? rmse : rms_surface_distance; }
+};
+
+/// Reconstruction of one object of the scene.
+struct ObjectErrors {
+  int cells = 0;        ///< candidates that are on the object and not on a higher one
+  bool merged = false;  ///< with another object
+  bool split = false;
+  /// Intersection over union of the object's cells with the predicted cells that are its own, or that are on no object
+  /// and nearer to one of its cells than to another object's. Absent if the object has no cell.
+  std::optional<double> iou;
+  std::optional<double> rmse_height;  ///< metres, of the mean height over the object's cells
+};
+
+}  // namespace palpate

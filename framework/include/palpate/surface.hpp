@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// A reconstructed surface: heights at the candidates, or a closed mesh.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+namespace palpate {
+
+/// Lengths in metres, in the frame of the scene.
+struct Surface {
+  /// M heights, if the candidates are fixed positions on the desk; else empty.
+  Eigen::VectorXd heights;
+
+  struct Vertex {
+    Eigen::Vector3d position, normal;  ///< the normal outwards, a unit vector
+    double standard_deviation = 0.0;   ///< of the position along the normal
+  };
+  /// The mesh: triangles of vertices, counter-clockwise seen from outside.
+  std::vector<Vertex> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  double resolution = 0.0;  ///< length of the cubes that the mesh was made from
+};
+
+}  // namespace palpate

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The result of a motion along one axis: straight down, or along a line whose remaining length stands for the height.
+#pragma once
+
+#include <palpate/tap.hpp>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace palpate::tapping {
+
+/// TapResult without its line: one height in the place of the contact points.
+struct HeightResult {
+  Outcome outcome = Outcome::unknown;
+  double height = 0.0;   ///< of the contact, metres; only for `contact`
+  double force = 0.0;    ///< at contact, newtons; only for `contact`
+  double seconds = 0.0;  ///< robot time
+  std::string reason{};
+  bool ends_run = false;
+  std::optional<double> peak_force = std::nullopt;  ///< newtons
+};
+
+/// Returns the result of a tap along `line`, which is from above.
+inline TapResult result_on(const TapLine& line, HeightResult result) {
+  TapResult out = result.outcome == Outcome::contact ? contact_on(line, result.height, result.force, result.seconds)
+                                                     : tap_without_contact(result.outcome, result.seconds);
+  out.reason = std::move(result.reason);
+  out.ends_run = result.ends_run;
+  out.peak_force = result.peak_force;
+  return out;
+}
+
+}  // namespace palpate::tapping
