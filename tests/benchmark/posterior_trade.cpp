@@ -52,7 +52,7 @@ Outcome run(std::vector<std::string> overrides, const std::string& engine, const
   Outcome out;
   Belief& belief = experiment.belief();
   belief.update();  // takes the last tap
-  belief.infer({quantity::kHeightMean, quantity::kUncertainty});
+  belief.infer();
   out.mean = belief.values(quantity::kHeightMean);
   out.variance = belief.values(quantity::kUncertainty);
   timer.add(experiment.clock().take());

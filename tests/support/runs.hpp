@@ -118,12 +118,12 @@ struct Prepared {
   const CandidateGrid& grid() const { return belief().grid(); }
   /// Has models of these quantities read from now on, beside those of the run, and their arrays computed.
   void read(const QuantitySet& quantities) {
-    ReadPlan plan = experiment.stages().plan();
+    ReadPlan plan = experiment.plan();
     plan.readers.push_back(readers(quantities).readers.front());
     belief().plan(plan);
     belief().begin(Stage::first_tap);
     belief().update();
-    belief().infer(quantities);
+    belief().infer();
   }
   /// Returns a plan whose one reader reads these quantities from the first tap on.
   static ReadPlan readers(const QuantitySet& quantities) {

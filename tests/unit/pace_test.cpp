@@ -39,7 +39,7 @@ struct Believed {
     belief.add(request_at({0.115, 0.115}, 1), contact_at(0.05));
     belief.add(request_at({0.01, 0.01}, 2), contact_at(0.0));
     belief.update();
-    belief.infer(MotionSelector::reads());
+    belief.infer();
   }
   int nearest(double x, double y) const { return belief.grid().nearest(x, y, scene->area()); }
   TapRecord choose(const MotionSelector& motions, int candidate) const {
@@ -75,7 +75,7 @@ class WrittenReadings final : public Belief {
   std::optional<TapReading> read(const TapRequest&, const TapResult&) const override { return std::nullopt; }
   void add(const TapRequest&, const TapResult&) override {}
   void update() override {}
-  void infer(const QuantitySet&) override {}
+  void infer() override {}
   QuantitySet available() const override { return {}; }
   BeliefState state(std::optional<Eigen::Index>) const override { return {}; }
   void set_truth(const Scene*) override {}

@@ -55,7 +55,7 @@ class Comparison final : public Observer {
   /// Once for each tap, the last one after the run.
   void compare() {
     belief_.update();
-    belief_.infer(kRead);
+    belief_.infer();
     const HeightModels& models = belief_.models();
     const Eigen::VectorXd variance = oracle_.variance();
     worst.mean = std::max(

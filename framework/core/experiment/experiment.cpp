@@ -78,7 +78,7 @@ std::optional<TapRecord> Experiment::choose_next(const TapOverride* override) {
   {
     const PhaseClock::Scope acquire(clock_, Phase::acquire);
     prepare(override);
-    if (!selector_.choose(*belief_, stages_, tap, override)) return std::nullopt;
+    if (!selector_.choose(*belief_, tap, override)) return std::nullopt;
     if (motions_) motions_->choose(*belief_, tap);
   }
   complete(tap.request);
@@ -111,7 +111,7 @@ void Experiment::resume(const std::vector<TapRecord>& taps) {
   for (const TapRecord& tap : taps) {
     belief_->update();
     begin_stages(tap.is_of_caller() ? Source::caller : tap.request.source);
-    if (tap.request.source == Source::fallback) stages_.begin(*belief_, Stage::first_fallback);
+    if (tap.request.source == Source::fallback) belief_->begin(Stage::first_fallback);
     belief_->update();
     take_in(tap);
   }
@@ -120,19 +120,22 @@ void Experiment::resume(const std::vector<TapRecord>& taps) {
 void Experiment::infer() {
   belief_->update();
   draw_candidates();
-  belief_->infer(stages_.reads());
+  belief_->infer();
 }
 
 void Experiment::begin_stages(Source source) {
-  stages_.begin(*belief_, source);
+  belief_->begin(Stage::first_tap);
+  if (source != Source::initial) belief_->begin(Stage::first_scored_tap);
+  if (source == Source::acquisition || source == Source::fallback) belief_->begin(Stage::first_acquisition_tap);
+  if (source == Source::fallback) belief_->begin(Stage::first_fallback);
   const std::vector<TapReading>& readings = belief_->readings();
   if (std::any_of(readings.begin(), readings.end(), [](const TapReading& one) { return one.on_object; }))
-    stages_.begin(*belief_, Stage::first_object_contact);
+    belief_->begin(Stage::first_object_contact);
 }
 
 void Experiment::show() {
   if (counts().taps == 0) return;
-  stages_.begin(*belief_, Stage::first_tap);
+  belief_->begin(Stage::first_tap);
   infer();
   const PhaseClock::Scope log(clock_, Phase::log);
   backend_->show(*belief_);
@@ -158,20 +161,20 @@ void Experiment::complete(TapRequest& request) const {
 }
 
 void Experiment::look() {
-  stages_.begin(*belief_, Stage::first_tap);
+  belief_->begin(Stage::first_tap);
   infer();
   truth();
 }
 
 RunResult Experiment::result() {
   belief_->update();
-  stages_.begin(*belief_, Stage::summary);
+  belief_->begin(Stage::summary);
   infer();
   return monitor_.result(*belief_);
 }
 
 Eigen::VectorXd Experiment::scores() {
-  stages_.begin(*belief_, Source::acquisition);
+  begin_stages(Source::acquisition);
   infer();
   return selector_.scores(*belief_);
 }
@@ -252,12 +255,11 @@ Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& 
       backend_(setup.backend ? setup.backend : context_.create<Backend>(options.backend)),
       belief_(make_belief(options_, context_, clock_)),
       selector_(options_, *belief_, context_),
-      stages_({}),
       monitor_(*scene_, backend_->scene_is_truth()) {
   if (auto motions = setup.factory.motions(options_.backend, *scene_))
     motions_.emplace(std::move(motions), scene_->desk());
-  stages_ = ReadStages(make_plan(setup.readers));
-  require_offered(stages_.plan(), *belief_, belief_name(options_));
+  plan_ = make_plan(setup.readers);
+  require_offered(plan_, *belief_, belief_name(options_));
   if (!belief_->candidates().fixed && !backend_->taps_any_line()) {
     throw Error("backend",
                 fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
@@ -269,7 +271,7 @@ Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& 
                 fmt::format("uses the scene of the config, but backend {} taps another scene", options_.backend.type),
                 "remove it, or choose backend=simulator");
   }
-  models_ = belief_->plan(stages_.plan());
+  models_ = belief_->plan(plan_);
   belief_->update();
   draw_candidates();
 }

@@ -82,8 +82,8 @@ class Experiment final {
   Preview preview(const TapRecord& tap) const;
   /// Returns the models of the run, each with the readers because of which it is built.
   const std::vector<PlannedModel>& models() const { return models_; }
-  /// Returns the readers of the run that have begun to read.
-  ReadStages& stages() { return stages_; }
+  /// Returns the readers of the run.
+  const ReadPlan& plan() const { return plan_; }
 
   Belief& belief() { return *belief_; }
   const Belief& belief() const { return *belief_; }
@@ -120,7 +120,7 @@ class Experiment final {
   std::unique_ptr<Belief> belief_;
   TapSelector selector_;
   std::optional<MotionSelector> motions_;  ///< if the backend has several
-  ReadStages stages_;
+  ReadPlan plan_;
   std::vector<PlannedModel> models_;
   RunMonitor monitor_;
   std::optional<TapLine> previous_;  ///< of the tap before

@@ -182,10 +182,8 @@ void HeightMap::update() {
   read_again();
 }
 
-void HeightMap::infer(const QuantitySet& quantities) {
+void HeightMap::infer() {
   models_.infer();
-  if (quantities.count(quantity::kHeightStd) != 0) height_std_ = models_.height_variance().cwiseMax(0.0).cwiseSqrt();
-  if (quantities.count(quantity::kMeasurementStd) != 0) measurement_std_ = models_.heights().variance().cwiseSqrt();
 }
 
 QuantitySet HeightMap::available() const {
@@ -218,11 +216,11 @@ const Eigen::VectorXd& HeightMap::values(std::string_view quantity) const {
   using namespace quantity;
   const Eigen::VectorXd* out = nullptr;
   if (quantity == kUncertainty) out = &models_.heights().uncertainty();
-  if (quantity == kMeasurementStd) out = &measurement_std_;
+  if (quantity == kMeasurementStd) out = &(measurement_std_ = models_.heights().variance().cwiseSqrt());
   if (quantity == kLabelMean) out = &models_.label_map().weight();
   if (quantity == kObjectProbability) out = &models_.probability();
   if (quantity == kHeightMean) out = &models_.height_mean();
-  if (quantity == kHeightStd) out = &height_std_;
+  if (quantity == kHeightStd) out = &(height_std_ = models_.height_variance().cwiseMax(0.0).cwiseSqrt());
   if (out == nullptr || out->size() == 0)
     throw std::logic_error(std::string(quantity) + " is read, but no begun reader has it");
   if (!models_.is_inferred())

@@ -25,7 +25,7 @@ class HeightMap final : public Belief {
   std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override;
   void add(const TapRequest& request, const TapResult& result) override;
   void update() override;
-  void infer(const QuantitySet& quantities) override;
+  void infer() override;
   QuantitySet available() const override;
 
   const Candidates& candidates() const override { return lines_; }
@@ -66,7 +66,7 @@ class HeightMap final : public Belief {
   ModelSet begun_;  ///< the models of begun stages, which the record has
   TapCounts counts_;
   std::vector<TapReading> readings_;
-  Eigen::VectorXd height_std_, measurement_std_;
+  mutable Eigen::VectorXd height_std_, measurement_std_;  ///< computed when they are read
   const Scene* scene_ = nullptr;  ///< the truth
   std::optional<Truth> truth_;    ///< the same at the candidates
 };

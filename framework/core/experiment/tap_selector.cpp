@@ -74,25 +74,27 @@ bool TapSelector::choose_initial(const Belief& belief, TapRecord& tap) {
   return true;
 }
 
-void TapSelector::begin_fallback(Belief& belief, ReadStages& stages) {
-  stages.begin(belief, Stage::first_fallback);
+void TapSelector::begin_fallback(Belief& belief) {
+  belief.begin(Stage::first_fallback);
   belief.update();
-  belief.infer(stages.reads());
+  belief.infer();
 }
 
-bool TapSelector::choose(Belief& belief, ReadStages& stages, TapRecord& tap, const TapOverride* override) {
+bool TapSelector::choose(Belief& belief, TapRecord& tap, const TapOverride* override) {
   allow(belief);
   const Candidates& candidates = belief.candidates();
   if (next_source(belief, override) == Source::initial) return choose_initial(belief, tap);
   if (override != nullptr && override->choice) {
-    const TapRequest request = tap.request;
-    tap = *override->choice;
-    tap.candidate = find(candidates, tap.request.line);
-    const Source source = tap.request.source;
-    tap.request = request;
-    tap.request.source = source;
+    const TapRecord& choice = *override->choice;
+    tap.candidate = find(candidates, choice.request.line);
     tap.request.line = candidates.line(tap.candidate);
-    if (source == Source::fallback) begin_fallback(belief, stages);
+    tap.request.source = choice.request.source;
+    tap.why = choice.why;
+    tap.score = choice.score;
+    tap.ties = choice.ties;
+    tap.runner_up = choice.runner_up;
+    tap.runner_up_score = choice.runner_up_score;
+    if (choice.request.source == Source::fallback) begin_fallback(belief);
     return true;
   }
   tap.request.source = override != nullptr ? Source::caller : Source::acquisition;
@@ -104,7 +106,7 @@ bool TapSelector::choose(Belief& belief, ReadStages& stages, TapRecord& tap, con
   if (picked.flat && options_.fallback == ExperimentOptions::Fallback::uncertainty) {
     tap.request.source = Source::fallback;
     tap.why = (override != nullptr ? kOfCaller : "") + *picked.flat;
-    begin_fallback(belief, stages);
+    begin_fallback(belief);
     picked = pick(belief.values(quantity::kUncertainty), 1.0);
   }
   if (picked.candidate < 0) return false;

@@ -39,7 +39,7 @@ class TapSelector {
   /// Chooses a candidate, and notes in `tap` line, source and all about the score. The belief is up to date for
   /// next_source(); a fallback begins its stage. Returns false if no candidate is left. `override` (may be null) stands
   /// in for the acquisition.
-  bool choose(Belief& belief, ReadStages& stages, TapRecord& tap, const TapOverride* override);
+  bool choose(Belief& belief, TapRecord& tap, const TapOverride* override);
 
   /// Returns the acquisition's scores, M values. Throws Error for a score that is not finite.
   const Eigen::VectorXd& scores(const BeliefView& belief);
@@ -50,7 +50,7 @@ class TapSelector {
  private:
   /// Returns the candidate of a recorded line; 0 if there is none.
   int find(const Candidates& candidates, const TapLine& line) const;
-  static void begin_fallback(Belief& belief, ReadStages& stages);
+  static void begin_fallback(Belief& belief);
   bool choose_initial(const Belief& belief, TapRecord& tap);
   /// Returns a candidate, among those allowed, with a contact that may be an outlier and was tapped once.
   std::optional<int> second_look(const Belief& belief) const;

@@ -351,7 +351,7 @@ Belief& Run::look(const QuantitySet& quantities) {
   Belief& own = experiment_->belief();
   own.update();
   if (has_all(own.available())) {
-    own.infer(quantities);
+    own.infer();
     return own;
   }
   // An exception may leave taps half taken in. So the copy is kept only after success.

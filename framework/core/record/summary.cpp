@@ -71,7 +71,6 @@ std::string grid_csv(const Candidates& candidates, const std::vector<Column>& co
 /// Returns the array of a quantity, null if the belief has none.
 const Eigen::VectorXd* array_of(Belief& belief, const char* quantity) {
   if (belief.available().count(quantity) == 0) return nullptr;
-  belief.infer({quantity});
   return &belief.values(quantity);
 }
 

@@ -65,11 +65,14 @@ std::vector<Quantity> SolidsBelief::offers() const {
 }
 
 std::vector<PlannedModel> SolidsBelief::plan(const ReadPlan& plan) {
-  surface_from_ = plan.surface_from;
+  plan_ = plan;
   return {{"particles", "belief solids"}, {"residual GP", "belief solids"}};
 }
 
-void SolidsBelief::begin(Stage stage) { is_surface_read_ = is_surface_read_ || stage == surface_from_; }
+void SolidsBelief::begin(Stage stage) {
+  reads_ = reads_ | plan_.reads(stage);
+  is_surface_read_ = is_surface_read_ || stage == plan_.surface_from;
+}
 
 std::optional<TapReading> SolidsBelief::read(const TapRequest& request, const TapResult& result) const {
   const std::optional<SurfaceTouch> touch = touches_.read(request, result);
@@ -126,16 +129,14 @@ void SolidsBelief::draw_candidates(const LineFilter& filter) {
   inferred_for_ = -1;
 }
 
-void SolidsBelief::infer(const QuantitySet& quantities) {
-  const bool is_new = inferred_for_ != counts_.all ||
-                      !std::includes(inferred_.begin(), inferred_.end(), quantities.begin(), quantities.end());
-  if (quantities.empty() || !is_new) return;
-  inferred_ = quantities;
+void SolidsBelief::infer() {
+  if (reads_.empty() || (inferred_for_ == counts_.all && inferred_ == reads_)) return;
+  inferred_ = reads_;
   inferred_for_ = counts_.all;
   const PhaseClock::Scope infer(clock_, Phase::infer);
-  values_.compute(lines_, solids_, skin_, quantities,
+  values_.compute(lines_, solids_, skin_, reads_,
                   context_.random("space/unseen", static_cast<std::uint64_t>(counts_.all)));
-  for (const std::string& one : quantities) {
+  for (const std::string& one : reads_) {
     if (const Eigen::VectorXd* const values = values_.find(one)) require_finite(*values, one.c_str(), counts_.all);
   }
 }

@@ -41,7 +41,7 @@ class SolidsBelief final : public Belief {
   std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override;
   void add(const TapRequest& request, const TapResult& result) override;
   void update() override;
-  void infer(const QuantitySet& quantities) override;
+  void infer() override;
   QuantitySet available() const override { return inferred_; }
   void draw_candidates(const LineFilter& filter) override;
   bool is_ready() const override;
@@ -83,12 +83,12 @@ class SolidsBelief final : public Belief {
   SampledLines lines_;
   LineValues values_;
   SurfaceErrors errors_;
-  std::optional<Stage> surface_from_;
+  ReadPlan plan_;
   bool is_surface_read_ = false;
   bool object_seen_ = false;                                   ///< by a camera before the first tap
   std::size_t taken_in_ = 0;                                   ///< of the touches, by the solids
   int updated_for_ = -1, drawn_for_ = -1, inferred_for_ = -1;  ///< taps after which that was done
-  QuantitySet inferred_;
+  QuantitySet reads_, inferred_;                               ///< of begun stages; what infer() computed last
   TapCounts counts_;
   std::vector<TapReading> readings_;
 };

@@ -126,8 +126,8 @@ class Belief : public BeliefView {
   /// model without a reader is ever built. The belief offers every quantity of the plan.
   virtual std::vector<PlannedModel> plan(const ReadPlan& plan) = 0;
 
-  /// The readers of `stage` read from now on. Stages begin in any order, each once; all that is read from then on
-  /// belongs to the record.
+  /// The readers of `stage` read from now on; all that they read belongs to the record. Stages begin in any order; a
+  /// stage that has begun stays as it is.
   virtual void begin(Stage stage) = 0;
 
   /// Returns the reading of a result as the belief stands, nullopt for a failed tap. Changes nothing.
@@ -140,8 +140,8 @@ class Belief : public BeliefView {
   /// Brings the models of all begun stages up to the last tap, fits included.
   virtual void update() = 0;
 
-  /// Computes the arrays of quantities that begun stages read, after update().
-  virtual void infer(const QuantitySet& quantities) = 0;
+  /// Computes the arrays that begun stages read, after update().
+  virtual void infer() = 0;
 
   /// Returns the quantities whose arrays begun stages have, among them those of models that other quantities needed.
   virtual QuantitySet available() const = 0;
