@@ -26,7 +26,7 @@ class Backend final : public palpate::Backend {
     constexpr double kDistance = 0.2;  // metres
     palpate::TapResult out = palpate::contact_on(request.line, 0.0, 8.0, 1.0);
     out.distance = kDistance;
-    out.contacts.front().position = request.line.at(kDistance);
+    out.contact = request.line.at(kDistance);
     return out;
   }
   bool taps_any_line() const override { return true; }

@@ -194,7 +194,7 @@ class Backend final : public palpate::Backend, Spoilt {
     if (request.line.from_above) return out;
     constexpr double kDistance = 0.1;  // metres
     out.distance = number("tap: along", kDistance);
-    out.contacts.front().position = request.line.at(kDistance);
+    out.contact = request.line.at(kDistance);
     return out;
   }
   bool taps_any_line() const override { return true; }

@@ -70,7 +70,7 @@ class ScriptedBackend final : public Backend {
     requests.push_back(request);
     const auto index = static_cast<std::size_t>(request.number - 1);
     TapResult out = index < answers_.size() ? answers_[index] : contact_at(0.0);
-    for (ContactPoint& one : out.contacts) one.position.head<2>() = request.line.start.head<2>();
+    if (out.contact) out.contact->head<2>() = request.line.start.head<2>();
     return out;
   }
   bool repeatable() const override { return true; }

@@ -118,7 +118,7 @@ TEST_F(ProcessBackend, HeightsAreTakenDownToOneCentimetreBelowTheFloorAndUpToThe
   EXPECT_EQ(tap(*backend, 1).height(), -0.0199);
   const TapResult below = tap(*backend, 2);
   EXPECT_EQ(below.outcome, Outcome::aborted);
-  EXPECT_TRUE(below.contacts.empty());
+  EXPECT_FALSE(below.contact);
   EXPECT_THAT(below.reason, HasSubstr("height -0.0201 m is outside -0.02 to 0.2 m"));
   EXPECT_EQ(tap(*backend, 3).height(), 0.2);
 }

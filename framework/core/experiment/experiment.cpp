@@ -210,8 +210,7 @@ TapResult Experiment::make_tap(const TapRequest& request) {
     return tap_without_contact(Outcome::aborted, seconds, why, result.ends_run);
   };
   const bool is_contact = result.is_contact();
-  if (is_contact && (result.contacts.empty() || !result.contacts.front().position.allFinite()))
-    return refused(kHeightRefused);
+  if (is_contact && (!result.contact || !result.contact->allFinite())) return refused(kHeightRefused);
   if (!ends_on_line(request.line, result)) return refused(kAlongRefused);
   if ((is_contact && !std::isfinite(result.force)) || !std::isfinite(result.seconds) ||
       !std::isfinite(result.peak_force.value_or(0.0)))

@@ -242,7 +242,7 @@ void list_result(FieldList<TapRecord>& list) {
     if (!t.is_contact()) return;
     Eigen::Vector3d at = t.request.line.at(t.result.distance.value_or(0.0));
     at.z() = height;
-    t.result.contacts = {{at}};
+    t.result.contact = at;
     t.reading.emplace();
     t.reading->position = at;
     t.reading->on_object = in.row().flag("on_object").value_or(false);

@@ -398,7 +398,7 @@ void Run::tell(TapResult result) {
     throw Error("tell", fault->reason, fault->remedy);
   result.reason = plain_line(result.reason);
   const TapLine& line = tap_->request.line;
-  if (line.from_above && result.is_contact()) result.contacts.front().position.head<2>() = line.start.head<2>();
+  if (line.from_above && result.is_contact()) result.contact->head<2>() = line.start.head<2>();
   tap_->result = std::move(result);
   const std::string failure = failure_in([&] { experiment_->end(*tap_, *recorder_); });
   tap_.reset();

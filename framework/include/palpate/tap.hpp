@@ -57,13 +57,6 @@ struct TapRequest {
   double elapsed = 0.0;                 ///< robot time of all taps before, seconds
 };
 
-/// A point of a surface that the tool touched.
-struct ContactPoint {
-  Eigen::Vector3d position{0.0, 0.0, 0.0};                   ///< metres
-  std::optional<Eigen::Vector3d> normal = std::nullopt;      ///< unit vector, outwards; no shipped belief reads it
-  std::optional<Eigen::Matrix3d> covariance = std::nullopt;  ///< of the position, square metres
-};
-
 /// Outcome of one tap. The models learn from `contact` and, on lines that are not from above, from `no_contact`; other
 /// outcomes are only recorded.
 enum class Outcome {
@@ -81,8 +74,8 @@ struct TapResult {
   /// Distance that the tool moved along the line until it touched something or stopped, metres, in [0, length]. May be
   /// absent on lines from above, and after `no_contact`, which then means the whole length.
   std::optional<double> distance = std::nullopt;
-  std::vector<ContactPoint> contacts{};             ///< at least one for `contact`, else none; models read the first
-  double force = 0.0;                               ///< at contact, newtons; only for `contact`
+  std::optional<Eigen::Vector3d> contact = std::nullopt;  ///< the touched point, metres; only for `contact`
+  double force = 0.0;                                     ///< at contact, newtons; only for `contact`
   std::optional<double> peak_force = std::nullopt;  ///< largest force of the tap, newtons, also of a failed tap; the
                                                     ///< true force from a simulator, else the measured one
   double seconds = 0.0;                             ///< robot time of the tap, whatever its outcome
@@ -93,14 +86,14 @@ struct TapResult {
 
   bool is_contact() const { return outcome == Outcome::contact; }
   /// Height of the contact, metres; 0 without one.
-  double height() const { return contacts.empty() ? 0.0 : contacts.front().position.z(); }
+  double height() const { return contact ? contact->z() : 0.0; }
 };
 
 /// Returns the result of a contact on a line from above.
 inline TapResult contact_on(const TapLine& line, double height, double force, double seconds) {
   TapResult out;
   out.outcome = Outcome::contact;
-  out.contacts.push_back({{line.start.x(), line.start.y(), height}});
+  out.contact.emplace(line.start.x(), line.start.y(), height);
   out.force = force;
   out.seconds = seconds;
   return out;

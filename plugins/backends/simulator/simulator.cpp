@@ -31,9 +31,14 @@ Simulator::Simulator(const Options& options, const Context& context)
 }
 
 TapResult Simulator::tap(const TapRequest& request) {
+  TapResult out = request.line.from_above ? tap_from_above(request) : tap_along(request);
+  if (!wait(out.seconds)) out = tap_without_contact(Outcome::aborted, out.seconds, "interrupted");
+  return out;
+}
+
+TapResult Simulator::tap_from_above(const TapRequest& request) {
   const tapping::MotionOptions& motion = options_.motion.of_request(request);
   const Descending down{motion, tapping::plan_descent(motion, scene_.desk(), request.predicted)};
-  if (!request.line.from_above) return tap_along(request);
   if (!perfect_) {
     if (scene_.effects().push) pushed_ = scene_.after(request.number - 1);
     return imperfect_tap(request, down, pushed_ ? *pushed_ : scene_);
@@ -41,7 +46,7 @@ TapResult Simulator::tap(const TapRequest& request) {
   const Target target = request.line.target();
   tapping::HeightResult contact = ideal_tap(down, scene_.height(target.x, target.y));
   contact.seconds += tapping::travel_seconds(motion, request);
-  return paced(tapping::result_on(request.line, contact));
+  return tapping::result_on(request.line, std::move(contact));
 }
 
 bool Simulator::beyond_reach(double x, double y) const {
@@ -111,8 +116,8 @@ TapResult Simulator::tap_along(const TapRequest& request) const {
   end.seconds += tapping::travel_seconds(motion, request);
   TapResult out = tapping::result_on(line, end);
   out.distance = distance;
-  if (out.is_contact()) out.contacts.front().position.head<2>() = line.at(distance).head<2>();
-  return paced(std::move(out));
+  if (out.is_contact()) out.contact->head<2>() = line.at(distance).head<2>();
+  return out;
 }
 
 TapResult Simulator::imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const {
@@ -134,7 +139,7 @@ TapResult Simulator::imperfect_tap(const TapRequest& request, const Descending& 
   double dz = error.z();
   if (effects.height_offset) dz += effects.height_offset->constant + effects.height_offset->drift * request.elapsed;
   if (contact.outcome == Outcome::contact) contact.height += dz;
-  return paced(tapping::result_on(request.line, contact));
+  return tapping::result_on(request.line, std::move(contact));
 }
 
 tapping::HeightResult Simulator::simulated_tap(int number, const Descending& tap, double surface, bool desk) const {
@@ -157,19 +162,17 @@ tapping::HeightResult Simulator::simulated_tap(int number, const Descending& tap
   return contact;
 }
 
-/// Waits for the tap's duration times `pace` in short sleeps. Returns an aborted tap if the user interrupts.
-TapResult Simulator::paced(TapResult contact) const {
+/// Waits for the tap's duration times `pace` in short sleeps. Returns whether the user has let it.
+bool Simulator::wait(double tap_seconds) const {
   using Clock = std::chrono::steady_clock;
-  const double seconds = contact.seconds * options_.pace;
-  if (!(seconds > 0.0)) return contact;
+  const double seconds = tap_seconds * options_.pace;
+  if (!(seconds > 0.0)) return true;
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   while (Clock::now() < end) {
-    if (context_.interrupted != nullptr && context_.interrupted->load()) {
-      return tap_without_contact(Outcome::aborted, contact.seconds, "interrupted");
-    }
+    if (context_.interrupted != nullptr && context_.interrupted->load()) return false;
     std::this_thread::sleep_for(std::min<Clock::duration>(end - Clock::now(), std::chrono::milliseconds(10)));
   }
-  return contact;
+  return true;
 }
 
 }  // namespace palpate::backends

@@ -54,7 +54,8 @@ class Simulator final : public Backend {
   TapResult imperfect_tap(const TapRequest& request, const Descending& tap, const Scene& scene) const;
   tapping::HeightResult simulated_tap(int number, const Descending& tap, double surface, bool desk) const;
   TapResult tap_along(const TapRequest& request) const;
-  TapResult paced(TapResult contact) const;
+  TapResult tap_from_above(const TapRequest& request);
+  bool wait(double tap_seconds) const;
 
   SimulatorOptions options_;
   const Context& context_;

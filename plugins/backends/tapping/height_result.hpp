@@ -10,7 +10,7 @@
 
 namespace palpate::tapping {
 
-/// TapResult without its line: one height in the place of the contact points.
+/// TapResult without its line: one height in the place of the touched point.
 struct HeightResult {
   Outcome outcome = Outcome::unknown;
   double height = 0.0;   ///< of the contact, metres; only for `contact`

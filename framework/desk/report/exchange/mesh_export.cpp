@@ -106,7 +106,7 @@ std::string taps_ply(const RecordedRun& recording, const RunResult& counts, cons
     const TapRecord& tap = recording.taps[i];
     if (!tap.is_contact()) continue;
     const bool hit = label_now(recording.rows[i], counts).value_or(false);
-    Eigen::Vector3d at = tap.result.contacts.front().position;
+    Eigen::Vector3d at = *tap.result.contact;
     std::string from;
     if (any_side) {
       const TapLine& line = tap.request.line;
