@@ -141,7 +141,7 @@ class SlurmLauncher final : public Launcher {
     words.insert(words.end(), cluster.words.begin(), cluster.words.end());
     words.push_back(fmt::format("--array=0-{}{}", count - 1, one_at_a_time ? "%1" : ""));
     words.push_back(fmt::format("--job-name={}", directory_.parent_path().filename().string()));
-    // A percent sign begins a placeholder of Slurm.
+    // Slurm replaces %A and %a in a file name; %% is a percent sign.
     words.push_back(fmt::format("--output={}/%A_%a.log", boost::replace_all_copy(folder.string(), "%", "%%")));
     words.push_back(fmt::format("--cpus-per-task={}", order_.options.workers));
     // The limit %1 holds within one array, so that each array waits for the end of the one before.
