@@ -157,6 +157,30 @@ TEST_F(AnySide, ARunWhoseApproachesAreLimitedByTheToolOrTheArmIsPlayedAgainAndEx
   }
 }
 
+TEST_F(AnySide, ARunEndsAtItsStandardDeviationAsOneFromAboveDoes) {
+  const fs::path run = touched("taps=30 seed=2 stop.max_standard_deviation=1m");
+  const Row summary = parse_json_row(text_of(run / "summary.json")).value();
+  EXPECT_EQ(summary.text("stop_reason"), "max_standard_deviation");
+  EXPECT_LT(summary.number("taps").value(), 30.0) << "1 m is more than any surface deviates";
+  EXPECT_THAT(palpate({"replay", run}).out, testing::EndsWith("all equal\n"));
+}
+
+TEST_F(AnySide, TheFallbackChoosesWhereNoLineScoresAndIsRecordedWithItsReason) {
+  // The one line goes anywhere, not along the normal, so that no uncertainty is above 0.
+  const Words alike = "taps=12 seed=2 acquisition=uncertainty space.approaches=1";
+  const auto chosen_by_fallback = [&](const Words& more) {
+    int count = 0;
+    for (const Row& row : rows_of(touched(alike + more), "tap")) {
+      const bool is_fallback = row.text("source") == "fallback";
+      EXPECT_EQ(row.text("why").empty(), !is_fallback);
+      count += is_fallback ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GT(chosen_by_fallback("name=with"), 0);
+  EXPECT_EQ(chosen_by_fallback("name=without fallback=none"), 0);
+}
+
 TEST_F(AnySide, ARunThatFailedByItsArmIsPlayedAgainToItsEnd) {
   // On every tap the arm takes longer than it may.
   const Ended failed = palpate({"run", config(), "--quiet", "scene=any_bowl", "space.approaches=50", "space.moves=20",

@@ -15,7 +15,7 @@ class Replay : public Shell {
  protected:
   /// A run, of which replay must find every number equal.
   fs::path replayed(const Words& more, const std::string& file = paper()) const {
-    const fs::path directory = ran(more, file);
+    fs::path directory = ran(more, file);
     const Ended ended = palpate({"replay", directory});
     EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
     const int taps = lines(text_of(directory / "taps.csv")) - 1;
@@ -92,10 +92,12 @@ TEST_F(Replay, KnowsWhatABackendReadWhoeverChoseTheSecondTap) {
 }
 
 TEST_F(Replay, KnowsWhatWasReadByARunThatStoppedAtItsFirstLook) {
-  const fs::path run =
-      replayed("footprint=primitives acquisition=footprint_entropy fallback=none stop.max_standard_deviation=10m",
-               config("process.yaml"));
-  EXPECT_THAT(text_of(run / "summary.json"), HasSubstr("\"max_standard_deviation\""));
+  for (const char* reads : {"footprint=primitives acquisition=footprint_entropy",
+                            "footprint=primitives acquisition=weighted", "surface=two_part acquisition=weighted"}) {
+    const fs::path run =
+        replayed(Words(reads) + "fallback=none stop.max_standard_deviation=10m", config("process.yaml"));
+    EXPECT_THAT(text_of(run / "summary.json"), HasSubstr("\"max_standard_deviation\"")) << reads;
+  }
 }
 
 TEST_F(Replay, AgreesWhereAForecastReadsNothingBeforeTheFirstHit) {

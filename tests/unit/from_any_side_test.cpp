@@ -2,6 +2,7 @@
 // The loop of taps from any side: what of a backend's answers it takes, what it counts, and against which truth.
 #include "experiment/experiment.hpp"
 #include "record/summary.hpp"
+#include "space/line_sampler.hpp"
 #include "space/solids_belief.hpp"
 #include "support/runs.hpp"
 
@@ -10,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -107,6 +109,17 @@ TEST(FromAnySide, AnEndThatIsNotOnTheWayOfTheToolIsRefusedAndCounted) {
   EXPECT_EQ(run.experiment.counts().state.diagnostics.at("heights_rejected"), 6);
   EXPECT_EQ(run.experiment.counts().failed_taps, 6);
   EXPECT_EQ(run.experiment.counts().no_contact_taps, 2);
+}
+
+TEST(FromAnySide, HalfOfTheLinesGoAnywhereHoweverManyTheBackendRejects) {
+  const auto half = [](const Candidates& lines, BoolOut accepted) { accepted = lines.directions.col(0).array() > 0.0; };
+  for (std::size_t count = 1; count <= 60; ++count) {
+    Random random(count, "lines");
+    const SampledLines drawn = sample_lines(Region({0.26, 0.26}), 0.0, count, nullptr, random, half);
+    EXPECT_EQ(drawn.anywhere.size(), count);
+    EXPECT_GT(drawn.lines.directions.col(0).minCoeff(), 0.0);
+    EXPECT_EQ(std::count(drawn.anywhere.begin(), drawn.anywhere.end(), true), (static_cast<int>(count) + 1) / 2);
+  }
 }
 
 TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissing) {
