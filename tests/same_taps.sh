@@ -242,12 +242,12 @@ sweep strategies configs/default.yaml strategy=random,grid,uncertainty,weighted,
 sweep ceres configs/paper/object_i.yaml fitting=ceres acquisition=uncertainty,weighted scene=object_i,object_ii \
   "$twentieth" || status=1
 sweep ceres_default configs/default.yaml fitting=ceres scene=object_i,dome scene.effects=standard "$twentieth" || status=1
-sweep drawn configs/default.yaml scene=random_outline,clutter scene.placement=random footprint=primitives,gp_classifier \
+sweep drawn configs/default.yaml scene=random_outline,clutter scene.placement=random belief.footprint=primitives,gp_classifier \
   "$twentieth" || status=1
 sweep any_side configs/any_side.yaml "scene=$solids" taps=12 "$fiftieth" || status=1
 sweep any_side_wrong configs/any_side.yaml scene=any_mug,any_lidded_box taps=12 \
   'scene.effects={force_noise: {}, stiffness: {}, joint_lag: {}, pose_noise: {}, false_contacts: {}, push: {after: 6}}' \
   "$fiftieth" || status=1
 sweep any_side_view configs/any_side.yaml scene=any_mug taps=6 acquisition=discovery,uncertainty,random \
-  'space.view={elevation: 10 deg, rays: 100}' "$fiftieth" || status=1
+  'belief.view={elevation: 10 deg, rays: 100}' "$fiftieth" || status=1
 exit "$status"

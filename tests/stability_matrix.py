@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The stability matrix of the default: its errors beside those of `height.outlier_probability: none`, over noise, length and taps.
+"""The stability matrix of the default: its errors beside those of `belief.height.outlier_probability: none`, over noise, length and taps.
 
     python3 tests/stability_matrix.py PROGRAM [--taps 3,30] [--seeds 12] [--jobs 1] [--noise 0,1e-12] [--length 0.03]
 
@@ -92,14 +92,14 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         def outcomes(cell, lies):
             taps, noise, length = cell
-            common = [f"taps={taps}", f"height.noise={noise:g}m", f"kernel.length_scale={length:g}m"]
+            common = [f"taps={taps}", f"belief.height.noise={noise:g}m", f"kernel.length_scale={length:g}m"]
             common += lies + options.overrides
             return [pool.submit(run, options.program, options.config, common + [f"seed={seed}"])
                     for seed in range(1, options.seeds + 1)]
         waiting = []
         for cell in cells:
             judged = outcomes(cell, [])
-            waiting.append((cell, judged, judged if from_any_side else outcomes(cell, ["height.outlier_probability=none"])))
+            waiting.append((cell, judged, judged if from_any_side else outcomes(cell, ["belief.height.outlier_probability=none"])))
         for cell, judged, believed in waiting:
             judged, believed = [[one.result() for one in runs] for runs in (judged, believed)]
             failed = [said for code, _, said in judged if code != 0]

@@ -73,18 +73,16 @@ Error axis_error(const std::vector<Override>& overrides, const std::vector<std::
   return trouble;
 }
 
-/// Prints the models for the choice of taps and their readers, as comments, because stdout is a config.
-void print_models(const Program& program, const ResolvedConfig& config) {
+/// Prints the models for the choice of taps, each with the parts that read it, in lines that begin with `mark`. Throws
+/// Error for a config that cannot be run.
+void print_models(const Program& program, const ResolvedConfig& config, const char* mark) {
   std::map<std::string, std::string> models;
-  const std::optional<Error> trouble = catch_error([&] {
-    for (const PlannedModel& one : models_of(program, config)) {
-      std::string& who = models[one.model];
-      who += (who.empty() ? "" : ", ") + one.reader;
-    }
-  });
-  if (trouble) print_out("# this config cannot be run: {}\n", trouble->what());
-  if (!models.empty()) print_out("# models for the choice of taps, and the parts that read them:\n");
-  for (const auto& [model, who] : models) print_out("#   {}: {}\n", model, who);
+  for (const PlannedModel& one : models_of(program, config)) {
+    std::string& readers = models[one.model];
+    readers += (readers.empty() ? "" : ", ") + one.reader;
+  }
+  print_out("{}models for the choice of taps{}\n", mark, models.empty() ? ": none" : ", and the parts that read them:");
+  for (const auto& [model, readers] : models) print_out("{}  {}: {}\n", mark, model, readers);
 }
 
 void print_plan(const ResolvedConfig& config, const std::filesystem::path& directory) {
@@ -126,13 +124,15 @@ int run(Program& program, const RunArguments& arguments) {
       print_origins(program.composer.groups(), config);
     } else {
       print_data(to_yaml(config.tree));
-      print_models(program, config);
+      if (const auto no_run = catch_error([&] { print_models(program, config, "# "); }))
+        print_out("# this config cannot be run: {}\n", no_run->what());
     }
     return kDone;
   }
   const std::filesystem::path directory = directory_of(config, arguments.runs);
   if (arguments.dry_run) {
     print_plan(config, directory);
+    print_models(program, config, "");
     return kDone;
   }
   check_junit(arguments.junit);
@@ -162,7 +162,7 @@ void add_run(CommandLine& line) {
   command.argument("--runs", arguments.runs, "FOLDER", kRunsHelp, {with_default()});
   command.flag("--json", arguments.json, "print summary.json and nothing else");
   const Argument quiet = command.flag("--quiet", arguments.quiet, "print nothing");
-  command.flag("--dry-run", arguments.dry_run, "print the planned run and its directory; nothing moves");
+  command.flag("--dry-run", arguments.dry_run, "print the planned run, its directory and its models; nothing moves");
   command.flag("--force", arguments.force,
                "run again even if a run with the same id exists. The existing run is moved to another folder");
   command.flag("--step", arguments.step, kStepHelp, {not_with(quiet)});

@@ -37,9 +37,7 @@ std::unique_ptr<Step> Step::when(bool wanted, const ExperimentOptions& options, 
 }
 
 Step::Step(const ExperimentOptions& options, const std::atomic<bool>* stopped)
-    : budget_(options.taps),
-      two_part_(options.surface == ExperimentOptions::Surface::two_part),
-      interrupted_(stopped) {}
+    : budget_(options.taps), two_part_(belief_option(options, "surface") == "two_part"), interrupted_(stopped) {}
 
 bool Step::permits(const TapRecord& tap, const Experiment& experiment) {
   const Preview preview = experiment.preview(tap);

@@ -80,8 +80,9 @@ enum class Launched { submitted, ended, ended_unrecorded, blocked };
 /// Returns the maximum number of initial taps of a job; nullopt if it depends on a camera's view. A search, and a run
 /// from any side, may last until the end of the run, so that all of its taps may be initial.
 std::optional<int> initial_taps_of(const ExperimentOptions& options) {
-  if (options.space && options.space->view) return std::nullopt;
-  return static_cast<int>(options.initial.searches() || options.space ? options.taps : options.initial.count);
+  if (!belief_option(options, "view").empty()) return std::nullopt;
+  const bool from_above = options.belief.type == "height_map";
+  return static_cast<int>(options.initial.searches() || !from_above ? options.taps : options.initial.count);
 }
 
 int finish_whole(const SweepExecution& execution, const JobStates& end, bool interrupted, Launched launched) {

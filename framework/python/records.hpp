@@ -98,7 +98,7 @@ class Record {
  private:
   std::unique_ptr<RunReplay> make_replay() const {
     using namespace quantity;
-    if (recording_.config.options.scene.touch == SceneOptions::Touch::any) {
+    if (!recording_.taps.empty() && !recording_.taps.front().request.line.from_above) {
       throw Error(recording_.directory.string(), "is a run from any side, but this needs a run from above",
                   "read its surface from surface.ply");
     }

@@ -35,8 +35,8 @@ def main():
     print("|---|---|---|---|---|---|")
     for motion, speed, threshold in ROWS:
         with tempfile.TemporaryDirectory() as runs:
-            command = [PROGRAM, "sweep", "configs/paper/object_i.yaml", "scene=object_i_arm", "surface=two_part",
-                       "height.signal=5cm", "motion=" + motion, "motion.speed=" + speed,
+            command = [PROGRAM, "sweep", "configs/paper/object_i.yaml", "scene=object_i_arm", "belief.surface=two_part",
+                       "belief.height.signal=5cm", "motion=" + motion, "motion.speed=" + speed,
                        "motion.threshold=" + threshold, "seed=range(0,40)", "--runs", runs, "--quiet"]
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
             taps = []

@@ -43,7 +43,7 @@ struct Outcome {
 
 /// With `past`, those taps instead of own choices.
 Outcome run(std::vector<std::string> overrides, const std::string& engine, const std::vector<TapRecord>& past = {}) {
-  overrides.push_back("engine.type=" + engine);
+  overrides.push_back("belief.engine.type=" + engine);
   const ResolvedConfig config = test::shipped_config("paper/object_i_right.yaml", overrides);
   Experiment experiment(config.options, {test::shared_host()});
   experiment.resume(past);

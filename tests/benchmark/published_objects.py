@@ -112,7 +112,7 @@ def scene_of(name, file, corners, up):
     side = max(0.26, unit * math.hypot(extents[level[0]], extents[level[1]]) + 0.02)
     quoted = str(file.resolve()).replace("'", "''")
     return (f"# {name}, largest side {unit * max(extents) * 100:.1f} cm, turned as the seed says.\n"
-            "scene:\n  touch: any\n"
+            "scene:\n"
             f"  area: {{width: {side:.3f} m, depth: {side:.3f} m}}\n  desk: 0 cm\n  objects:\n    draw:\n      least: 1\n"
             f"      most: 1\n      of:\n        - {{type: mesh, file: '{quoted}', unit: {unit:g} m, up: {up}, "
             f"holes: allow,\n           at: [{side / 2:.4f} m, {side / 2:.4f} m], "
@@ -145,7 +145,7 @@ def main():
     config = options.out / "published_objects.yaml"
     config.write_text(
         "# The nine published objects, seen from one side, then touched. Written by published_objects.py.\n"
-        "name: published_objects\ndefaults:\n  - strategy: any_side\n  - backend: simulator\nspace: {view: {}}\n"
+        "name: published_objects\ndefaults:\n  - strategy: any_side\n  - backend: simulator\nbelief: {view: {}}\n"
         "taps: 40\nsweep:\n  grid:\n    acquisition: [random, uncertainty, discovery]\n"
         f"    scene: [{', '.join('published_' + name for name in objects)}]\n    seed: range(15000,15010)\n")
     print(f"{len(found)} scenes and {config}")

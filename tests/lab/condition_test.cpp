@@ -19,8 +19,8 @@ Tree text_at(const std::string& text) {
 }
 
 const std::map<std::string, std::string> kValues{
-    {"taps", "17"},       {"seed", "3"},      {"surface", "two_part"}, {"height.noise", "0.1 mm"},
-    {"kernel", "rbf"},    {"reach", "10 mm"}, {"clearance", "1cm"},    {"acquisition.beta", ""},
+    {"taps", "17"},       {"seed", "3"},      {"belief.surface", "two_part"}, {"belief.height.noise", "0.1 mm"},
+    {"kernel", "rbf"},    {"reach", "10 mm"}, {"clearance", "1cm"},           {"acquisition.beta", ""},
     {"name", "object i"}, {"spacing", "none"}};
 
 bool holds(const std::string& text) {
@@ -54,8 +54,8 @@ TEST(Condition, ComparesNumbersAsNumbers) {
 }
 
 TEST(Condition, ComparesQuantitiesWithTheirUnits) {
-  all_hold(
-      {"reach == 1 cm", "reach == 1cm", "reach==0.01m", "reach < 11 mm and reach > 0.9 cm", "height.noise <= 100 um"});
+  all_hold({"reach == 1 cm", "reach == 1cm", "reach==0.01m", "reach < 11 mm and reach > 0.9 cm",
+            "belief.height.noise <= 100 um"});
 }
 
 TEST(Condition, ComparesTextsAsTheyStand) {

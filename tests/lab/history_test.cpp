@@ -89,11 +89,11 @@ TEST_P(RunHistory, SaysAtEveryTapWhatTheRunSaidAndAtItsEndWhatTheSummarySays) {
   }
   const ExperimentOptions& options = recording.config.options;
   const bool reads_surface =
-      (options.acquisition.type != "random" && options.surface == ExperimentOptions::Surface::single) ||
+      (options.acquisition.type != "random" && belief_option(options, "surface") == "single") ||
       (recording.taps.front().request.predicted &&
-       !options.height.outlier_probability);  // else a height is predicted without its map
+       belief_option(options, "height.outlier_probability").empty());  // else a height is predicted without its map
   EXPECT_EQ(compared > 0, reads_surface);
-  EXPECT_EQ(compared_footprint > 10, options.footprint.type != "gp_regression");
+  EXPECT_EQ(compared_footprint > 10, belief_option(options, "footprint.type") != "gp_regression");
   RunResult last = history.moments.back().result;
   last.stop_reason = cell(*recording.summary, "stop_reason");
   for (const auto& [name, value] : summary_list().row({last, recording.config, "", {}, {}, {}, {}}).fields) {
@@ -107,15 +107,15 @@ INSTANTIATE_TEST_SUITE_P(
     OfEveryKind, RunHistory,
     ::testing::Values(std::vector<std::string>{"paper/object_i.yaml"},
                       std::vector<std::string>{"paper/object_i.yaml", "acquisition=uncertainty", "seed=4"},
-                      std::vector<std::string>{"paper/object_i.yaml", "surface=two_part", "fitting=ceres",
+                      std::vector<std::string>{"paper/object_i.yaml", "belief.surface=two_part", "fitting=ceres",
                                                "fitting.every=4", "seed=4"},
-                      std::vector<std::string>{"paper/object_i.yaml", "acquisition=random", "label.clip=true",
-                                               "engine.type=dense"},
+                      std::vector<std::string>{"paper/object_i.yaml", "acquisition=random", "belief.label.clip=true",
+                                               "belief.engine.type=dense"},
                       std::vector<std::string>{"paper/object_i.yaml", "motion=continuous",
                                                "scene.effects={missed_contacts: {probability: 0.3}}"},
                       std::vector<std::string>{"default.yaml"},
-                      std::vector<std::string>{"default.yaml", "footprint.max_contradictions=0.01", "seed=2"},
-                      std::vector<std::string>{"default.yaml", "footprint=gp_classifier", "scene=object_ii"}));
+                      std::vector<std::string>{"default.yaml", "belief.footprint.max_contradictions=0.01", "seed=2"},
+                      std::vector<std::string>{"default.yaml", "belief.footprint=gp_classifier", "scene=object_ii"}));
 
 TEST(History, KeepsAScoreOfItsOwnOnlyWhereItIsNeitherUNorE) {
   const auto names = [](const std::vector<std::string>& words) {
@@ -148,7 +148,7 @@ TEST(History, HasTheProbabilityOfTheFootprintInPlaceOfTheWeight) {
 
 TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {
   // Before an object is touched its level is free, and so a thousand signals uncertain.
-  const Recorded run("paper/object_i.yaml", {"surface=two_part", "taps=12"});
+  const Recorded run("paper/object_i.yaml", {"belief.surface=two_part", "taps=12"});
   const History history = run.history();
   for (const Eigen::VectorXf& frame : history.maps.at(1).frames) EXPECT_LE(frame.maxCoeff(), 1.0F);
   const RecordedRun recording = run.recording();
@@ -170,8 +170,7 @@ TEST(History, TakesOnlySomeCellsOfFineMaps) {
 }
 
 TEST(History, OfARunFromAnySideHasASurfaceForEachMomentAfterTheFirstHit) {
-  const Recorded run("any_side.yaml",
-                     {"scene=object_i", "scene.touch=any", "taps=9", "space.approaches=200", "space.moves=100"});
+  const Recorded run("any_side.yaml", {"scene=object_i", "taps=9", "candidates.count=200", "belief.moves=100"});
   const RecordedRun recording = run.recording();
   const History history = run.history();
   ASSERT_EQ(history.surfaces.size(), 10U);
@@ -240,25 +239,26 @@ TEST(RunPage, SaysOneThingOfARunThatEndsOrGoesOnWhileItIsMade) {
 TEST(Warnings, TellOfFallbacksAndOfWeightsThatAreNoProbabilities) {
   const std::vector<std::string> said = warnings("paper/object_i.yaml", {});
   EXPECT_THAT(said, Contains(HasSubstr("5 of 17 taps were chosen by the fallback")));
-  EXPECT_THAT(said, Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("label.clip=true"))));
+  EXPECT_THAT(said,
+              Contains(AllOf(HasSubstr("The weight leaves [0, 1]: from -"), HasSubstr("belief.label.clip=true"))));
   EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("elsewhere"))));
 }
 
 TEST(Warnings, TellWhatTheFootprintRemarksAndNothingOfWeights) {
-  const std::vector<std::string> said = warnings("default.yaml", {"footprint.max_contradictions=0.01"});
+  const std::vector<std::string> said = warnings("default.yaml", {"belief.footprint.max_contradictions=0.01"});
   EXPECT_THAT(
       said, Contains(AllOf(HasSubstr("Remark of the footprint primitives: "), HasSubstr("has taken over at contact"))));
   EXPECT_THAT(said, ::testing::Not(Contains(HasSubstr("weight"))));
 }
 
 TEST(Warnings, TellOfARuleThatStalls) {
-  EXPECT_THAT(warnings("paper/object_i.yaml", {"fallback=none", "repeat=allow"}),
+  EXPECT_THAT(warnings("paper/object_i.yaml", {"choice.fallback=none", "choice.repeat=allow"}),
               Contains(HasSubstr("14 taps were chosen by the acquisition although no candidate had a positive score")));
 }
 
 TEST(Warnings, OfARunFromAnySideSpeakOfApproachesAndTakeAFreeWayForNoFailure) {
-  const Recorded run("any_side.yaml", {"scene=object_i", "scene.touch=any", "acquisition=uncertainty", "taps=12",
-                                       "fallback=none", "space.approaches=1", "space.moves=20"});
+  const Recorded run("any_side.yaml", {"scene=object_i", "acquisition=uncertainty", "taps=12", "choice.fallback=none",
+                                       "candidates.count=1", "belief.moves=20"});
   ASSERT_GT(run.history().moments.back().result.no_contact_taps, 0);
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   EXPECT_THAT(said, Contains(HasSubstr("although no approach had a positive score")));
@@ -267,8 +267,9 @@ TEST(Warnings, OfARunFromAnySideSpeakOfApproachesAndTakeAFreeWayForNoFailure) {
 }
 
 TEST(Warnings, TellOfTapsWithoutContactAndOfJitter) {
-  const Recorded run("paper/object_i.yaml", {"repeat=allow", "fallback=none", "height.noise=0 mm", "label.noise=0",
-                                             "seed=1", "scene.effects={missed_contacts: {probability: 0.3}}"});
+  const Recorded run("paper/object_i.yaml",
+                     {"choice.repeat=allow", "choice.fallback=none", "belief.height.noise=0 mm", "belief.label.noise=0",
+                      "seed=1", "scene.effects={missed_contacts: {probability: 0.3}}"});
   const RunResult last = run.history().moments.back().result;
   const std::vector<std::string> said = warnings_of(run.recording(), run.history());
   ASSERT_GT(last.failed_taps, 0);

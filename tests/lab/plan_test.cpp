@@ -101,7 +101,7 @@ TEST(Plan, LeavesOutOptionsOfMotionsAndOfWholeGroups) {
 
 TEST(Plan, CountsAnOptionThatAnotherProcessTakesOverAsTakingPart) {
   const SweepPlan plan = plan_of({"kernel=rbf,rational_quadratic", "kernel.alpha=1,2",
-                                  "height.kernel={type: rational_quadratic, length_scale: 2 cm}"});
+                                  "belief.height.kernel={type: rational_quadratic, length_scale: 2 cm}"});
   EXPECT_EQ(rows(plan).size(), 4U) << "the heights have alpha whatever the shared kernel is";
   EXPECT_EQ(rows(plan)[0].substr(0, 6), "rbf|1|");
 }
@@ -128,7 +128,7 @@ TEST(Plan, RefusesJobsThatAreTheSameRunForAnotherReason) {
   };
   ends({"seed=1,1"}, "0 and 1", twice);
   ends({"name=a,b"}, "0 and 1", differ("name"));
-  ends({"log.maps=true,false", "seed=1,2", "engine.threads=1,2"}, "0 and 1", differ("engine.threads"));
+  ends({"log.maps=true,false", "seed=1,2", "belief.engine.threads=1,2"}, "0 and 1", differ("belief.engine.threads"));
   ends({"kernel.length_scale=1cm,10mm"}, "0 and 1", differ("kernel.length_scale"));
   ends({"acquisition=grid,weighted,weighted", "acquisition.count=3,4"}, "2 and 3", twice);
   ends({"acquisition=weighted,grid", "acquisition.count=3,4,3"}, "1 and 3", twice);
@@ -167,7 +167,7 @@ TEST(Plan, RefusesASweepOfNothing) {
 
 TEST(Plan, SaysWhatAJobHasWhereOtherItemsOfAListSayIt) {
   const SweepPlan plan =
-      plan_of({"sweep.list=[{taps: 12}, {acquisition: grid, acquisition.count: [3, 4]}, {surface: two_part}]"});
+      plan_of({"sweep.list=[{taps: 12}, {acquisition: grid, acquisition.count: [3, 4]}, {belief.surface: two_part}]"});
   EXPECT_EQ(plan.sweep.keys, (Texts{"taps", "acquisition", "acquisition.count", "surface"}));
   EXPECT_EQ(rows(plan),
             (Texts{"12|weighted||single", "17|grid|3|single", "17|grid|4|single", "17|weighted||two_part"}));
@@ -198,13 +198,13 @@ TEST(Plan, WritesAConfigThatMakesTheSameSweepAgain) {
       {"paper/object_i.yaml", {"motion.type=two_stage,continuous,paper"}},
       {"paper/object_i.yaml", {"candidates.spacing=5 mm,1 cm", "candidates.count=none"}},
       {"paper/object_i.yaml", {"scene=object_i,two_blocks,cone", "fitting=fixed,ceres"}},
-      {"paper/object_i.yaml", {"height.kernel=matern32,rbf", "kernel.length_scale=2cm,3cm"}},
+      {"paper/object_i.yaml", {"belief.height.kernel=matern32,rbf", "kernel.length_scale=2cm,3cm"}},
       {"paper/object_i.yaml", {"sweep.zip={taps: [12, 17], acquisition: [random, grid]}", "seed=1,2"}},
       {"paper/object_i.yaml",
        {"sweep.list=[{acquisition: random}, {acquisition: grid, acquisition.count: [3, 4]}, {taps: 9}]", "seed=1,2",
         "sweep.where=not (seed == 1 and taps == 9)"}},
       {"paper/object_i.yaml",
-       {"sweep.sobol={samples: 5, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)', height.noise: "
+       {"sweep.sobol={samples: 5, keys: {kernel.length_scale: 'log_uniform(1cm,10cm)', belief.height.noise: "
         "'uniform(0.1mm,1mm)'}}",
         "expect.failed_runs=<= 1", "name=points"}},
       {"paper/object_i.yaml",
@@ -256,7 +256,7 @@ TEST(Plan, DoesNotAskTheConfigForTheMotionThatASweptBackendDecides) {
 TEST(Plan, NamesASweepAlikeOnAnyNumberOfThreads) {
   const test::TemporaryFolder folder;
   const auto directory = [&](const std::string& engine) {
-    const std::string block = engine.empty() ? "" : "engine: {" + engine + "}\n";
+    const std::string block = engine.empty() ? "" : "belief: {engine: {" + engine + "}}\n";
     const fs::path file = folder.write("c.yaml", test::text_of(kPaper) + block);
     return planned(file, {"seed=1,2"}).plan.sweep.directory;
   };

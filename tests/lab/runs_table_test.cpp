@@ -119,7 +119,7 @@ TEST_F(RunsTable, SetsRunsApartBySceneBackendAndAcquisitionAndNotByWhatTheyShare
 
 TEST_F(RunsTable, PutsTheSettingFirstThatSetsARunApartFromMostOthers) {
   std::vector<ListedRecord> records;
-  for (const char* config : {"seed: 1\ntaps: 9\n", "seed: 1\ntaps: 9\nrepeat: allow\n", "seed: 1\ntaps: 12\n",
+  for (const char* config : {"seed: 1\ntaps: 9\n", "seed: 1\ntaps: 9\nchoice: {repeat: allow}\n", "seed: 1\ntaps: 12\n",
                              "seed: 1\ntaps: 9\nkernel: {type: rbf}\n", "seed: 2\ntaps: 9\n"}) {
     const std::string id = std::to_string(records.size());
     records.push_back(list_record(folder_.write(id + "/config.yaml", std::string("name: a\n") + config).parent_path()));

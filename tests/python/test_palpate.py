@@ -357,7 +357,7 @@ class Module(FolderTest):
         thread.start()
         try:
             before = turns
-            palpate.run(DEFAULT, "taps=20", "footprint.particles=3000", runs=self.folder)
+            palpate.run(DEFAULT, "taps=20", "belief.footprint.particles=3000", runs=self.folder)
             self.assertGreater(turns - before, 100)
         finally:
             over.set()

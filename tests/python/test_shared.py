@@ -96,7 +96,7 @@ class Shared(FolderTest):
             os.close(wait)
 
     def test_another_process_opens_a_run_for_itself(self):
-        run = palpate.run(DEFAULT, "taps=5", "engine.threads=2", runs=self.folder)
+        run = palpate.run(DEFAULT, "taps=5", "belief.engine.threads=2", runs=self.folder)
         surface = run.surface
         self.assertEqual(self.in_fork(lambda: np.array_equal(run.after(5).surface, surface)), "True")
         again = pickle.loads(pickle.dumps(run))
@@ -252,7 +252,7 @@ class Shared(FolderTest):
 
     def test_the_interpreter_ends_while_daemon_threads_ask_and_run(self):
         script = ("import sys, threading, time, palpate\n"
-                  "e = palpate.Experiment(sys.argv[1], 'taps=200', 'footprint.particles=3000', runs=sys.argv[2])\n"
+                  "e = palpate.Experiment(sys.argv[1], 'taps=200', 'belief.footprint.particles=3000', runs=sys.argv[2])\n"
                   "begun = threading.Event()\n"
                   "def ask():\n"
                   "    while e.ask(): e.tell(0.05); begun.set()\n"
@@ -297,7 +297,7 @@ class Shared(FolderTest):
 
     def test_models_that_failed_at_a_tap_are_made_again_for_an_earlier_one(self):
         script = ("import sys, numpy, palpate\n"
-                  "try: palpate.run(sys.argv[1], 'footprint=throws_when_told', runs=sys.argv[2])\n"
+                  "try: palpate.run(sys.argv[1], 'belief.footprint=throws_when_told', runs=sys.argv[2])\n"
                   "except palpate.Error: pass\n"
                   "run = palpate.load('default', runs=sys.argv[2])\n"
                   "expected = palpate.load(run.directory).after(len(run) - 1).height_mean\n"

@@ -23,7 +23,7 @@ fs::path touched(const test::TemporaryFolder& folder) {
   fs::create_directory_symlink(test::source_folder() / "configs", folder.path() / "configs");
   const test::Ended ran =
       test::palpate({"run", (test::source_folder() / "configs/any_side.yaml").string(), "--quiet", "scene=any_bowl",
-                     fmt::format("taps={}", kTaps), "space.approaches=200", "space.moves=100"},
+                     fmt::format("taps={}", kTaps), "candidates.count=200", "belief.moves=100"},
                     folder.path());
   EXPECT_EQ(ran.status, 0) << ran.err;
   return test::only_run(folder.path() / "runs");

@@ -60,14 +60,14 @@ TEST(ExtremeBackend, AHeightBeyondWhatAModelCanHoldEndsTheRunWithALineThatNamesM
     for (int i = 0; i < 17; ++i) answers.push_back(contact_at(i % 2 == 0 ? 1.7e308 : -1.7e308));
     const std::string said = error_of(
         [&] {
-          Finished run("paper/object_i.yaml", {std::string("surface=") + surface, "kernel.length_scale=5cm"},
+          Finished run("paper/object_i.yaml", {std::string("belief.surface=") + surface, "kernel.length_scale=5cm"},
                        scripted(answers));
           run.read({quantity::kHeightMean});
         },
         Error::Kind::run);
     EXPECT_THAT(said,
                 ::testing::MatchesRegex("maps: the height is not a finite number everywhere after tap [0-9]+, choose a "
-                                        "larger height.noise .*"))
+                                        "larger belief.height.noise .*"))
         << surface;
   }
   Errors errors;
@@ -85,7 +85,8 @@ TEST(ExtremeBackend, HeightsOfAnySizeGiveFiniteModels) {
 }
 
 TEST(ExtremeBackend, RepeatedTapsWithoutNoiseAreMetWithAReportedJitter) {
-  const auto outside = run({}, {"fallback=none", "repeat=allow", "height.noise=0 m", "label.noise=0"});
+  const auto outside =
+      run({}, {"choice.fallback=none", "choice.repeat=allow", "belief.height.noise=0 m", "belief.label.noise=0"});
   EXPECT_EQ(outside->experiment.result().taps, 17);
   EXPECT_GT(outside->experiment.result().state.diagnostics.at("jitter"), 0);
   EXPECT_EQ(outside->experiment.result().state.diagnostics.at("pivoted"), 0);

@@ -87,7 +87,7 @@ TEST(FootprintHeights, OfAnySizeLeaveProbabilities) {
 
 /// A run of the loop over such touches, every number of the footprint that it recorded checked.
 void expect_sound_run(const std::string& labels, int taps, std::vector<std::string> words) {
-  words.insert(words.end(), {fmt::format("taps={}", taps), "repeat=allow"});
+  words.insert(words.end(), {fmt::format("taps={}", taps), "choice.repeat=allow"});
   std::vector<TapResult> answers;
   for (const Touch& touch : touches_of(labels, taps)) answers.push_back(contact_at(touch.on ? 0.05 : 0.0));
   Finished run("default.yaml", words, scripted(answers));
@@ -118,14 +118,15 @@ class FootprintRuns : public ::testing::TestWithParam<const char*> {};
 TEST_P(FootprintRuns, ThatReadItAtEveryTapRecordProbabilities) {
   for (const auto& [labels, candidates] : kRuns) {
     SCOPED_TRACE(labels);
-    expect_sound_run(labels, test::brief() ? 15 : 80, {std::string("footprint=") + GetParam(), candidates});
+    expect_sound_run(labels, test::brief() ? 15 : 80, {std::string("belief.footprint=") + GetParam(), candidates});
   }
 }
 
 // A thousand touches are the footprint's by itself; a run of so many takes minutes, and shows no more than this.
 void expect_sound_long_run(const std::string& footprint, std::size_t which) {
   const auto& [labels, candidates] = kRuns.at(which);
-  expect_sound_run(labels, brief() ? 80 : 400, {"footprint=" + footprint, candidates, "acquisition=uncertainty"});
+  expect_sound_run(labels, brief() ? 80 : 400,
+                   {"belief.footprint=" + footprint, candidates, "acquisition=uncertainty"});
 }
 
 TEST_P(FootprintRuns, OfHundredsOfTapsOnTheDeskEndWithProbabilities) { expect_sound_long_run(GetParam(), 1); }

@@ -31,7 +31,7 @@ struct MeanErrors {
       std::vector<std::string> all = overrides;
       all.push_back(fmt::format("seed={}", seed));
       judged += error_of_run(all) / seeds;
-      all.emplace_back("height.outlier_probability=none");
+      all.emplace_back("belief.height.outlier_probability=none");
       believed += error_of_run(all) / seeds;
     }
   }
@@ -45,18 +45,19 @@ void expect_cell(const std::vector<std::string>& overrides, int seeds) {
 
 // What a user reported: errors of 7e16 cm, of -nan, and of 8.9 cm instead of 0.6.
 TEST(StabilityMatrix, TheDefaultAtTinyNoiseIsAsGoodAsWithoutOutliers) {
-  expect_cell({"height.noise=1e-5mm", "kernel.length_scale=1m", "taps=60"}, 1);
+  expect_cell({"belief.height.noise=1e-5mm", "kernel.length_scale=1m", "taps=60"}, 1);
   if (brief()) return;
-  expect_cell({"height.noise=1e-5mm", "kernel.length_scale=50cm", "taps=200"}, 1);
-  expect_cell({"height.noise=5e-6mm", "kernel.length_scale=30cm", "taps=200"}, 1);
+  expect_cell({"belief.height.noise=1e-5mm", "kernel.length_scale=50cm", "taps=200"}, 1);
+  expect_cell({"belief.height.noise=5e-6mm", "kernel.length_scale=30cm", "taps=200"}, 1);
 }
 
 class StabilityMatrix : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(StabilityMatrix, HoldsAtEveryLengthScale) {
   for (const char* const length : {"1mm", "3cm", "30cm", "20m"})
-    expect_cell({fmt::format("height.noise={}", GetParam()), fmt::format("kernel.length_scale={}", length), "taps=14"},
-                brief() ? 1 : 4);
+    expect_cell(
+        {fmt::format("belief.height.noise={}", GetParam()), fmt::format("kernel.length_scale={}", length), "taps=14"},
+        brief() ? 1 : 4);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfNoise, StabilityMatrix,

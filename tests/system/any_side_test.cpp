@@ -32,7 +32,7 @@ class AnySide : public Shell {
     return out;
   }
   fs::path touched(const Words& more) const {
-    return ran(set_by({"scene=any_bowl", "space.approaches=200", "space.moves=100"}, more), config());
+    return ran(set_by({"scene=any_bowl", "candidates.count=200", "belief.moves=100"}, more), config());
   }
 };
 
@@ -100,8 +100,9 @@ TEST_F(AnySide, ARunLeavesItsSurfaceAsAMeshThatAnythingReads) {
     ++contacts;
   }
   EXPECT_GT(contacts, 5);
-  EXPECT_THAT(refused({"run", config(), "--dry-run", "prior={depth: " + (run / "export/taps.ply").string() + "}"}),
-              testing::HasSubstr("prior: applies to taps from above"));
+  EXPECT_THAT(
+      refused({"run", config(), "--dry-run", "belief.prior={depth: " + (run / "export/taps.ply").string() + "}"}),
+      testing::HasSubstr("unknown option 'prior' of belief/solids"));
   EXPECT_THAT(refused({"export", run, "--to", run}), testing::HasSubstr("files are never overwritten"));
 }
 
@@ -141,7 +142,7 @@ TEST_F(AnySide, ATapIsExplainedByWhatWasBelievedBeforeIt) {
 }
 
 TEST_F(AnySide, ARunWhoseApproachesAreLimitedByTheToolOrTheArmIsPlayedAgainAndExplainedAsItWas) {
-  const Words few = "taps=6 space.moves=20 name=limited";
+  const Words few = "taps=6 belief.moves=20 name=limited";
   const std::vector<double> free = starts_of(touched(set_by(few, "name=free")));
   std::vector<const char*> limits{"{tip_radius: {radius: 2 cm}}", "{shaft: {radius: 2 cm, length: 3 cm}}",
                                   "{reach: {base: [-55 cm, 13 cm], radius: 75 cm}}"};
@@ -167,7 +168,7 @@ TEST_F(AnySide, ARunEndsAtItsStandardDeviationAsOneFromAboveDoes) {
 
 TEST_F(AnySide, TheFallbackChoosesWhereNoLineScoresAndIsRecordedWithItsReason) {
   // The one line goes anywhere, not along the normal, so that no uncertainty is above 0.
-  const Words alike = "taps=12 seed=2 acquisition=uncertainty space.approaches=1";
+  const Words alike = "taps=12 seed=2 acquisition=uncertainty candidates.count=1";
   const auto chosen_by_fallback = [&](const Words& more) {
     int count = 0;
     for (const Row& row : rows_of(touched(alike + more), "tap")) {
@@ -178,12 +179,12 @@ TEST_F(AnySide, TheFallbackChoosesWhereNoLineScoresAndIsRecordedWithItsReason) {
     return count;
   };
   EXPECT_GT(chosen_by_fallback("name=with"), 0);
-  EXPECT_EQ(chosen_by_fallback("name=without fallback=none"), 0);
+  EXPECT_EQ(chosen_by_fallback("name=without choice.fallback=none"), 0);
 }
 
 TEST_F(AnySide, ARunThatFailedByItsArmIsPlayedAgainToItsEnd) {
   // On every tap the arm takes longer than it may.
-  const Ended failed = palpate({"run", config(), "--quiet", "scene=any_bowl", "space.approaches=50", "space.moves=20",
+  const Ended failed = palpate({"run", config(), "--quiet", "scene=any_bowl", "candidates.count=50", "belief.moves=20",
                                 "taps=9", "motion.timeout=100ms", "stop.failed_in_a_row=3"});
   EXPECT_EQ(failed.status, 1);
   EXPECT_THAT(failed.err, testing::HasSubstr("3 taps in a row failed"));
@@ -242,7 +243,7 @@ TEST_F(AnySide, ARunThatMetNothingLeavesNoSurfaceAndEveryPageAndFileOfIt) {
 }
 
 TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedRunAndAReplayHaveTheSameView) {
-  const Words seen{"taps=4", "space.view={}", "space.moves=20"};
+  const Words seen{"taps=4", "belief.view={}", "belief.moves=20"};
   const fs::path whole = touched(seen + "name=whole");
   for (const Row& row : rows_of(whole, "tap")) EXPECT_EQ(row.text("source"), "acquisition");
   const fs::path broken = touched(seen + "name=broken");
@@ -255,9 +256,9 @@ TEST_F(AnySide, AfterAViewFromOneSideTheRuleChoosesFromTheFirstTapOnAndAResumedR
   EXPECT_THAT(replayed.out, testing::HasSubstr("all equal"));
   // From another side another first tap; without a view the first one is drawn.
   const fs::path other = touched(
-      Words{"taps=4", "space.view={azimuth: 10 deg, elevation: 50 deg, rays: 225}", "space.moves=20", "name=other"});
+      Words{"taps=4", "belief.view={azimuth: 10 deg, elevation: 50 deg, rays: 225}", "belief.moves=20", "name=other"});
   EXPECT_NE(rows_of(other, "tap")[0].number("x"), rows_of(whole, "tap")[0].number("x"));
-  EXPECT_EQ(rows_of(touched("taps=1 space.moves=20 name=none initial.count=1"), "tap")[0].text("source"), "initial");
+  EXPECT_EQ(rows_of(touched("taps=1 belief.moves=20 name=none initial.count=1"), "tap")[0].text("source"), "initial");
 }
 
 TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes) {
@@ -272,7 +273,7 @@ TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes)
     return test::run_program(
         {"python3", "-B", (test::source_folder() / "tests/benchmark/published_objects.py").string(),
          (here() / "downloaded").string(), "--palpate", test::program_file().string(), "--objects", objects, "taps=3",
-         "seed=1", "acquisition=uncertainty", "space.approaches=50", "space.moves=10"},
+         "seed=1", "acquisition=uncertainty", "candidates.count=50", "belief.moves=10"},
         here());
   };
   const Ended ended = published("jug,mugD");
@@ -297,13 +298,14 @@ TEST_F(AnySide, TheNinePublishedObjectsBecomeScenesAndASweepFromAFolderOfMeshes)
 }
 
 TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
-  const fs::path sweep = swept(
-      {"acquisition=random,discovery", "scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=8"}, config());
+  const fs::path sweep =
+      swept({"acquisition=random,discovery", "scene=any_bowl", "candidates.count=200", "belief.moves=50", "taps=8"},
+            config());
   const Ended ended = palpate(
       {"compare", sweep, "--by", "acquisition", "--metric", "surface_distance_m", "--at", "5", "--format", "markdown"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const fs::path alone =
-      ran({"scene=any_bowl", "space.approaches=200", "space.moves=50", "taps=5", "acquisition=random"}, config());
+      ran({"scene=any_bowl", "candidates.count=200", "belief.moves=50", "taps=5", "acquisition=random"}, config());
   const Row whole = parse_json_row(text_of(alone / "summary.json")).value();
   int compared = 0;
   for (const Cells& row : csv_rows(text_of(sweep / "results_at_5.csv"))) {
@@ -329,7 +331,7 @@ TEST_F(AnySide, ASweepIsComparedAfterFewerTapsAsIfItsRunsHadEndedThere) {
 TEST_F(AnySide, ARecordIsReadByAllThatReadOneWithoutItsBackendBeingBuilt) {
   const std::string built = (here() / "built").string();
   environment_ = {test::with_plugin("connects"), "PALPATE_BUILT=" + built};
-  const fs::path run = ran({"backend.type=connects", "scene=any_bowl", "space.approaches=200", "space.moves=50",
+  const fs::path run = ran({"backend.type=connects", "scene=any_bowl", "candidates.count=200", "belief.moves=50",
                             "taps=6", "acquisition=discovery"},
                            config());
   ASSERT_TRUE(fs::exists(built)) << "else this tests nothing";
@@ -365,9 +367,6 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", config(), "acquisition=weighted"}),
               testing::HasSubstr(
                   "weighted reads label_mean, which the belief solids does not offer, choose another acquisition"));
-  EXPECT_THAT(refused({"run", config(), "scene.touch=top"}),
-              testing::HasSubstr("surface: implicit needs a scene with touch: any"));
-  EXPECT_THAT(refused({"run", config(), "strategy=default"}), testing::HasSubstr("strategy=any_side sets"));
   EXPECT_THAT(refused({"run", paper(), "acquisition=discovery"}),
               testing::HasSubstr("discovery reads expected_discovery, which the belief height_map does not offer"));
   EXPECT_THAT(refused({"run", config(), "kernel={type: rbf, length_scale: 4 cm, length_scale_y: 3 cm}"}),
@@ -388,29 +387,37 @@ TEST_F(AnySide, WhatOnlyKnowsTapsFromAboveIsRefusedInOneLine) {
 }
 
 TEST_F(AnySide, KeysThatOnlyTapsFromAboveReadAreRefused) {
-  for (const std::string& word :
-       Words(R"(candidates.count=60 candidates.spacing=5mm height.outlier_probability=0.1 height.offset={}
-                height.kernel={"type":rbf} height.fitting={"type":fixed} label.signal=2 label.noise=0.3
-                label.prior_mean=1 label.clip=true label.hyperparameters=shared label.kernel={"type":rbf}
-                label.fitting={"type":fixed} engine.type=dense engine.tolerance=1e-9
-                footprint={"type":primitives,"kernel":{"type":rbf}} fitting.type=ceres repeat=allow engine.accuracy=1e-6
-                engine.threads=2 log.maps=true)")) {
-    EXPECT_THAT(
-        refused({"run", config(), "--dry-run", word}),
-        testing::AllOf(testing::StartsWith("command line: " + word.substr(0, word.find_first_of("={"))),
-                       testing::HasSubstr(": applies to taps from above only, remove it or choose scene.touch: top")));
+  const Words of_height_map(R"(belief.height.noise=1mm belief.label.clip=true belief.engine.type=dense
+                               belief.footprint={"type":primitives} belief.prior={"depth":view.ply})");
+  for (const std::string& word : of_height_map) {
+    const std::string key = word.substr(7, word.find_first_of(".=", 7) - 7);
+    EXPECT_THAT(refused({"run", config(), "--dry-run", word}),
+                testing::HasSubstr("unknown option '" + key + "' of belief/solids"));
   }
+  for (const char* const word :
+       {"candidates.spacing=5mm", "choice.repeat=allow", "log.maps=true", "initial.design=grid"}) {
+    EXPECT_THAT(refused({"run", config(), "--dry-run", word}),
+                testing::HasSubstr("reads desk_position, which the belief solids does not offer"))
+        << word;
+  }
+  EXPECT_THAT(refused({"run", config(), "--dry-run", "fitting=ceres"}),
+              testing::HasSubstr("ceres fits nothing for the belief solids"));
   EXPECT_THAT(refused({"run", config(), "stop.expected_rmse=1cm"}),
               testing::HasSubstr("stop.expected_rmse reads expected_rmse, which the belief solids does not offer"));
-  // Of a grid that is not read there.
-  EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "tie_tolerance=1e-6", "candidates.count=47",
-                     "initial.count=2500", "taps=3000"})
+  EXPECT_EQ(palpate({"run", config(), "--dry-run", "stop.robot_time=90s", "choice.tie_tolerance=1e-6",
+                     "candidates.count=47", "initial.count=2500", "taps=3000"})
                 .status,
             0);
-  for (const char* const key : {"space.moves=5", "space.view={}"}) {
-    EXPECT_THAT(refused({"run", paper(), "--dry-run", key}),
-                testing::HasSubstr("space: applies to surface: implicit only, remove it for taps from above"));
-  }
+  EXPECT_THAT(refused({"run", paper(), "--dry-run", "belief.particles=5"}),
+              testing::HasSubstr("unknown option 'particles' of belief/height_map"));
+}
+
+TEST_F(AnySide, TheBeliefDecidesWhichWayTheToolComes) {
+  const fs::path above = touched("strategy=uncertainty scene=any_bowl taps=4 kernel={type: rbf, length_scale: 3 cm}");
+  EXPECT_TRUE(fs::exists(above / "surface.csv"));
+  EXPECT_TRUE(fs::exists(ran({"belief=solids", "kernel={type: matern32, length_scale: 4 cm}", "acquisition=random",
+                              "candidates=none", "taps=4"}) /
+                         "surface.ply"));
 }
 
 TEST_F(AnySide, ASoftWorldAndAnArmThatErrsLeaveASurfaceNearlyAsGoodAsAPerfectOne) {

@@ -77,7 +77,8 @@ std::vector<Case> cases() {
            "prior, surface, space, engine, acquisition, fitting, footprint, fallback, repeat, "
            "tie_tolerance, "
            "stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
-      line("DottedKeyInAFile", "label.clip: yes", "10:1: unknown option 'label.clip', write label: {clip: yes}"),
+      line("DottedKeyInAFile", "belief.label.clip: yes",
+           "10:1: unknown option 'belief.label.clip', write label: {clip: yes}"),
       whole("DottedKeyWhereItsGroupIsNeeded", without("  - backend") + "backend.type: simulator\n",
             "9:1: unknown option 'backend.type', write backend: {type: simulator}"),
       group("TypoInAGroupFile", "configs/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scal: 1.7 cm\n",
@@ -97,8 +98,8 @@ std::vector<Case> cases() {
       // Quantities
       line("MissingUnit", "kernel: {length_scale: 0.017}",
            "10:24: kernel.length_scale: '0.017' has no unit, write a length like '1.7 cm'"),
-      line("UnitWhereNoneBelongs", "label: {noise: 1 mm}",
-           "10:16: label.noise: '1 mm' is not a plain number, write it without a unit"),
+      line("UnitWhereNoneBelongs", "belief: {label: {noise: 1 mm}}",
+           "10:25: belief.label.noise: '1 mm' is not a plain number, write it without a unit"),
       line("NegativeLength", "kernel: {length_scale: -1.7 cm}",
            "10:24: kernel.length_scale: -1.7 cm is out of range, it must be above 0 m"),
       line("NegativeSeed", "seed: -1", "10:7: seed: -1 is out of range, it must be at least 0"),
@@ -136,8 +137,8 @@ std::vector<Case> cases() {
       // Files, groups and plugins
       line("MeshThatIsNotThere", "scene: {objects: [{type: mesh, file: /nowhere.stl, unit: 1 mm}]}",
            "10:38: scene.objects.0.file: /nowhere.stl: no such file"),
-      line("ViewThatIsNotThere", "prior: {depth: /nowhere.ply}",
-           "10:16: prior.depth: /nowhere.ply: no such file, a relative path starts in the current folder"),
+      line("ViewThatIsNotThere", "belief: {prior: {depth: /nowhere.ply}}",
+           "10:25: belief.prior.depth: /nowhere.ply: no such file, a relative path starts in the current folder"),
       {"MissingFile", kGood, {"run", "bat.yaml"}, "bat.yaml: no such file, did you mean 'bad.yaml'?"},
       {"DirectoryInsteadOfAFile",
        kGood,
@@ -157,7 +158,7 @@ std::vector<Case> cases() {
             "no plugin acquisition/footprint_then_heigh, did you mean 'footprint_then_height'?"),
       whole("NoBackend", without("  - backend"),
             "1:1: no backend is chosen, write backend: {type: ...} or name a group under 'defaults'"),
-      line("PluginWithoutType", "height: {kernel: }",
+      line("PluginWithoutType", "belief: {height: {kernel: }}",
            "10:10: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
       whole("NoScene", without("  - scene"),
             "1:1: 'scene.area' is missing, set it: rectangle of the desk in which taps are allowed"),
@@ -187,12 +188,12 @@ std::vector<Case> cases() {
            "10:17: backend/simulator: motion.hover: an object is 11 cm high, but the arm travels at 5 cm, raise "
            "motion.hover or lower the object"),
 
-      line("LabelsOfTheirOwnKernelThatShare", "label: {hyperparameters: shared, kernel: {type: rbf}}",
-           "10:42: label.kernel: has no effect with label.hyperparameters: shared, remove it or set "
-           "label.hyperparameters: own"),
-      line("LabelsOfTheirOwnFittingThatShare", "label: {hyperparameters: shared, fitting: {type: fixed}}",
-           "10:43: label.fitting: has no effect with label.hyperparameters: shared, remove it or set "
-           "label.hyperparameters: own"),
+      line("LabelsOfTheirOwnKernelThatShare", "belief: {label: {hyperparameters: shared, kernel: {type: rbf}}}",
+           "10:51: belief.label.kernel: has no effect with belief.label.hyperparameters: shared, remove it or set "
+           "belief.label.hyperparameters: own"),
+      line("LabelsOfTheirOwnFittingThatShare", "belief: {label: {hyperparameters: shared, fitting: {type: fixed}}}",
+           "10:52: belief.label.fitting: has no effect with belief.label.hyperparameters: shared, remove it or set "
+           "belief.label.hyperparameters: own"),
 
       // Plugins inside plugins, and how the surface is made
       line("TypoInAKernelOfAProduct",
@@ -203,17 +204,21 @@ std::vector<Case> cases() {
       line("AlphaOutOfRange", "kernel: {type: rational_quadratic, alpha: 1e-5}",
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
-      line("GridPosteriorWithANonSeparableKernel", "engine: {type: grid}\nkernel: {type: matern32}",
-           "10:16: engine.type: grid cannot be used with the kernel matern32: the kernel is not a product of a factor "
+      line("GridPosteriorWithANonSeparableKernel", "belief: {engine: {type: grid}}\nkernel: {type: matern32}",
+           "10:25: belief.engine.type: grid cannot be used with the kernel matern32: the kernel is not a product of a "
+           "factor "
            "along "
            "x and a factor along y, engine: {type: dense} serves every kernel"),
-      line("LowrankPosteriorWithASum", "engine: {type: lowrank}\nheight: {kernel: {type: sum, kernels: [{type: rbf}]}}",
-           "10:16: engine.type: lowrank cannot be used with the kernel sum: the kernel is not a product of a factor "
+      line("LowrankPosteriorWithASum",
+           "belief: {engine: {type: lowrank}, height: {kernel: {type: sum, kernels: [{type: rbf}]}}}",
+           "10:25: belief.engine.type: lowrank cannot be used with the kernel sum: the kernel is not a product of a "
+           "factor "
            "along x "
            "and a factor along y, engine: {type: dense} serves every kernel"),
-      line("NoThreads", "engine: {threads: 0}", "10:19: engine.threads: 0 is out of range, it must be at least 1"),
-      line("LowrankThatKeepsNothing", "engine: {tolerance: 0}",
-           "10:21: engine.tolerance: 0 is out of range, it must be above 0"),
+      line("NoThreads", "belief: {engine: {threads: 0}}",
+           "10:28: belief.engine.threads: 0 is out of range, it must be at least 1"),
+      line("LowrankThatKeepsNothing", "belief: {engine: {tolerance: 0}}",
+           "10:30: belief.engine.tolerance: 0 is out of range, it must be above 0"),
 
       // The command line
       typed("OverrideWithABadValue", {"seed=none"}, "seed: 'none' is not a number, write a plain number"),
@@ -223,8 +228,8 @@ std::vector<Case> cases() {
       typed("NameThatIsNotUtf8SoThatNoRecordCouldHoldIt", {"name=a\xff"}, "not UTF-8, write it in UTF-8"),
       typed("ManyNamesOfAGroup", {"acquisition=weighted,random"},
             "acquisition has several values, but a run takes one, run all of them with 'palpate sweep'"),
-      typed("ManyValues", {"engine.type=dense,grid"},
-            "engine.type has several values, but a run takes one, run all of them with 'palpate sweep'"),
+      typed("ManyValues", {"belief.engine.type=dense,grid"},
+            "belief.engine.type has several values, but a run takes one, run all of them with 'palpate sweep'"),
 
       // Sweeps
       sweep("BadSweepRange", "sweep:\n  grid:\n    seed: range(0)\n", {},

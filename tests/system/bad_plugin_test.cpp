@@ -252,7 +252,8 @@ TEST_F(BadPlugin, ThrowingInTheMiddleOfARunFailsTheRunInGoodOrder) {
 
 TEST_F(BadPlugin, ThrowingWhenToldOfATapLosesNoTap) {
   environment_ = {test::with_plugin("throws_when_told")};
-  const Ended ended = palpate({"run", test::config("default.yaml"), "footprint=throws_when_told", "--runs", "runs"});
+  const Ended ended =
+      palpate({"run", test::config("default.yaml"), "belief.footprint=throws_when_told", "--runs", "runs"});
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.err, "footprint/throws_when_told: no touch today\n");
   const std::string taps = part_of(directory("runs"), "tap");

@@ -89,15 +89,15 @@ TEST_F(Completion, OfAPluginsOptionsIsThatOfThePluginThatIsChosen) {
               AllOf(HasSubstr("distance over which"), HasSubstr("length > 0 m")));
   EXPECT_THAT(keys("kernel.al"), IsEmpty());
   EXPECT_THAT(keys("kernel.al", {"kernel=rational_quadratic"}), UnorderedElementsAre(Key("kernel.alpha=")));
-  EXPECT_THAT(keys("height.kernel.al", {"kernel=rational_quadratic"}),
-              UnorderedElementsAre(Key("height.kernel.alpha=")))
+  EXPECT_THAT(keys("belief.height.kernel.al", {"kernel=rational_quadratic"}),
+              UnorderedElementsAre(Key("belief.height.kernel.alpha=")))
       << "what it does not say, the shared kernel says";
   EXPECT_THAT(keys("kernel.type=rb"), UnorderedElementsAre(Key("kernel.type=rbf")));
 }
 
 TEST_F(Completion, OfValuesHasChoicesFlagsAndTheItemsOfLists) {
-  EXPECT_THAT(keys("surface="),
-              UnorderedElementsAre(Key("surface=single"), Key("surface=two_part"), Key("surface=implicit")));
+  EXPECT_THAT(keys("belief.surface="),
+              UnorderedElementsAre(Key("belief.surface=single"), Key("belief.surface=two_part"), Key("belief=solids")));
   EXPECT_THAT(keys("log.maps="), UnorderedElementsAre(Key("log.maps=true"), Key("log.maps=false")));
   EXPECT_THAT(keys("scene.objects."), UnorderedElementsAre(Key("scene.objects.0.")));
   EXPECT_THAT(keys("scene.objects.0.amp"), UnorderedElementsAre(Key("scene.objects.0.amplitude=")));

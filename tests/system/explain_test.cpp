@@ -137,30 +137,30 @@ class ExplainEveryTap : public Explain, public testing::WithParamInterface<Words
 
 TEST_P(ExplainEveryTap, OfARunOfThePaper) { expect_explained(ran(GetParam())); }
 
-INSTANTIATE_TEST_SUITE_P(With, ExplainEveryTap,
-                         testing::Values(
-                             // Every acquisition, fits, and a surface of two parts.
-                             "seed=3", "acquisition=uncertainty seed=3", "acquisition=random seed=3",
-                             "acquisition=grid seed=3",
-                             "fitting=ceres height.signal=5cm surface=two_part fitting.every=3",
-                             "fitting=ceres height.signal=5cm label.hyperparameters=shared kernel=matern52",
-                             "kernel=swell_and_texture label.clip=true initial.design=sobol",
-                             // A rule that stalls or may repeat itself.
-                             "fallback=none repeat=allow", "fallback=none initial.design=grid",
-                             "fallback=none initial.design=search scene.placement=random",
-                             "repeat=allow height.noise=0mm label.noise=0 candidates.count=6 taps=40",
-                             // Failed taps, some and all, and predictions.
-                             Words{"scene.effects={missed_contacts: {probability: 0.3}, reach: {}}", "seed=2"},
-                             Words{"scene.effects.missed_contacts={probability: 1}", "surface=two_part", "taps=6"},
-                             "motion=adaptive"));
+INSTANTIATE_TEST_SUITE_P(
+    With, ExplainEveryTap,
+    testing::Values(
+        // Every acquisition, fits, and a surface of two parts.
+        "seed=3", "acquisition=uncertainty seed=3", "acquisition=random seed=3", "acquisition=grid seed=3",
+        "fitting=ceres belief.height.signal=5cm belief.surface=two_part fitting.every=3",
+        "fitting=ceres belief.height.signal=5cm belief.label.hyperparameters=shared kernel=matern52",
+        "kernel=swell_and_texture belief.label.clip=true initial.design=sobol",
+        // A rule that stalls or may repeat itself.
+        "choice.fallback=none choice.repeat=allow", "choice.fallback=none initial.design=grid",
+        "choice.fallback=none initial.design=search scene.placement=random",
+        "choice.repeat=allow belief.height.noise=0mm belief.label.noise=0 candidates.count=6 taps=40",
+        // Failed taps, some and all, and predictions.
+        Words{"scene.effects={missed_contacts: {probability: 0.3}, reach: {}}", "seed=2"},
+        Words{"scene.effects.missed_contacts={probability: 1}", "belief.surface=two_part", "taps=6"},
+        "motion=adaptive"));
 
 TEST_F(Explain, TellsEveryTapOfAFootprintByItsProbability) {
   expect_explained(ran({}, config("default.yaml")), "primitives");
-  expect_explained(ran("footprint=gp_classifier acquisition=random taps=6"), "gp_classifier");
+  expect_explained(ran("belief.footprint=gp_classifier acquisition=random taps=6"), "gp_classifier");
 }
 
 TEST_F(Explain, TellsWhatTheFootprintRemarks) {
-  const fs::path directory = ran("footprint.max_contradictions=0.01 taps=20", config("default.yaml"));
+  const fs::path directory = ran("belief.footprint.max_contradictions=0.01 taps=20", config("default.yaml"));
   const json last = taps_of(directory).back();
   ASSERT_TRUE(last["footprint"]["remark"].is_string());
   EXPECT_THAT(explain(directory, 20), HasSubstr("Its remark: " + last["footprint"]["remark"].get<std::string>() + "."));
@@ -225,7 +225,7 @@ TEST_F(Explain, SaysWhyTheFallbackHadToChoose) {
 
 TEST_F(Explain, SaysThatAStalledRuleTapsTheSamePlaceForEver) {
   EXPECT_THAT(
-      explain(ran("fallback=none repeat=allow"), 7),
+      explain(ran("choice.fallback=none choice.repeat=allow"), 7),
       AllOf(
           HasSubstr("All of 2209 candidates are tied"),
           HasSubstr("No score is positive: such scores do not distinguish candidates, but the config uses no fallback"),
@@ -234,7 +234,8 @@ TEST_F(Explain, SaysThatAStalledRuleTapsTheSamePlaceForEver) {
 
 TEST_F(Explain, SaysThatTheFallbackDidNotStepInWhereScoresAreAsGoodAsZeroButPositive) {
   // Where an object may be, all is tapped, and u there is the noise, 1e-12; elsewhere w, and so the score, is below 0.
-  const fs::path directory = ran("repeat=allow height.noise=0.001mm label.noise=1e-6 candidates.count=6 taps=40");
+  const fs::path directory =
+      ran("choice.repeat=allow belief.height.noise=0.001mm belief.label.noise=1e-6 candidates.count=6 taps=40");
   int found = 0;
   for (const json& tap : taps_of(directory)) {
     if (tap["source"] != "acquisition" || tap["score"] > 1e-9) continue;
@@ -256,18 +257,19 @@ TEST_F(Explain, TellsTheLastCandidate) {
 
 TEST_F(Explain, SaysWhatJitterAndAWeightBeyondItsBoundsMean) {
   // The same candidate again and again without noise: the matrix is singular.
-  const fs::path directory = ran("fallback=none repeat=allow height.noise=0mm label.noise=0");
+  const fs::path directory =
+      ran("choice.fallback=none choice.repeat=allow belief.height.noise=0mm belief.label.noise=0");
   ASSERT_GT(taps_of(directory)[16]["height_gp"]["jitter"], 0.0);
   EXPECT_THAT(explain(directory, 17),
               HasSubstr("Its matrix was singular in double precision, so jitter was added to the diagonal"));
-  EXPECT_THAT(explain(ran("label.clip=true", config("paper/object_i_right.yaml")), 17),
+  EXPECT_THAT(explain(ran("belief.label.clip=true", config("paper/object_i_right.yaml")), 17),
               AllOf(HasSubstr("It leaves [0, 1] because it is a regression on the labels 0 and 1"),
-                    HasSubstr("clipped to [0, 1] (label.clip: true).")));
+                    HasSubstr("clipped to [0, 1] (belief.label.clip: true).")));
 }
 
 TEST_F(Explain, SaysWhatAFitDidAndWhenNoneWasDue) {
   const fs::path directory =
-      ran("fitting=ceres height.signal=5cm fitting.every=4", config("paper/object_i_right.yaml"));
+      ran("fitting=ceres belief.height.signal=5cm fitting.every=4", config("paper/object_i_right.yaml"));
   const std::vector<json> taps = taps_of(directory);
   int fits = 0;
   for (std::size_t i = 5; i < taps.size(); ++i) {

@@ -86,7 +86,7 @@ TEST_F(Export, WritesASurfaceThatAssimpReadsVertexByVertex) {
 }
 
 TEST_F(Export, WritesTheProbabilityOfTheFootprint) {
-  const fs::path directory = ran({"surface=two_part", "footprint=primitives"});
+  const fs::path directory = ran({"belief.surface=two_part", "belief.footprint=primitives"});
   expect_numbers_of_record(directory);
   EXPECT_THAT(text_of(directory / "summary.json"), HasSubstr("\"label_errors\": ")) << "it is not the weight";
 }

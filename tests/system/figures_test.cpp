@@ -94,7 +94,7 @@ TEST_F(Figures, OfARunHaveItsMapsAsSurfaceCsvHasThemAndCurvesThatEndWithItsSumma
 
 TEST_F(Figures, OfAFootprintHaveItsProbabilityAndTheScoreInPlaceOfTheWeight) {
   const fs::path directory =
-      drawn_run("seed=3 footprint=primitives acquisition=footprint_then_height surface=two_part");
+      drawn_run("seed=3 belief.footprint=primitives acquisition=footprint_then_height belief.surface=two_part");
   const auto maps = blocks_of(directory / "figures/maps.gnuplot");
   EXPECT_EQ(maps.count("w") + maps.count("e"), 0U);
   EXPECT_EQ(maps.count("score"), 1U);
@@ -122,8 +122,8 @@ TEST_F(Figures, OfARunGiveFailedTapsAMarkOfTheirOwn) {
 TEST_F(Figures, AreDrawnOfTheSmallestRunsAndOfStrategiesWithoutModels) {
   for (const Words& words :
        {Words("taps=1 initial.count=1"), Words{"candidates={count: 1}", "taps=1", "initial.count=1"},
-        Words{"candidates={count: 2}", "taps=4", "fallback=none"}, Words("acquisition=random taps=5"),
-        Words("surface=two_part taps=4 label.clip=true")}) {
+        Words{"candidates={count: 2}", "taps=4", "choice.fallback=none"}, Words("acquisition=random taps=5"),
+        Words("belief.surface=two_part taps=4 belief.label.clip=true")}) {
     const Ended paper = report(drawn_run(words), "--paper");
     EXPECT_EQ(paper.status, 0) << words.front() << ": " << paper.err;
   }

@@ -25,9 +25,9 @@ const std::vector<Words>& runs() {
   static const std::vector<Words> all{
       Words{"run", paper()} + "backend.pace=0.004",
       Words{"run", config("default.yaml")} + "scene=object_i taps=12 backend.pace=0.002 log.maps=true",
-      Words{"run", paper()} + "backend.pace=0.002 fitting=ceres height.signal=5cm fitting.every=4",
+      Words{"run", paper()} + "backend.pace=0.002 fitting=ceres belief.height.signal=5cm fitting.every=4",
       Words{"run", paper()} +
-          "backend.pace=0.002 taps=40 surface=two_part acquisition=uncertainty stop.robot_time=120s"};
+          "backend.pace=0.002 taps=40 belief.surface=two_part acquisition=uncertainty stop.robot_time=120s"};
   return all;
 }
 
@@ -38,7 +38,7 @@ const std::vector<Words>& sweeps() {
       Words{"sweep", config("default.yaml")} + "name=killed scene=[object_i,object_ii] taps=6 backend.pace=0.001" +
           "log.maps=true log.surface=true -j 2",
       Words{"sweep", paper()} +
-          "name=killed taps=[5,9] fitting=ceres height.signal=5cm fitting.every=4 backend.pace=0.001 -j 1"};
+          "name=killed taps=[5,9] fitting=ceres belief.height.signal=5cm fitting.every=4 backend.pace=0.001 -j 1"};
   return all;
 }
 

@@ -86,7 +86,7 @@ std::vector<Kind> kinds() {
       {"Npy", "a.npy", Use::truth, heights("a.npy", "1 mm"), npy(30), npy(50)},
       {"Png", "a.png", Use::truth, heights("a.png", "1 um"), "@tests/data/heights/map_16.png",
        "@tests/data/heights/map_8.png"},
-      {"View", "view.ply", Use::models, "prior={depth: view.ply, unit: 1 m}", view("0"), view("0.05")},
+      {"View", "view.ply", Use::models, "belief.prior={depth: view.ply, unit: 1 m}", view("0"), view("0.05")},
       {"Table", "table.csv", Use::taps, "backend={type: replay, record: table.csv, tolerance: 1 m}", table("0.07"), ""},
       {"Process", "robot.py", Use::taps, "backend={type: process, command: python3 -SE robot.py, repeatable: true}",
        robot(""), robot("import math\n")},

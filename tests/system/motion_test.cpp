@@ -22,9 +22,9 @@ struct Motion {
 Motion measured(const std::string& motion, int seeds) {
   Motion out;
   for (int seed = 0; seed < seeds; ++seed) {
-    const ResolvedConfig config =
-        shipped_config("paper/object_i.yaml", {"scene=object_i_arm", "surface=two_part", "height.signal=5cm",
-                                               "motion=" + motion, "seed=" + std::to_string(seed)});
+    const ResolvedConfig config = shipped_config(
+        "paper/object_i.yaml", {"scene=object_i_arm", "belief.surface=two_part", "belief.height.signal=5cm",
+                                "motion=" + motion, "seed=" + std::to_string(seed)});
     Experiment experiment(config.options, {shared_host()});
     Collector collector;
     experiment.run(collector);
@@ -57,9 +57,9 @@ TEST(Motions, OfOurOwnAreExactToTwoMillimetresAtLessThanFiveSeconds) {
 TEST(Motions, AdaptiveHoverSavesTimeWhereTheModelIsSure) {
   // A long length scale: after a few taps the height of a block is known everywhere.
   const auto seconds = [](const std::string& motion) {
-    const ResolvedConfig config = shipped_config(
-        "paper/object_ii.yaml",
-        {"kernel.length_scale=10cm", "surface=two_part", "height.signal=5cm", "taps=30", "seed=3", "motion=" + motion});
+    const ResolvedConfig config =
+        shipped_config("paper/object_ii.yaml", {"kernel.length_scale=10cm", "belief.surface=two_part",
+                                                "belief.height.signal=5cm", "taps=30", "seed=3", "motion=" + motion});
     Experiment experiment(config.options, {shared_host()});
     Collector collector;
     experiment.run(collector);

@@ -14,16 +14,16 @@ namespace {
 
 const char* const kAbove =
     "kernel: {type: rbf, length_scale: 3 cm}\nacquisition: {type: footprint_entropy}\nfitting: {type: fixed}\n"
-    "surface: two_part\nheight: {noise: 6 mm, outlier_probability: 0.03}\n"
+    "belief: {surface: two_part, height: {noise: 6 mm, outlier_probability: 0.03}}\n"
     "backend: {type: simulator}\ntaps: 20\ncandidates: {count: 15}\n"
     "scene: {area: {width: 23 cm, depth: 23 cm}, min_object_height: 1 cm, objects: [{type: wave, at: [12 cm, 12 "
     "cm]}]}\n";
 
 const char* const kAnySide =
     "kernel: {type: matern32, length_scale: 4 cm}\nacquisition: {type: discovery}\nfitting: {type: fixed}\n"
-    "surface: implicit\nheight: {signal: 6 mm, noise: 0.5 mm}\ninitial: {design: random, count: 1}\n"
-    "space: {particles: 4, moves: 50, approaches: 100}\nbackend: {type: simulator}\ntaps: 12\n"
-    "scene: {touch: any, area: {width: 26 cm, depth: 26 cm}, objects: [{type: block, at: [13 cm, 13 cm]}]}\n";
+    "belief: {type: solids, particles: 4, moves: 50}\ncandidates: {count: 100}\ninitial: {design: random, count: 1}\n"
+    "backend: {type: simulator}\ntaps: 12\n"
+    "scene: {area: {width: 26 cm, depth: 26 cm}, objects: [{type: block, at: [13 cm, 13 cm]}]}\n";
 
 /// A function of a plugin, what is said of it, and the rest of a config in which it is called.
 struct Spoilt {
@@ -36,7 +36,7 @@ struct Spoilt {
 
 void PrintTo(const Spoilt& one, std::ostream* out) { *out << one.kind << ": " << one.function; }
 
-const char* const kFootprint = "footprint: {type: gp_classifier, kernel: {type: rbf, length_scale: 3 cm}}\n";
+const Words kFootprint{"belief.footprint={type: gp_classifier, kernel: {type: rbf, length_scale: 3 cm}}"};
 
 class NotFinite : public Shell, public testing::WithParamInterface<std::tuple<Spoilt, const char*>> {};
 
@@ -44,10 +44,12 @@ TEST_P(NotFinite, EndsTheRunWithOneLineThatNamesPluginAndFunction) {
   const auto& [one, by] = GetParam();
   environment_ = {test::with_plugin("not_finite")};
   const bool sound_footprint = one.config == kAbove && one.kind != "footprint";
-  const std::string file = write("exp.yaml", std::string(one.config) + (sound_footprint ? kFootprint : "")).string();
-  const std::string at = one.kind == "shape" ? "scene.objects.0" : one.kind;
+  const std::string file = write("exp.yaml", one.config).string();
+  const std::string at = one.kind == "shape"       ? "scene.objects.0"
+                         : one.kind == "footprint" ? "belief.footprint"
+                                                   : one.kind;
   const Ended ended =
-      palpate(Words{"run", file, "--quiet"} +
+      palpate(Words{"run", file, "--quiet"} + (sound_footprint ? kFootprint : Words{}) +
               Words{at + ".type=not_finite", at + ".spoils='" + one.function + "'", at + ".by=" + by} + one.more);
   EXPECT_NE(ended.status, 0);
   EXPECT_EQ(ended.out, "");
@@ -57,7 +59,7 @@ TEST_P(NotFinite, EndsTheRunWithOneLineThatNamesPluginAndFunction) {
 }
 
 const Words kCeres{"fitting.type=ceres"};
-const Words kFarFit{"fitting.type=not_finite", "fitting.spoils='fit: far'", "engine.type=dense"};
+const Words kFarFit{"fitting.type=not_finite", "fitting.spoils='fit: far'", "belief.engine.type=dense"};
 
 INSTANTIATE_TEST_SUITE_P(
     By, NotFinite,
@@ -68,7 +70,10 @@ INSTANTIATE_TEST_SUITE_P(
             Spoilt{"kernel", "axis_covariance", "axis_covariance() returned"},
             Spoilt{"kernel", "parameters", "parameters() returned"},
             Spoilt{"kernel", "derivatives", "derivatives() returned", kCeres},
-            Spoilt{"kernel", "covariance", "covariance() returned", {"engine.type=dense", "engine.threads=3"}},
+            Spoilt{"kernel",
+                   "covariance",
+                   "covariance() returned",
+                   {"belief.engine.type=dense", "belief.engine.threads=3"}},
             Spoilt{"kernel", "covariance", "covariance() returned", {}, kAnySide},
             Spoilt{"kernel", "set_parameters", "() returned", kCeres},
             Spoilt{"kernel", "covariance of a far fit", "covariance() returned", kFarFit},

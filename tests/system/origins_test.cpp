@@ -31,15 +31,15 @@ std::string page_data(const fs::path& page) {
 }
 
 TEST_F(Origins, EndEachLineOfTheConfigOfARunAndStandOnItsPageAndInTheListOfRuns) {
-  ASSERT_EQ(palpate(Words{"run", config("paper/object_i.yaml")} + "height.noise=1mm taps=4 --quiet").status, 0);
+  ASSERT_EQ(palpate(Words{"run", config("paper/object_i.yaml")} + "belief.height.noise=1mm taps=4 --quiet").status, 0);
   const std::string text = text_of(directory() / "config.yaml");
   EXPECT_THAT(untold(directory()), testing::IsEmpty());
   EXPECT_THAT(text, AllOf(HasSubstr("/kernel/rbf.yaml:"), HasSubstr("  noise: 0.001 m  # command line\n"),
-                          HasSubstr("\ntie_tolerance: 1e-08  # default\n")));
+                          HasSubstr("\n  tie_tolerance: 1e-08  # default\n")));
   EXPECT_EQ(text_of(directory() / "manifest.json").find("rbf.yaml"), std::string::npos) << "they stand in one place";
   ASSERT_EQ(palpate({"report", directory().string()}).status, 0);
   EXPECT_THAT(page_data(directory() / "report.html"),
-              AllOf(HasSubstr("/kernel/rbf.yaml:"), HasSubstr(R"(["height.noise","0.001 m","command line"])")));
+              AllOf(HasSubstr("/kernel/rbf.yaml:"), HasSubstr(R"(["belief.height.noise","0.001 m","command line"])")));
   EXPECT_THAT(palpate("list").out, HasSubstr("weighted")) << "the group that was named";
   // Who goes on does not write them anew.
   test::cut_taps(directory());
@@ -50,7 +50,7 @@ TEST_F(Origins, EndEachLineOfTheConfigOfARunAndStandOnItsPageAndInTheListOfRuns)
 
 TEST_F(Origins, EndEachLineOfTheConfigOfEachJobHoweverManySettingsASweepHas) {
   ASSERT_EQ(palpate(Words{"sweep", config("paper/object_i.yaml")} +
-                    "label.prior_mean=range(0,66) taps=3 initial.count=3 --quiet")
+                    "belief.label.prior_mean=range(0,66) taps=3 initial.count=3 --quiet")
                 .status,
             0);
   for (const int job : {0, 65}) {

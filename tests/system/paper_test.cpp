@@ -81,7 +81,7 @@ Interval interval_of(const std::vector<double>& differences) {
 TEST_F(Paper, FittedHyperparametersKnowBetterThanFixedOnesWhatTheyDoNotKnow) {
   const int count = starts(100, 20);
   std::map<std::string, std::map<std::string, Cells>> runs;  // by scene and seed, then by fitting
-  for (const Cells& row : results("sweep/fitting.yaml", count, "surface=single taps=17"))
+  for (const Cells& row : results("sweep/fitting.yaml", count, "belief.surface=single taps=17"))
     runs[row.at("scene") + " " + row.at("seed")][row.at("fitting")] = row;
   for (const std::string scene : {"object_i ", "object_ii ", "object_i_right "}) {
     std::vector<double> nlpd;
@@ -104,7 +104,7 @@ TEST_F(Paper, TwoPartSurfaceKnowsTheHeightOfTheObjectToACentimetre) {
   const int count = starts(300, 60);
   double sum = 0.0;
   int live = 0;
-  for (const Cells& row : results("paper/object_i_right.yaml", count, "surface=two_part")) {
+  for (const Cells& row : results("paper/object_i_right.yaml", count, "belief.surface=two_part")) {
     if (!is_live(row)) continue;
     sum += std::stod(row.at("rmse_height_m"));
     ++live;

@@ -29,10 +29,10 @@ class ProgramRun : public Shell {
 
 TEST_F(ProgramRun, TapsAsThePluginWithTheSameScoresOnAnyNumberOfThreads) {
   const std::string acquisition = echo("uncertainty");
-  const fs::path own = ran(few(acquisition, "name=own tie_tolerance=0"));
-  const fs::path plugin = ran(few("acquisition=uncertainty", "name=plugin tie_tolerance=0"));
+  const fs::path own = ran(few(acquisition, "name=own choice.tie_tolerance=0"));
+  const fs::path plugin = ran(few("acquisition=uncertainty", "name=plugin choice.tie_tolerance=0"));
   EXPECT_EQ(text_of(own / "taps.csv"), text_of(plugin / "taps.csv"));
-  const fs::path threads = ran(few(acquisition, "name=threads engine.threads=2 tie_tolerance=0"));
+  const fs::path threads = ran(few(acquisition, "name=threads belief.engine.threads=2 choice.tie_tolerance=0"));
   EXPECT_EQ(text_of(own / "taps.csv"), text_of(threads / "taps.csv"));
 }
 
@@ -156,7 +156,7 @@ TEST_F(ProgramRun, AnInterruptEndsTheProgramAndLeavesARunToCarryOn) {
 
 TEST_F(ProgramRun, FromAnySideAProgramScoresLinesAndIsReplayedByItsRecord) {
   const std::string config = (test::source_folder() / "configs/any_side.yaml").string();
-  const Words few = "taps=9 scene=any_bowl space.approaches=200 space.moves=100";
+  const Words few = "taps=9 scene=any_bowl candidates.count=200 belief.moves=100";
   const fs::path own = ran(few + Words{echo("expected_discovery"), "name=own"}, config);
   write("echo.sh", "exit 1\n");
   EXPECT_THAT(palpate({"replay", own}).out, HasSubstr("all equal"));

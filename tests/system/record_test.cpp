@@ -135,14 +135,14 @@ INSTANTIATE_TEST_SUITE_P(OfEveryKind, KilledBeforeItsSummary,
                              {kPaper, "acquisition=uncertainty"},
                              {kPaper, "acquisition=random"},
                              {kPaper, "taps=3"},
-                             {kPaper, "fitting=ceres height.signal=5cm fitting.every=4"},
-                             {kPaper, "fitting=ceres height.signal=5cm surface=two_part"},
-                             {kPaper, "label.hyperparameters=shared"},
-                             {kPaper, "acquisition=random footprint=gp_classifier"},
+                             {kPaper, "fitting=ceres belief.height.signal=5cm fitting.every=4"},
+                             {kPaper, "fitting=ceres belief.height.signal=5cm belief.surface=two_part"},
+                             {kPaper, "belief.label.hyperparameters=shared"},
+                             {kPaper, "acquisition=random belief.footprint=gp_classifier"},
                              {kPaper, {"stop.robot_time=60 s", "taps=100"}},
                              {kPaper,
                               {"acquisition=random", "stop.max_standard_deviation=90 cm", "kernel.length_scale=5 cm"}},
-                             {kPaper, {"engine.type=lowrank", "kernel.length_scale=6 cm"}}}));
+                             {kPaper, {"belief.engine.type=lowrank", "kernel.length_scale=6 cm"}}}));
 
 }  // namespace
 }  // namespace palpate

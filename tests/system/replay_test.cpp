@@ -27,8 +27,8 @@ class Replay : public Shell {
 TEST_F(Replay, FindsEveryNumberEqualAndFollowsEveryFit) {
   for (const char* acquisition : {"weighted", "uncertainty", "random"})
     replayed(std::string("acquisition=") + acquisition);
-  for (const char* extra : {"surface=two_part", "label.hyperparameters=shared", "fitting.every=5"})
-    replayed(Words("fitting=ceres height.signal=5cm") + extra);
+  for (const char* extra : {"belief.surface=two_part", "belief.label.hyperparameters=shared", "fitting.every=5"})
+    replayed(Words("fitting=ceres belief.height.signal=5cm") + extra);
 }
 
 TEST_F(Replay, SearchesAgainWhereTheRunDid) {
@@ -92,16 +92,17 @@ TEST_F(Replay, KnowsWhatABackendReadWhoeverChoseTheSecondTap) {
 }
 
 TEST_F(Replay, KnowsWhatWasReadByARunThatStoppedAtItsFirstLook) {
-  for (const char* reads : {"footprint=primitives acquisition=footprint_entropy",
-                            "footprint=primitives acquisition=weighted", "surface=two_part acquisition=weighted"}) {
+  for (const char* reads :
+       {"belief.footprint=primitives acquisition=footprint_entropy", "belief.footprint=primitives acquisition=weighted",
+        "belief.surface=two_part acquisition=weighted"}) {
     const fs::path run =
-        replayed(Words(reads) + "fallback=none stop.max_standard_deviation=10m", config("process.yaml"));
+        replayed(Words(reads) + "choice.fallback=none stop.max_standard_deviation=10m", config("process.yaml"));
     EXPECT_THAT(text_of(run / "summary.json"), HasSubstr("\"max_standard_deviation\"")) << reads;
   }
 }
 
 TEST_F(Replay, AgreesWhereAForecastReadsNothingBeforeTheFirstHit) {
-  const std::string taps = part_of(replayed("surface=two_part stop.expected_rmse=1mm"), "tap");
+  const std::string taps = part_of(replayed("belief.surface=two_part stop.expected_rmse=1mm"), "tap");
   EXPECT_THAT(taps.substr(0, taps.find("{\"tap\": 7")), Not(HasSubstr("surface_gp"))) << "the first hit is tap 8";
   EXPECT_THAT(taps, HasSubstr("surface_gp"));
 }

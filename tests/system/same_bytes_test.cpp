@@ -14,10 +14,10 @@ namespace {
 using ARun = Shell;
 
 TEST_F(ARun, GivesTheSameBytesUnderTheSameIdEachTimeAndOnAnyNumberOfThreads) {
-  for (const char* posterior : {"engine.type=dense", "engine.type=grid", "engine.type=lowrank"}) {
+  for (const char* posterior : {"belief.engine.type=dense", "belief.engine.type=grid", "belief.engine.type=lowrank"}) {
     fs::path first;
     for (const char* threads : {"1", "2", "3", "1"}) {
-      const fs::path again = ran({"candidates.count=150", posterior, std::string("engine.threads=") + threads});
+      const fs::path again = ran({"candidates.count=150", posterior, std::string("belief.engine.threads=") + threads});
       if (first.empty()) {
         first = here() / again.filename();
         fs::rename(again, first);

@@ -32,9 +32,9 @@ std::vector<int> taps_of(const ExperimentOptions& options) {
 /// Ways to compute the same, overrides and a value of PALPATE_INSTRUCTIONS.
 std::vector<std::pair<std::vector<std::string>, std::string>> ways() {
   std::vector<std::pair<std::vector<std::string>, std::string>> out;
-  for (const char* engine : {"engine.type=dense", "engine.type=grid", "engine.type=lowrank"}) {
+  for (const char* engine : {"belief.engine.type=dense", "belief.engine.type=grid", "belief.engine.type=lowrank"}) {
     for (const Instructions set : math::instruction_sets()) out.push_back({{engine}, math::name_of(set)});
-    out.push_back({{engine, "engine.threads=2"}, ""});
+    out.push_back({{engine, "belief.engine.threads=2"}, ""});
   }
   return out;
 }
@@ -76,7 +76,8 @@ INSTANTIATE_TEST_SUITE_P(Of, SameTaps,
 TEST(TieRule, WithoutItRoundingDecidesTaps) {
   int different = 0;
   ExperimentOptions dense =
-      test::shipped_config("paper/object_i.yaml", {"acquisition=weighted", "tie_tolerance=0", "engine.type=dense"})
+      test::shipped_config("paper/object_i.yaml",
+                           {"acquisition=weighted", "choice.tie_tolerance=0", "belief.engine.type=dense"})
           .options;
   ExperimentOptions lowrank = dense;
   lowrank.engine.type = EngineOptions::Type::lowrank;

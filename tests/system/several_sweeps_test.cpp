@@ -56,21 +56,21 @@ TEST_F(SeveralSweeps, AreComparedDrawnAndRankedAsTheOneSweepOfAllTheirJobs) {
 
 TEST_F(SeveralSweeps, DoNotDifferInTheNumberOfThreads) {
   const auto with_engine = [&](const std::string& name, const std::string& engine) {
-    return named(name, {}, write(name + ".yaml", text_of(paper()) + "engine: {" + engine + "}\n").string());
+    return named(name, {"belief.engine." + engine}, paper());
   };
   const fs::path first = with_engine("first", "threads: 1");
   const auto notes = [&](const fs::path& other) {
     return about("compare", {first, other}, "--by acquisition --metric rmse_m").err;
   };
   EXPECT_THAT(notes(with_engine("second", "threads: 2")), Not(HasSubstr("engine")));
-  EXPECT_THAT(notes(with_engine("third", "type: dense")), HasSubstr("differ in engine.type"));
+  EXPECT_THAT(notes(with_engine("third", "type: dense")), HasSubstr("differ in belief.engine.type"));
 }
 
 TEST_F(SeveralSweeps, GroupAnOptionThatOneSweepsAndTheOtherHasInItsConfig) {
-  const fs::path swept = named("earlier", "acquisition=random,uncertainty height.noise=2mm");
+  const fs::path swept = named("earlier", "acquisition=random,uncertainty belief.height.noise=2mm");
   // The same acquisition and noise, in another unit, on seeds of which four are the same.
   const fs::path fixed =
-      named("later", "seed=range(1,6) height.noise=0.2cm motion.speed=5cm/s acquisition=uncertainty");
+      named("later", "seed=range(1,6) belief.height.noise=0.2cm motion.speed=5cm/s acquisition=uncertainty");
   const Ended ended = about("compare", {swept, fixed},
                             "--by acquisition,motion.speed --metric rmse_m --format csv --baseline random,0.024m/s");
   std::vector<std::string> groups;

@@ -119,12 +119,12 @@ TEST_F(Sweeps, CountAsDeadStartsFromAnySideWhatNeverHitAndNoneWhereACameraLooked
         sweep(Words("scene=any_bowl acquisition=random taps=6 seed=1,2 --quiet") + more, config("any_side.yaml")).out,
         "all jobs");
   };
-  EXPECT_EQ(of("space.moves=2"), "0.0%");
+  EXPECT_EQ(of("belief.moves=2"), "0.0%");
   bool late = false;
   for (const Cells& row : csv_rows(text_of(directory() / "results.csv")))
     late = late || std::stoi(row.at("first_hit_tap")) > 3;
   EXPECT_TRUE(late) << "else this tests nothing: its initial taps are more than initial.count";
-  EXPECT_EQ(of({"space.view={azimuth: 30 deg, rays: 100}", "name=view"}), "-");
+  EXPECT_EQ(of({"belief.view={azimuth: 30 deg, rays: 100}", "name=view"}), "-");
 }
 
 TEST_F(Sweeps, CalledAgainRunWhatIsMissingAndTellTheSame) {

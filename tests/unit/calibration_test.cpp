@@ -59,8 +59,8 @@ double coverage(const std::string& kernel, const std::vector<std::string>& overr
     std::vector<std::string> all{"seed=" + std::to_string(seed),
                                  "kernel=" + kernel,
                                  "kernel.length_scale=4cm",
-                                 "height.signal=5cm",
-                                 "height.noise=2mm",
+                                 "belief.height.signal=5cm",
+                                 "belief.height.noise=2mm",
                                  "candidates.count=12",
                                  "taps=25",
                                  "acquisition=random"};
@@ -87,11 +87,12 @@ TEST(Calibration, HoldsOnSurfacesDrawnFromTheModel) {
 
 TEST(Calibration, HoldsForAnUnknownLevelOfATwoPartSurface) {
   // Eight signals up, so that every tap is on the object.
-  EXPECT_NEAR(coverage("rbf", {"surface=two_part", "height.signal=5cm"}, 0.4), 0.95, 0.02);
+  EXPECT_NEAR(coverage("rbf", {"belief.surface=two_part", "belief.height.signal=5cm"}, 0.4), 0.95, 0.02);
 }
 
 TEST(Calibration, HoldsWithFittedHyperparameters) {
-  const std::vector<std::string> fitted{"fitting=ceres", "fitting.every=25", "height.signal=20cm", "height.noise=1cm"};
+  const std::vector<std::string> fitted{"fitting=ceres", "fitting.every=25", "belief.height.signal=20cm",
+                                        "belief.height.noise=1cm"};
   EXPECT_NEAR(coverage("rbf", fitted, 0.0), 0.95, 0.05);
 }
 

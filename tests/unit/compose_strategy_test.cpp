@@ -13,7 +13,7 @@ class ComposeStrategy : public test::ComposeFixture {
     folder_.write("effects/none.yaml", "effects: {}\n");
     folder_.write("strategy/bold.yaml",
                   "defaults:\n  - kernel: rough\n  - acquisition: weighted\n"
-                  "kernel: {length_scale: 4 cm}\nsurface: two_part\ntaps: 99\nscene: {desk: 5 cm}\n");
+                  "kernel: {length_scale: 4 cm}\nbelief: {surface: two_part}\ntaps: 99\nscene: {desk: 5 cm}\n");
     folder_.write("strategy/bolder.yaml", "defaults:\n  - strategy: bold\nkernel: {length_scale: 6 cm}\n");
   }
 
@@ -25,7 +25,7 @@ TEST_F(ComposeStrategy, LiesBelowAllThatTheConfigSays) {
   EXPECT_EQ(value(text, "kernel.length_scale"), "4 cm");
   EXPECT_EQ(value(text, "kernel.nu"), "1.5");
   EXPECT_EQ(value(text, "acquisition.type"), "weighted");
-  EXPECT_EQ(value(text + "surface: single\n", "surface"), "single");
+  EXPECT_EQ(value(text + "belief: {surface: single}\n", "belief.surface"), "single");
   EXPECT_EQ(value("strategy: bold\nkernel: {length_scale: 9 cm}\n", "kernel.length_scale"), "9 cm");
   EXPECT_EQ(value("defaults:\n  - kernel: rbf\n  - strategy: bold\n", "kernel.type"), "rbf")
       << "wherever it stands among the defaults";
@@ -40,17 +40,17 @@ TEST_F(ComposeStrategy, HasNoSayInTheWorldAndTheBudget) {
 TEST_F(ComposeStrategy, BuildsOnAnother) {
   EXPECT_EQ(value("strategy: bolder\n", "kernel.length_scale"), "6 cm");
   EXPECT_EQ(value("strategy: bolder\n", "kernel.nu"), "1.5");
-  EXPECT_EQ(value("strategy: bolder\n", "surface"), "two_part");
+  EXPECT_EQ(value("strategy: bolder\n", "belief.surface"), "two_part");
 }
 
 TEST_F(ComposeStrategy, AsAnOverrideTakesThePlaceOfEveryKeyThatItHas) {
   const std::string text =
       "defaults:\n  - kernel: rbf\n  - fitting: ceres\nkernel: {length_scale: 1 cm, alpha: 3}\n"
-      "surface: single\nrepeat: allow\ntaps: 5\n";
+      "belief: {surface: single}\nchoice: {repeat: allow}\ntaps: 5\n";
   const std::vector<std::string> bold{"strategy=bold"};
   EXPECT_EQ(value(text, "kernel", bold), of("{type: matern, length_scale: 4 cm, nu: 1.5}"));
-  EXPECT_EQ(value(text, "surface", bold), "two_part");
-  EXPECT_EQ(value(text, "repeat", bold), "allow") << "of which it says nothing";
+  EXPECT_EQ(value(text, "belief.surface", bold), "two_part");
+  EXPECT_EQ(value(text, "choice.repeat", bold), "allow") << "of which it says nothing";
   EXPECT_EQ(value(text, "fitting.type", bold), "ceres");
   EXPECT_EQ(value(text, "taps", bold), "5");
   EXPECT_EQ(value("strategy: bolder\n", "kernel.length_scale", bold), "4 cm");
@@ -127,9 +127,9 @@ TEST_F(ComposeStrategy, AMotionThatABackendReplacesIsNoLongerAGroupOfTheConfig) 
 }
 
 TEST_F(ComposeStrategy, IsTheOneOfItsFolderEvenForAConfigOfThatName) {
-  folder_.write("bold.yaml", "strategy: bold\nsurface: single\n");
+  folder_.write("bold.yaml", "strategy: bold\nbelief: {surface: single}\n");
   EXPECT_EQ(value("strategy: bold\n", "kernel.nu"), "1.5");
-  EXPECT_EQ(value("strategy: bold\n", "surface"), "two_part");
+  EXPECT_EQ(value("strategy: bold\n", "belief.surface"), "two_part");
 }
 
 TEST_F(ComposeStrategy, RefusesAnUnknownOneAndACycle) {

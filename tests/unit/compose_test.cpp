@@ -113,8 +113,8 @@ TEST_F(Compose, LetsAnOverrideReachAPluginInsideAnother) {
   EXPECT_EQ(value(kNested, "kernel.kernels.1.type", {"kernel.kernels.0.kernel.length_scale=3cm"}), "rbf");
   folder_.write("kernel/sum.yaml", kNested);
   EXPECT_EQ(value("kernel: sum\n", path, {"kernel.kernels.0.kernel.length_scale=3cm"}), "3cm");
-  EXPECT_EQ(value("height: {kernel: sum}\n", std::string("height.") + path,
-                  {"height.kernel.kernels.0.kernel.length_scale=3cm"}),
+  EXPECT_EQ(value("belief: {height: {kernel: sum}}\n", std::string("belief.height.") + path,
+                  {"belief.height.kernel.kernels.0.kernel.length_scale=3cm"}),
             "3cm");
 }
 
@@ -179,19 +179,21 @@ TEST_F(Compose, FallsBackToTheShippedGroups) {
 }
 
 TEST_F(Compose, LetsAProcessInheritWhatItDoesNotSayOfTheSharedKernel) {
-  const std::string text = "defaults:\n  - kernel: rough\nheight:\n  kernel: {length_scale: 4 cm}\n";
-  EXPECT_EQ(value(text, "height.kernel.type"), "matern");
-  EXPECT_EQ(value(text, "height.kernel.nu"), "1.5");
-  EXPECT_EQ(value(text, "height.kernel.length_scale"), "4 cm");
+  const std::string text = "defaults:\n  - kernel: rough\nbelief:\n  height: {kernel: {length_scale: 4 cm}}\n";
+  EXPECT_EQ(value(text, "belief.height.kernel.type"), "matern");
+  EXPECT_EQ(value(text, "belief.height.kernel.nu"), "1.5");
+  EXPECT_EQ(value(text, "belief.height.kernel.length_scale"), "4 cm");
   EXPECT_EQ(value(text, "kernel.length_scale"), "2.5 cm");
-  EXPECT_EQ(value(text, "height.kernel.length_scale", {"kernel.length_scale=9cm"}), "4 cm") << "it keeps its word";
-  EXPECT_EQ(value(text, "height.kernel.nu", {"kernel.nu=2.5"}), "2.5");
+  EXPECT_EQ(value(text, "belief.height.kernel.length_scale", {"kernel.length_scale=9cm"}), "4 cm")
+      << "it keeps its word";
+  EXPECT_EQ(value(text, "belief.height.kernel.nu", {"kernel.nu=2.5"}), "2.5");
 }
 
 TEST_F(Compose, ReadsAGroupForOneProcessAndGivesItNoKernelOfItsOwnUnasked) {
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nheight: {signal: 1 m}\n", "height.kernel"), "-");
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nlabel:\n  kernel: rough\n", "label.kernel.type"), "matern");
-  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n", "label.kernel.nu", {"label.kernel=rough"}), "1.5");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nbelief: {height: {signal: 1 m}}\n", "belief.height.kernel"), "-");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\nbelief: {label: {kernel: rough}}\n", "belief.label.kernel.type"),
+            "matern");
+  EXPECT_EQ(value("defaults:\n  - kernel: rbf\n", "belief.label.kernel.nu", {"belief.label.kernel=rough"}), "1.5");
 }
 
 TEST_F(Compose, LeavesTheNamesOfASweepAlone) {
@@ -211,8 +213,8 @@ TEST_F(Compose, RefusesWhatIsNoConfigOrNamesNoGroupWithItsPlace) {
   const std::pair<const char*, const char*> cases[] = {
       {"defaults:\n  - kernl: rbf\n", "c.yaml:2:5: unknown group 'kernl', did you mean 'kernel'?"},
       {"defaults:\n  - engine: dense\n",
-       "c.yaml:2:5: unknown group 'engine', known: kernel, acquisition, fitting, footprint, scene, scene.effects, "
-       "backend, motion, strategy, expect"},
+       "c.yaml:2:5: unknown group 'engine', known: kernel, fitting, acquisition, backend, motion, scene, "
+       "scene.effects, belief.footprint, strategy, expect"},
       {"defaults:\n  - scene: desc\n", "c.yaml:2:12: no file scene/desc.yaml, did you mean 'desk'?"},
       {"defaults: {kernel: rbf}\n", "c.yaml:1:11: defaults: expects a list, write '- kernel: rbf', one group per line"},
       {"defaults:\n  - rbf\n", "c.yaml:2:5: defaults: expects '- group: name', for example '- kernel: rbf'"},

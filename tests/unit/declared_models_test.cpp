@@ -49,18 +49,18 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
   using testing::ElementsAre;
   EXPECT_THAT(readers({}), ElementsAre("height GP: acquisition weighted", "label GP: acquisition weighted",
                                        "height GP: fallback uncertainty, from its first use on"));
-  EXPECT_THAT(readers({"acquisition=random", "fallback=none"}), ElementsAre());
-  EXPECT_THAT(readers({"acquisition=footprint_entropy", "fallback=none"}),
+  EXPECT_THAT(readers({"acquisition=random", "choice.fallback=none"}), ElementsAre());
+  EXPECT_THAT(readers({"acquisition=footprint_entropy", "choice.fallback=none"}),
               ElementsAre("height GP: acquisition footprint_entropy", "label GP: acquisition footprint_entropy"))
       << "two outputs of one process";
-  EXPECT_THAT(readers({"acquisition=footprint_entropy", "fallback=none", "label.noise=1e-3"}),
+  EXPECT_THAT(readers({"acquisition=footprint_entropy", "choice.fallback=none", "belief.label.noise=1e-3"}),
               ElementsAre("label GP: acquisition footprint_entropy"));
   EXPECT_THAT(
-      readers({"acquisition=footprint_entropy", "footprint=primitives", "fallback=none", "surface=two_part",
-               "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
+      readers({"acquisition=footprint_entropy", "belief.footprint=primitives", "choice.fallback=none",
+               "belief.surface=two_part", "stop.expected_rmse=1cm", "stop.max_standard_deviation=1cm"}),
       ElementsAre("footprint primitives: acquisition footprint_entropy", "height GP: stop.max_standard_deviation",
                   "surface GP: stop.expected_rmse", "footprint primitives: stop.expected_rmse"));
-  EXPECT_THAT(readers({"acquisition=random", "fallback=none", "motion.adaptive_hover={clearance: 2cm}"}),
+  EXPECT_THAT(readers({"acquisition=random", "choice.fallback=none", "motion.adaptive_hover={clearance: 2cm}"}),
               ElementsAre("height GP: backend simulator"));
 }
 
@@ -69,13 +69,13 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
        std::vector<Words>{{},
                           {"acquisition=random"},
                           {"acquisition=footprint_entropy"},
-                          {"acquisition=footprint_entropy", "label.noise=1e-3"},
-                          {"acquisition=uncertainty", "surface=two_part"},
-                          {"acquisition=object_uncertainty", "footprint=primitives", "surface=two_part"},
-                          {"acquisition=random", "surface=two_part", "stop.expected_rmse=1mm"},
-                          {"acquisition=random", "surface=two_part", "motion.adaptive_hover={}"}}) {
+                          {"acquisition=footprint_entropy", "belief.label.noise=1e-3"},
+                          {"acquisition=uncertainty", "belief.surface=two_part"},
+                          {"acquisition=object_uncertainty", "belief.footprint=primitives", "belief.surface=two_part"},
+                          {"acquisition=random", "belief.surface=two_part", "stop.expected_rmse=1mm"},
+                          {"acquisition=random", "belief.surface=two_part", "motion.adaptive_hover={}"}}) {
     Words all = words;
-    all.insert(all.end(), {"fallback=none", "initial.design=grid", "initial.count=9"});  // one of them hits
+    all.insert(all.end(), {"choice.fallback=none", "initial.design=grid", "initial.count=9"});  // one of them hits
     Prepared prepared("paper/object_i.yaml", all);
     std::set<std::string> named;
     for (const PlannedModel& one : prepared.experiment.models()) named.insert(one.model);
@@ -109,7 +109,7 @@ TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
                                              {"uncertainty", "single"},
                                              {"footprint_entropy", "two_part"}}) {
     const ResolvedConfig config =
-        shipped_config("paper/object_i.yaml", {"acquisition=" + acquisition, "surface=" + surface});
+        shipped_config("paper/object_i.yaml", {"acquisition=" + acquisition, "belief.surface=" + surface});
     const fs::path alone = folder.path() / (acquisition + surface + "_alone");
     const fs::path followed = folder.path() / (acquisition + surface + "_followed");
     const Row summary = start_run(environment, config, alone, {}).summary;

@@ -20,8 +20,9 @@ TEST(Diagnostics, CountATapThatSeveralModelsSetAsideOnce) {
 TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
   const std::vector<TapResult> answers(6, contact_at(0.05));
   Finished run("default.yaml",
-               {"label.hyperparameters=shared", "surface=single", "height.outlier_probability=none",
-                "footprint=gp_regression", "height.noise=0mm", "candidates.count=1", "repeat=allow", "taps=6"},
+               {"belief.label.hyperparameters=shared", "belief.surface=single",
+                "belief.height.outlier_probability=none", "belief.footprint=gp_regression", "belief.height.noise=0mm",
+                "candidates.count=1", "choice.repeat=allow", "taps=6"},
                scripted(answers));
   run.read({quantity::kLabelMean, quantity::kHeightMean});
   const RunResult result = run.experiment.result();
@@ -65,7 +66,8 @@ struct Impossible final : Kernel {
 
 TEST(Diagnostics, OfTheClassifierTellJitterAsAVarianceAndItsCountBeside) {
   const Instead<Kernel> plugins(std::make_shared<Impossible>());
-  Finished run("default.yaml", {"footprint=gp_classifier", "engine.type=dense", "acquisition=random", "taps=6"},
+  Finished run("default.yaml",
+               {"belief.footprint=gp_classifier", "belief.engine.type=dense", "acquisition=random", "taps=6"},
                scripted({contact_at(0.05), contact_at(0.0), contact_at(0.05), contact_at(0.05)}), plugins);
   run.read({quantity::kObjectProbability, quantity::kHeightMean});
   const RunResult result = run.experiment.result();

@@ -158,8 +158,8 @@ TEST(Draw, RefusesRangesThatAreNone) {
 
 TEST(Draw, IsTheOnlyPlaceForARange) {
   const std::string why = "is not a number, use ranges only in scene.objects.draw.of and in the keys of sweep.sobol";
-  EXPECT_EQ(error_of([] { shipped_config("paper/object_i.yaml", {"height.signal=uniform(1 m, 2 m)"}); }),
-            "command line: height.signal: 'uniform(1 m, 2 m)' " + why);
+  EXPECT_EQ(error_of([] { shipped_config("paper/object_i.yaml", {"belief.height.signal=uniform(1 m, 2 m)"}); }),
+            "command line: belief.height.signal: 'uniform(1 m, 2 m)' " + why);
   EXPECT_EQ(error_of([] {
               shipped_config("paper/object_i.yaml", {"scene.objects=[{type: block, length: \"uniform(1 m, 2 m)\"}]"});
             }),

@@ -87,13 +87,13 @@ TEST_P(Earlier, HasItsShareOfTheTimes) {
   EXPECT_EQ(cell(untimed, "compute.infer"), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEveryKind, Earlier,
-                         ::testing::Values(std::vector<std::string>{"scene.placement=random"},
-                                           std::vector<std::string>{"scene=ring", "scene.effects=standard", "seed=3"},
-                                           std::vector<std::string>{"strategy=weighted", "seed=4"},
-                                           std::vector<std::string>{"strategy=weighted_two_part", "fitting=ceres",
-                                                                    "fitting.every=4"},
-                                           std::vector<std::string>{"strategy=random", "footprint=gp_classifier"}));
+INSTANTIATE_TEST_SUITE_P(
+    OfEveryKind, Earlier,
+    ::testing::Values(std::vector<std::string>{"scene.placement=random"},
+                      std::vector<std::string>{"scene=ring", "scene.effects=standard", "seed=3"},
+                      std::vector<std::string>{"strategy=weighted", "seed=4"},
+                      std::vector<std::string>{"strategy=weighted_two_part", "fitting=ceres", "fitting.every=4"},
+                      std::vector<std::string>{"strategy=random", "belief.footprint=gp_classifier"}));
 
 }  // namespace
 }  // namespace palpate::test

@@ -102,8 +102,8 @@ TEST(ExpectedRmse, OfTheDefaultIsNearTheTrueOneOverManySeedsAndFalls) {
 
 // One process for object and desk is too sure of itself at edges. Over 40 seeds: 2.54, 0.98 and 0.62.
 TEST(ExpectedRmse, OfOneProcessForObjectAndDeskIsNearTheTrueOneOverManySeedsAndFalls) {
-  const Moments moments = over_seeds(
-      {"surface=single", "acquisition=uncertainty", "footprint=gp_regression", "height.outlier_probability=none"});
+  const Moments moments = over_seeds({"belief.surface=single", "acquisition=uncertainty",
+                                      "belief.footprint=gp_regression", "belief.height.outlier_probability=none"});
   EXPECT_GT(moments.middle.ratio(), 0.8);
   EXPECT_LT(moments.middle.ratio(), 1.25);
   EXPECT_GT(moments.last.ratio(), 0.45);
@@ -113,7 +113,7 @@ TEST(ExpectedRmse, OfOneProcessForObjectAndDeskIsNearTheTrueOneOverManySeedsAndF
 
 /// The formula of experiment/expected_rmse.hpp, cell by cell and by matrices of the taps alone. The kernel is rbf.
 double rmse_by_the_formula(const Prepared& run, double length_scale) {
-  const ExperimentOptions& options = run.config.options;
+  const HeightMapOptions options = height_map_options(run.config);
   const HeightModels& models = run.models();
   const bool two_part = models.is_two_part();
   const std::vector<Touch>& hits = models.log().object_contacts();
@@ -150,11 +150,16 @@ double rmse_by_the_formula(const Prepared& run, double length_scale) {
 }
 
 TEST(ExpectedRmse, IsAtEachTapThatOfTheFormulaAlsoWhereTheDeskIsNotAtZero) {
-  const std::vector<std::string> plain{
-      "scene.desk=-3 cm", "height.outlier_probability=none", "height.offset=none", "motion=gentle",
-      "taps=14",          "kernel.length_scale=3 cm"};
+  const std::vector<std::string> plain{"scene.desk=-3 cm",
+                                       "belief.height.outlier_probability=none",
+                                       "belief.height.offset=none",
+                                       "motion=gentle",
+                                       "taps=14",
+                                       "kernel.length_scale=3 cm"};
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
-           {}, {"footprint=gp_classifier"}, {"surface=single", "acquisition=uncertainty", "footprint=gp_regression"}}) {
+           {},
+           {"belief.footprint=gp_classifier"},
+           {"belief.surface=single", "acquisition=uncertainty", "belief.footprint=gp_regression"}}) {
     std::vector<std::string> all = plain;
     all.insert(all.end(), more.begin(), more.end());
     Prepared run("default.yaml", all, nullptr, shared_host(),
@@ -176,7 +181,7 @@ TEST(ExpectedRmse, IsAtEachTapThatOfTheFormulaAlsoWhereTheDeskIsNotAtZero) {
 TEST(ExpectedRmse, IsSeenAndChangesNoTapAndNoResult) {
   const std::vector<std::pair<const char*, std::vector<std::string>>> configs{
       {"default.yaml", {"taps=12"}},
-      {"default.yaml", {"taps=12", "height.outlier_probability=none", "footprint=gp_classifier"}},
+      {"default.yaml", {"taps=12", "belief.height.outlier_probability=none", "belief.footprint=gp_classifier"}},
       {"default.yaml", {"taps=12", "acquisition=random"}},
       {"paper/object_i.yaml", {}},
   };
@@ -207,8 +212,8 @@ TEST(ExpectedRmse, NeedsNoTruthAndNoModelThatTheRunHasNot) {
   EXPECT_LT(*expected, 0.2);
 
   Finished blind("default.yaml",
-                 {"taps=6", "acquisition=random", "initial.design=random", "height.outlier_probability=none",
-                  "footprint=gp_classifier", "motion=gentle", "log.surface=false"},
+                 {"taps=6", "acquisition=random", "initial.design=random", "belief.height.outlier_probability=none",
+                  "belief.footprint=gp_classifier", "motion=gentle", "log.surface=false"},
                  scripted({contact_at(0.1), contact_at(0.1)}));
   EXPECT_FALSE(shown_rmse(blind));
   EXPECT_FALSE(number_of(blind.experiment.result().state, "expected_rmse_m"));

@@ -82,8 +82,9 @@ TEST(ShownBelief, ThatNobodyReadsBuildsNoModel) {
 
 TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
   for (const char* acquisition : {"acquisition=random", "acquisition=uncertainty", "acquisition=weighted"}) {
-    for (const char* models : {"surface=single", "surface=two_part", "label.hyperparameters=shared"}) {
-      const std::vector<std::string> words{acquisition, models, "fitting=ceres", "height.signal=5 cm",
+    for (const char* models :
+         {"belief.surface=single", "belief.surface=two_part", "belief.label.hyperparameters=shared"}) {
+      const std::vector<std::string> words{acquisition, models, "fitting=ceres", "belief.height.signal=5 cm",
                                            "candidates.count=12"};
       const Finished quiet("paper/object_i.yaml", words, four_taps());
       const auto backend = four_taps();

@@ -48,7 +48,7 @@ TEST(Experiment, ForbiddenRepeatsTapEveryCandidateAtMostOnceAndStopWhenNoneIsLef
 }
 
 TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
-  Finished run("paper/object_i.yaml", {"taps=6", "repeat=allow"},
+  Finished run("paper/object_i.yaml", {"taps=6", "choice.repeat=allow"},
                scripted({contact_at(0.09), failure(Outcome::unreachable), failure(Outcome::timeout),
                          failure(Outcome::no_contact), failure(Outcome::aborted), contact_at(0.0)}));
   const RunResult result = run.experiment.result();
@@ -216,7 +216,7 @@ TEST(Experiment, GoesOnAfterAHundredHitsAsTheUnbrokenRunWithWhoWasDoubtedBefore)
                                        "taps=150",
                                        "seed=4",
                                        "scene.effects=standard",
-                                       "height.outlier_probability=0.1",
+                                       "belief.height.outlier_probability=0.1",
                                        "acquisition={type: object_uncertainty}"};
   const Finished unbroken("default.yaml", words);
   ASSERT_GT(unbroken.experiment.counts().object_taps, 105);

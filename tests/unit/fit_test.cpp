@@ -56,7 +56,7 @@ class Fit : public testing::Test {
 };
 
 TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
-  const auto shared = run({"label.hyperparameters=shared", "label.signal=3"});
+  const auto shared = run({"belief.label.hyperparameters=shared", "belief.label.signal=3"});
   shared->experiment.result();
   ASSERT_EQ(fitting_->calls.size(), 3U) << "at 5, 10 and 15 of 17 contacts";
   for (std::size_t i = 0; i < 3; ++i) {
@@ -86,7 +86,7 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
 }
 
 TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
-  const auto own = run({"surface=two_part"});
+  const auto own = run({"belief.surface=two_part"});
   const RunResult result = own->experiment.result();
   int of_surface = 0;
   for (const Call& call : fitting_->calls) {
@@ -105,7 +105,7 @@ TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
 }
 
 TEST_F(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {
-  run({"surface=two_part", "label.hyperparameters=shared"})->experiment.result();
+  run({"belief.surface=two_part", "belief.label.hyperparameters=shared"})->experiment.result();
   for (const Call& call : fitting_->calls) EXPECT_EQ(call.targets.size(), call.mean_ratio > 0.0 ? 1U : 2U);
 }
 
@@ -144,12 +144,12 @@ TEST_F(Fit, ThatFailsIsCountedAndChangesNothing) {
 
 TEST_F(Fit, ThatFailsForHeightsAndLabelsTogetherIsOneFailure) {
   fitting_->fails = true;
-  EXPECT_EQ(run({"label.hyperparameters=shared"})->experiment.result().state.diagnostics.at("fit_failed"), 3);
+  EXPECT_EQ(run({"belief.label.hyperparameters=shared"})->experiment.result().state.diagnostics.at("fit_failed"), 3);
 }
 
 TEST_F(Fit, OfAResumedRunIsThatOfTheUnbrokenOne) {
   for (const std::string how : {"own", "shared"}) {
-    const std::vector<std::string> words{"surface=two_part", "label.hyperparameters=" + how, "seed=3"};
+    const std::vector<std::string> words{"belief.surface=two_part", "belief.label.hyperparameters=" + how, "seed=3"};
     Finished unbroken(kConfig, words, nullptr, plugins_);
     for (const std::size_t cut : {4U, 5U, 12U}) {
       Prepared rest(kConfig, words, nullptr, plugins_);
@@ -182,9 +182,9 @@ TEST_F(Fit, OfLabelsThatShareConcernsTheKernelOfTheHeightsAlone) {
     FitSummary fit(FitProblem&, Random&) const override { return {}; }
   };
   const Instead<Fitting> choosy(std::make_shared<Choosy>());
-  std::vector<std::string> words{"kernel=rational_quadratic", "height.kernel=matern32"};
+  std::vector<std::string> words{"kernel=rational_quadratic", "belief.height.kernel=matern32"};
   EXPECT_THROW(Prepared(kConfig, words, nullptr, choosy), Error);
-  words.emplace_back("label.hyperparameters=shared");
+  words.emplace_back("belief.label.hyperparameters=shared");
   EXPECT_NO_THROW(Prepared(kConfig, words, nullptr, choosy));
 }
 

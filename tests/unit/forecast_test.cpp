@@ -113,7 +113,8 @@ TEST(GoodEnough, WantsLittleToBeLeftWhereThatIsKnownAndThenLessOfAMargin) {
 
 TEST(Forecast, AsksTheFootprintWhatIsLeftAndSaysNothingWhereNobodyKnows) {
   for (const char* footprint : {"primitives", "gp_classifier", "gp_regression"}) {
-    Prepared run("default.yaml", {"taps=12", "stop.expected_rmse=1e-6 mm", std::string("footprint=") + footprint});
+    Prepared run("default.yaml",
+                 {"taps=12", "stop.expected_rmse=1e-6 mm", std::string("belief.footprint=") + footprint});
     int told = 0;
     run.journal.announcing = [&](const TapRecord& tap) {
       const std::optional<double> left = run.belief().scalar(quantity::kUndiscoveredProbability);
@@ -130,9 +131,10 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
   std::vector<TapResult> answers(20, contact_at(0.0));
   answers.push_back(contact_at(0.05));
   // A hit so late is more probably none where contacts may lie; the classifier knows nothing of what is left.
-  Finished run("default.yaml",
-               {"taps=25", "stop.expected_rmse=1 m", "height.outlier_probability=none", "footprint=gp_classifier"},
-               scripted(answers));
+  Finished run(
+      "default.yaml",
+      {"taps=25", "stop.expected_rmse=1 m", "belief.height.outlier_probability=none", "belief.footprint=gp_classifier"},
+      scripted(answers));
   EXPECT_EQ(run.taps.size(), 21U) << "the hit is the 21st";
   for (const TapRecord& tap : run.taps) {
     ASSERT_NE(Row{tap.state.fields}.find("expected_rmse_m"), nullptr);
@@ -144,8 +146,8 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
 
   // Where it is known that something is left, it goes on after the hit.
   const Finished knowing("default.yaml",
-                         {"taps=25", "stop.expected_rmse=1 m", "height.outlier_probability=none",
-                          "footprint.false_contact_probability=0.0001"},
+                         {"taps=25", "stop.expected_rmse=1 m", "belief.height.outlier_probability=none",
+                          "belief.footprint.false_contact_probability=0.0001"},
                          scripted(answers));
   EXPECT_GE(knowing.taps.size(), 21U);
   for (std::size_t i = 0; i < 21; ++i) EXPECT_FALSE(number_of(knowing.taps[i].state, "expected_rmse_m")) << i;
@@ -154,7 +156,7 @@ TEST(Forecast, NeverStopsARunBeforeTheFirstHit) {
 TEST(Forecast, NeverCutsTheInitialTapsShort) {
   const Finished run(
       "default.yaml",
-      {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m", "footprint=gp_classifier"},
+      {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m", "belief.footprint=gp_classifier"},
       scripted(std::vector<TapResult>(25, contact_at(0.05))));
   EXPECT_EQ(run.taps.size(), 12U);
   const Finished knowing("default.yaml", {"taps=25", "initial={design: random, count: 12}", "stop.expected_rmse=1 m"},
@@ -163,7 +165,7 @@ TEST(Forecast, NeverCutsTheInitialTapsShort) {
 }
 
 TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
-  Finished run("default.yaml", {"taps=12", "height.outlier_probability=none", "motion=gentle"});
+  Finished run("default.yaml", {"taps=12", "belief.height.outlier_probability=none", "motion=gentle"});
   for (const TapRecord& tap : run.taps) {
     const Row state{tap.state.fields};
     EXPECT_EQ(state.find("expected_rmse_m"), nullptr);
@@ -175,8 +177,8 @@ TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
 TEST(Forecast, IsFiniteForEverySurfaceAndFootprint) {
   for (const char* surface : {"single", "two_part"}) {
     for (const char* footprint : {"gp_regression", "gp_classifier", "primitives"}) {
-      Finished run("default.yaml", {"taps=20", "stop.expected_rmse=1e-6 mm", std::string("surface=") + surface,
-                                    std::string("footprint=") + footprint});
+      Finished run("default.yaml", {"taps=20", "stop.expected_rmse=1e-6 mm", std::string("belief.surface=") + surface,
+                                    std::string("belief.footprint=") + footprint});
       for (const TapRecord& tap : run.taps)
         EXPECT_EQ(number_of(tap.state, "expected_rmse_m").has_value(),
                   *run.experiment.counts().first_hit_tap < tap.number())

@@ -42,8 +42,7 @@ struct Touching {
         experiment(config.options,
                    {shared_host(), nullptr, answer ? std::make_shared<Answering>(std::move(answer)) : nullptr}) {}
   static std::vector<std::string> words(std::vector<std::string> more) {
-    more.insert(more.begin(),
-                {"scene=object_i", "scene.touch=any", "space.approaches=50", "space.moves=20", "space.particles=4"});
+    more.insert(more.begin(), {"scene=object_i", "candidates.count=50", "belief.moves=20", "belief.particles=4"});
     return more;
   }
 
@@ -140,7 +139,7 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
 }
 
 TEST(FromAnySide, AnObjectAtTheEndOfALongAreaIsLookedForAndCompared) {
-  Touching run({"taps=25", "space.approaches=1000", "scene.area={width: 60 cm, depth: 20 cm}",
+  Touching run({"taps=25", "candidates.count=1000", "scene.area={width: 60 cm, depth: 20 cm}",
                 "scene.objects=[{type: block, length: 6 cm, width: 6 cm, height: 8 cm, at: [8 cm, 10 cm]}]"});
   int aimed = 0;
   const Candidates& lines = run.belief().candidates();

@@ -42,20 +42,21 @@ TEST(ConfigKeys, ThatSayNothingOfStrategiesAreRefused) {
 }
 
 TEST(ConfigKeys, KnowAPluginsGroupWhereverItStandsAndAnyOtherInItsPlaceAlone) {
-  for (const char* path : {"kernel", "height.kernel", "kernel.kernels.0.kernel", "backend", "scene", "scene.effects",
-                           "strategy", "expect"}) {
+  for (const char* path : {"kernel", "belief.height.kernel", "belief.footprint", "kernel.kernels.0.kernel", "backend",
+                           "scene", "scene.effects", "strategy", "expect"}) {
     EXPECT_TRUE(config_keys().is_group(path)) << path;
   }
-  for (const char* path : {"effects", "backend.scene", "kernel.strategy", "posterior", "scene.objects", "height"}) {
+  for (const char* path :
+       {"effects", "backend.scene", "kernel.strategy", "posterior", "scene.objects", "belief", "belief.height"}) {
     EXPECT_FALSE(config_keys().is_group(path)) << path;
   }
 }
 
 TEST(ConfigKeys, TellWhereAValueIsTakenOver) {
-  EXPECT_THAT(config_keys().heirs_of("kernel.nu"), ElementsAre("height.kernel.nu", "label.kernel.nu"));
-  EXPECT_THAT(config_keys().heirs_of("fitting"), ElementsAre("height.fitting", "label.fitting"));
+  EXPECT_THAT(config_keys().heirs_of("kernel.nu"), ElementsAre("belief.height.kernel.nu", "belief.label.kernel.nu"));
+  EXPECT_THAT(config_keys().heirs_of("fitting"), ElementsAre("belief.height.fitting", "belief.label.fitting"));
   EXPECT_THAT(config_keys().heirs_of("kernels"), IsEmpty());
-  EXPECT_THAT(config_keys().heirs_of("height.kernel"), IsEmpty());
+  EXPECT_THAT(config_keys().heirs_of("belief.height.kernel"), IsEmpty());
 }
 
 }  // namespace

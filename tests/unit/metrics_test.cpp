@@ -34,7 +34,7 @@ TEST(FootprintIou, IsPerfectWhenThereIsNothingAndNothingIsSeenButTheErrorHasNoVa
 
 /// Errors and calibration of a whole run, by their definitions; with two parts, of the surface that the weight gates.
 void expect_errors_by_definition(bool gated) {
-  Finished run("paper/object_i_right.yaml", {"seed=3", gated ? "surface=two_part" : "surface=single"});
+  Finished run("paper/object_i_right.yaml", {"seed=3", gated ? "belief.surface=two_part" : "belief.surface=single"});
   const RunResult result = run.experiment.result();
   const HeightModels& models = run.models();
   constexpr double kTwoPi = 2 * 3.14159265358979323846;

@@ -30,10 +30,10 @@ class Given final : public Motions {
 /// The belief about the scene of configs/default.yaml after a hit in its middle and the desk in a corner.
 struct Believed {
   Believed()
-      : config(shipped_config("default.yaml", {"height.offset=none", "candidates.count=21"})),
+      : config(shipped_config("default.yaml", {"belief.height.offset=none", "candidates.count=21"})),
         scene(build_scene(config.options.scene, 1, shared_host())),
-        context{shared_host(), *scene, 1, nullptr},
-        belief(config.options, context, clock) {
+        context(belief_context(config, *scene)),
+        belief(height_map_options(config), context) {
     belief.plan(Prepared::readers(MotionSelector::reads()));
     belief.begin(Stage::first_tap);
     belief.add(request_at({0.115, 0.115}, 1), contact_at(0.05));
@@ -54,7 +54,6 @@ struct Believed {
   ResolvedConfig config;
   std::unique_ptr<const Scene> scene;
   Context context;
-  PhaseClock clock;
   HeightMap belief;
 };
 

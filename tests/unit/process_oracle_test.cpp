@@ -119,7 +119,7 @@ TEST_P(OracleTest, At130MillimetresTheErrorStaysWithinTheConditionOfTheMatrix) {
 TEST(OracleOfAStall, FourteenTapsAtOnePlaceAreWithinThePromiseToo) {
   // A start without contact of the published rule: the matrix is as near to singular as the noise lets it be.
   for (const auto& [text, metres] : {std::pair("1.7cm", 0.017), std::pair("3cm", 0.03)}) {
-    const Worst worst = errors_of_run(text, metres, "weighted", 1, {"fallback=none", "repeat=allow"});
+    const Worst worst = errors_of_run(text, metres, "weighted", 1, {"choice.fallback=none", "choice.repeat=allow"});
     EXPECT_LE(worst.mean, kPromised);
     EXPECT_LE(worst.variance, kPromised);
     EXPECT_GT(worst.condition, 1e8) << "this test is about an ill-conditioned matrix";

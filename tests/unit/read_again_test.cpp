@@ -17,9 +17,9 @@ struct Reader {
   explicit Reader(const std::vector<std::string>& words = {})
       : config(shipped_config("default.yaml", words)),
         scene(build_scene(config.options.scene, 1, shared_host())),
-        context{shared_host(), *scene, 1, nullptr, {}},
+        context(belief_context(config, *scene)),
         candidates(grid_by_count(scene->area(), 21)),
-        models(config.options, candidates, context, clock) {}
+        models(height_map_options(config), candidates, context) {}
 
   /// Has models of these quantities built, and brings their arrays up to date.
   void build(const QuantitySet& quantities) {
@@ -38,7 +38,6 @@ struct Reader {
   std::unique_ptr<const Scene> scene;
   Context context;
   CandidateGrid candidates;
-  PhaseClock clock;
   HeightModels models;
 };
 
@@ -76,8 +75,8 @@ TEST(ReadAgain, APlateTakenForTheDeskIsKnownAsAnObjectOnceTheDeskWasTouched) {
 TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{},
-        {"footprint=gp_regression"},
-        {"height.outlier_probability=none", "fitting=ceres", "surface=single"}}) {
+        {"belief.footprint=gp_regression"},
+        {"belief.height.outlier_probability=none", "fitting=ceres", "belief.surface=single"}}) {
     Reader late(words);
     Reader soon(words);
     soon.build(kAll);
@@ -131,7 +130,7 @@ TEST(ReadAgain, AResumedRunGoesOnAsTheUnbrokenOne) {
 }
 
 TEST(Outliers, KeepTheirProbabilitiesAfterAHundredContactsOnAnObjectAndLaterContactsAreTrusted) {
-  Reader one({"height.offset=none", "footprint=gp_regression", "taps=120"});
+  Reader one({"belief.height.offset=none", "belief.footprint=gp_regression", "taps=120"});
   one.build({quantity::kHeightMean, HeightModels::kOutliers});
   // A plate of 5 cm with a contact at 10 cm among the first hundred, and another among the next twenty.
   constexpr std::size_t kEarly = 44;

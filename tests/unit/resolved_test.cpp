@@ -30,20 +30,22 @@ TEST(ResolvedConfig, HasTheSameIdHoweverALengthIsWritten) {
 TEST(ResolvedConfig, HasAnIdOfTwelveHexadecimalDigits) { EXPECT_THAT(id_of(), testing::MatchesRegex("[0-9a-f]{12}")); }
 
 TEST(ResolvedConfig, HasTheSameIdWhenADefaultIsWrittenOut) {
-  EXPECT_EQ(id_of({"repeat=forbid", "label.prior_mean=0", "motion.hover=13.5cm"}), id_of());
+  EXPECT_EQ(id_of({"choice.repeat=forbid", "belief.label.prior_mean=0", "motion.hover=13.5cm"}), id_of());
 }
 
 TEST(ResolvedConfig, LeavesNameAndLogOutOfTheId) {
-  EXPECT_EQ(id_of({"name=other", "log.maps=true", "log.sync=none", "log.surface=false", "engine.threads=2"}), id_of());
+  EXPECT_EQ(id_of({"name=other", "log.maps=true", "log.sync=none", "log.surface=false", "belief.engine.threads=2"}),
+            id_of());
 }
 
 TEST(ResolvedConfig, PutsAllElseIntoTheId) {
   const std::string id = id_of();
   for (const char* text :
-       {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "height.noise=0.2mm", "label.clip=true",
-        "engine.type=dense", "acquisition=uncertainty", "fallback=none", "repeat=allow", "tie_tolerance=0",
-        "stop.robot_time=9min", "scene.desk=1cm", "motion.pause=0s", "kernel=matern32", "kernel=swell_and_texture",
-        "surface=two_part", "label.hyperparameters=shared"}) {
+       {"seed=2", "taps=18", "initial.count=4", "candidates.count=46", "belief.height.noise=0.2mm",
+        "belief.label.clip=true", "belief.engine.type=dense", "acquisition=uncertainty", "choice.fallback=none",
+        "choice.repeat=allow", "choice.tie_tolerance=0", "stop.robot_time=9min", "scene.desk=1cm", "motion.pause=0s",
+        "kernel=matern32", "kernel=swell_and_texture", "belief.surface=two_part",
+        "belief.label.hyperparameters=shared"}) {
     EXPECT_NE(id_of({text}), id) << text;
   }
 }
@@ -52,8 +54,8 @@ TEST(ResolvedConfig, ReadsBackAsTheSameConfig) {
   for (const char* file :
        {"paper/object_i.yaml", "paper/object_i_right.yaml", "paper/object_ii.yaml", "paper/comparison.yaml"}) {
     const ResolvedConfig config =
-        shipped_config(file, {"height.kernel=matern52", "label.kernel=swell_and_texture", "surface=two_part",
-                              "candidates.spacing=5mm", "candidates.count=none"});
+        shipped_config(file, {"belief.height.kernel=matern52", "belief.label.kernel=swell_and_texture",
+                              "belief.surface=two_part", "candidates.spacing=5mm", "candidates.count=none"});
     const ResolvedConfig again = resolve_experiment(parse_yaml(to_yaml(config.tree), "again.yaml"), shared_host());
     EXPECT_EQ(again.id, config.id) << file;
     EXPECT_EQ(to_yaml(again.tree), to_yaml(config.tree)) << file;
@@ -103,13 +105,13 @@ TEST(ResolvedConfig, ThatIsCompleteTakesNeutralValuesForWhatItLacksAndIsRefusedW
   };
   EXPECT_EQ(read_without("scene", "touch").identity, config.identity);
   EXPECT_THAT(error_of([&] { read_without("label", "clip"); }),
-              testing::HasSubstr("'label.clip' is missing, a config with 'complete' needs every option"));
+              testing::HasSubstr("'belief.label.clip' is missing, a config with 'complete' needs every option"));
 }
 
 TEST(ResolvedConfig, FollowsTheContentOfMeshesViewsAndProgramsAndNotTheirPaths) {
   const TemporaryFolder folder;
   for (const char* words :
-       {"scene.objects=[{type: mesh, file: FILE, unit: 1 mm}]", "prior={depth: FILE}",
+       {"scene.objects=[{type: mesh, file: FILE, unit: 1 mm}]", "belief.prior={depth: FILE}",
         "backend={type: process, command: python3 FILE --fast}", "backend={type: process, command: FILE --fast}"}) {
     const auto id_with = [&](const std::string& name, const std::string& content) {
       const std::string file = folder.write(name, content).string();

@@ -154,8 +154,8 @@ TEST(InitialSearch, EndsWithTheFirstHitAndLeavesTheRestToTheAcquisition) {
 }
 
 TEST(InitialSearch, ThatMeetsNothingSpendsTheBudgetOrLooksEverywhere) {
-  const Finished run("paper/object_i.yaml", {"initial.design=search", "taps=12", "candidates.count=3", "repeat=allow"},
-                     scripted());
+  const Finished run("paper/object_i.yaml",
+                     {"initial.design=search", "taps=12", "candidates.count=3", "choice.repeat=allow"}, scripted());
   ASSERT_EQ(run.taps.size(), 12U);
   std::set<int> places;
   for (std::size_t i = 0; i < 9; ++i) {

@@ -99,10 +99,10 @@ TEST(SideView, IsRefusedWhereAnotherWorldIsTappedThanTheScene) {
     bool scene_is_truth() const override { return false; }
   };
   std::vector<std::string> words = cup();
-  words.emplace_back("space.view={}");
+  words.emplace_back("belief.view={}");
   const ResolvedConfig config = shipped_config("any_side.yaml", words);
   const auto begin = [&] { Experiment(config.options, {shared_host(), nullptr, std::make_shared<Elsewhere>()}); };
-  EXPECT_THAT(error_of(begin), testing::HasSubstr("space.view: uses the scene of the config"));
+  EXPECT_THAT(error_of(begin), testing::HasSubstr("belief.view: uses the scene of the config"));
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ TEST(Solids, GoOnWhereNoCompositionIsPossibleAtAll) {
   Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
   for (const SurfaceTouch& touch : touches_of(5)) solids.add({touch});
   EXPECT_EQ(solids.compositions().size(), 4U);
-  EXPECT_THROW(shipped_config("any_side.yaml", {"space.model_discrepancy=1e-200m"}), Error);
+  EXPECT_THROW(shipped_config("any_side.yaml", {"belief.model_discrepancy=1e-200m"}), Error);
 }
 
 TEST(Solids, MakeNoPieceOfOneContactInTheAirWhereATouchMayBeALie) {

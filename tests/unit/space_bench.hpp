@@ -47,7 +47,7 @@ inline bool holds(const Piece& piece, const Eigen::Vector3d& point) {
 
 /// A cup: 8 cm wide, 6 cm deep, its wall 1 cm, its bottom open, in the middle of an area of 26 cm.
 inline std::vector<std::string> cup() {
-  return {"scene.touch=any", "scene.area={width: 26 cm, depth: 26 cm}", "scene.desk=2 cm",
+  return {"scene.area={width: 26 cm, depth: 26 cm}", "scene.desk=2 cm",
           "scene.objects=[{type: ring, outer: 8 cm, inner: 6 cm, height: 6 cm, at: [13 cm, 13 cm]}]"};
 }
 inline const Eigen::Vector3d kMiddleOfCup(0.13, 0.13, 0.08);

@@ -15,9 +15,9 @@ struct Alone {
   explicit Alone(const std::vector<std::string>& overrides)
       : config(shipped_config("paper/object_i.yaml", overrides)),
         scene(build_scene(config.options.scene, 1, test::shared_host())),
-        context{test::shared_host(), *scene, 1, nullptr},
+        context(test::belief_context(config, *scene)),
         candidates(grid_by_count(scene->area(), 9)),
-        models(config.options, candidates, context, clock) {
+        models(test::height_map_options(config), candidates, context) {
     build({quantity::kHeightMean, quantity::kObjectProbability});
   }
 
@@ -41,15 +41,14 @@ struct Alone {
   std::unique_ptr<const Scene> scene;
   Context context;
   CandidateGrid candidates;
-  PhaseClock clock;
   HeightModels models;
 };
 
 TEST(TwoPart, IsTheObjectFromAWeightOfOneHalfOnAndTheDeskBelow) {
   // Far from the only tap, at this length scale, the weight is its prior mean and the height the level of the object.
   const auto with = [](const std::string& prior_mean) {
-    return std::vector<std::string>{"surface=two_part", "kernel.length_scale=0.1mm", "scene.desk=-30cm",
-                                    "label.prior_mean=" + prior_mean};
+    return std::vector<std::string>{"belief.surface=two_part", "kernel.length_scale=0.1mm", "scene.desk=-30cm",
+                                    "belief.label.prior_mean=" + prior_mean};
   };
   Alone object(with("0.5"));
   Alone desk(with("0.49999999"));
@@ -63,7 +62,7 @@ TEST(TwoPart, IsTheObjectFromAWeightOfOneHalfOnAndTheDeskBelow) {
 }
 
 TEST(TwoPart, IsADeskWhileNothingWasHit) {
-  Alone one({"surface=two_part"});
+  Alone one({"belief.surface=two_part"});
   one.touch(3, 0.0);
   one.touch(50, 0.0);
   EXPECT_TRUE((one.reconstructed().array() == 0.0).all());
@@ -72,7 +71,7 @@ TEST(TwoPart, IsADeskWhileNothingWasHit) {
 }
 
 TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
-  Alone one({"surface=two_part", "kernel.length_scale=3cm"});
+  Alone one({"belief.surface=two_part", "kernel.length_scale=3cm"});
   const std::vector<std::pair<int, double>> taps{{10, 0.0}, {30, 0.08}, {33, 0.0}, {40, 0.1}, {42, 0.09}, {77, 0.0}};
   for (const auto& [candidate, height] : taps) one.touch(candidate, height);
 
@@ -96,8 +95,8 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
 TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
   for (const char* acquisition : {"random", "grid", "uncertainty", "weighted"}) {
     const std::string strategy = std::string("acquisition=") + acquisition;
-    const Finished single("paper/object_i.yaml", {strategy, "surface=single"});
-    const Finished parted("paper/object_i.yaml", {strategy, "surface=two_part"});
+    const Finished single("paper/object_i.yaml", {strategy, "belief.surface=single"});
+    const Finished parted("paper/object_i.yaml", {strategy, "belief.surface=two_part"});
     ASSERT_EQ(single.taps.size(), parted.taps.size());
     for (std::size_t i = 0; i < single.taps.size(); ++i) {
       EXPECT_EQ(single.taps[i].candidate, parted.taps[i].candidate) << acquisition << ", tap " << i + 1;
@@ -109,7 +108,7 @@ TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
 }
 
 TEST(TwoPart, IsNotBuiltForTheRecordOfATapNorForItsMaps) {
-  Prepared prepared("paper/object_i_right.yaml", {"seed=3", "surface=two_part"});
+  Prepared prepared("paper/object_i_right.yaml", {"seed=3", "belief.surface=two_part"});
   std::string maps;  // written at every tap, as by log.maps
   prepared.journal.announcing = [&](const TapRecord& tap) { maps = maps_csv(prepared.belief(), tap.state); };
   prepared.run();
@@ -125,7 +124,7 @@ TEST(TwoPart, IsNotBuiltForTheRecordOfATapNorForItsMaps) {
 }
 
 TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyAsksForIt) {
-  Prepared prepared("paper/object_i_right.yaml", {"seed=3", "surface=two_part"}, nullptr, shared_host(),
+  Prepared prepared("paper/object_i_right.yaml", {"seed=3", "belief.surface=two_part"}, nullptr, shared_host(),
                     {quantity::kHeightMean});
   prepared.run();
   const TapRecord& tap = prepared.taps.back();
@@ -139,7 +138,7 @@ TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyAsksForIt) {
 TEST(TwoPart, StopsAtTheVeryTapThatTheSingleSurfaceStopsAt) {
   const auto taps = [](const std::string& surface) {
     Finished run("paper/object_i.yaml", {"acquisition=uncertainty", "kernel.length_scale=13 cm", "taps=100",
-                                         "stop.max_standard_deviation=10 cm", "surface=" + surface});
+                                         "stop.max_standard_deviation=10 cm", "belief.surface=" + surface});
     EXPECT_EQ(run.experiment.result().stop_reason, "max_standard_deviation");
     return run.taps.size();
   };

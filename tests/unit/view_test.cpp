@@ -188,7 +188,7 @@ TEST(View, OfAnotherPlaceIsRefused) {
   const auto scene = object_i();
   const PointCloud far = PointCloud::Constant(3, 5, 9.0);
   EXPECT_THAT(error_of([&] { viewed_squares(far, {}, *scene); }),
-              HasSubstr("prior.depth: none of its 5 points is in the area, check unit and pose"));
+              HasSubstr("belief.prior.depth: none of its 5 points is in the area, check unit and pose"));
 }
 
 /// Runs of the default on object I whose near half a camera has seen.
@@ -199,7 +199,7 @@ class SeenHalf : public testing::Test {
     std::ofstream(file_, std::ios::binary) << ply(seen(*scene, 0.003, 0.004, near_half), "binary_little_endian");
   }
   std::vector<std::string> words(int seed, int taps) const {
-    return {"prior={depth: " + file_.string() + "}", fmt::format("seed={}", seed), fmt::format("taps={}", taps)};
+    return {"belief.prior={depth: " + file_.string() + "}", fmt::format("seed={}", seed), fmt::format("taps={}", taps)};
   }
 
   const TemporaryFolder folder_;
@@ -268,7 +268,7 @@ TEST_F(SeenHalf, EntersTheIdByItsContent) {
   EXPECT_NE(before, shipped_config("default.yaml", {"seed=1", "taps=5"}).id);
   std::ofstream(file_, std::ios::app) << "comment";
   EXPECT_NE(before, shipped_config("default.yaml", words(1, 5)).id);
-  EXPECT_THAT(error_of([&] { shipped_config("default.yaml", {"prior={depth: nowhere.ply}"}); }),
+  EXPECT_THAT(error_of([&] { shipped_config("default.yaml", {"belief.prior={depth: nowhere.ply}"}); }),
               HasSubstr("nowhere.ply: no such file"));
 }
 

@@ -53,6 +53,14 @@ void drop(Container& from, const Holds& holds) {
   from.erase(std::remove_if(from.begin(), from.end(), holds), from.end());
 }
 
+/// Returns the map of a plugin that is chosen by its name alone.
+Tree typed(const Tree& name) {
+  Tree out = Tree::map({{"type", name}});
+  out.place = name.place;
+  out.layer = name.layer;
+  return out;
+}
+
 /// Moves the types of a chosen group, and of the groups within it, to `layer`.
 void set_layer_of_type(Tree& content, Layer layer, const SourceLocation& place) {
   for (Tree::Entry& entry : content.entries) {
@@ -224,6 +232,7 @@ void Composer::take_names(Tree& tree, const std::string& path, std::vector<Choic
   for (Tree::Entry& entry : tree.entries) {
     if (path.empty() && entry.key == "sweep") continue;
     const std::string here = path.empty() ? entry.key : path + "." + entry.key;
+    if (keys_.is_typed(here) && entry.value.is_scalar()) entry.value = typed(entry.value);
     if (keys_.is_group(here) && entry.value.is_scalar()) {
       choices.push_back({here, entry.value});
       taken.push_back(entry.key);
@@ -337,9 +346,21 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
   Layer layer = kGroupLayer;
   std::vector<std::string> chain;
   if (lay_strategy(tree, choices, beside_, layer, chain) >= kSweepLayer) {
-    drop(choices,
-         [&](const Choice& one) { return one.value.layer < kSweepLayer && tree.find(first_key(one.path)) != nullptr; });
-    for (const Tree::Entry& entry : tree.entries) own.erase(entry.key);
+    drop(choices, [&](const Choice& one) {
+      const std::string key = first_key(one.path);
+      const Tree* const group = tree.find(key);
+      if (group == nullptr || !keys_.is_typed(key) || key == one.path)
+        return group != nullptr && one.value.layer < kSweepLayer;
+      return one.value.layer < kSweepLayer && group->find(first_key(one.path.substr(key.size() + 1))) != nullptr;
+    });
+    for (const Tree::Entry& entry : tree.entries) {
+      Tree& group = own.at(entry.key);
+      if (!keys_.is_typed(entry.key) || !group.is_map()) {
+        own.erase(entry.key);
+        continue;
+      }
+      for (const Tree::Entry& part : entry.value.entries) group.erase(part.key);
+    }
   }
   lay_groups(tree, choices, beside_, layer);
   tree.merge(own);
@@ -354,13 +375,15 @@ Tree Composer::compose(const fs::path& named, const std::vector<Override>& overr
 
 void Composer::lay_override(Tree& tree, const Override& one) {
   const auto& [path, value] = one;
+  const bool is_typed = keys_.is_typed(path);
+  if (is_typed && value.is_scalar()) return tree.put(path + ".type", value);
   const bool is_group = keys_.is_group(path);
   if (is_group && value.is_scalar()) {
     if (is_inner(path)) choose_inner(tree, one, beside_);
     return;
   }
   Tree& slot = tree.at_path(path, value.place);
-  if (is_group && !keys_.is_part(path) && slot.is_map() && value.is_map()) {
+  if ((is_typed || (is_group && !keys_.is_part(path))) && slot.is_map() && value.is_map()) {
     slot.merge(value);
   } else {
     tree.put(path, value);

@@ -57,7 +57,7 @@ class Composer {
 
   /// A group that was read from a file.
   struct Group {
-    std::string path;  ///< in the config, for example height.kernel
+    std::string path;  ///< in the config, for example belief.height.kernel
     std::string name;
     std::filesystem::path file;
   };

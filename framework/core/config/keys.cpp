@@ -55,6 +55,7 @@ class ConfigKeys::Reader final : public Fields {
   void note_plugin(const std::string& kind, const Field& field) {
     note(field);
     if (field.is_group) keys_.plugins_.insert(kind);
+    if (!field.is_group && path_.empty()) keys_.typed_.insert(field.name);
   }
   void note_owner(const Field& field) {
     const std::string name = field.name;

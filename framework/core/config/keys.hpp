@@ -27,6 +27,9 @@ class ConfigKeys {
   bool is_group(const std::string& path) const;
   /// Returns whether a name without a file is the type of a plugin. `path`: the path of a group, or its last key.
   bool is_plugin(const std::string& path) const;
+  /// Returns whether a top-level key chooses a plugin without group files. A name there is a type, and its options are
+  /// merged one by one.
+  bool is_typed(const std::string& key) const { return typed_.count(key) > 0; }
   /// Returns whether a group lies within another group, as scene.effects does.
   bool is_part(const std::string& path) const;
   /// Returns the paths that the field list declares as groups.
@@ -45,8 +48,8 @@ class ConfigKeys {
 
   /// Returns pairs of paths. The first path of a pair inherits from the second.
   const std::vector<std::pair<std::string, std::string>>& heirs() const { return heirs_; }
-  /// Returns the paths that inherit the value at a dotted path. For kernel.nu, these are height.kernel.nu and
-  /// label.kernel.nu.
+  /// Returns the paths that inherit the value at a dotted path. For kernel.nu, these are belief.height.kernel.nu and
+  /// belief.label.kernel.nu.
   std::vector<std::string> heirs_of(const std::string& path) const;
 
  private:
@@ -54,6 +57,7 @@ class ConfigKeys {
 
   std::vector<std::string> groups_;
   std::set<std::string> plugins_;  ///< names of plugin kinds that are groups
+  std::set<std::string> typed_;
   std::set<std::string> of_run_;
   std::map<std::string, std::string> beside_;  ///< by the key of the plugin
   std::vector<std::pair<std::string, std::string>> heirs_;

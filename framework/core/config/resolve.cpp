@@ -265,19 +265,20 @@ class Resolver final : public MapReader {
     }
   }
 
-  /// Returns the type of the plugin at `path`.
-  static const Tree& type_of(const Tree& tree, const std::string& kind, const std::string& path) {
+  /// Returns the type of the plugin at `path`; null if the config leaves it at its default.
+  static const Tree* type_of(const Tree& tree, const PluginChoice& choice, const std::string& path) {
     if (!tree.is_map())
       throw Error(tree.place.text(), fmt::format("{} is not a group of options", path), "write {type: ...}");
-    if (const Tree* type = tree.find("type")) return *type;
+    const Tree* const type = tree.find("type");
+    if (type != nullptr || !choice.type.empty()) return type;
     throw Error(tree.place.text(), fmt::format("{} has no type", path),
-                fmt::format("'palpate plugins {}' lists the types", kind));
+                fmt::format("'palpate plugins {}' lists the types", choice.kind));
   }
 
   /// Fills `choice` and returns its resolved form at `name` (see around()). If `tree` is null, `choice` is the default.
   Tree read_plugin(PluginChoice& choice, const Tree* tree, const Field& field, const std::string& name) {
     const std::string path = path_ + name;
-    const Tree* const type = tree != nullptr ? &type_of(*tree, choice.kind, path) : nullptr;
+    const Tree* const type = tree != nullptr ? type_of(*tree, choice, path) : nullptr;
     const std::string at = type != nullptr ? type->place.text() : where();
     if (type != nullptr) choice.type = name_of_plugin(*type, choice.kind, path + ".type");
     Resolver inner(tree != nullptr ? *tree : kNothing, path + ".", plugins_, notes_, around(field, name));

@@ -13,7 +13,7 @@ constexpr double kLeastTrust = 1e-3;
 
 }  // namespace
 
-ContactLog::ContactLog(const ExperimentOptions& options, const Scene& scene)
+ContactLog::ContactLog(const HeightMapOptions& options, const Scene& scene)
     : scene_(scene), prior_(viewed_squares(options.prior, scene)), uneven_(!prior_.empty()) {
   if (const auto& offset = options.height.offset) offset_.emplace(offset->offset, offset->drift, offset->noise);
   find_object_rows();

@@ -3,7 +3,7 @@
 // whether it is on an object. Later taps may change how earlier ones are read.
 #pragma once
 
-#include "experiment/experiment_options.hpp"
+#include "experiment/height_map_options.hpp"
 #include "experiment/systematic.hpp"
 #include "view/view.hpp"
 
@@ -22,7 +22,7 @@ namespace palpate {
 class ContactLog {
  public:
   /// `scene` must outlive the log. Throws Error for a prior view that cannot be read.
-  ContactLog(const ExperimentOptions& options, const Scene& scene);
+  ContactLog(const HeightMapOptions& options, const Scene& scene);
 
   /// How a result is read.
   struct Reading {
@@ -31,7 +31,7 @@ class ContactLog {
   };
   /// Returns how the contact of the next tap would be read. Changes nothing.
   Reading read(const TapResult& result, int motion) const;
-  /// Whether the config estimates the offset of arm and motions (`height.offset`).
+  /// Whether the config estimates the offset of arm and motions (`belief.height.offset`).
   bool has_offset() const { return offset_.has_value(); }
   /// Returns the variance of that estimate now, which all heights share, square metres; 0 without.
   double offset_variance() const { return offset_ ? offset_->at(seconds_).variance : 0.0; }

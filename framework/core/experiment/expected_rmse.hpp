@@ -8,9 +8,9 @@
 // and v with `surface: single`, which has one process for object and desk. The expected rmse is the root of the mean
 // of these over the candidates, and by Jensen's inequality not below the mean of the rmse.
 //
-// v is in the unit of `height.signal`, which in most configs is a convention and not a property of the object. With K
-// the covariance of n heights r in signals, their level taken out, r^T K^-1 r / (n - 1) is the likeliest ratio of the
-// true variance to that of the config (Rasmussen and Williams 2006, section 5.4.1). Few taps say little of it, a
+// v is in the unit of `belief.height.signal`, which in most configs is a convention and not a property of the object.
+// With K the covariance of n heights r in signals, their level taken out, r^T K^-1 r / (n - 1) is the likeliest ratio
+// of the true variance to that of the config (Rasmussen and Williams 2006, section 5.4.1). Few taps say little of it, a
 // single one nothing: as a start, the relief of an object counts as being as large as its height, with the weight of
 // one tap. With the mean square height h^2 in signals of the taps on an object, v is multiplied by
 //     (h^2 + r^T K^-1 r) / n,

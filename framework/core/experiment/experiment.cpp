@@ -3,7 +3,6 @@
 // the models, choose the next tap by the exploration function.
 #include "experiment/experiment.hpp"
 
-#include "experiment/make_belief.hpp"
 #include "experiment/stop_rules.hpp"
 #include "experiment/unreached.hpp"
 #include "math/instructions.hpp"
@@ -76,7 +75,7 @@ std::optional<TapRecord> Experiment::choose_next(const TapOverride* override) {
   TapRecord tap;
   complete(tap.request);
   {
-    const PhaseClock::Scope acquire(clock_, Phase::acquire);
+    const PhaseClock::Scope acquire(&clock_, Phase::acquire);
     prepare(override);
     if (!selector_.choose(*belief_, tap, override)) return std::nullopt;
     if (motions_) motions_->choose(*belief_, tap);
@@ -85,7 +84,7 @@ std::optional<TapRecord> Experiment::choose_next(const TapOverride* override) {
   tap.unreached = unreached_;
   if (const QuantitySet reads = backend_->predicts(); !reads.empty())
     tap.request.predicted = belief_->predict(tap.candidate, reads.count(quantity::kObjectProbability) != 0);
-  const PhaseClock::Scope log(clock_, Phase::log);
+  const PhaseClock::Scope log(&clock_, Phase::log);
   monitor_.describe(tap, *belief_);
   return tap;
 }
@@ -137,7 +136,7 @@ void Experiment::show() {
   if (counts().taps == 0) return;
   belief_->begin(Stage::first_tap);
   infer();
-  const PhaseClock::Scope log(clock_, Phase::log);
+  const PhaseClock::Scope log(&clock_, Phase::log);
   backend_->show(*belief_);
 }
 
@@ -195,6 +194,9 @@ ReadPlan Experiment::make_plan(const ReadPlan& more) const {
   if (!predicts.empty()) plan.readers.push_back({backend, predicts, Stage::first_tap, true});
   if (motions_) plan.readers.push_back({backend, MotionSelector::reads(), Stage::first_tap, true});
   plan.readers.push_back({backend, backend_->reads(), Stage::first_tap});
+  if (options_.log.maps) plan.readers.push_back({"log.maps", {quantity::kDeskPosition}, Stage::first_tap});
+  if (options_.candidates.spacing)
+    plan.readers.push_back({"candidates.spacing", {quantity::kDeskPosition}, Stage::first_tap});
   plan.readers.insert(plan.readers.end(), more.readers.begin(), more.readers.end());
   plan.surface_from = more.surface_from;
   const bool is_needed = backend_->scene_is_truth() || options_.log.surface;
@@ -203,7 +205,7 @@ ReadPlan Experiment::make_plan(const ReadPlan& more) const {
 }
 
 TapResult Experiment::make_tap(const TapRequest& request) {
-  const PhaseClock::Scope robot(clock_, Phase::robot);
+  const PhaseClock::Scope robot(&clock_, Phase::robot);
   TapResult result = backend_->tap(request);
   const double seconds = std::isfinite(result.seconds) ? result.seconds : 0.0;
   const auto refused = [&](const char* why) {
@@ -246,30 +248,42 @@ void Experiment::check_backend(const TapRecord& tap) {
        "correct the cause, then run 'palpate resume --retry-failed'; stop.failed_in_a_row sets the limit");
 }
 
+std::shared_ptr<Backend> Experiment::make_backend(const ExperimentSetup& setup) {
+  context_.from_above = belief_->candidates().from_above;
+  std::shared_ptr<Backend> backend = setup.backend ? setup.backend : context_.create<Backend>(options_.backend);
+  if (!belief_->candidates().fixed && !backend->taps_any_line()) {
+    throw Error("backend",
+                fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
+                            options_.belief.type),
+                "choose another backend, or belief=height_map");
+  }
+  if (belief_->reads_scene() && !backend->scene_is_truth()) {
+    throw Error("belief.view",
+                fmt::format("uses the scene of the config, but backend {} taps another scene", options_.backend.type),
+                "remove it, or choose backend=simulator");
+  }
+  return backend;
+}
+
 Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& setup)
     : options_(options),
       scene_(build_scene(options.scene, static_cast<std::uint64_t>(options.seed), setup.factory)),
-      context_{setup.factory,     *scene_,         static_cast<std::uint64_t>(options.seed),
-               setup.interrupted, setup.directory, math::choose_instructions()},
-      backend_(setup.backend ? setup.backend : context_.create<Backend>(options.backend)),
-      belief_(make_belief(options_, context_, clock_)),
+      context_{setup.factory,
+               *scene_,
+               static_cast<std::uint64_t>(options.seed),
+               setup.interrupted,
+               setup.directory,
+               math::choose_instructions(),
+               &clock_,
+               run_settings(options)},
+      belief_(context_.create<Belief>(options.belief)),
+      backend_(make_backend(setup)),
       selector_(options_, *belief_, context_),
       monitor_(*scene_, backend_->scene_is_truth()) {
   if (auto motions = setup.factory.motions(options_.backend, *scene_))
     motions_.emplace(std::move(motions), scene_->desk());
   plan_ = make_plan(setup.readers);
-  require_offered(plan_, *belief_, belief_name(options_));
-  if (!belief_->candidates().fixed && !backend_->taps_any_line()) {
-    throw Error("backend",
-                fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
-                            belief_name(options_)),
-                "choose another backend, or a scene with touch: top");
-  }
-  if (options_.space && options_.space->view && !backend_->scene_is_truth()) {
-    throw Error("space.view",
-                fmt::format("uses the scene of the config, but backend {} taps another scene", options_.backend.type),
-                "remove it, or choose backend=simulator");
-  }
+  require_offered(plan_, *belief_, options_.belief.type);
   models_ = belief_->plan(plan_);
   belief_->update();
   draw_candidates();

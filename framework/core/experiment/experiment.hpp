@@ -95,6 +95,7 @@ class Experiment final {
   PhaseClock& clock() { return clock_; }
 
  private:
+  std::shared_ptr<Backend> make_backend(const ExperimentSetup& setup);
   ReadPlan make_plan(const ReadPlan& more) const;
   /// Brings the models of all begun stages up to date, in arrays too.
   void infer();
@@ -114,10 +115,10 @@ class Experiment final {
 
   ExperimentOptions options_;
   std::unique_ptr<const Scene> scene_;
-  Context context_;
-  std::shared_ptr<Backend> backend_;
   PhaseClock clock_;
-  std::unique_ptr<Belief> belief_;
+  Context context_;
+  std::shared_ptr<Belief> belief_;
+  std::shared_ptr<Backend> backend_;
   TapSelector selector_;
   std::optional<MotionSelector> motions_;  ///< if the backend has several
   ReadPlan plan_;

@@ -56,7 +56,7 @@ bool GpModel::show(int output) {
   return true;
 }
 
-void GpModel::add_data(const ContactLog& log, PhaseClock& clock) {
+void GpModel::add_data(const ContactLog& log, PhaseClock* clock) {
   if (!process_) return;
   while (process_->size() < size(log)) {
     const Touch& datum = log.datum(row(log, process_->size()));
@@ -70,7 +70,7 @@ void GpModel::add_data(const ContactLog& log, PhaseClock& clock) {
   }
 }
 
-void GpModel::fit(int taps, PhaseClock& clock) {
+void GpModel::fit(int taps, PhaseClock* clock) {
   const PhaseClock::Scope scope(clock, Phase::fit);
   Random random = context_.random(data_.stream, static_cast<std::uint64_t>(taps));
   fit_ = process_->fit(*fitting_, random);

@@ -3,8 +3,8 @@
 // reader first needs it.
 #pragma once
 
+#include <palpate/phases.hpp>
 #include "experiment/contact_log.hpp"
-#include "experiment/phases.hpp"
 #include "gp/candidate_grid.hpp"
 #include "gp/gaussian_process.hpp"
 
@@ -52,7 +52,7 @@ class GpModel {
   // Updates; each does nothing before show(), and notes whether maps have become stale.
   /// Takes in the data since, one by one, each with its fit: so a model that is built late has the states of one that
   /// was there from the first tap.
-  void add_data(const ContactLog& log, PhaseClock& clock);
+  void add_data(const ContactLog& log, PhaseClock* clock);
   /// Sets the heights of all data as they are read now.
   void set_heights(const ContactLog& log);
   /// Sets the positions of all data, and how far each is trusted; a row or number for each datum of the log.
@@ -76,7 +76,7 @@ class GpModel {
   int row(const ContactLog& log, int datum) const {
     return data_.only_objects ? log.object_rows()[static_cast<std::size_t>(datum)] : datum;
   }
-  void fit(int taps, PhaseClock& clock);
+  void fit(int taps, PhaseClock* clock);
 
   Data data_;
   PluginChoice kernel_choice_, fitting_choice_;

@@ -4,8 +4,10 @@
 #include "experiment/belief_state.hpp"
 #include "experiment/expected_rmse.hpp"
 #include "experiment/object_errors.hpp"
+#include "experiment/policy.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/grid.hpp>
 
 #include <fmt/format.h>
 
@@ -16,28 +18,6 @@
 
 namespace palpate {
 namespace {
-
-// Above every object, and through the desk: the arm joins the line where it likes.
-constexpr double kTop = 0.5;      // metres above the desk
-constexpr double kBeneath = 0.1;  // and below it
-
-CandidateGrid make_grid(const ExperimentOptions& options, const Area& area) {
-  return options.candidates.spacing ? grid_by_spacing(area, *options.candidates.spacing)
-                                    : grid_by_count(area, static_cast<int>(*options.candidates.count));
-}
-
-Candidates make_lines(const CandidateGrid& grid, double desk) {
-  Candidates out;
-  out.starts.resize(grid.size(), 3);
-  out.starts.leftCols<2>() = grid.points;
-  out.starts.col(2).setConstant(desk + kTop);
-  out.directions = Eigen::RowVector3d(0.0, 0.0, -1.0);
-  out.lengths = Eigen::VectorXd::Constant(1, kTop + kBeneath);
-  out.from_above = true;
-  out.rows = grid.rows;
-  out.columns = grid.columns;
-  return out;
-}
 
 /// Adds the fields of a GP, their names beginning with `name`: null before it is built, kernel and fit left out.
 void add_gp(BeliefState& out, const std::string& name, const HeightModels::Output& gp, bool summary) {
@@ -109,12 +89,12 @@ ModelSet operator|(ModelSet a, const ModelSet& b) {
 
 }  // namespace
 
-HeightMap::HeightMap(const ExperimentOptions& options, const Context& context, PhaseClock& clock)
+HeightMap::HeightMap(const HeightMapOptions& options, const Context& context)
     : options_(options),
       context_(context),
-      grid_(make_grid(options, context.scene.area())),
-      lines_(make_lines(grid_, context.scene.desk())),
-      models_(options, grid_, context, clock) {}
+      lines_(grid_from_above(context)),
+      grid_(grid_of(lines_)),
+      models_(options_, grid_, context) {}
 
 std::vector<Quantity> HeightMap::offers() const {
   using namespace quantity;
@@ -134,7 +114,7 @@ std::vector<Quantity> HeightMap::offers() const {
 std::vector<PlannedModel> HeightMap::plan(const ReadPlan& plan) {
   plan_ = plan;
   if (options_.height.outlier_probability)
-    plan_.readers.push_back({"height.outlier_probability", {HeightModels::kOutliers}, Stage::first_tap});
+    plan_.readers.push_back({"belief.height.outlier_probability", {HeightModels::kOutliers}, Stage::first_tap});
   if (plan.surface_from)
     plan_.readers.push_back({"surface", {quantity::kHeightMean, quantity::kObjectProbability}, *plan.surface_from});
   std::vector<PlannedModel> out;
@@ -182,9 +162,7 @@ void HeightMap::update() {
   read_again();
 }
 
-void HeightMap::infer() {
-  models_.infer();
-}
+void HeightMap::infer() { models_.infer(); }
 
 QuantitySet HeightMap::available() const {
   using namespace quantity;

@@ -16,8 +16,9 @@ namespace palpate {
 
 class HeightMap final : public Belief {
  public:
-  /// `options`, `context` and `clock` must outlive it. Throws Error for options that a plugin rejects.
-  HeightMap(const ExperimentOptions& options, const Context& context, PhaseClock& clock);
+  using Options = HeightMapOptions;
+  /// `context` must outlive it. Throws Error for options that a plugin rejects.
+  HeightMap(const HeightMapOptions& options, const Context& context);
 
   std::vector<Quantity> offers() const override;
   std::vector<PlannedModel> plan(const ReadPlan& plan) override;
@@ -57,18 +58,18 @@ class HeightMap final : public Belief {
   void add_values(BeliefState& out, Eigen::Index candidate) const;
   void add_calibration(BeliefState& out) const;
 
-  const ExperimentOptions& options_;
+  const HeightMapOptions options_;
   const Context& context_;
-  CandidateGrid grid_;
   Candidates lines_;
+  CandidateGrid grid_;
   HeightModels models_;
   ReadPlan plan_;
   ModelSet begun_;  ///< the models of begun stages, which the record has
   TapCounts counts_;
   std::vector<TapReading> readings_;
   mutable Eigen::VectorXd height_std_, measurement_std_;  ///< computed when they are read
-  const Scene* scene_ = nullptr;  ///< the truth
-  std::optional<Truth> truth_;    ///< the same at the candidates
+  const Scene* scene_ = nullptr;                          ///< the truth
+  std::optional<Truth> truth_;                            ///< the same at the candidates
 };
 
 }  // namespace palpate

@@ -17,13 +17,13 @@ constexpr double kLevelWithOutliers = 1.0;
 
 namespace {
 
-EngineSettings posterior_settings(const ExperimentOptions& options, int prior_points) {
+EngineSettings posterior_settings(const EngineOptions& options, const RunSettings& run, int prior_points) {
   EngineSettings out;
-  out.engine = static_cast<EngineSettings::Kind>(options.engine.type);
-  out.accuracy = std::min(options.engine.accuracy, 0.1 * options.tie_tolerance);
-  out.tolerance = options.engine.tolerance;
-  out.taps = static_cast<int>(options.taps) + prior_points;
-  out.workers = std::make_shared<Workers>(static_cast<int>(options.engine.threads));
+  out.engine = static_cast<EngineSettings::Kind>(options.type);
+  out.accuracy = std::min(options.accuracy, 0.1 * run.tie_tolerance);
+  out.tolerance = options.tolerance;
+  out.taps = static_cast<int>(run.taps) + prior_points;
+  out.workers = std::make_shared<Workers>(static_cast<int>(options.threads));
   return out;
 }
 
@@ -31,15 +31,14 @@ bool same(const PluginChoice& a, const PluginChoice& b) {
   return a.type == b.type && a.options->canonical() == b.options->canonical();
 }
 
-GpModel make_height_gp(const ExperimentOptions& options, const EngineSettings& posterior,
-                       const CandidateGrid& candidates, const Context& context, bool only_objects) {
-  const HeightOptions& height = options.height;
+GpModel make_height_gp(const HeightOptions& height, const EngineSettings& posterior, const CandidateGrid& candidates,
+                       const Context& context, bool only_objects) {
   GpSettings settings{height.signal, height.noise, 0.0};
   if (only_objects) settings.mean_ratio = height.outlier_probability ? kLevelWithOutliers : kFreeLevel;
   const GpModel::Data data{only_objects ? "fitting/surface" : "fitting/height", false, only_objects};
   return {data,
-          height.kernel.value_or(options.kernel),
-          height.fitting.value_or(options.fitting),
+          height.kernel.value_or(context.run.kernel),
+          height.fitting.value_or(context.run.fitting),
           settings,
           posterior,
           candidates,
@@ -48,24 +47,24 @@ GpModel make_height_gp(const ExperimentOptions& options, const EngineSettings& p
 
 }  // namespace
 
-HeightModels::HeightModels(const ExperimentOptions& options, const CandidateGrid& candidates, const Context& context,
-                           PhaseClock& clock)
-    : clock_(clock),
+HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid& candidates, const Context& context)
+    : clock_(context.clock),
       log_(options, context.scene),
-      heights_(make_height_gp(options, posterior_settings(options, log_.prior_size()), candidates, context, false),
-               options.surface == ExperimentOptions::Surface::single, context.scene.desk()),
+      heights_(make_height_gp(options.height, posterior_settings(options.engine, context.run, log_.prior_size()),
+                              candidates, context, false),
+               options.surface == HeightMapOptions::Surface::single, context.scene.desk()),
       label_map_(options.label.clip) {
   const EngineSettings& engine = heights_.gp().engine();
   const HeightOptions& height = options.height;
   const LabelOptions& label = options.label;
   GpSettings settings{label.signal, label.noise, label.prior_mean};
   if (label.hyperparameters != LabelOptions::Hyperparameters::shared) {
-    const PluginChoice kernel = label.kernel.value_or(options.kernel);
-    labels_.emplace(GpModel::Data{"fitting/weight", true}, kernel, label.fitting.value_or(options.fitting), settings,
-                    engine, candidates, context);
+    const PluginChoice kernel = label.kernel.value_or(context.run.kernel);
+    labels_.emplace(GpModel::Data{"fitting/weight", true}, kernel, label.fitting.value_or(context.run.fitting),
+                    settings, engine, candidates, context);
     // Models that are equal and stay so are two outputs of one process.
-    const auto taps = static_cast<int>(options.taps);
-    if (same(height.kernel.value_or(options.kernel), kernel) &&
+    const auto taps = static_cast<int>(context.run.taps);
+    if (same(height.kernel.value_or(context.run.kernel), kernel) &&
         height.noise / height.signal == label.noise / label.signal && !heights_.gp().is_fitted_within(taps) &&
         !labels_->is_fitted_within(taps))
       labels_.reset();
@@ -77,8 +76,8 @@ HeightModels::HeightModels(const ExperimentOptions& options, const CandidateGrid
   }
   footprint_.emplace(options.footprint, candidates, context);
   if (footprint_->is_label_gp()) footprint_.reset();
-  if (options.surface == ExperimentOptions::Surface::two_part)
-    surface_.emplace(make_height_gp(options, engine, candidates, context, true), height.outlier_probability, candidates,
+  if (options.surface == HeightMapOptions::Surface::two_part)
+    surface_.emplace(make_height_gp(height, engine, candidates, context, true), height.outlier_probability, candidates,
                      context.scene.desk());
 }
 

@@ -5,12 +5,11 @@
 #pragma once
 
 #include "experiment/contact_log.hpp"
-#include "experiment/experiment_options.hpp"
 #include "experiment/footprint_model.hpp"
 #include "experiment/gp_model.hpp"
+#include "experiment/height_map_options.hpp"
 #include "experiment/height_model.hpp"
 #include "experiment/metrics.hpp"
-#include "experiment/phases.hpp"
 #include "experiment/surface_model.hpp"
 #include "gp/candidate_grid.hpp"
 
@@ -36,10 +35,9 @@ struct ModelSet {
 
 class HeightModels {
  public:
-  /// Creates all plugins, so that options which they reject are rejected before the first tap. `candidates`, `context`
-  /// and `clock` must outlive it.
-  HeightModels(const ExperimentOptions& options, const CandidateGrid& candidates, const Context& context,
-               PhaseClock& clock);
+  /// Creates all plugins, so that options which they reject are rejected before the first tap. `candidates` and
+  /// `context` must outlive it.
+  HeightModels(const HeightMapOptions& options, const CandidateGrid& candidates, const Context& context);
 
   const ContactLog& log() const { return log_; }
 
@@ -118,7 +116,7 @@ class HeightModels {
   void add_data();
   void find_outliers();
 
-  PhaseClock& clock_;
+  PhaseClock* clock_;  ///< may be null
   ContactLog log_;
   HeightModel heights_;
   std::optional<GpModel> labels_;  ///< none: output 1 of heights_

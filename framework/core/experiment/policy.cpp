@@ -189,10 +189,10 @@ bool all_finite(const Eigen::VectorXd& values) {
 
 void require_finite(const Eigen::VectorXd& map, const char* name, int taps) {
   if (all_finite(map)) return;
-  throw Error(
-      "maps", fmt::format("{} is not a finite number everywhere after tap {}", name, taps),
-      "choose a larger height.noise or a shorter kernel.length_scale, or check for heights that no arm can report",
-      Error::Kind::run);
+  throw Error("maps", fmt::format("{} is not a finite number everywhere after tap {}", name, taps),
+              "choose a larger belief.height.noise or a shorter kernel.length_scale, or check for heights that no arm "
+              "can report",
+              Error::Kind::run);
 }
 
 }  // namespace palpate

@@ -83,13 +83,14 @@ void RunMonitor::describe(TapRecord& tap, Belief& belief) {
 RunResult RunMonitor::result(Belief& belief) {
   RunResult out = result_;
   out.interrupted = out.stop_reason == kStoppedByUser;
+  out.from_above = belief.candidates().from_above;
   const Scene* const scene = truth(belief);
   if (scene != nullptr) {
     out.errors = belief.errors();
     require_finite(out.errors, out.taps);
     const std::vector<ObjectErrors> objects = belief.object_errors();
     touches_.resize(static_cast<std::size_t>(scene->objects()));
-    if (belief.candidates().from_above) out.objects.emplace();
+    if (out.from_above) out.objects.emplace();
     for (std::size_t i = 0; out.objects && i < objects.size(); ++i) out.objects->push_back({objects[i], touches_[i]});
   }
   BeliefState state = belief.state(std::nullopt);
@@ -104,7 +105,7 @@ void require_finite(const Errors& errors, int taps) {
         errors.rms_surface_distance, errors.f_score, errors.coverage, errors.volume_iou}) {
     if (std::isfinite(one.value_or(0.0))) continue;
     throw Error("maps", fmt::format("their errors are not finite numbers after tap {}", taps),
-                "check for heights that no arm can report, or choose a larger height.noise", Error::Kind::run);
+                "check for heights that no arm can report, or choose a larger belief.height.noise", Error::Kind::run);
   }
 }
 

@@ -2,7 +2,7 @@
 // The record of one tap and of a whole run, and the observers of a run.
 #pragma once
 
-#include "experiment/phases.hpp"
+#include <palpate/phases.hpp>
 
 #include <palpate/backend.hpp>
 #include <palpate/belief.hpp>
@@ -92,6 +92,7 @@ struct ObjectResult : ObjectErrors, ObjectTouches {};
 struct RunResult {
   std::string stop_reason;
   bool interrupted = false;
+  bool from_above = true;  ///< whether all candidates are straight down
   int taps = 0;
   int object_taps = 0;
   int desk_taps = 0;

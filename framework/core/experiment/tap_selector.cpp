@@ -5,6 +5,8 @@
 
 #include <palpate/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace palpate {
@@ -13,6 +15,11 @@ TapSelector::TapSelector(const ExperimentOptions& options, const Belief& belief,
     : options_(options), area_(context.scene.area()), acquisition_(context.create<Acquisition>(options.acquisition)) {
   if (!belief.candidates().fixed) return;
   grid_ = grid_of(belief.candidates());
+  if (!options.initial.searches() && options.initial.count > grid_.size()) {
+    throw Error("initial.count",
+                fmt::format("{} taps, but there are only {} candidates", options.initial.count, grid_.size()),
+                "use fewer initial taps or more candidates");
+  }
   initial_ = initial_design(options.initial, grid_, area_, context.seed);
   if (options.initial.searches())
     search_.emplace(options.initial.smallest, grid_, area_, Random(context.seed, "initial"));
@@ -21,9 +28,13 @@ TapSelector::TapSelector(const ExperimentOptions& options, const Belief& belief,
 void TapSelector::add_readers(ReadPlan& plan) const {
   plan.readers.push_back(
       {"acquisition " + options_.acquisition.type, acquisition_->reads(), Stage::first_acquisition_tap});
-  if (options_.fallback == ExperimentOptions::Fallback::uncertainty)
+  if (options_.choice.fallback == ChoiceOptions::Fallback::uncertainty)
     plan.readers.push_back(
         {"fallback uncertainty, from its first use on", {quantity::kUncertainty}, Stage::first_fallback});
+  if (options_.initial.design != InitialOptions::Design::random)
+    plan.readers.push_back({"initial.design", {quantity::kDeskPosition}, Stage::first_tap});
+  if (options_.choice.repeat == ChoiceOptions::Repeat::allow)
+    plan.readers.push_back({"choice.repeat", {quantity::kDeskPosition}, Stage::first_tap});
 }
 
 bool TapSelector::is_starting(const Belief& belief) const {
@@ -56,7 +67,7 @@ void TapSelector::allow(const Belief& belief) {
   for (const Tapped& tap : taps_) {
     if (!tap.is_contact) allowed_(tap.candidate) = false;
   }
-  if (options_.repeat == ExperimentOptions::Repeat::allow) return;
+  if (options_.choice.repeat == ChoiceOptions::Repeat::allow) return;
   for (const TapReading& one : belief.readings()) {
     if (one.outlier_probability < OutlierModel::kRetapThreshold && !one.moved)
       allowed_(taps_[static_cast<std::size_t>(one.tap - 1)].candidate) = false;
@@ -99,11 +110,11 @@ bool TapSelector::choose(Belief& belief, TapRecord& tap, const TapOverride* over
   }
   tap.request.source = override != nullptr ? Source::caller : Source::acquisition;
   const auto pick = [&](const Eigen::VectorXd& of, double scale) {
-    return pick_best(of, allowed_, scale, options_.tie_tolerance);
+    return pick_best(of, allowed_, scale, options_.choice.tie_tolerance);
   };
   // The size of a caller's scores before the first tap is not known.
   Pick picked = override != nullptr ? pick(override->scores, 0.0) : pick(scores(belief), acquisition_->prior_scale());
-  if (picked.flat && options_.fallback == ExperimentOptions::Fallback::uncertainty) {
+  if (picked.flat && options_.choice.fallback == ChoiceOptions::Fallback::uncertainty) {
     tap.request.source = Source::fallback;
     tap.why = (override != nullptr ? kOfCaller : "") + *picked.flat;
     begin_fallback(belief);

@@ -24,10 +24,7 @@ struct CandidateGrid {
   int nearest(double x, double y, const Area& area) const;
 };
 
-/// Largest number of cells along a side. The callers of the functions below check it.
-constexpr int kMaxCellsPerSide = 2000;
-
-/// Returns a grid with `count` cells along each side, 1 to kMaxCellsPerSide.
+/// Returns a grid with `count` cells along each side, at least 1.
 CandidateGrid grid_by_count(const Area& area, int count);
 
 /// Returns a grid with cells of about `spacing` metres: cells_along() per side, at most kMaxCellsPerSide.

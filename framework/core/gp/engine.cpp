@@ -19,7 +19,7 @@ struct KindChoice {
 
 KindChoice choose_kind(const EngineSettings& settings, const Kernel& kernel, const CandidateGrid& candidates,
                        double error) {
-  if (settings.engine != Kind::automatic) return {settings.engine, "chosen by engine.type"};
+  if (settings.engine != Kind::automatic) return {settings.engine, "chosen by belief.engine.type"};
   if (!kernel.separable()) return {Kind::dense, "the kernel is not separable"};
   if (!candidates.is_grid()) return {Kind::dense, "the candidates are not a product grid"};
   if (!(settings.accuracy > 0.0)) return {Kind::dense, "no error is allowed"};

@@ -3,12 +3,14 @@
 
 #include "config/describe.hpp"
 #include "config/tree.hpp"
+#include "plugin/builtin.hpp"
 #include "plugin/loaded_hash.hpp"
 #include "plugin/plugin_errors.hpp"
 #include "reading/reading.hpp"
 
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
+#include <palpate/belief.hpp>
 #include <palpate/fitting.hpp>
 #include <palpate/footprint.hpp>
 #include <palpate/kernel.hpp>
@@ -152,6 +154,14 @@ void guarded(const Tree* options, const std::string& plugin, const char* failure
   }
 }
 
+/// Returns the manifest of a plugin that the program contains; null if it contains none of that name.
+const PluginManifest* builtin(const std::string& kind, const std::string& name) {
+  for (const PluginManifest& one : builtin_plugins()) {
+    if (one.kind == kind && one.name == name) return &one;
+  }
+  return nullptr;
+}
+
 /// Returns the reason why a folder has no plugins; "" if it has some.
 std::string trouble_of_folder(const fs::path& folder) {
   std::error_code none;
@@ -178,9 +188,11 @@ PluginNames plugins_of_build(const fs::path& folder) {
   return out;
 }
 
-/// A loaded library, which is closed after the end of the last object that it created.
+/// A loaded library, which is closed after the end of the last object that it created; or a plugin that the program
+/// itself contains.
 class PluginHost::Library {
  public:
+  explicit Library(const PluginManifest& own) : manifest(&own) {}
   Library(const fs::path& from, const std::string& kind, const std::string& name) : file(from) {
     std::error_code trouble;
     if (!fs::exists(file, trouble)) refuse(file, "opening", "a link to a missing file");
@@ -232,12 +244,14 @@ bool PluginHost::one_at_a_time(const PluginNames& plugins) const {
 
 bool PluginHost::has(const std::string& kind, const std::string& name) const {
   std::error_code none;
-  return std::any_of(folders_.begin(), folders_.end(),
-                     [&](const fs::path& folder) { return fs::exists(folder / kind / (name + ".so"), none); });
+  return builtin(kind, name) != nullptr || std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& folder) {
+           return fs::exists(folder / kind / (name + ".so"), none);
+         });
 }
 
 std::vector<std::string> PluginHost::kinds() {
-  return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Footprint::kKind, Backend::kKind, Shape::kKind};
+  return {Kernel::kKind, Acquisition::kKind, Fitting::kKind, Footprint::kKind,
+          Belief::kKind, Backend::kKind,     Shape::kKind};
 }
 
 std::vector<std::pair<std::string, fs::path>> PluginHost::files(const std::string& kind) const {
@@ -253,6 +267,9 @@ std::vector<std::pair<std::string, fs::path>> PluginHost::files(const std::strin
 
 std::vector<std::string> PluginHost::names(const std::string& kind) const {
   std::set<std::string> out;
+  for (const PluginManifest& one : builtin_plugins()) {
+    if (one.kind == kind) out.insert(one.name);
+  }
   for (const auto& [name, file] : files(kind)) out.insert(name);
   for (const fs::path& folder : folders_) {
     for (const auto& [of, name] : plugins_of_build(folder)) {
@@ -266,6 +283,7 @@ std::shared_ptr<const PluginHost::Library> PluginHost::library(const std::string
   const std::lock_guard lock(mutex_);
   auto& slot = libraries_[{kind, name}];
   if (slot) return slot;
+  if (const PluginManifest* const own = builtin(kind, name)) return slot = std::make_shared<const Library>(*own);
   if (!is_name(name)) throw Error("", fmt::format("'{}' is not a valid name of a plugin", name), kNameHint);
   std::vector<fs::path> found;
   for (const fs::path& folder : folders_) {
@@ -314,6 +332,7 @@ std::shared_ptr<void> PluginHost::create(const PluginChoice& choice, const Conte
     fill(*choice.options, *this, choice.kind,
          [&](Fields& fields) { object = holder->manifest->create(fields, context); });
   });
+  if (holder->file.empty()) return {object, holder->manifest->destroy};
   // The deleter holds the library, which so outlives the object.
   return wrap_plugin(choice.kind, choice.type, {object, [holder](void* gone) { holder->manifest->destroy(gone); }});
 }
@@ -342,7 +361,7 @@ std::vector<LoadedPlugin> PluginHost::loaded(const PluginNames& plugins) const {
   std::vector<LoadedPlugin> out;
   for (const auto& [kind, name] : plugins) {
     const std::shared_ptr<const Library> holder = library(kind, name);
-    out.push_back({kind, name, holder->file, holder->hash});
+    if (!holder->file.empty()) out.push_back({kind, name, holder->file, holder->hash});
   }
   return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The list of all libraries. Each is loaded in its own child process, because a damaged library may crash or hang it.
 #include "children/child_process.hpp"
+#include "plugin/builtin.hpp"
 #include "plugin/host.hpp"
 
 #include <palpate/error.hpp>
@@ -71,6 +72,9 @@ std::vector<PluginListing> PluginHost::list(const std::string& kind, const std::
   std::vector<PluginListing> out;
   for (const std::string& one : kinds()) {
     if (!kind.empty() && one != kind) continue;
+    for (const PluginManifest& own : builtin_plugins()) {
+      if (own.kind == one && (name.empty() || own.name == name)) out.push_back({one, own.name, {}, own.summary, {}});
+    }
     for (const auto& [stem, file] : files(one)) {
       if (!name.empty() && stem != name) continue;
       // The files are sorted, so that the same name in a second folder follows at once. The first row reports both.

@@ -3,6 +3,7 @@
 
 #include <palpate/acquisition.hpp>
 #include <palpate/backend.hpp>
+#include <palpate/belief.hpp>
 #include <palpate/error.hpp>
 #include <palpate/fitting.hpp>
 #include <palpate/footprint.hpp>
@@ -79,7 +80,7 @@ class Wrapper : public Interface {
  protected:
   /// Calls the method of the plugin's object. Any exception becomes an Error with the name of the plugin.
   template <class Method, class... Arguments>
-  auto call(Method method, Arguments&&... arguments) const {
+  decltype(auto) call(Method method, Arguments&&... arguments) const {
     try {
       return std::invoke(method, *inner_, std::forward<Arguments>(arguments)...);
     } catch (const Undeclared&) {
@@ -94,12 +95,14 @@ class Wrapper : public Interface {
     }
   }
 
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw Error(name_, reason, "correct the plugin", Error::Kind::run);
+  }
+
   /// Throws Error if a result of the plugin is not finite.
   template <class Values>
   void require_finite(const char* function, const Values& values) const {
-    if (are_finite(values)) return;
-    throw Error(name_, std::string(function) + " returned a number that is not finite", "correct the plugin",
-                Error::Kind::run);
+    if (!are_finite(values)) fail(std::string(function) + " returned a number that is not finite");
   }
 
   /// Returns the value, or throws Error if it is not finite.
@@ -226,6 +229,71 @@ class WrappedFootprint final : public Wrapper<Footprint> {
   std::string remark() const override { return call(&Footprint::remark); }
 };
 
+/// A reference to values of a belief stays valid until the next tap, so that the checks copy nothing.
+class WrappedBelief final : public Wrapper<Belief> {
+ public:
+  using Wrapper::Wrapper;
+  const Candidates& candidates() const override { return call(&Belief::candidates); }
+  TapCounts counts() const override { return call(&Belief::counts); }
+  const std::vector<TapReading>& readings() const override { return call(&Belief::readings); }
+  const Eigen::VectorXd& values(std::string_view quantity) const override {
+    const Eigen::VectorXd& out = call(&Belief::values, quantity);
+    if (out.size() != candidates().size())
+      fail("values() of " + std::string(quantity) + " has not one value per candidate");
+    require_finite("values()", out);
+    return out;
+  }
+  std::optional<double> scalar(std::string_view quantity) const override {
+    return finite("scalar()", call(&Belief::scalar, quantity));
+  }
+  const HypothesisSample& hypotheses() const override { return call(&Belief::hypotheses); }
+  std::vector<Quantity> offers() const override { return call(&Belief::offers); }
+  std::vector<PlannedModel> plan(const ReadPlan& plan) override {
+    check_candidates();
+    return call(&Belief::plan, plan);
+  }
+  void begin(Stage stage) override { call(&Belief::begin, stage); }
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override {
+    return call(&Belief::read, request, result);
+  }
+  void add(const TapRequest& request, const TapResult& result) override { call(&Belief::add, request, result); }
+  void update() override { call(&Belief::update); }
+  void infer() override { call(&Belief::infer); }
+  QuantitySet available() const override { return call(&Belief::available); }
+  void draw_candidates(const LineFilter& filter) override {
+    call(&Belief::draw_candidates, filter);
+    check_candidates();
+  }
+  bool is_ready() const override { return call(&Belief::is_ready); }
+  bool reads_scene() const override { return call(&Belief::reads_scene); }
+  Prediction predict(Eigen::Index candidate, bool probability) const override {
+    const Prediction out = call(&Belief::predict, candidate, probability);
+    require_finite("predict()", out.height);
+    require_finite("predict()", out.standard_deviation);
+    require_finite("predict()", out.probability);
+    return out;
+  }
+  BeliefState state(std::optional<Eigen::Index> candidate) const override { return call(&Belief::state, candidate); }
+  void set_truth(const Scene* scene) override { call(&Belief::set_truth, scene); }
+  Errors errors() override { return call(&Belief::errors); }
+  std::optional<ShownErrors> shown_errors() override { return call(&Belief::shown_errors); }
+  std::vector<ObjectErrors> object_errors() override { return call(&Belief::object_errors); }
+  Surface surface() override { return call(&Belief::surface); }
+
+ private:
+  void check_candidates() const {
+    const Candidates& all = candidates();
+    const auto fits = [&](Eigen::Index rows) { return rows == 1 || rows == all.size(); };
+    if (!fits(all.directions.rows()) || !fits(all.lengths.size()))
+      fail("its candidates have neither one direction and length nor one for each line");
+    require_finite("candidates()", all.starts);
+    require_finite("candidates()", all.directions);
+    require_finite("candidates()", all.lengths);
+    if (all.fixed && (all.size() == 0 || all.size() != Eigen::Index{all.rows} * all.columns))
+      fail("its fixed candidates are not rows x columns lines");
+  }
+};
+
 class WrappedBackend final : public Wrapper<Backend> {
  public:
   using Wrapper::Wrapper;
@@ -297,6 +365,7 @@ std::shared_ptr<void> wrap_plugin(const std::string& kind, const std::string& ty
   if (kind == Acquisition::kKind) return wrap_as<WrappedAcquisition, Acquisition>(name, object);
   if (kind == Fitting::kKind) return wrap_as<WrappedFitting, Fitting>(name, object);
   if (kind == Footprint::kKind) return wrap_as<WrappedFootprint, Footprint>(name, object);
+  if (kind == Belief::kKind) return wrap_as<WrappedBelief, Belief>(name, object);
   if (kind == Backend::kKind) return wrap_as<WrappedBackend, Backend>(name, object);
   return wrap_as<WrappedShape, Shape>(name, object);
 }

@@ -145,7 +145,7 @@ void list_models(FieldList<Record>& list) {
          "absent with `footprint: gp_regression`");
   list.add_family("suspected_outliers",
                   "list of `tap` and `probability` of the contacts whose height or label is an outlier with a "
-                  "probability of 0.1 or more. Null if there are none; only with `height.outlier_probability`",
+                  "probability of 0.1 or more. Null if there are none; only with `belief.height.outlier_probability`",
                   [](Row& row, const Record& record) {
                     for (const auto& [field, value] : record.state.fields) {
                       if (field == "suspected_outliers") row.add(field, value);
@@ -249,7 +249,7 @@ void list_result(FieldList<TapRecord>& list) {
   });
   list.add_where([](const Tap& t) { return t.reading && t.reading->is_corrected; }, "corrected_height",
                  "`height` minus the offset that motion and arm add to all heights, as estimated at the time of the "
-                 "tap; only with `height.offset`",
+                 "tap; only with `belief.height.offset`",
                  [](const Tap& t) { return t.reading->position.z(); })
       .in(Unit::metre);
   list.add("force", "largest force measured in a contact (the threshold, if the scene has no effects)",
@@ -365,11 +365,11 @@ constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fit
                                                           "updating the models", "scoring and choosing",
                                                           "writing the record of the previous tap"};
 
-bool is_from_any_side(const Summary& summary) { return summary.config.options.scene.touch == SceneOptions::Touch::any; }
+bool is_from_any_side(const Summary& summary) { return !summary.from_above; }
 
 /// Whether contacts are read again after later taps.
 bool is_read_again(const Summary& summary) {
-  return summary.config.options.height.offset.has_value() || is_from_any_side(summary);
+  return !belief_option(summary.config.options, "height.offset").empty() || is_from_any_side(summary);
 }
 
 /// How often a run took such a step.
@@ -478,7 +478,8 @@ FieldList<Summary> make_summary_list() {
       .less()
       .headline();
   list.add("object_taps",
-           "contacts with an object, as classified at the end. With `height.offset`, and from any side, every tap may "
+           "contacts with an object, as classified at the end. With `belief.height.offset`, and from any side, every "
+           "tap may "
            "change the class of earlier contacts",
            &Summary::object_taps)
       .more()
@@ -501,7 +502,7 @@ FieldList<Summary> make_summary_list() {
       .called("share of runs that found an object");
   list.add_where(is_read_again, "relabelled",
                  "taps whose class at the end differs from their `on_object`, each with its final class: `5 object; 9 "
-                 "desk`. Null if there are none; only with `height.offset` and from any side",
+                 "desk`. Null if there are none; only with `belief.height.offset` and from any side",
                  [](const Summary& s) { return if_any(words(s.relabelled)); });
   list.add_shared(error_fields(), [](Row& row, const Summary& s) { add_errors(row, s.errors); });
   list.add(kExpectedError,

@@ -199,7 +199,7 @@ class Run::Recorder final : public Observer {
     TapRecord told = tap;
     told.shown_expected_rmse = shown_.expected_rmse;  // stands with the times, not with the tap
     {
-      const PhaseClock::Scope log(experiment_.clock(), Phase::log);
+      const PhaseClock::Scope log(&experiment_.clock(), Phase::log);
       directory_.record(told, seconds);
     }
     told.errors = shown_.errors;
@@ -217,7 +217,7 @@ class Run::Recorder final : public Observer {
 
   void announce_recorded(const TapRecord& tap) {
     {
-      const PhaseClock::Scope log(experiment_.clock(), Phase::log);
+      const PhaseClock::Scope log(&experiment_.clock(), Phase::log);
       if (run_.config_.options.log.maps) write_maps(tap);
       directory_.announce(tap);
     }

@@ -88,8 +88,8 @@ ReplayReport replay_run(const Workshop& environment, const std::filesystem::path
 /// Returns the summaries that a run, which ended well, would have had after each of its taps but the last. Each equals
 /// that of a run whose budget ends there, in all that depends on the config alone: choosing a tap looks at no budget,
 /// and reading a model changes none. Only the engines are those that `engine: {type: auto}` took for the run's own
-/// budget; where it would take another for less, numbers may differ as far as `engine.accuracy` lets them. Throws Error
-/// where the run knew the truth and that is lost.
+/// budget; where it would take another for less, numbers may differ as far as `belief.engine.accuracy` lets them.
+/// Throws Error where the run knew the truth and that is lost.
 ///
 /// Of the rest the record knows this much: `compute.*` are the sums of the recorded times so far; `wall_seconds` and
 /// `compute_seconds` the share of the run's own that these sums have in those of all taps; the memory, which nobody

@@ -20,7 +20,6 @@ class Desk final : public Scene {
       : area_{options.area.width, options.area.depth},
         desk_(options.desk),
         margin_(options.min_object_height),
-        any_side_(options.touch == SceneOptions::Touch::any),
         effects_(options.effects.values),
         context_{factory, *this, seed, nullptr} {
     // Shapes are created over an empty desk.
@@ -46,7 +45,7 @@ class Desk final : public Scene {
     return desk_ + above;
   }
 
-  bool any_side() const override { return any_side_; }
+  double min_object_height() const override { return margin_; }
 
   double first_intersection(const Line& line) const override {
     const Line above{line.origin - Eigen::Vector3d(0.0, 0.0, desk_), line.direction};
@@ -102,7 +101,6 @@ class Desk final : public Scene {
   Area area_;
   double desk_;
   double margin_;
-  bool any_side_;
   Effects effects_;
   Context context_;  ///< outlives the plugins in bodies_
   std::vector<Body> bodies_;

@@ -52,8 +52,6 @@ void SceneOptions::list(Fields& fields) {
             "minimum height above the desk of a contact with an object. Lower contacts count as contacts with the desk")
           .in(Unit::metre)
           .above(0));
-  fields.choice(touch, Field("touch", "directions from which the tool taps").neutral("top"),
-                {{"top", "from above, straight down", {}}, {"any", "along straight lines of any direction", {}}});
   fields.choice(placement, Field("placement", "placement of the objects"),
                 {{"fixed", "each object has the configured position `at` and rotation `rotation`", {}},
                  {"random",

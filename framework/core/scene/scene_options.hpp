@@ -37,11 +37,9 @@ struct EffectOptions : Options {
 
 struct SceneOptions : Options {
   enum class Placement { fixed, random };
-  enum class Touch { top, any };
   AreaOptions area;
   double desk = 0.0;
   double min_object_height = 0.01;
-  Touch touch = Touch::top;
   Placement placement = Placement::fixed;
   std::vector<ObjectOptions> objects;
   EffectOptions effects;

@@ -85,7 +85,7 @@ SampledLines sample_lines(const Region& region, double desk, std::size_t count, 
   for (std::size_t tries = 0; out.anywhere.size() < count;) {
     if (tries >= kTries * count) {
       throw Error("backend", "rejects every tap from any side that was tried",
-                  "use scene.touch: top for an arm that taps from above");
+                  "use belief=height_map for an arm that taps from above");
     }
     const std::size_t batch = count - out.anywhere.size();
     Candidates drawn;

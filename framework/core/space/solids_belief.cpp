@@ -8,6 +8,8 @@
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -20,7 +22,9 @@ namespace {
 /// in the air makes none. Two outliers in a hundred, anywhere on the way, are about as much.
 constexpr double kMostCost = 6.5;
 
-SolidsSettings settings_of(const SpaceOptions& options) {
+constexpr std::int64_t kLines = 2000;  // drawn before each tap
+
+SolidsSettings settings_of(const SolidsOptions& options) {
   SolidsSettings out;
   out.count = static_cast<int>(options.particles);
   out.moves = static_cast<int>(options.moves);
@@ -33,21 +37,26 @@ double tip_of(const Scene& scene) { return scene.effects().tip_radius ? scene.ef
 
 }  // namespace
 
-SolidsBelief::SolidsBelief(const ExperimentOptions& options, const Context& context, PhaseClock& clock)
+SolidsBelief::SolidsBelief(const SolidsOptions& options, const Context& context)
     : context_(context),
-      clock_(clock),
       options_(options),
       region_(context.scene.area()),
-      touches_(context.scene.desk(), tip_of(context.scene), options.scene.min_object_height),
-      solids_(context.scene.area(), settings_of(*options.space), context.random("space/solids")),
-      skin_(context.create<Kernel>(options.kernel), SkinSettings{options.height.signal, options.height.noise}),
+      touches_(context.scene.desk(), tip_of(context.scene), context.scene.min_object_height()),
+      solids_(context.scene.area(), settings_of(options), context.random("space/solids")),
+      skin_(context.create<Kernel>(context.run.kernel), SkinSettings{options.residual.signal, options.residual.noise}),
       values_(context.scene.desk()),
       errors_(region_) {
   lines_.lines.fixed = false;
-  if (!options.space->view) return;
+  if (context.run.fitting.type != "fixed") {
+    throw Error(
+        "fitting",
+        fmt::format("{} fits nothing for the belief solids, which has fixed hyperparameters", context.run.fitting.type),
+        "use fitting=fixed");
+  }
+  if (!options.view) return;
   constexpr std::size_t kMost = 160;  // rays that are kept: the cost of a touch grows with them
   const std::vector<SurfaceTouch> view =
-      side_view(*options.space->view, context.scene, region_.centre, region_.radius, context.random("space/view"));
+      side_view(*options.view, context.scene, region_.centre, region_.radius, context.random("space/view"));
   object_seen_ = shows_object(view);
   touches_.look(thinned_view(view, kMost));
 }
@@ -97,7 +106,7 @@ void SolidsBelief::update() {
   updated_for_ = counts_.all;
   drawn_for_ = -1;
   const std::vector<SurfaceTouch>& touches = touches_.touches();
-  const PhaseClock::Scope infer(clock_, Phase::infer);
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
   const auto first = [&](std::size_t count) {
     return std::vector<SurfaceTouch>(touches.begin(), touches.begin() + static_cast<std::ptrdiff_t>(count));
   };
@@ -109,8 +118,8 @@ void SolidsBelief::update() {
     // A touch errs by the distance of the solids to the objects, and by the error of its report.
     const double error = touches_.overtravel().spread();
     const double spread = error > Overtravel::kLeastSpread ? error : 0.0;
-    solids_.read_again(first(taken_in_), math::hypot(options_.space->model_discrepancy, spread), kMostCost);
-    skin_.set_noise(std::max(options_.height.noise, spread));
+    solids_.read_again(first(taken_in_), math::hypot(options_.model_discrepancy, spread), kMostCost);
+    skin_.set_noise(std::max(options_.residual.noise, spread));
     touches_.set_unchanged();
   }
   for (; taken_in_ < touches.size(); ++taken_in_) solids_.add({touches[taken_in_]});
@@ -119,12 +128,13 @@ void SolidsBelief::update() {
 
 void SolidsBelief::draw_candidates(const LineFilter& filter) {
   if (drawn_for_ == counts_.all) return;
-  const PhaseClock::Scope infer(clock_, Phase::infer);
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
   // A stream per tap: the lines depend on the touches alone, and a resumed run draws the same.
   Random random = context_.random("space/approaches", static_cast<std::uint64_t>(counts_.all));
   const bool is_known = counts_.all > 0 || touches_.seen() > 0;
-  lines_ = sample_lines(region_, context_.scene.desk(), static_cast<std::size_t>(options_.space->approaches),
-                        is_known ? &solids_.best() : nullptr, random, filter);
+  lines_ =
+      sample_lines(region_, context_.scene.desk(), static_cast<std::size_t>(context_.run.candidates.value_or(kLines)),
+                   is_known ? &solids_.best() : nullptr, random, filter);
   drawn_for_ = counts_.all;
   inferred_for_ = -1;
 }
@@ -133,7 +143,7 @@ void SolidsBelief::infer() {
   if (reads_.empty() || (inferred_for_ == counts_.all && inferred_ == reads_)) return;
   inferred_ = reads_;
   inferred_for_ = counts_.all;
-  const PhaseClock::Scope infer(clock_, Phase::infer);
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
   values_.compute(lines_, solids_, skin_, reads_,
                   context_.random("space/unseen", static_cast<std::uint64_t>(counts_.all)));
   for (const std::string& one : reads_) {

@@ -3,13 +3,12 @@
 // GP that corrects the best of them.
 #pragma once
 
-#include "experiment/experiment_options.hpp"
-#include "experiment/phases.hpp"
 #include "space/line_sampler.hpp"
 #include "space/line_values.hpp"
 #include "space/mesh.hpp"
 #include "space/skin.hpp"
 #include "space/solids.hpp"
+#include "space/solids_options.hpp"
 #include "space/surface_errors.hpp"
 #include "space/touch_log.hpp"
 
@@ -32,8 +31,10 @@ namespace palpate {
 /// - surface_std, metres: standard deviation of the surface along its normal where the line meets it; else 0.
 class SolidsBelief final : public Belief {
  public:
-  /// `options`, `context` and `clock` must outlive it. Throws Error for a kernel that is not one of the distance alone.
-  SolidsBelief(const ExperimentOptions& options, const Context& context, PhaseClock& clock);
+  using Options = SolidsOptions;
+  /// `context` must outlive it. Throws Error for a kernel that is not one of the distance alone, and for a fitting: no
+  /// hyperparameter is fitted.
+  SolidsBelief(const SolidsOptions& options, const Context& context);
 
   std::vector<Quantity> offers() const override;
   std::vector<PlannedModel> plan(const ReadPlan& plan) override;
@@ -45,6 +46,7 @@ class SolidsBelief final : public Belief {
   QuantitySet available() const override { return inferred_; }
   void draw_candidates(const LineFilter& filter) override;
   bool is_ready() const override;
+  bool reads_scene() const override { return options_.view.has_value(); }
 
   const Candidates& candidates() const override { return lines_.lines; }
   TapCounts counts() const override { return counts_; }
@@ -74,8 +76,7 @@ class SolidsBelief final : public Belief {
 
  private:
   const Context& context_;
-  PhaseClock& clock_;
-  const ExperimentOptions& options_;
+  const SolidsOptions options_;
   Region region_;
   TouchLog touches_;
   Solids solids_;

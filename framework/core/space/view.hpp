@@ -3,7 +3,7 @@
 // up to what was seen.
 #pragma once
 
-#include "experiment/experiment_options.hpp"
+#include "space/solids_options.hpp"
 #include "space/surface_touch.hpp"
 
 #include <palpate/random.hpp>

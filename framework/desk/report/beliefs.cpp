@@ -4,7 +4,7 @@
 namespace palpate {
 
 bool is_any_side(const RecordedRun& recording) {
-  return recording.config.options.scene.touch == SceneOptions::Touch::any;
+  return !recording.taps.empty() && !recording.taps.front().request.line.from_above;
 }
 
 ReadPlan page_readers(const RecordedRun& recording) {

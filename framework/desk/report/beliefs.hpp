@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Whether the taps of a run come from any side, so that its belief is `solids`; else it is `height_map`.
+/// Whether the taps of a run come from any side.
 bool is_any_side(const RecordedRun& recording);
 
 /// Returns the readers of a page: all that it shows, from the first tap on.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/curves.hpp"
+#include "report/beliefs.hpp"
 
 #include "record/fields.hpp"
 #include "report/words/titles.hpp"
@@ -140,7 +141,7 @@ std::string constant_words(const CurvePanel& panel) {
 }
 
 /// Returns a panel with the errors that are lengths, in millimetres, then a panel per other error.
-std::vector<CurvePanel> error_panels(const ExperimentOptions& options, const History& history) {
+std::vector<CurvePanel> error_panels(bool any_side, const History& history) {
   std::vector<CurvePanel> out(1);
   std::vector<Curve> lengths;
   const auto in_millimetres = [](const std::optional<double>& metres) {
@@ -162,7 +163,7 @@ std::vector<CurvePanel> error_panels(const ExperimentOptions& options, const His
   lengths.push_back(curve_of(history, find_summary_field(kExpectedError)->label, [&](const RunAtTap& moment) {
     return in_millimetres(Row{moment.result.state.fields}.number(kExpectedError));
   }));
-  out.front() = {surface_error_title(options), "mm", CurveAxis::from_zero, std::move(lengths)};
+  out.front() = {surface_error_title(any_side), "mm", CurveAxis::from_zero, std::move(lengths)};
   return out;
 }
 
@@ -186,8 +187,8 @@ Curves without_constants(std::vector<CurvePanel> panels) {
 
 Curves curves_of(const RecordedRun& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
-  const bool any_side = options.scene.touch == SceneOptions::Touch::any;
-  std::vector<CurvePanel> panels = error_panels(options, history);
+  const bool any_side = is_any_side(recording);
+  std::vector<CurvePanel> panels = error_panels(is_any_side(recording), history);
   const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
     panels.push_back({std::move(title), unit, axis, std::move(curves)});
   };
@@ -206,7 +207,7 @@ Curves curves_of(const RecordedRun& recording, const History& history) {
     add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
         named_curves(history, [&](const RunAtTap& moment) { return parameters_of(moment, state.field); }));
   }
-  add(fmt::format("Numbers of footprint/{}", options.footprint.type), "", CurveAxis::free,
+  add(fmt::format("Numbers of footprint/{}", belief_option(options, "footprint.type")), "", CurveAxis::free,
       named_curves(history, [](const RunAtTap& moment) { return footprint_numbers(moment); }));
   add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
   if (history.moments.back().result.robot_seconds > 0.0)

@@ -57,7 +57,7 @@ MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   }
   out.largest_deviation = belief.values(quantity::kMeasurementStd).maxCoeff();
   out.result = playback.result();
-  if (recording.config.options.height.outlier_probability)
+  if (!belief_option(recording.config.options, "height.outlier_probability").empty())
     out.suspected_outliers = belief.models().suspected_outliers();
   return out;
 }

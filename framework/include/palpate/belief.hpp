@@ -57,9 +57,12 @@ class BeliefView {
   /// Returns M values of a quantity. Throws Error for a quantity that the reader did not declare.
   virtual const Eigen::VectorXd& values(std::string_view quantity) const = 0;
   /// Returns a quantity that is one number; nullopt while it has no value.
-  virtual std::optional<double> scalar(std::string_view quantity) const = 0;
+  virtual std::optional<double> scalar(std::string_view /*quantity*/) const { return std::nullopt; }
   /// For readers of `hypotheses`.
-  virtual const HypothesisSample& hypotheses() const = 0;
+  virtual const HypothesisSample& hypotheses() const {
+    static const HypothesisSample none;
+    return none;
+  }
 };
 
 /// From when on a reader reads.
@@ -111,6 +114,9 @@ struct ShownErrors {
 /// Returns for each line whether the backend can tap along it.
 using LineFilter = std::function<void(const Candidates& lines, BoolOut out)>;
 
+/// A model of the scene. It learns from the results of taps, and offers the lines of the next tap and named quantities
+/// of them. A belief without models, stages or numerical trouble leaves the functions about them at their defaults.
+///
 /// Laws of every belief: the same plan, stages and taps give the same bytes, on any number of threads. infer(),
 /// surface(), errors() and all reading change no later value. Random numbers come from
 /// Context::random() alone. Numerical trouble is counted in state(). infer() throws Error for values that are not
@@ -124,11 +130,11 @@ class Belief : public BeliefView {
 
   /// Takes the readers of the run, before the first tap, and returns the models that those before the summary need. No
   /// model without a reader is ever built. The belief offers every quantity of the plan.
-  virtual std::vector<PlannedModel> plan(const ReadPlan& plan) = 0;
+  virtual std::vector<PlannedModel> plan(const ReadPlan& /*plan*/) { return {}; }
 
   /// The readers of `stage` read from now on; all that they read belongs to the record. Stages begin in any order; a
   /// stage that has begun stays as it is.
-  virtual void begin(Stage stage) = 0;
+  virtual void begin(Stage /*stage*/) {}
 
   /// Returns the reading of a result as the belief stands, nullopt for a failed tap. Changes nothing.
   virtual std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const = 0;
@@ -138,7 +144,7 @@ class Belief : public BeliefView {
   virtual void add(const TapRequest& request, const TapResult& result) = 0;
 
   /// Brings the models of all begun stages up to the last tap, fits included.
-  virtual void update() = 0;
+  virtual void update() {}
 
   /// Computes the arrays that begun stages read, after update().
   virtual void infer() = 0;
@@ -151,6 +157,8 @@ class Belief : public BeliefView {
 
   /// Whether scores mean anything yet; until then the initial design goes on.
   virtual bool is_ready() const { return true; }
+  /// Whether the belief reads the objects of Context::scene, as the view of a simulated camera does.
+  virtual bool reads_scene() const { return false; }
 
   /// Returns height and, if `probability`, the object probability at a candidate. A reader at one candidate has
   /// declared them.
@@ -162,7 +170,7 @@ class Belief : public BeliefView {
 
   /// Returns the record of the models that readers of begun stages have: at a candidate for a tap, without one for the
   /// summary.
-  virtual BeliefState state(std::optional<Eigen::Index> candidate) const = 0;
+  virtual BeliefState state(std::optional<Eigen::Index> /*candidate*/) const { return {}; }
 
   /// Sets the true scene as it stands now; null if it is not known. It stays valid until the next call.
   virtual void set_truth(const Scene* scene) = 0;
@@ -170,7 +178,7 @@ class Belief : public BeliefView {
   virtual Errors errors() = 0;
   /// Returns errors and expected RMSE for displays, by all models that are built; nullopt if one is missing. The record
   /// stays as it is.
-  virtual std::optional<ShownErrors> shown_errors() = 0;
+  virtual std::optional<ShownErrors> shown_errors() { return ShownErrors{errors(), scalar(quantity::kExpectedRmse)}; }
   /// Returns the errors of each object of the scene, in its order; empty for a belief that has none.
   virtual std::vector<ObjectErrors> object_errors() { return {}; }
 

@@ -3,15 +3,16 @@
 //
 //     PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared-exponential kernel")
 //
-// where Rbf implements one of the interfaces (Kernel, Acquisition, Fitting, Footprint, Backend, Shape), has a type
-// `Options`, and is constructed as Rbf(options, context). The library is <kind>/<name>.so; palpate_add_plugin() of the
-// CMake package names and places it.
+// where Rbf implements one of the interfaces (Kernel, Acquisition, Fitting, Footprint, Belief, Backend, Shape), has a
+// type `Options`, and is constructed as Rbf(options, context). The library is <kind>/<name>.so; palpate_add_plugin() of
+// the CMake package names and places it.
 #pragma once
 
 #include <palpate/error.hpp>
 #include <palpate/instructions.hpp>
 #include <palpate/motions.hpp>
 #include <palpate/options.hpp>
+#include <palpate/phases.hpp>
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>
 #include <palpate/types.hpp>
@@ -20,13 +21,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 
 namespace palpate {
 
 /// Version of the plugin interface, increased with every change of its meaning or its memory layout.
-constexpr std::uint32_t kPluginAbi = 23;
+constexpr std::uint32_t kPluginAbi = 24;
 
 struct Context;
 
@@ -42,6 +44,18 @@ class PluginFactory {
   }
 };
 
+/// Settings of the run that a belief needs, beside its own options.
+struct RunSettings {
+  PluginChoice kernel{"kernel", {}, nullptr};         ///< of a GP whose own options choose no kernel
+  PluginChoice fitting{"fitting", "fixed", nullptr};  ///< of a GP whose own options choose no fitting
+  /// Number of candidates, per side for a grid, or side length of a grid cell, metres. Without both, the belief has its
+  /// own default.
+  std::optional<std::int64_t> candidates;
+  std::optional<double> spacing;
+  std::int64_t taps = 1;        ///< budget
+  double tie_tolerance = 1e-8;  ///< relative tolerance of ties between scores
+};
+
 /// Data for the construction of a plugin. Outlives the plugin.
 struct Context {
   const PluginFactory& factory;
@@ -52,6 +66,9 @@ struct Context {
   /// on.
   std::string directory = {};
   Instructions instructions = instructions_in_use();  ///< set for the loops of palpate/math.hpp
+  PhaseClock* clock = nullptr;                        ///< of the run, for fits and inference; may be null
+  RunSettings run = {};                               ///< for beliefs
+  bool from_above = true;                             ///< whether the belief taps straight down only, for backends
 
   /// Returns the run's random stream for one purpose, for example "acquisition/random" at tap `number`.
   Random random(const std::string& purpose, std::uint64_t number = 0) const { return {seed, purpose, number}; }

@@ -32,8 +32,8 @@ class Scene {
   /// Returns the largest height at (x, y), metres: that of the desk or of an object on it. Defined on the whole plane.
   virtual double height(double x, double y) const = 0;
 
-  /// Returns whether taps come from any side; else they come from above.
-  virtual bool any_side() const = 0;
+  /// Returns `scene.min_object_height` of the config, metres.
+  virtual double min_object_height() const = 0;
 
   /// Returns the distance of the first intersection of the line with an object, metres from the line's origin, negative
   /// behind it; +infinity without one. The desk does not count. z is in the frame of the heights.
@@ -49,8 +49,8 @@ class Scene {
   /// Returns the effects that make taps in this scene imperfect.
   virtual const Effects& effects() const = 0;
 
-  /// Returns whether a height is on an object: strictly higher than the desk plus `scene.min_object_height` of the
-  /// config. The rule is the same for robot, simulator and truth.
+  /// Returns whether a height is on an object: strictly higher than the desk plus min_object_height(). The rule
+  /// is the same for robot, simulator and truth.
   virtual bool on_object(double height) const = 0;
 
   /// Returns the scene after this many taps, or null if it has not changed. The result must not outlive this scene.

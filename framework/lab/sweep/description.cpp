@@ -281,6 +281,8 @@ std::string condition_text(const Tree& value) {
   return type != nullptr && type->is_scalar() ? type->text : value_text(value);
 }
 
-bool is_choice(const std::string& key) { return config_keys().is_group(key) || last_key(key) == "type"; }
+bool is_choice(const std::string& key) {
+  return config_keys().is_group(key) || config_keys().is_typed(key) || last_key(key) == "type";
+}
 
 }  // namespace palpate

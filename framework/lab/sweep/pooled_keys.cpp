@@ -36,7 +36,7 @@ std::string enclosing_choice(const std::string& path, const PoolTexts& differing
   std::string group;
   for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
     std::string part = path.substr(0, dot);
-    if (config_keys().is_group(part)) group = part;
+    if (config_keys().is_group(part) || config_keys().is_typed(part)) group = part;
     if (group == part && contains(differing, part + ".type")) return part;
     if (std::isdigit(static_cast<unsigned char>(path[dot + 1])) != 0) return group.empty() ? part : group;
   }

@@ -76,11 +76,14 @@ std::string manifest_text(const Sweep& sweep, const std::string& id) {
 std::string sweep_id(const Tree& config, const Sweep& sweep) {
   Tree identity = Tree::map();
   // The config is parsed again, because later checks compare with the file.
-  for (Tree::Entry& entry : parse_yaml(to_yaml(config), "config.yaml").entries) {
-    if (!decides_jobs(entry.key)) continue;
-    if (entry.key == first_key(kThreads)) entry.value.erase(last_key(kThreads));
-    if (entry.key == first_key(kThreads) && entry.value.is_map() && entry.value.entries.empty()) continue;
-    identity.entries.push_back(std::move(entry));
+  Tree parsed = parse_yaml(to_yaml(config), "config.yaml");
+  parsed.erase_path(kThreads);
+  for (const char* const group : {"belief.engine", "belief"}) {
+    const Tree* const left = parsed.find_path(group);
+    if (left != nullptr && left->is_map() && left->entries.empty()) parsed.erase_path(group);
+  }
+  for (Tree::Entry& entry : parsed.entries) {
+    if (decides_jobs(entry.key)) identity.entries.push_back(std::move(entry));
   }
   return hash_of(identity.canonical() + manifest_text(sweep, "")).substr(0, kIdLength);
 }

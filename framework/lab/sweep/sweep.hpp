@@ -63,7 +63,7 @@ std::vector<std::optional<Row>> sweep_summaries(const Sweep& sweep);
 /// Prefix of a summary field in results.csv whose name is also a swept key.
 inline constexpr const char* kOfRun = "summary.";
 /// The number of threads, an option that does not change results.
-inline constexpr const char* kThreads = "engine.threads";
+inline constexpr const char* kThreads = "belief.engine.threads";
 
 /// Returns a row of results.csv: job, id, swept keys, and summary fields. A summary field with the name of a key is
 /// called `summary.taps` for example, and left out if its value is that of the key.

@@ -22,7 +22,7 @@ Simulator::Simulator(const Options& options, const Context& context)
            effects.missed_contacts || effects.false_contacts;
   perfect_ = !(moves_ || effects.tip_radius || effects.pose_noise || effects.reach || effects.shaft ||
                effects.height_offset || effects.foreign_objects || effects.push);
-  if (!scene_.any_side() && scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
+  if (context.from_above && scene_.highest() >= scene_.desk() + options.motion.at(0).hover) {
     throw Error("motion.hover",
                 fmt::format("an object is {:g} cm high, but the arm travels at {:g} cm",
                             100.0 * (scene_.highest() - scene_.desk()), 100.0 * options.motion.at(0).hover),

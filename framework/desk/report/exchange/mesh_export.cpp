@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/exchange/mesh_export.hpp"
+#include "report/beliefs.hpp"
 
 #include "experiment/policy.hpp"
 #include "record/fields.hpp"
@@ -101,7 +102,7 @@ std::string surface_ply(const Surface& mesh, const std::string& run) {
 std::string taps_ply(const RecordedRun& recording, const RunResult& counts, const std::string& run) {
   std::string points;
   int contacts = 0;
-  const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
+  const bool any_side = is_any_side(recording);
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const TapRecord& tap = recording.taps[i];
     if (!tap.is_contact()) continue;

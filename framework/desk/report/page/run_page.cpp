@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/run_page.hpp"
+#include "report/beliefs.hpp"
 
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
@@ -36,12 +37,12 @@ Json json_of_run(const RecordedRun& recording, const History& history) {
           {"seed", options.seed},
           {"budget", options.taps},
           {"acquisition", options.acquisition.type},
-          {"footprint", options.footprint.type},
+          {"footprint", belief_option(options, "footprint.type")},
           {"width", options.scene.area.width},
           {"depth", options.scene.area.depth},
           {"desk", options.scene.desk},
           {"truth", recording.truth_known() && !history.truth_lost},
-          {"any_side", options.scene.touch == SceneOptions::Touch::any}};
+          {"any_side", is_any_side(recording)}};
 }
 
 /// Returns the config as a table of paths, values and origins, the files that config.yaml was composed from.

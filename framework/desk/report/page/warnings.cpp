@@ -75,7 +75,7 @@ void warn_of_choices(const RecordedRun& recording, const History& history, std::
     out.push_back(
         fmt::format("{} chosen by the acquisition although no {} had a positive score: then the first one is taken.{}",
                     counted(stalled, "tap") + (stalled == 1 ? " was" : " were"), any_side ? "approach" : "candidate",
-                    any_side ? "" : " Choose fallback=uncertainty to search for the object instead."));
+                    any_side ? "" : " Choose choice.fallback=uncertainty to search for the object instead."));
   }
   if (const int drift = first_drift(recording, history); drift > 0) {
     out.push_back(
@@ -99,8 +99,9 @@ void warn_of_weights(const RecordedRun& recording, const History& history, std::
       fmt::format("The weight leaves [0, 1]: from {:.2g} after tap {} to {:.2g} after tap {}. It is a regression on "
                   "labels, not a probability; {}.",
                   *least->least_weight, least->taps, *most->most_weight, most->taps,
-                  recording.config.options.label.clip ? "the strategy uses it clipped (label.clip)"
-                                                      : "label.clip=true would clip it for the strategy"));
+                  belief_option(recording.config.options, "label.clip") == "true"
+                      ? "the strategy uses it clipped (belief.label.clip)"
+                      : "belief.label.clip=true would clip it for the strategy"));
 }
 
 void warn_of_numbers(const RunResult& last, std::vector<std::string>& out) {
@@ -128,7 +129,8 @@ std::vector<std::string> warnings_of(const RecordedRun& recording, const History
   warn_of_end(recording, last, out);
   warn_of_choices(recording, history, out);
   if (const std::string remark = Row{last.state.fields}.text("footprint.remark"); !remark.empty())
-    out.push_back(fmt::format("Remark of the footprint {}: {}.", recording.config.options.footprint.type, remark));
+    out.push_back(fmt::format("Remark of the footprint {}: {}.",
+                              belief_option(recording.config.options, "footprint.type"), remark));
   warn_of_weights(recording, history, out);
   warn_of_numbers(last, out);
   if (history.truth_lost) out.push_back(truth_lost_words(*history.truth_lost) + ".");

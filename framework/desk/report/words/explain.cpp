@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/explain.hpp"
+#include "report/beliefs.hpp"
 
 #include "config/scale.hpp"
 #include "record/fields.hpp"
@@ -90,7 +91,7 @@ class FromAboveExplained final : public Explanation {
         explain_score(0.0);
         break;
     }
-    explain_place(text_, row_, options_.footprint.type);
+    explain_place(text_, row_, belief_option(options_, "footprint.type"));
     explain_repeats();
     if (const std::optional<double> seconds = row_.number("expected_seconds")) {
       text_.add(
@@ -148,7 +149,7 @@ class FromAboveExplained final : public Explanation {
     for (int i = 0; i < number_ - 1; ++i) {
       const TapRecord& tap = recording_.taps[static_cast<std::size_t>(i)];
       const bool failed = !tap.is_contact();
-      if (failed || options_.repeat == ExperimentOptions::Repeat::forbid) out.insert(candidate_of(tap));
+      if (failed || options_.choice.repeat == ChoiceOptions::Repeat::forbid) out.insert(candidate_of(tap));
     }
     return static_cast<int>(out.size());
   }
@@ -161,7 +162,7 @@ class FromAboveExplained final : public Explanation {
     const double ties = row_.number("ties").value_or(1.0);
     const auto second = row_.number("runner_up.score");
     const double best = second ? std::max(*score, *second) : *score;
-    const double bound = options_.tie_tolerance * (std::abs(best) + scale);
+    const double bound = options_.choice.tie_tolerance * (std::abs(best) + scale);
     std::string text = fmt::format("Its score there is {}", plain_words(*score));
     if (allowed == 1) {
       text += "; no other candidate is left.";
@@ -176,7 +177,7 @@ class FromAboveExplained final : public Explanation {
     }
     text_.add(text);
     if (tap_.request.source == Source::acquisition) explain_flatness(best, bound, ties > 1 && ties == allowed);
-    const char* why = options_.repeat == ExperimentOptions::Repeat::forbid
+    const char* why = options_.choice.repeat == ChoiceOptions::Repeat::forbid
                           ? "because tapped before (repeat: forbid)"
                           : "because a tap failed there; others may be tapped again (repeat: allow)";
     text_.add(out == 0 ? std::string("No candidate is left out.")
@@ -186,7 +187,7 @@ class FromAboveExplained final : public Explanation {
 
   /// For scores that hardly distinguish the candidates: explains why the acquisition chose all the same.
   void explain_flatness(double best, double bound, bool equal) {
-    if (options_.fallback == ExperimentOptions::Fallback::none) {
+    if (options_.choice.fallback == ChoiceOptions::Fallback::none) {
       if (best > 0.0 && !equal) return;
       text_.add(fmt::format(
           "{}: such scores do not distinguish candidates, but the config uses no fallback (fallback: none).",
@@ -218,7 +219,7 @@ class FromAboveExplained final : public Explanation {
   // The tap.
 
   void explain_expectation() {
-    const bool two_part = options_.surface == ExperimentOptions::Surface::two_part;
+    const bool two_part = belief_option(options_, "surface") == "two_part";
     if (two_part && hits_before() == 0) return text_.add("Expected: nothing, no tap has been on an object yet.");
     const int candidate = candidate_of(tap_);
     const double height = belief().values(quantity::kHeightMean)(candidate);
@@ -262,7 +263,7 @@ class FromAboveExplained final : public Explanation {
 
   /// Adds whether the tap is a suspected outlier, right after it and after all taps.
   void explain_doubt() {
-    if (!options_.height.outlier_probability || !tap_.is_contact()) return;
+    if (belief_option(options_, "height.outlier_probability").empty() || !tap_.is_contact()) return;
     text_.heading("Is it an outlier?");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
@@ -288,8 +289,7 @@ std::string explain_tap(const Workshop& workshop, const RecordedRun& recording, 
     throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),
                 taps == 1 ? "choose tap 1" : fmt::format("choose one of 1 to {}", taps));
   }
-  if (recording.config.options.scene.touch == SceneOptions::Touch::any)
-    return explain_approach(workshop, recording, tap);
+  if (is_any_side(recording)) return explain_approach(workshop, recording, tap);
   return FromAboveExplained(workshop, recording, tap).text();
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/explanation.hpp"
+#include "report/beliefs.hpp"
 
 #include "record/fields.hpp"
 #include "report/words/titles.hpp"
@@ -69,7 +70,8 @@ void Explanation::explain_errors(const Row& before, const Row& after) {
     if (length) lengths.push_back(fmt::format("{} {}{}", error.label, same ? "still " : "", change));
     if (!length) others.push_back(fmt::format("The {} {} {}.", error.label, same ? "stays" : "goes", change));
   }
-  if (!lengths.empty()) text_.add(fmt::format("{}: {}.", surface_error_title(options_), fmt::join(lengths, ", ")));
+  if (!lengths.empty())
+    text_.add(fmt::format("{}: {}.", surface_error_title(is_any_side(recording_)), fmt::join(lengths, ", ")));
   for (const std::string& one : others) text_.add(one);
   if (lengths.empty() && others.empty())
     text_.add("The record has no errors from before and after it; 'palpate report' computes those of every tap.");

@@ -13,10 +13,9 @@ namespace {
 /// A GP with its fields in the record, its units, and its present state.
 struct Subject {
   const char* title;
-  std::string prefix;  ///< of its fields, with the dot
-  bool metric;         ///< whether targets are metres, else labels
-  const PluginChoice& kernel;
-  const PluginChoice& fitting;
+  std::string prefix;           ///< of its fields, with the dot
+  bool metric;                  ///< whether targets are metres, else labels
+  std::string kernel, fitting;  ///< their types
   HeightModels::Output now;
   const Row& row;
 
@@ -48,7 +47,7 @@ std::string parameter_words(std::string name) {
 
 std::string kernel_words(const Subject& subject) {
   const std::string prefix = subject.prefix + "kernel.";
-  std::string out = subject.kernel.type;
+  std::string out = subject.kernel;
   for (const std::string& name : numbers_below(subject.row, prefix)) {
     Unit unit = Unit::none;  // the record has no units of parameters; the present model does
     if (subject.now) {
@@ -64,12 +63,12 @@ std::string kernel_words(const Subject& subject) {
 std::string fit_words(const Subject& subject) {
   const std::optional<bool> changed = subject.row.flag(subject.prefix + "fit.changed");
   if (!changed) {
-    return subject.fitting.type == "fixed"
+    return subject.fitting == "fixed"
                ? "Its hyperparameters are those of the config (fitting: fixed)."
                : fmt::format("No fit ({}) was due after its latest tap: it keeps the hyperparameters that it had.",
-                             subject.fitting.type);
+                             subject.fitting);
   }
-  std::string out = fmt::format("Its latest tap was followed by a fit ({}), which {}", subject.fitting.type,
+  std::string out = fmt::format("Its latest tap was followed by a fit ({}), which {}", subject.fitting,
                                 *changed ? "changed the hyperparameters" : "left the hyperparameters as they were");
   if (const std::string value = subject.words("fit.objective"); !value.empty()) out += "; objective " + value;
   if (const auto count = subject.number("fit.evaluations"))
@@ -123,8 +122,8 @@ void explain_range_of_weight(TextSections& sections, const Row& row, bool clippe
     out += fmt::format(
         ". It leaves [0, 1] because it is a regression on the labels 0 and 1, not a probability: between near taps "
         "with different labels it overshoots. {}",
-        clipped ? "The score takes it clipped to [0, 1] (label.clip: true)."
-                : "The score takes it as it comes (label.clip: false).");
+        clipped ? "The score takes it clipped to [0, 1] (belief.label.clip: true)."
+                : "The score takes it as it comes (belief.label.clip: false).");
     return sections.add(out);
   }
   sections.add(out +
@@ -148,20 +147,22 @@ void explain_footprint(TextSections& sections, const Row& row, const std::string
 }  // namespace
 
 void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const HeightModels& now) {
-  const HeightOptions& height = options.height;
-  const LabelOptions& label = options.label;
-  const bool shared = label.hyperparameters == LabelOptions::Hyperparameters::shared;
-  const PluginChoice& height_kernel = height.kernel ? *height.kernel : options.kernel;
-  const PluginChoice& height_fitting = height.fitting ? *height.fitting : options.fitting;
-  const PluginChoice& label_kernel = shared ? height_kernel : label.kernel ? *label.kernel : options.kernel;
-  const PluginChoice& label_fitting = shared ? height_fitting : label.fitting ? *label.fitting : options.fitting;
+  const auto type = [&](const char* own, const std::string& shared) {
+    const std::string given = belief_option(options, own);
+    return given.empty() ? shared : given;
+  };
+  const bool shared = belief_option(options, "label.hyperparameters") == "shared";
+  const std::string height_kernel = type("height.kernel.type", options.kernel.type);
+  const std::string height_fitting = type("height.fitting.type", options.fitting.type);
+  const std::string label_kernel = shared ? height_kernel : type("label.kernel.type", options.kernel.type);
+  const std::string label_fitting = shared ? height_fitting : type("label.fitting.type", options.fitting.type);
   explain_process(sections, {"Height GP", "height_gp.", true, height_kernel, height_fitting, now.height_gp(), row});
   if (const std::string mean = number_words(row, "mean_standard_deviation", length_words); !mean.empty())
     sections.add(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
                              number_words(row, "max_standard_deviation", length_words)));
   explain_process(sections, {"Label GP", "label_gp.", false, label_kernel, label_fitting, now.label_gp(), row});
-  explain_range_of_weight(sections, row, label.clip);
-  if (row.number("p")) explain_footprint(sections, row, options.footprint.type);
+  explain_range_of_weight(sections, row, belief_option(options, "label.clip") == "true");
+  if (row.number("p")) explain_footprint(sections, row, belief_option(options, "footprint.type"));
   explain_process(sections, {"Surface GP (from the taps on an object alone, with a free mean level)", "surface_gp.",
                              true, height_kernel, height_fitting, now.surface_gp(), row});
 }

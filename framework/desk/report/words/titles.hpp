@@ -18,6 +18,6 @@ std::map<std::string, std::string> map_titles(const ExperimentOptions& options);
 std::string error_title(const RecordField& error);
 
 /// Returns the title of the errors that are lengths: "Error of the surface (rms)".
-std::string surface_error_title(const ExperimentOptions& options);
+std::string surface_error_title(bool any_side);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the time of a tap goes.
+// Time of a tap by phase.
 #pragma once
 
 #include <array>
@@ -12,26 +12,28 @@ enum class Phase { robot, fit, infer, acquire, log };
 constexpr std::size_t kPhases = 5;
 constexpr std::array<const char*, kPhases> kPhaseNames{"robot", "fit", "infer", "acquire", "log"};
 
-/// Seconds of wall time by phase. Phases nest: while an inner one runs, the outer one stands still, so that a model
-/// built in the middle of a score counts as inference.
+/// Seconds of wall time by phase. Phases nest: the time of an inner phase does not count for the outer one.
 class PhaseClock {
  public:
-  /// Time from its birth to its death belongs to `phase`.
+  /// The time from construction to destruction belongs to `phase`.
   class Scope {
    public:
-    Scope(PhaseClock& clock, Phase phase) : clock_(clock), outer_(clock.active_) {
-      clock_.turn_to(static_cast<int>(phase));
+    /// Does nothing if `clock` is null.
+    Scope(PhaseClock* clock, Phase phase) : clock_(clock), outer_(clock != nullptr ? clock->active_ : kNone) {
+      if (clock_ != nullptr) clock_->turn_to(static_cast<int>(phase));
     }
-    ~Scope() { clock_.turn_to(outer_); }
+    ~Scope() {
+      if (clock_ != nullptr) clock_->turn_to(outer_);
+    }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
    private:
-    PhaseClock& clock_;
+    PhaseClock* clock_;
     int outer_;
   };
 
-  /// The seconds since the last call, by phase; starts again from 0.
+  /// Returns the seconds since the last call, by phase.
   std::array<double, kPhases> take() {
     turn_to(active_);
     const auto out = seconds_;

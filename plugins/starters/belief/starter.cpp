@@ -1,0 +1,91 @@
+// A belief without a GP: each position has the height of the nearest contact.
+#include <palpate/grid.hpp>
+#include <palpate/math.hpp>
+
+using namespace palpate;
+
+struct MyBeliefOptions : Options {
+  double reach = 0.03;
+
+  void list(Fields& fields) override {
+    fields.real(reach,
+                Field("reach", "distance over which a contact tells the height nearby").in(Unit::metre).above(0));
+  }
+};
+
+class MyBelief final : public Belief {
+ public:
+  using Options = MyBeliefOptions;
+  MyBelief(const Options& options, const Context& context)
+      : options_(options), scene_(context.scene), lines_(grid_from_above(context)) {}
+
+  std::vector<Quantity> offers() const override {
+    return {{quantity::kUncertainty, "1 - exp(-(d / reach)^2 / 2), with the distance d to the nearest contact"},
+            {quantity::kHeightMean, "height of the nearest contact (m)"},
+            {quantity::kObjectProbability, "1 if the nearest contact is on an object, otherwise 0"},
+            {quantity::kDeskPosition, "fixed positions of the candidates on the desk"}};
+  }
+
+  const Candidates& candidates() const override { return lines_; }
+  TapCounts counts() const override { return counts_; }
+  const std::vector<TapReading>& readings() const override { return readings_; }
+
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override {
+    if (!result.is_contact()) return std::nullopt;
+    TapReading out;
+    out.tap = request.number;
+    out.position = {request.line.start.x(), request.line.start.y(), result.height()};
+    out.on_object = scene_.on_object(result.height());
+    return out;
+  }
+
+  void add(const TapRequest& request, const TapResult& result) override {
+    ++counts_.all;
+    if (request.source == Source::initial) ++counts_.initial;
+    if (const auto reading = read(request, result)) readings_.push_back(*reading);
+  }
+
+  void infer() override {
+    const Eigen::Index count = lines_.size();
+    uncertainty_.setOnes(count);
+    height_.setConstant(count, scene_.desk());
+    probability_.setZero(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (const TapReading& one : readings_) {
+        const double d = math::hypot(lines_.starts(i, 0) - one.position.x(), lines_.starts(i, 1) - one.position.y());
+        const double uncertainty = 1.0 - math::exp(-0.5 * (d / options_.reach) * (d / options_.reach));
+        if (uncertainty >= uncertainty_(i)) continue;
+        uncertainty_(i) = uncertainty;
+        height_(i) = one.position.z();
+        probability_(i) = one.on_object ? 1.0 : 0.0;
+      }
+    }
+  }
+
+  QuantitySet available() const override {
+    return {quantity::kUncertainty, quantity::kHeightMean, quantity::kObjectProbability};
+  }
+  const Eigen::VectorXd& values(std::string_view quantity) const override {
+    return quantity == quantity::kUncertainty  ? uncertainty_
+           : quantity == quantity::kHeightMean ? height_
+                                               : probability_;
+  }
+
+  void set_truth(const Scene* scene) override { truth_ = scene; }
+  Errors errors() override {
+    if (truth_ == nullptr || height_.size() == 0) return {};
+    return height_errors(lines_, height_, probability_.array() > 0.5, *truth_);
+  }
+  Surface surface() override { return {height_, {}, {}, 0.0}; }
+
+ private:
+  Options options_;
+  const Scene& scene_;
+  Candidates lines_;
+  TapCounts counts_;
+  std::vector<TapReading> readings_;
+  Eigen::VectorXd uncertainty_, height_, probability_;  ///< M values
+  const Scene* truth_ = nullptr;
+};
+
+PALPATE_PLUGIN(Belief, MyBelief, "starter", "each position has the height of the nearest contact")
