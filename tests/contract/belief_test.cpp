@@ -6,6 +6,9 @@
 #include <palpate/belief.hpp>
 #include <palpate/kernel.hpp>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <ostream>
 
@@ -25,7 +28,7 @@ std::vector<BeliefCase> belief_cases() {
       {"height_map", "height_map"},
       {"height_map_two_part", "height_map",
        "{surface: two_part, height: {signal: 10 cm, noise: 6 mm, outlier_probability: 0.03, offset: {}}, "
-       "footprint: {type: primitives, particles: 64, kernel: {type: rbf, length_scale: 3 cm}}}"},
+       "footprint: {type: primitives, particles: 100, kernel: {type: rbf, length_scale: 3 cm}}}"},
       {"solids", "solids", "{particles: 4, moves: 20}"}};
   for (const std::string& name : plugins_under_contract("belief")) {
     if (name != "solids") out.push_back({test_name(name), name});

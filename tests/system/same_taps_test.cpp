@@ -75,12 +75,13 @@ INSTANTIATE_TEST_SUITE_P(Of, SameTaps,
 
 TEST(TieRule, WithoutItRoundingDecidesTaps) {
   int different = 0;
-  ExperimentOptions dense =
-      test::shipped_config("paper/object_i.yaml",
-                           {"acquisition=weighted", "choice.tie_tolerance=0", "belief.engine.type=dense"})
-          .options;
-  ExperimentOptions lowrank = dense;
-  lowrank.engine.type = EngineOptions::Type::lowrank;
+  const auto by_engine = [](const std::string& engine) {
+    return test::shipped_config("paper/object_i.yaml",
+                                {"acquisition=weighted", "choice.tie_tolerance=0", "belief.engine.type=" + engine})
+        .options;
+  };
+  ExperimentOptions dense = by_engine("dense");
+  ExperimentOptions lowrank = by_engine("lowrank");
   for (dense.seed = 0; dense.seed < kSeeds; ++dense.seed) {
     lowrank.seed = dense.seed;
     different += taps_of(dense) != taps_of(lowrank) ? 1 : 0;

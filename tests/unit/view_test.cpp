@@ -188,7 +188,7 @@ TEST(View, OfAnotherPlaceIsRefused) {
   const auto scene = object_i();
   const PointCloud far = PointCloud::Constant(3, 5, 9.0);
   EXPECT_THAT(error_of([&] { viewed_squares(far, {}, *scene); }),
-              HasSubstr("belief.prior.depth: none of its 5 points is in the area, check unit and pose"));
+              HasSubstr("prior.depth: none of its 5 points is in the area, check unit and pose"));
 }
 
 /// Runs of the default on object I whose near half a camera has seen.

@@ -239,8 +239,19 @@ void MapReader::refuse_unknown(const Tree::Entry& entry, const std::vector<std::
   const std::string hint = suggestion(entry.key, known);
   // The hint lists all known keys, so that the message must name their owner.
   const bool listed = hint.rfind("known: ", 0) == 0;
+  if (const std::string deeper = listed && path_.empty() ? path_to(entry.key) : ""; !deeper.empty())
+    throw Error(entry.place.text(), reason, "write " + deeper);
   const std::string of = !plugin_.empty() ? plugin_ : owner();
   throw Error(entry.place.text(), reason + (listed && !(path_.empty() && plugin_.empty()) ? " of " + of : ""), hint);
+}
+
+std::string MapReader::path_to(const std::string& key) const {
+  for (const ResolveNotes::Origin& one : notes_.origins) {
+    const auto at = one.path.find("." + key);
+    const auto end = at + 1 + key.size();
+    if (at != std::string::npos && (end == one.path.size() || one.path[end] == '.')) return one.path.substr(0, end);
+  }
+  return "";
 }
 
 void MapReader::miss(const std::string& name, Error missing) {

@@ -111,6 +111,8 @@ class MapReader : public Fields {
   /// Returns the neutral value of an option, which records have that are older than the option; null for the default.
   const Tree* neutral(const Field& field, bool may_be_absent);
   double checked(double value, const Tree& tree, const Field& field) const;
+  /// Returns the path of an option of that name in a group below; "" if there is none.
+  std::string path_to(const std::string& key) const;
   /// `known`: candidates for the hint.
   [[noreturn]] void refuse_unknown(const Tree::Entry& entry, const std::vector<std::string>& known) const;
   const Tree* claimed_ = nullptr;  ///< value of the last claimed field

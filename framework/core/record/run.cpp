@@ -73,11 +73,9 @@ void move_away(const fs::path& directory) {
 }
 
 /// Builds the experiment. An error names an option; the config has the place where that was written.
-std::unique_ptr<Experiment> build_experiment(const Workshop& environment, const ResolvedConfig& config,
-                                             const fs::path& directory) {
+std::unique_ptr<Experiment> build_experiment(const ResolvedConfig& config, const ExperimentSetup& setup) {
   try {
-    return std::make_unique<Experiment>(
-        config.options, ExperimentSetup{environment.host, environment.interrupted, nullptr, directory.string()});
+    return std::make_unique<Experiment>(config.options, setup);
   } catch (const Error& trouble) {
     const std::string place = config.tree.place_of(trouble.where()).text();
     if (place.empty()) throw;
@@ -279,7 +277,8 @@ std::unique_ptr<Run> Run::start(const Workshop& environment, const ResolvedConfi
     return std::unique_ptr<Run>(new Run(config, report_done(environment, held)));
   }
   // Built before the directory is touched: what only building finds out leaves no trace.
-  std::unique_ptr<Experiment> experiment = build_experiment(environment, config, directory);
+  std::unique_ptr<Experiment> experiment =
+      build_experiment(config, {environment.host, environment.interrupted, nullptr, directory.string()});
   if (options.asks_before_taps) check_worth_asking(config, *experiment);
   if (is_there) {
     const FileLock old(directory / kRecordFile);  // somebody may have taken it up meanwhile
@@ -331,7 +330,7 @@ std::unique_ptr<Run> Run::resume(const Workshop& environment, const ResolvedConf
   held->begin_attempt(build_hash(environment.host, config.notes.plugins), options.force);
   std::unique_ptr<Experiment> experiment;
   const std::optional<Error> trouble = catch_error([&] {
-    experiment = build_experiment(environment, config, directory);
+    experiment = build_experiment(config, {environment.host, environment.interrupted, nullptr, directory.string()});
     if (options.asks_before_taps) check_worth_asking(config, *experiment);
     sync_if_needed(config, *experiment, *held);
     set_up(*experiment, *held);
@@ -457,8 +456,8 @@ RunReport resume_run(const Workshop& environment, const fs::path& directory, con
 
 std::vector<PlannedModel> models_of(const Workshop& environment, const ResolvedConfig& config) {
   const bool connects = config.options.backend.type != "simulator";  // as far as anybody knows
-  return Experiment(config.options, {environment.host, environment.interrupted, connects ? no_backend(false) : nullptr})
-      .models();
+  return build_experiment(config, {environment.host, environment.interrupted, connects ? no_backend(false) : nullptr})
+      ->models();
 }
 
 fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {

@@ -146,8 +146,12 @@ void SolidsBelief::infer() {
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
   values_.compute(lines_, solids_, skin_, reads_,
                   context_.random("space/unseen", static_cast<std::uint64_t>(counts_.all)));
+  available_.clear();
   for (const std::string& one : reads_) {
-    if (const Eigen::VectorXd* const values = values_.find(one)) require_finite(*values, one.c_str(), counts_.all);
+    const Eigen::VectorXd* const values = values_.find(one);
+    if (values == nullptr) continue;
+    require_finite(*values, one.c_str(), counts_.all);
+    available_.insert(one);
   }
 }
 

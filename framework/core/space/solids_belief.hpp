@@ -43,7 +43,7 @@ class SolidsBelief final : public Belief {
   void add(const TapRequest& request, const TapResult& result) override;
   void update() override;
   void infer() override;
-  QuantitySet available() const override { return inferred_; }
+  QuantitySet available() const override { return available_; }
   void draw_candidates(const LineFilter& filter) override;
   bool is_ready() const override;
   bool reads_scene() const override { return options_.view.has_value(); }
@@ -89,7 +89,8 @@ class SolidsBelief final : public Belief {
   bool object_seen_ = false;                                   ///< by a camera before the first tap
   std::size_t taken_in_ = 0;                                   ///< of the touches, by the solids
   int updated_for_ = -1, drawn_for_ = -1, inferred_for_ = -1;  ///< taps after which that was done
-  QuantitySet reads_, inferred_;                               ///< of begun stages; what infer() computed last
+  QuantitySet reads_, inferred_;                               ///< of begun stages; for which infer() computed last
+  QuantitySet available_;                                      ///< those of inferred_ that have arrays
   TapCounts counts_;
   std::vector<TapReading> readings_;
 };

@@ -28,8 +28,8 @@ inline Candidates grid_from_above(const Context& context, int usual_count = 47) 
     const double count =
         run.spacing ? std::round(side / *run.spacing) : static_cast<double>(run.candidates.value_or(usual_count));
     if (count > kMaxCellsPerSide) {
-      throw Error("candidates",
-                  "cut the area into more than " + std::to_string(kMaxCellsPerSide) + " cells along a side",
+      throw Error(run.spacing ? "candidates.spacing" : "candidates.count",
+                  "cuts the area into more than " + std::to_string(kMaxCellsPerSide) + " cells along a side",
                   "use larger cells");
     }
     return std::max(1, static_cast<int>(count));
