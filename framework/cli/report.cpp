@@ -57,7 +57,7 @@ void show(const Figures& figures) {
 
 /// Throws Error with the reason `what` for a run from any side.
 void check_from_above(const RecordedRun& recording, const std::string& what) {
-  if (recording.config.options.scene.touch != SceneOptions::Touch::any) return;
+  if (!is_any_side(recording.config.options)) return;
   throw Error(recording.directory.string(), "is a run from any side, but " + what,
               "use 'palpate report' without options for its page");
 }

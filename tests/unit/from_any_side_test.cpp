@@ -133,7 +133,7 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
   EXPECT_EQ(errors.f_score, 0.0);
   EXPECT_EQ(errors.volume_iou, 0.0);
   EXPECT_EQ(errors.coverage, std::nullopt);
-  EXPECT_TRUE(run.belief().crossings(kFineSide).vertices.empty());
+  EXPECT_TRUE(run.experiment.belief().surface(kFineResolution).vertices.empty());
   EXPECT_THAT(surface_file(run.experiment).second,
               testing::AllOf(testing::HasSubstr("element vertex 0\n"), testing::HasSubstr("element face 0\n"),
                              testing::EndsWith("end_header\n")));

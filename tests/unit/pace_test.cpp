@@ -81,7 +81,7 @@ class WrittenReadings final : public Belief {
   void set_truth(const Scene*) override {}
   Errors errors() override { return {}; }
   std::optional<ShownErrors> shown_errors() override { return std::nullopt; }
-  palpate::Surface surface() override { return {}; }
+  palpate::Surface surface(double) override { return {}; }
 
  private:
   WrittenBelief nothing_;

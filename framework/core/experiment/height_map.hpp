@@ -41,7 +41,7 @@ class HeightMap final : public Belief {
   Errors errors() override;
   std::optional<ShownErrors> shown_errors() override;
   std::vector<ObjectErrors> object_errors() override;
-  Surface surface() override { return {reconstruction(maps()), {}, {}, 0.0}; }
+  Surface surface(double /*resolution*/) override { return {reconstruction(maps()), {}, {}, 0.0}; }
 
   const HeightModels& models() const { return models_; }
   const CandidateGrid& grid() const { return grid_; }
@@ -67,8 +67,8 @@ class HeightMap final : public Belief {
   TapCounts counts_;
   std::vector<TapReading> readings_;
   mutable Eigen::VectorXd height_std_, measurement_std_;  ///< computed when they are read
-  const Scene* scene_ = nullptr;  ///< the truth
-  std::optional<Truth> truth_;    ///< the same at the candidates
+  const Scene* scene_ = nullptr;                          ///< the truth
+  std::optional<Truth> truth_;                            ///< the same at the candidates
 };
 
 }  // namespace palpate

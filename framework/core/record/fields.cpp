@@ -365,7 +365,7 @@ constexpr std::array<const char*, kPhases> kPhaseMeanings{"in the backend", "fit
                                                           "updating the models", "scoring and choosing",
                                                           "writing the record of the previous tap"};
 
-bool is_from_any_side(const Summary& summary) { return summary.config.options.scene.touch == SceneOptions::Touch::any; }
+bool is_from_any_side(const Summary& summary) { return is_any_side(summary.config.options); }
 
 /// Whether contacts are read again after later taps.
 bool is_read_again(const Summary& summary) {

@@ -20,6 +20,9 @@ struct ResolvedConfig {
   std::string id;                         ///< the first 12 of them
 };
 
+/// Whether taps come from any side, so that the belief is a closed surface; else from above.
+inline bool is_any_side(const ExperimentOptions& options) { return options.scene.touch == SceneOptions::Touch::any; }
+
 /// Returns the text of which `identity` is the hash: a line `palpate-id 1`, then a line `path=value` for all that
 /// decides what a run computes, sorted by bytes.
 std::string identity_text(const ResolveNotes& notes);

@@ -186,7 +186,7 @@ Curves without_constants(std::vector<CurvePanel> panels) {
 
 Curves curves_of(const RecordedRun& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
-  const bool any_side = options.scene.touch == SceneOptions::Touch::any;
+  const bool any_side = is_any_side(options);
   std::vector<CurvePanel> panels = error_panels(options, history);
   const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
     panels.push_back({std::move(title), unit, axis, std::move(curves)});

@@ -3,8 +3,8 @@
 
 #include "experiment/policy.hpp"
 #include "record/fields.hpp"
+#include "record/mesh_ply.hpp"
 #include "record/summary.hpp"
-#include "space/mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -61,7 +61,7 @@ std::string header_text(const std::string& text) {
 ReconstructedSurface reconstruct(Experiment& experiment) {
   experiment.look();
   Belief& belief = experiment.belief();
-  ReconstructedSurface out{surface_mesh(grid_of(belief.candidates()), belief.surface().heights),
+  ReconstructedSurface out{surface_mesh(grid_of(belief.candidates()), belief.surface(kFineResolution).heights),
                            belief.values(quantity::kHeightStd), belief.values(quantity::kObjectProbability),
                            std::nullopt};
   if (const Scene* const truth = experiment.truth()) out.true_height = true_heights(belief.candidates(), *truth);
@@ -101,7 +101,7 @@ std::string surface_ply(const Surface& mesh, const std::string& run) {
 std::string taps_ply(const RecordedRun& recording, const RunResult& counts, const std::string& run) {
   std::string points;
   int contacts = 0;
-  const bool any_side = recording.config.options.scene.touch == SceneOptions::Touch::any;
+  const bool any_side = is_any_side(recording.config.options);
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const TapRecord& tap = recording.taps[i];
     if (!tap.is_contact()) continue;

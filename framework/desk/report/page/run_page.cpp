@@ -41,7 +41,7 @@ Json json_of_run(const RecordedRun& recording, const History& history) {
           {"depth", options.scene.area.depth},
           {"desk", options.scene.desk},
           {"truth", recording.truth_known() && !history.truth_lost},
-          {"any_side", options.scene.touch == SceneOptions::Touch::any}};
+          {"any_side", is_any_side(options)}};
 }
 
 /// Returns the config as a table of paths, values and origins, the files that config.yaml was composed from.
@@ -86,10 +86,8 @@ static std::vector<int> relabelled(const RunAtTap& moment) {
   return out;
 }
 
-static Json suspected_json(const std::vector<SuspectedOutlier>& all) {
-  Json out = Json::array();
-  for (const SuspectedOutlier& one : all) out.push_back({{"tap", one.tap}, {"words", doubt_words(one)}});
-  return out;
+static void to_json(Json& out, const TapReading& suspected) {
+  out = {{"tap", suspected.tap}, {"words", doubt_words(suspected)}};
 }
 
 static void to_json(Json& out, const RunAtTap& moment) {
@@ -110,8 +108,8 @@ static void to_json(Json& out, const RunAtTap& moment) {
               {"least_weight", moment.least_weight},
               {"most_weight", moment.most_weight},
               {"remark", state.text("footprint.remark")},
-              {"is_next_known", moment.is_next_known}});
-  if (moment.suspected_outliers) out["suspected_outliers"] = suspected_json(*moment.suspected_outliers);
+              {"is_next_known", moment.is_next_known},
+              {"suspected_outliers", moment.suspected_outliers}});
   if (moment.next) {
     out["next"] = {{"x", moment.next->target().x},
                    {"y", moment.next->target().y},
@@ -201,17 +199,17 @@ static Json true_contours_of(const History& history) {
   return out;
 }
 
-/// Returns the closed mesh: vertices in tenths of a millimetre, their standard deviations in hundredths of a
-/// millimetre, and the vertex indices of the triangles.
-static Json json_of_surface(const Crossings& surface) {
-  const ClosedMesh mesh = close_mesh(surface);
+/// Returns a mesh: vertices in tenths of a millimetre, their standard deviations in hundredths of a millimetre, and the
+/// vertex indices of the triangles.
+static Json json_of_surface(const Surface& mesh) {
   const auto along = [&](Eigen::Index axis) {
-    return steps_of(mesh.vertices, [axis](const Crossings::Vertex& one) { return 1e4 * one.at(axis); });
+    return steps_of(mesh.vertices, [axis](const Surface::Vertex& one) { return 1e4 * one.position(axis); });
   };
   const auto corners = [&](std::size_t corner) {
     return steps_of(mesh.triangles, [corner](const std::array<int, 3>& one) { return one[corner]; });
   };
-  const auto deviations = steps_of(mesh.vertices, [](const Crossings::Vertex& one) { return 1e5 * one.deviation; });
+  const auto deviations =
+      steps_of(mesh.vertices, [](const Surface::Vertex& one) { return 1e5 * one.standard_deviation; });
   return {{"x", along(0)},   {"y", along(1)},   {"z", along(2)},          {"i", corners(0)},
           {"j", corners(1)}, {"k", corners(2)}, {"deviation", deviations}};
 }

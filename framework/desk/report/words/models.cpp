@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/models.hpp"
 
+#include <palpate/kernel.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,14 +12,14 @@
 namespace palpate {
 namespace {
 
-/// A GP with its fields in the record, its units, and its present state.
+/// A GP with its fields in the record and its units.
 struct Subject {
   const char* title;
   std::string prefix;  ///< of its fields, with the dot
   bool metric;         ///< whether targets are metres, else labels
   const PluginChoice& kernel;
   const PluginChoice& fitting;
-  HeightModels::Output now;
+  const Context& context;
   const Row& row;
 
   std::string amount(double value) const { return metric ? length_words(value) : plain_words(value); }
@@ -49,12 +51,10 @@ std::string parameter_words(std::string name) {
 std::string kernel_words(const Subject& subject) {
   const std::string prefix = subject.prefix + "kernel.";
   std::string out = subject.kernel.type;
+  const auto parameters = subject.context.create<Kernel>(subject.kernel)->parameters();  // the record has no units
   for (const std::string& name : numbers_below(subject.row, prefix)) {
-    Unit unit = Unit::none;  // the record has no units of parameters; the present model does
-    if (subject.now) {
-      for (const KernelParameter& one : subject.now.process->kernel().parameters())
-        unit = one.name == name ? one.unit : unit;
-    }
+    Unit unit = Unit::none;
+    for (const KernelParameter& one : parameters) unit = one.name == name ? one.unit : unit;
     out += fmt::format(", {} {}", parameter_words(name),
                        number_words(subject.row, prefix + name, unit == Unit::metre ? length_words : plain_words));
   }
@@ -147,7 +147,7 @@ void explain_footprint(TextSections& sections, const Row& row, const std::string
 
 }  // namespace
 
-void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const HeightModels& now) {
+void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const Context& context) {
   const HeightOptions& height = options.height;
   const LabelOptions& label = options.label;
   const bool shared = label.hyperparameters == LabelOptions::Hyperparameters::shared;
@@ -155,15 +155,15 @@ void explain_models(TextSections& sections, const Row& row, const ExperimentOpti
   const PluginChoice& height_fitting = height.fitting ? *height.fitting : options.fitting;
   const PluginChoice& label_kernel = shared ? height_kernel : label.kernel ? *label.kernel : options.kernel;
   const PluginChoice& label_fitting = shared ? height_fitting : label.fitting ? *label.fitting : options.fitting;
-  explain_process(sections, {"Height GP", "height_gp.", true, height_kernel, height_fitting, now.height_gp(), row});
+  explain_process(sections, {"Height GP", "height_gp.", true, height_kernel, height_fitting, context, row});
   if (const std::string mean = number_words(row, "mean_standard_deviation", length_words); !mean.empty())
     sections.add(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
                              number_words(row, "max_standard_deviation", length_words)));
-  explain_process(sections, {"Label GP", "label_gp.", false, label_kernel, label_fitting, now.label_gp(), row});
+  explain_process(sections, {"Label GP", "label_gp.", false, label_kernel, label_fitting, context, row});
   explain_range_of_weight(sections, row, label.clip);
   if (row.number("p")) explain_footprint(sections, row, options.footprint.type);
   explain_process(sections, {"Surface GP (from the taps on an object alone, with a free mean level)", "surface_gp.",
-                             true, height_kernel, height_fitting, now.surface_gp(), row});
+                             true, height_kernel, height_fitting, context, row});
 }
 
 }  // namespace palpate

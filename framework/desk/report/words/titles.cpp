@@ -16,8 +16,7 @@ std::map<std::string, std::string> map_titles(const ExperimentOptions& options) 
 std::string error_title(const RecordField& error) { return (error.unit == Unit::metre ? "error " : "") + error.label; }
 
 std::string surface_error_title(const ExperimentOptions& options) {
-  const bool any_side = options.scene.touch == SceneOptions::Touch::any;
-  return any_side ? "Error of the surface" : "Error of the surface (rms)";
+  return is_any_side(options) ? "Error of the surface" : "Error of the surface (rms)";
 }
 
 }  // namespace palpate

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "experiment/outlier_model.hpp"
 #include "record/row.hpp"
 
 #include <string>
@@ -33,7 +32,7 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
 
 /// Returns probability and reason of a suspected outlier: "97 %, by its height, which does not fit the heights of the
 /// other taps".
-std::string doubt_words(const SuspectedOutlier& one);
+std::string doubt_words(const TapReading& one);
 
 /// Returns a sentence, without its full stop, for a run whose truth is no longer known (RunReplay::truth_lost()).
 std::string truth_lost_words(const Error& lost);

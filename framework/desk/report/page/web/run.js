@@ -201,7 +201,7 @@ function mapSection(slider) {
 
 /// Unpacks the maps or surfaces of the moments in `described`.
 function unpackMoments(data, described, bytes) {
-  if (data.any_side) return described.surfaces.map((one) => unpackSurface(one, data.desk));
+  if (data.any_side) return described.surfaces.map(unpackSurface);
   return unpackMaps(bytes, described.maps, data.x.length, data.y.length);
 }
 

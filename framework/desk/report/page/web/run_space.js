@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Closed surface and taps of a run from any side at one moment.
 
-/// Returns the values whose differences the page has, times `unit`, plus `first`.
-function summed(steps, unit, first = 0) {
+/// Returns the values whose differences the page has, times `unit`.
+function summed(steps, unit) {
   let sum = 0;
-  return steps.map((step) => first + unit * (sum += step));
+  return steps.map((step) => unit * (sum += step));
 }
 
 /// Returns a mesh for plotly, in centimetres, with the deviations of its vertices in millimetres.
-function unpackSurface({ x, y, z, i, j, k, deviation }, desk) {
+function unpackSurface({ x, y, z, i, j, k, deviation }) {
   const corners = { i: summed(i, 1), j: summed(j, 1), k: summed(k, 1) };
-  return { x: summed(x, 0.01), y: summed(y, 0.01), z: summed(z, 0.01, kCentimetres * desk), ...corners, deviation: summed(deviation, 0.01) };
+  return { x: summed(x, 0.01), y: summed(y, 0.01), z: summed(z, 0.01), ...corners, deviation: summed(deviation, 0.01) };
 }
 
 const fromAnySide = (tap) => tap["direction.x"] !== undefined;
@@ -44,7 +44,7 @@ class SpaceView {
     const out = { x: [], y: [], z: [] };
     for (const ring of this.data.true_contours) {
       for (const side of kAxes3) {
-        const line = summed(ring[side], 0.01, side === "z" ? kCentimetres * this.data.desk : 0);
+        const line = summed(ring[side], 0.01);
         out[side].push(...line, line[0], null);
       }
     }

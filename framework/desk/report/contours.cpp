@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/contours.hpp"
+#include "report/contours.hpp"
 
 #include <Eigen/Geometry>
 
@@ -19,12 +19,9 @@ struct Plane {
   int columns = 0, rows = 0;
   double side = 0.0;
 
-  std::vector<Stretch> row(const Scene& scene, int j) const { return cut(scene, origin + j * side * up, along); }
-  std::vector<Stretch> column(const Scene& scene, int i) const { return cut(scene, origin + i * side * along, up); }
-
- private:
-  static std::vector<Stretch> cut(const Scene& scene, const Vector3d& begin, const Vector3d& direction) {
-    return scene.intervals({begin + Vector3d(0.0, 0.0, scene.desk()), direction});
+  std::vector<Stretch> row(const Scene& scene, int j) const { return scene.intervals({origin + j * side * up, along}); }
+  std::vector<Stretch> column(const Scene& scene, int i) const {
+    return scene.intervals({origin + i * side * along, up});
   }
 };
 
@@ -57,7 +54,7 @@ Ring straightened(const Ring& ring, double most) {
   return out;
 }
 
-/// Cell by cell, as mesh.cpp goes from cube to cube: the line comes in over one side of a cell and leaves over another,
+/// Cell by cell: the line comes in over one side of a cell and leaves over another,
 /// and over the side between two cells it leaves the one and comes into the other.
 void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out) {
   const auto node_of = [&](int i, int j) {
@@ -122,20 +119,27 @@ void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out)
 
 }  // namespace
 
-std::vector<Ring> contours(const Scene& scene, const Vector3d& centre, double radius, double apart, double side) {
-  std::vector<Ring> out;
+std::vector<Ring> contours(const Scene& scene, double apart, double side) {
+  constexpr double kRadius = 0.46;  // of the longer side of the area
+  constexpr double kHeight = 0.65;  // of the centre, in radii
+  const Area area = scene.area();
+  const double radius = kRadius * std::max(area.width, area.depth);
+  const double top = (1.0 + kHeight) * radius;
+  const Vector3d corner(area.width / 2 - radius, area.depth / 2 - radius, scene.desk());
+  const Vector3d low = corner - Vector3d::Constant(side / 2);
   const int across = 2 + static_cast<int>(std::ceil(2.0 * radius / side));
-  const double top = centre.z() + radius;
   const int up = 2 + static_cast<int>(std::ceil(top / side));
-  const Vector3d low(centre.x() - radius - side / 2, centre.y() - radius - side / 2, -side / 2);
+  std::vector<Ring> out;
   for (double offset = apart / 2; offset < 2.0 * radius; offset += apart) {
-    const Vector3d x(centre.x() - radius + offset, low.y(), low.z());
-    const Vector3d y(low.x(), centre.y() - radius + offset, low.z());
+    const Vector3d x(corner.x() + offset, low.y(), low.z());
+    const Vector3d y(low.x(), corner.y() + offset, low.z());
     add_section(scene, {x, Vector3d::UnitY(), Vector3d::UnitZ(), across, up, side}, out);
     add_section(scene, {y, Vector3d::UnitX(), Vector3d::UnitZ(), across, up, side}, out);
   }
   for (double height = apart / 2; height < top; height += apart)
-    add_section(scene, {{low.x(), low.y(), height}, Vector3d::UnitX(), Vector3d::UnitY(), across, across, side}, out);
+    add_section(scene,
+                {{low.x(), low.y(), corner.z() + height}, Vector3d::UnitX(), Vector3d::UnitY(), across, across, side},
+                out);
   return out;
 }
 
