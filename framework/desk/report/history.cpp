@@ -197,17 +197,11 @@ History HistoryBuilder::since(int moment) const {
     out.surfaces = {history_.surfaces.end() - (history_.shown.end() - first), history_.surfaces.end()};
   for (const MapSeries& map : history_.maps)
     out.maps.push_back({map.name, {map.frames.end() - (history_.shown.end() - first), map.frames.end()}});
-  return finished(std::move(out));
-}
-
-History HistoryBuilder::take() { return finished(std::move(history_)); }
-
-History HistoryBuilder::finished(History history) const {
-  if (history.maps.empty()) return history;
-  for (Eigen::VectorXf& frame : history.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest_));
-  if (!own_scores_) history.maps.pop_back();
-  if (truth_) history.maps.push_back({"truth", {*truth_}});
-  return history;
+  if (out.maps.empty()) return out;
+  for (Eigen::VectorXf& frame : out.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest_));
+  if (!own_scores_) out.maps.pop_back();
+  if (truth_) out.maps.push_back({"truth", {*truth_}});
+  return out;
 }
 
 History make_history(const Workshop& workshop, const RecordedRun& recording, const OnProgress& progress) {
@@ -218,7 +212,7 @@ History make_history(const Workshop& workshop, const RecordedRun& recording, con
     builder.advance();
     progress(builder.taps(), last);
   }
-  return builder.take();
+  return builder.since(0);
 }
 
 }  // namespace palpate

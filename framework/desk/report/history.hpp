@@ -113,14 +113,11 @@ class HistoryBuilder {
 
   /// Returns the history so far, with maps of the moments from `moment` on: the history of a run that ends here.
   History since(int moment) const;
-  /// Returns the whole history. The object must not be used afterwards.
-  History take();
 
  private:
   void add();
   void add_maps();
   void add_surface();
-  History finished(History history) const;
   Eigen::VectorXf shown(const Eigen::VectorXd& map);
 
   const RecordedRun& recording_;
@@ -130,7 +127,7 @@ class HistoryBuilder {
   bool own_scores_ = false;
   std::optional<Eigen::VectorXf> truth_;  ///< after the taps so far; pushed objects change it
   double largest_ = 0.0;                  ///< greatest standard deviation of the height GP at any moment
-  History history_;                       ///< with unlimited deviations; finished() limits them
+  History history_;                       ///< with unlimited deviations; since() limits them
 };
 
 /// Builds the history of a whole recorded run. Throws Error as RunReplay does.

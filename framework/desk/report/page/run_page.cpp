@@ -79,16 +79,8 @@ Table build_table(const Tree& manifest) {
 
 }  // namespace
 
-/// Returns the numbers of the taps whose label at this moment differs from their rows.
-static std::vector<int> relabelled(const RunAtTap& moment) {
-  std::vector<int> out;
-  for (const Relabelled& one : moment.result.relabelled) out.push_back(one.tap);
-  return out;
-}
-
-static void to_json(Json& out, const TapReading& suspected) {
-  out = {{"tap", suspected.tap}, {"words", doubt_words(suspected)}};
-}
+static void to_json(Json& out, const Relabelled& one) { out = one.tap; }
+static void to_json(Json& out, const TapReading& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
 static void to_json(Json& out, const RunAtTap& moment) {
   const RunResult& result = moment.result;
@@ -101,7 +93,7 @@ static void to_json(Json& out, const RunAtTap& moment) {
               {"desk_taps", result.desk_taps},
               {"no_contact_taps", result.no_contact_taps},
               {"failed_taps", result.failed_taps},
-              {"relabelled", relabelled(moment)},
+              {"relabelled", result.relabelled},
               {"surface_drawn", moment.largest_deviation > 0.0},
               {"robot_seconds", result.robot_seconds},
               {kExpectedError, state.number(kExpectedError)},
@@ -233,15 +225,8 @@ static Json json_of_standing(const RecordedRun& recording, const History& histor
           {"constants", curves.constants},     {"warnings", warnings_of(recording, history)}};
 }
 
-/// Returns the colour scale of each frame of standard deviations.
-static Json json_of_deviation_colours(const std::vector<Eigen::VectorXf>& frames) {
-  Json out = Json::array();
-  for (const Eigen::VectorXf& frame : frames) {
-    const Colours colours = deviation_colours(frame.minCoeff(), frame.maxCoeff());
-    out.push_back(
-        {{"low", colours.low}, {"high", colours.high}, {"logarithmic", colours.logarithmic}, {"label", colours.label}});
-  }
-  return out;
+static void to_json(Json& out, const Colours& one) {
+  out = {{"low", one.low}, {"high", one.high}, {"logarithmic", one.logarithmic}, {"label", one.label}};
 }
 
 Json run_data(const RecordedRun& recording, const History& history) {
@@ -280,7 +265,10 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
     const PackedMaps packed = pack_maps(frames);
     described.push_back(
         {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
-    if (one.name == "deviation") described.back()["colours"] = json_of_deviation_colours(frames);
+    for (const Eigen::VectorXf& frame : frames) {
+      if (one.name == "deviation")
+        described.back()["colours"].push_back(deviation_colours(frame.minCoeff(), frame.maxCoeff()));
+    }
     bytes += packed.bytes;
   }
   data["surfaces"] = std::move(surfaces);

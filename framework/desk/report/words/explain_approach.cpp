@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 namespace palpate {
@@ -88,9 +87,8 @@ class ApproachExplained final : public Explanation {
           "From the same earlier taps, this build would choose another line: the run used another build or instruction "
           "set, so the other scores are unknown.");
     const Eigen::VectorXd scores = experiment_.scores();
-    const double score = scores(now->candidate);
     std::string text =
-        fmt::format("Its score is {}, the best of {}", plain_words(score), fmt::format("{} approaches", scores.size()));
+        fmt::format("Its score is {}, the best of {} approaches", plain_words(scores(now->candidate)), scores.size());
     if (now->ties.value_or(1) > 1)
       text += fmt::format("; {} are tied with it (tie_tolerance), and the first of them is taken", *now->ties - 1);
     text_.add(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
@@ -100,21 +98,17 @@ class ApproachExplained final : public Explanation {
 
   /// Adds the expected effects of the tap, if the scores use them.
   void explain_gains(int chosen) {
-    const QuantitySet available = belief_.available();
-    if (available.count(quantity::kExpectedDiscovery) != 0) {
-      const Eigen::VectorXd& expected_discovery = belief_.values(quantity::kExpectedDiscovery);
-      text_.add(
-          fmt::format("Of one further solid that no contact contradicts, this line is expected to find {} (mean over "
-                      "lines from all sides); the best line finds {}.",
-                      length_words(expected_discovery(chosen)), length_words(expected_discovery.maxCoeff())));
-    }
-    if (available.count(quantity::kStdReduction) != 0) {
-      const Eigen::VectorXd& std_reduction = belief_.values(quantity::kStdReduction);
-      text_.add(
-          fmt::format("A contact there is expected to reduce the mean standard deviation of the surface by {}; the "
-                      "best line reduces it by {}.",
-                      length_words(std_reduction(chosen)), length_words(std_reduction.maxCoeff())));
-    }
+    const auto add = [&](const char* quantity, const char* sentence) {
+      if (belief_.available().count(quantity) == 0) return;
+      const Eigen::VectorXd& gains = belief_.values(quantity);
+      text_.add(fmt::format(fmt::runtime(sentence), length_words(gains(chosen)), length_words(gains.maxCoeff())));
+    };
+    add(quantity::kExpectedDiscovery,
+        "Of one further solid that no contact contradicts, this line is expected to find {} (mean over lines from all "
+        "sides); the best line finds {}.");
+    add(quantity::kStdReduction,
+        "A contact there is expected to reduce the mean standard deviation of the surface by {}; the best line reduces "
+        "it by {}.");
   }
 
   void explain_second(const Eigen::VectorXd& scores, int chosen) {
@@ -171,13 +165,11 @@ class ApproachExplained final : public Explanation {
     if (hits.empty()) {
       text += fmt::format("None of {} has an object there.", all().size());
     } else {
-      const auto count = static_cast<double>(hits.size());
-      const double mean = std::accumulate(hits.begin(), hits.end(), 0.0) / count;
-      double squares = 0.0;
-      for (const double one : hits) squares += (one - mean) * (one - mean);
+      const Eigen::Map<const Eigen::ArrayXd> distances(hits.data(), static_cast<Eigen::Index>(hits.size()));
+      const double mean = distances.mean();
       text += fmt::format("{} of {} {} an object there, after {} with a standard deviation of {}.", hits.size(),
                           all().size(), hits.size() == 1 ? "has" : "have", length_words(mean),
-                          length_words(std::sqrt(squares / count)));
+                          length_words(std::sqrt((distances - mean).square().mean())));
     }
     text_.add(text);
     if (best.on_object) expected_ = best.distance;

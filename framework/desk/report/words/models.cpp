@@ -31,15 +31,6 @@ struct Subject {
   std::string text(const char* name) const { return row.text(prefix + name); }
 };
 
-/// Returns the names of the number fields that begin with `prefix`, without the prefix.
-std::vector<std::string> numbers_below(const Row& row, const std::string& prefix) {
-  std::vector<std::string> out;
-  for (const auto& [name, value] : row.fields) {
-    if (name.compare(0, prefix.size(), prefix) == 0 && row.number(name)) out.push_back(name.substr(prefix.size()));
-  }
-  return out;
-}
-
 /// Returns "length scale" for "length_scale", "kernels.0: length scale" for "kernels.0.length_scale".
 std::string parameter_words(std::string name) {
   const auto dot = name.rfind('.');
@@ -49,14 +40,14 @@ std::string parameter_words(std::string name) {
 }
 
 std::string kernel_words(const Subject& subject) {
-  const std::string prefix = subject.prefix + "kernel.";
   std::string out = subject.kernel.type;
   const auto parameters = subject.context.create<Kernel>(subject.kernel)->parameters();  // the record has no units
-  for (const std::string& name : numbers_below(subject.row, prefix)) {
+  const Row numbers = numbers_below(subject.row, subject.prefix + "kernel.");
+  for (const auto& field : numbers.fields) {
     Unit unit = Unit::none;
-    for (const KernelParameter& one : parameters) unit = one.name == name ? one.unit : unit;
-    out += fmt::format(", {} {}", parameter_words(name),
-                       number_words(subject.row, prefix + name, unit == Unit::metre ? length_words : plain_words));
+    for (const KernelParameter& one : parameters) unit = one.name == field.first ? one.unit : unit;
+    out += fmt::format(", {} {}", parameter_words(field.first),
+                       number_words(numbers, field.first, unit == Unit::metre ? length_words : plain_words));
   }
   return out;
 }
@@ -133,9 +124,10 @@ void explain_range_of_weight(TextSections& sections, const Row& row, bool clippe
 
 /// Adds type, numbers and remark of a footprint that is not the weight.
 void explain_footprint(TextSections& sections, const Row& row, const std::string& type) {
-  const std::string prefix = "footprint.";
-  std::vector<std::string> numbers = numbers_below(row, prefix);
-  for (std::string& one : numbers) one = fmt::format("{} {}", parameter_words(one), number_words(row, prefix + one));
+  std::vector<std::string> numbers;
+  const Row all = numbers_below(row, "footprint.");
+  for (const auto& field : all.fields)
+    numbers.push_back(fmt::format("{} {}", parameter_words(field.first), number_words(all, field.first)));
   sections.add(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
                            numbers.empty() ? "" : fmt::format(". Its numbers: {}", fmt::join(numbers, ", "))));
   if (const auto left = row.number("footprint.undiscovered_probability"))

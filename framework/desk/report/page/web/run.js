@@ -155,10 +155,9 @@ class Slider {
     });
   }
 
-  /// Draws the moment of the slider. Of several requests during one drawing, the last one is drawn.
+  /// Draws the moment of the slider.
   show() {
-    const wanted = this.input.value;
-    return inTurn(() => (wanted === this.input.value ? this.draw(Number(wanted)) : undefined));
+    return drawLatest(this.input, (at) => this.draw(at));
   }
 
   /// Draws all plots, at first and after changes of colours.

@@ -104,8 +104,6 @@ class SpaceView {
     const [on, off, others] = tapsUntil(this.data, moment.taps);
     const missed = others.filter((tap) => tap.outcome === "no_contact");  // the paths of other failed taps are unknown
     const most = Math.max(extent(surface.deviation)[1], 0);
-    const title = "standard deviation [mm]";
-    const below = { title: { text: title, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
     const next = nextOf(moment).map((one) => ({ ...one, on_object: one.along < one.length ? false : null }));
     const out = [
       ...this.arrows(on, "on the object", themed("ink")),
@@ -115,7 +113,7 @@ class SpaceView {
     ];
     out.unshift({
       type: "mesh3d", name: "surface", ...surface, intensity: surface.deviation, flatshading: false,
-      colorscale: kUnknown, cmin: 0, cmax: most, colorbar: colourBar(title, kNarrow.matches ? below : { len: 0.8 }),
+      colorscale: kUnknown, cmin: 0, cmax: most, colorbar: deviationBar("standard deviation [mm]"),
       lighting: { ambient: 0.55, diffuse: 0.75, specular: 0.12, roughness: 0.7, vertexnormalsepsilon: 0, facenormalsepsilon: 0 },
       lightposition: { x: -1000, y: -2000, z: 3000 },
       text: surface.deviation.map((value) => shown(value, 2)),
