@@ -17,8 +17,8 @@ ceilings='
 framework 0 58
 framework/cli 3540 60 # one file per command, with its arguments
 framework/cmake 0 220 # packages of a cross build
-framework/core 18400 49 # parts of the GP and of the outlier model in files of their own; beliefs by an interface
-framework/desk 9850 126 # facts of pages are computed in C++, tables by one model
+framework/core 18290 49 # parts of the GP and of the outlier model in files of their own; beliefs by an interface
+framework/desk 9910 126 # facts of pages are computed in C++, tables by one model; contours of the true scene, which core had
 framework/include 985 0 # beliefs, lines and named quantities
 framework/lab 2740 20 # a table of launchers; pooled records in files of their own
 framework/python 720 609 # one file per class of the module

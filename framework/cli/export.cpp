@@ -5,8 +5,8 @@
 #include "cli/output.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
-#include "report/beliefs.hpp"
 #include "report/exchange/mesh_export.hpp"
+#include "report/history.hpp"
 
 #include <palpate/error.hpp>
 
@@ -66,8 +66,9 @@ int export_run(Program& program, const ExportArguments& arguments) {
   RunReplay playback(program, recording, page_readers(recording));
   playback.advance_to(static_cast<int>(recording.taps.size()));
   const std::string run = fmt::format("run {} {}", recording.config.id, recording.config.options.name);
-  const std::string surface = is_any_side(recording) ? surface_ply(playback.experiment().belief().surface(), run)
-                                                     : surface_ply(reconstruct(playback.experiment()), run);
+  const std::string surface = recording.is_any_side()
+                                  ? surface_ply(playback.experiment().belief().surface(kFineResolution), run)
+                                  : surface_ply(reconstruct(playback.experiment()), run);
   if (playback.truth_lost())
     print_message(fmt::format("surface.ply has no true heights: {}\n", playback.truth_lost()->what()));
   const fs::path folder = folder_for(recording.directory, arguments.to);

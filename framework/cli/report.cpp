@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "cli/report.hpp"
-#include "report/beliefs.hpp"
 
 #include "cli/display.hpp"
 #include "cli/output.hpp"
@@ -58,7 +57,7 @@ void show(const Figures& figures) {
 
 /// Throws Error with the reason `what` for a run from any side.
 void check_from_above(const RecordedRun& recording, const std::string& what) {
-  if (!is_any_side(recording)) return;
+  if (!recording.is_any_side()) return;
   throw Error(recording.directory.string(), "is a run from any side, but " + what,
               "use 'palpate report' without options for its page");
 }

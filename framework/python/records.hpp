@@ -36,7 +36,7 @@ inline NamedMaps maps_of(Experiment& experiment) {
           {"uncertainty", map(belief.values(quantity::kUncertainty))},
           {"weight", map(belief.values(quantity::kLabelMean))},
           {"probability", map(belief.values(quantity::kObjectProbability))},
-          {"surface", map(belief.surface().heights)}};
+          {"surface", map(belief.surface(kFineResolution).heights)}};
 }
 
 /// A run directory and its models. Any thread may call the methods, with the GIL; one thread at a time uses the models.
@@ -98,7 +98,7 @@ class Record {
  private:
   std::unique_ptr<RunReplay> make_replay() const {
     using namespace quantity;
-    if (!recording_.taps.empty() && !recording_.taps.front().request.line.from_above) {
+    if (recording_.is_any_side()) {
       throw Error(recording_.directory.string(), "is a run from any side, but this needs a run from above",
                   "read its surface from surface.ply");
     }

@@ -4,7 +4,6 @@
 
 #include "record/fields.hpp"
 #include "record/run.hpp"
-#include "report/beliefs.hpp"
 #include "report/curves.hpp"
 #include "report/page/run_page.hpp"
 #include "report/page/warnings.hpp"
@@ -139,11 +138,11 @@ TEST(History, HasTheProbabilityOfTheFootprintInPlaceOfTheWeight) {
   RunReplay last(run.workshop, recording, page_readers(recording));
   last.advance_to(12);
   last.experiment().look();
-  const HeightMap& belief = height_map_of(last.experiment());
+  const Belief& belief = last.experiment().belief();
   EXPECT_EQ(history.maps.at(3).frames.back(),
             Eigen::VectorXf(belief.values(quantity::kObjectProbability).cast<float>()));
   EXPECT_FALSE(history.moments.back().least_weight.has_value());
-  EXPECT_EQ(belief.models().label_gp().process, nullptr) << "nothing reads it";
+  EXPECT_EQ(belief.available().count(quantity::kLabelMean), 0U) << "nothing reads it";
 }
 
 TEST(History, ShowsNoDeviationBeyondWhatTheHeightsHave) {

@@ -19,8 +19,9 @@ using ::testing::Not;
 
 ReconstructedSurface two_by_two(bool with_truth) {
   const CandidateGrid candidates = product_grid(Eigen::Vector2d(0.1, 0.3), Eigen::Vector2d(0.2, 0.7));
-  ReconstructedSurface out{surface_mesh(candidates, Eigen::Vector4d(0.0, 1.0 / 3.0, -0.0625, 1e-17)),
-                           Eigen::Vector4d(0.5, 0.25, 1e-5, 0.0), Eigen::Vector4d(-0.125, 0.5, 1.5, 0.0), std::nullopt};
+  ReconstructedSurface out{
+      surface_mesh(candidates, Eigen::Vector4d(0.0, 1.0 / 3.0, -0.0625, 1e-17), Eigen::Vector4d(0.5, 0.25, 1e-5, 0.0)),
+      Eigen::Vector4d(-0.125, 0.5, 1.5, 0.0), std::nullopt};
   if (with_truth) out.true_height = Eigen::Vector4d(0.0, 0.0, 0.5, 0.0);
   return out;
 }
@@ -60,7 +61,7 @@ TEST(SurfacePly, LeavesOutTruthThatIsNotKnownAndFacesThatAreNotThere) {
   EXPECT_THAT(surface_ply(two_by_two(false), "run"), Not(HasSubstr("true_height")));
   const CandidateGrid one = product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.2));
   const Eigen::VectorXd value = Eigen::VectorXd::Constant(1, 0.5);
-  const std::string ply = surface_ply({surface_mesh(one, value), value, value, std::nullopt}, "run");
+  const std::string ply = surface_ply({surface_mesh(one, value, value), value, std::nullopt}, "run");
   EXPECT_THAT(ply, Not(HasSubstr("element face")));
   EXPECT_THAT(ply, HasSubstr("end_header\n0.1 0.2 0.5 0 0 1 0.5 0.5\n"));
 }

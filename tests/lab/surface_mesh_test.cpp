@@ -28,32 +28,36 @@ Eigen::VectorXd heights(const CandidateGrid& candidates, const Height& height) {
 
 /// Over oblong().
 template <class Height>
-SurfaceMesh mesh_of(const Height& height) {
+Surface mesh_of(const Height& height) {
   const CandidateGrid candidates = oblong();
-  return surface_mesh(candidates, heights(candidates, height));
+  return surface_mesh(candidates, heights(candidates, height), Eigen::VectorXd::Zero(candidates.size()));
 }
 
-Eigen::Vector3d corner(const SurfaceMesh& mesh, int vertex) { return mesh.points.row(vertex).transpose(); }
+Eigen::Vector3d corner(const Surface& mesh, int vertex) {
+  return mesh.vertices[static_cast<std::size_t>(vertex)].position;
+}
 
 /// Twice the area of a triangle, along its normal by the order of its corners.
-Eigen::Vector3d area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& t) {
+Eigen::Vector3d area_vector(const Surface& mesh, const std::array<int, 3>& t) {
   return (corner(mesh, t[1]) - corner(mesh, t[0])).cross(corner(mesh, t[2]) - corner(mesh, t[0]));
 }
 
 TEST(SurfaceMesh, OfAPlaneHasThePlanesNormalAtEveryVertexTheEdgesIncluded) {
   const double along_x = 0.7;
   const double along_y = -1.9;
-  const SurfaceMesh mesh = mesh_of([&](double x, double y) { return 0.03 + along_x * x + along_y * y; });
-  const Eigen::RowVector3d expected = Eigen::RowVector3d(-along_x, -along_y, 1.0).normalized();
-  for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i)
-    EXPECT_LT((mesh.normals.row(i) - expected).cwiseAbs().maxCoeff(), kRounding) << i;
+  const Surface mesh = mesh_of([&](double x, double y) { return 0.03 + along_x * x + along_y * y; });
+  const Eigen::Vector3d expected = Eigen::Vector3d(-along_x, -along_y, 1.0).normalized();
+  ASSERT_EQ(mesh.vertices.size(), 28U);
+  for (const Surface::Vertex& one : mesh.vertices)
+    EXPECT_LT((one.normal - expected).cwiseAbs().maxCoeff(), kRounding) << one.position;
 }
 
 TEST(SurfaceMesh, OfALevelSurfaceLooksStraightUpWithoutAMinusBeforeAnyZero) {
-  const SurfaceMesh mesh = mesh_of([](double, double) { return 0.07; });
-  for (Eigen::Index i = 0; i < mesh.normals.rows(); ++i) {
-    EXPECT_EQ(mesh.normals.row(i), Eigen::RowVector3d(0.0, 0.0, 1.0));
-    EXPECT_FALSE(std::signbit(mesh.normals(i, 0)) || std::signbit(mesh.normals(i, 1)));
+  const Surface mesh = mesh_of([](double, double) { return 0.07; });
+  ASSERT_EQ(mesh.vertices.size(), 28U);
+  for (const Surface::Vertex& one : mesh.vertices) {
+    EXPECT_EQ(one.normal, Eigen::Vector3d(0.0, 0.0, 1.0));
+    EXPECT_FALSE(std::signbit(one.normal.x()) || std::signbit(one.normal.y()));
   }
 }
 
@@ -61,22 +65,23 @@ TEST(SurfaceMesh, TakesCentralDifferencesInsideAndOneSidedOnesAtTheEdges) {
   // Of a parabola along x the central difference is the slope itself; at an edge it is that half a step inside.
   const double bend = 3.0;
   const CandidateGrid candidates = oblong();
-  const SurfaceMesh mesh = mesh_of([&](double x, double) { return bend * x * x; });
+  const Surface mesh = mesh_of([&](double x, double) { return bend * x * x; });
   const double step = candidates.xs(1) - candidates.xs(0);
   for (int row = 0; row < candidates.rows; ++row) {
     for (int column = 0; column < candidates.columns; ++column) {
       double x = candidates.xs(column);
       if (column == 0) x += step / 2;
       if (column == candidates.columns - 1) x -= step / 2;
-      const Eigen::RowVector3d expected = Eigen::RowVector3d(-2 * bend * x, 0.0, 1.0).normalized();
-      EXPECT_LT((mesh.normals.row(row * candidates.columns + column) - expected).cwiseAbs().maxCoeff(), kRounding);
+      const Eigen::Vector3d expected = Eigen::Vector3d(-2 * bend * x, 0.0, 1.0).normalized();
+      const auto vertex = static_cast<std::size_t>(row * candidates.columns + column);
+      EXPECT_LT((mesh.vertices[vertex].normal - expected).cwiseAbs().maxCoeff(), kRounding);
     }
   }
 }
 
 TEST(SurfaceMesh, CoversTheRectangleOfItsVerticesOnce) {
   const double tilt = 2.0;
-  const SurfaceMesh mesh = mesh_of([&](double x, double) { return tilt * x; });
+  const Surface mesh = mesh_of([&](double x, double) { return tilt * x; });
   double seen_from_above = 0.0;
   double area = 0.0;
   for (const auto& triangle : mesh.triangles) {
@@ -88,7 +93,7 @@ TEST(SurfaceMesh, CoversTheRectangleOfItsVerticesOnce) {
 }
 
 TEST(SurfaceMesh, IsADiscWhoseInnerEdgesHaveATriangleOnEitherSide) {
-  const SurfaceMesh mesh = mesh_of([](double, double) { return 0.0; });
+  const Surface mesh = mesh_of([](double, double) { return 0.0; });
   std::set<std::pair<int, int>> directed;
   std::set<std::pair<int, int>> edges;
   std::set<int> vertices;
@@ -110,15 +115,17 @@ TEST(SurfaceMesh, IsADiscWhoseInnerEdgesHaveATriangleOnEitherSide) {
 
 TEST(SurfaceMesh, OfASingleRowOrASingleCandidateHasNoTriangleAndLevelNormalsAcross) {
   const CandidateGrid row = product_grid(Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::VectorXd::Constant(1, 0.5));
-  const SurfaceMesh strip = surface_mesh(row, Eigen::Vector3d(0.0, 0.1, 0.2));
+  const Surface strip = surface_mesh(row, Eigen::Vector3d(0.0, 0.1, 0.2), Eigen::Vector3d::Zero());
   EXPECT_TRUE(strip.triangles.empty());
-  for (int i = 0; i < 3; ++i)
-    EXPECT_LT((strip.normals.row(i) - Eigen::RowVector3d(-1, 0, 1).normalized()).norm(), kRounding);
+  ASSERT_EQ(strip.vertices.size(), 3U);
+  for (const Surface::Vertex& one : strip.vertices)
+    EXPECT_LT((one.normal - Eigen::Vector3d(-1, 0, 1).normalized()).norm(), kRounding);
 
   const CandidateGrid one = product_grid(Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.5));
-  const SurfaceMesh point = surface_mesh(one, Eigen::VectorXd::Constant(1, 0.3));
+  const Surface point = surface_mesh(one, Eigen::VectorXd::Constant(1, 0.3), Eigen::VectorXd::Constant(1, 0.01));
   EXPECT_TRUE(point.triangles.empty());
-  EXPECT_EQ(point.normals.row(0), Eigen::RowVector3d(0, 0, 1));
+  EXPECT_EQ(point.vertices.at(0).normal, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(point.vertices.at(0).standard_deviation, 0.01);
 }
 
 }  // namespace

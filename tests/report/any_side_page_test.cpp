@@ -61,10 +61,10 @@ TEST_P(AnySidePage, DrawsTheSurfaceAfterEachTapAndTheTapsAsArrows) {
   const History history = make_history(workshop, recording, [](int, int) {});
   ASSERT_EQ(history.surfaces.size(), 1U + kTaps);
   for (const auto& [value, taps] : {std::pair(0, kTaps), std::pair(3, kTaps - 1)}) {
-    const ClosedMesh mesh = close_mesh(history.surfaces[static_cast<std::size_t>(taps)]);
+    const Surface& mesh = history.surfaces[static_cast<std::size_t>(taps)];
     double volume = 0.0;
     for (const auto& [a, b, c] : mesh.triangles) {
-      const auto at = [&](int i) { return mesh.vertices[static_cast<std::size_t>(i)].at; };
+      const auto at = [&](int i) { return mesh.vertices[static_cast<std::size_t>(i)].position; };
       volume += at(a).dot(at(b).cross(at(c))) / 6.0;
     }
     const json& drawn_mesh = seen.values.at(static_cast<std::size_t>(value));

@@ -102,13 +102,6 @@ class Instead final : public PluginFactory {
   std::shared_ptr<Interface> made_;
 };
 
-/// Returns the options of a config's belief, which is height_map.
-inline HeightMapOptions height_map_options(const ResolvedConfig& config) {
-  HeightMapOptions out;
-  fill(*config.options.belief.options, shared_host(), "belief", [&](Fields& fields) { out.list(fields); });
-  return out;
-}
-
 /// Returns the context of a config's belief. `scene` must outlive it.
 inline Context belief_context(const ResolvedConfig& config, const Scene& scene) {
   Context out{shared_host(), scene, static_cast<std::uint64_t>(config.options.seed), nullptr};

@@ -113,7 +113,7 @@ TEST(ExpectedRmse, OfOneProcessForObjectAndDeskIsNearTheTrueOneOverManySeedsAndF
 
 /// The formula of experiment/expected_rmse.hpp, cell by cell and by matrices of the taps alone. The kernel is rbf.
 double rmse_by_the_formula(const Prepared& run, double length_scale) {
-  const HeightMapOptions options = height_map_options(run.config);
+  const HeightMapOptions options = height_map_options(run.config.options, shared_host());
   const HeightModels& models = run.models();
   const bool two_part = models.is_two_part();
   const std::vector<Touch>& hits = models.log().object_contacts();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The loop of taps from any side: what of a backend's answers it takes, what it counts, and against which truth.
 #include "experiment/experiment.hpp"
+#include "record/run_replay.hpp"
 #include "record/summary.hpp"
 #include "space/line_sampler.hpp"
 #include "space/solids_belief.hpp"
@@ -121,6 +122,34 @@ TEST(FromAnySide, HalfOfTheLinesGoAnywhereHoweverManyTheBackendRejects) {
   }
 }
 
+TEST(FromAnySide, ALineIsExplainedByTheNumbersThatAcquisitionsRead) {
+  using namespace quantity;
+  const ResolvedConfig config = shipped_config("any_side.yaml", Touching::words({"taps=8"}));
+  Experiment experiment(config.options,
+                        {shared_host(), nullptr, nullptr, "",
+                         readers_from_first_tap("test", {kExpectedDistance, kSurfaceStd, kIncidenceCosine})});
+  test::Collector journal;
+  experiment.run(journal);
+  experiment.choose_next();
+  experiment.look();
+  const Belief& belief = experiment.belief();
+  int on_object = 0;
+  for (Eigen::Index i = 0; i < belief.candidates().size(); ++i) {
+    const LineFacts facts = belief.explain(belief.candidates().line(i));
+    ASSERT_EQ(facts.particles.size(), 4U);
+    const LineFacts::Particle& best = facts.particles.front();
+    constexpr double kRounding = 1e-9;  // lines are explained one by one, and read together
+    EXPECT_NEAR(best.distance, belief.values(kExpectedDistance)(i), kRounding);
+    EXPECT_NEAR(facts.surface_std, belief.values(kSurfaceStd)(i), kRounding);
+    EXPECT_NEAR(facts.incidence_cosine, belief.values(kIncidenceCosine)(i), kRounding);
+    EXPECT_EQ(best.on_object, belief.values(kIncidenceCosine)(i) > 0.0);
+    EXPECT_FALSE(best.solids.empty());
+    on_object += best.on_object ? 1 : 0;
+  }
+  EXPECT_GT(on_object, 5);
+  EXPECT_LT(on_object, belief.candidates().size());
+}
+
 TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissing) {
   Touching run({"taps=3"}, [](const TapRequest&) { return met_nothing(); });
   run.experiment.run(run.journal);
@@ -132,7 +161,7 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
   EXPECT_EQ(errors.f_score, 0.0);
   EXPECT_EQ(errors.volume_iou, 0.0);
   EXPECT_EQ(errors.coverage, std::nullopt);
-  EXPECT_TRUE(run.belief().crossings(kFineSide).vertices.empty());
+  EXPECT_TRUE(run.experiment.belief().surface(kFineResolution).vertices.empty());
   EXPECT_THAT(surface_file(run.experiment).second,
               testing::AllOf(testing::HasSubstr("element vertex 0\n"), testing::HasSubstr("element face 0\n"),
                              testing::EndsWith("end_header\n")));

@@ -33,7 +33,7 @@ struct Believed {
       : config(shipped_config("default.yaml", {"belief.height.offset=none", "candidates.count=21"})),
         scene(build_scene(config.options.scene, 1, shared_host())),
         context(belief_context(config, *scene)),
-        belief(height_map_options(config), context) {
+        belief(height_map_options(config.options, shared_host()), context) {
     belief.plan(Prepared::readers(MotionSelector::reads()));
     belief.begin(Stage::first_tap);
     belief.add(request_at({0.115, 0.115}, 1), contact_at(0.05));
@@ -80,7 +80,7 @@ class WrittenReadings final : public Belief {
   void set_truth(const Scene*) override {}
   Errors errors() override { return {}; }
   std::optional<ShownErrors> shown_errors() override { return std::nullopt; }
-  palpate::Surface surface() override { return {}; }
+  palpate::Surface surface(double) override { return {}; }
 
  private:
   WrittenBelief nothing_;

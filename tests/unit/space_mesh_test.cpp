@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The mesh of what is believed in space: closed whatever it is made from, on the surface, and as large as solids are.
+#include "record/mesh_ply.hpp"
 #include "space/mesh.hpp"
 #include "support/plugins.hpp"
 #include "support/shape_laws.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using Mesh = palpate::Surface;
 
 /// A composition and the skin over it, after touches that were off by a millimetre or two.
 struct Believed {
@@ -28,6 +30,7 @@ struct Believed {
     skin.fit(solids, touches);
   }
   Crossings crossings(double side) const { return cross_surface(solids, skin, side); }
+  Mesh mesh(double side, double desk = 0.0) const { return close_mesh(crossings(side), desk); }
 
   Composition solids;
   Skin skin;
@@ -67,7 +70,7 @@ Believed any_belief(Random& random) {
 }
 
 /// How many edges there are; a failure where one is not shared by two triangles that go along it in either direction.
-int edges_of(const ClosedMesh& mesh) {
+int edges_of(const Mesh& mesh) {
   std::map<std::pair<int, int>, int> directed;
   for (const std::array<int, 3>& triangle : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) ++directed[{triangle[i], triangle[(i + 1) % 3]}];
@@ -80,14 +83,14 @@ int edges_of(const ClosedMesh& mesh) {
 }
 
 /// 2 for each surface without a hole through it.
-int euler(const ClosedMesh& mesh) {
+int euler(const Mesh& mesh) {
   return static_cast<int>(mesh.vertices.size()) - edges_of(mesh) + static_cast<int>(mesh.triangles.size());
 }
 
-double volume(const ClosedMesh& mesh) {
+double volume(const Mesh& mesh) {
   double out = 0.0;
   for (const std::array<int, 3>& triangle : mesh.triangles) {
-    const auto at = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(triangle[i])].at; };
+    const auto at = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(triangle[i])].position; };
     out += at(0).dot(at(1).cross(at(2))) / 6.0;
   }
   return out;
@@ -98,7 +101,7 @@ TEST(ClosedMesh, HasTwoTrianglesInOppositeDirectionsAtEachEdgeWhateverIsBelieved
   std::size_t triangles = 0;
   for (int i = 0; i < 60; ++i) {
     const Believed belief = any_belief(random);
-    const ClosedMesh mesh = close_mesh(belief.crossings(i % 2 == 0 ? 0.003 : 0.006));
+    const Mesh mesh = belief.mesh(i % 2 == 0 ? 0.003 : 0.006);
     triangles += mesh.triangles.size();
     edges_of(mesh);
     EXPECT_GT(volume(mesh), 0.0);
@@ -114,9 +117,10 @@ TEST(ClosedMesh, DoesNotLie) {
   for (int i = 0; i < 20; ++i) {
     const Believed belief = any_belief(random);
     free += belief.skin.free_points().size();
-    for (const Crossings::Vertex& one : belief.crossings(0.003).vertices) {
-      const Vector3d normal = Skin::normal(belief.solids, one.at);
-      const double value = std::max(belief.solids.distance(one.at) - belief.skin.mean({one.at, normal}), -one.at.z());
+    for (const Mesh::Vertex& one : belief.crossings(0.003).vertices) {
+      const Vector3d normal = Skin::normal(belief.solids, one.position);
+      const double value =
+          std::max(belief.solids.distance(one.position) - belief.skin.mean({one.position, normal}), -one.position.z());
       // Vertices stay a hundredth of a cube, 3e-5, away from its corners, and f rises by little more than 1.
       off += std::abs(value) > 4e-5 ? 1 : 0;
       ++all;
@@ -138,11 +142,12 @@ TEST(ClosedMesh, IsWhereAWayHasPushedTheSurface) {
   const Believed belief({plate},
                         {onto(0.02, 0.002), onto(0.18, -0.002), {{{0.1, 0.095, 0.4}, {0, 0, -1}}, 0.39, false, false}});
   double least = 1.0;
-  for (const Crossings::Vertex& one : belief.crossings(0.0025).vertices) {
-    if (std::abs(one.at.x() - 0.1) > 0.01 || std::abs(one.at.z() - 0.1) > 0.03 || one.at.y() < 0.05) continue;
-    const double value = belief.solids.distance(one.at) - belief.skin.mean({one.at, Vector3d::UnitY()});
+  for (const Mesh::Vertex& one : belief.crossings(0.0025).vertices) {
+    if (std::abs(one.position.x() - 0.1) > 0.01 || std::abs(one.position.z() - 0.1) > 0.03 || one.position.y() < 0.05)
+      continue;
+    const double value = belief.solids.distance(one.position) - belief.skin.mean({one.position, Vector3d::UnitY()});
     EXPECT_NEAR(value, 0.0, 4e-5);  // as in DoesNotLie
-    least = std::min(least, one.at.y());
+    least = std::min(least, one.position.y());
   }
   EXPECT_LT(least, 0.0965);
 }
@@ -154,15 +159,15 @@ TEST(ClosedMesh, HasTheNormalsOfItsTriangles) {
     return SurfaceTouch{{{x, 0.3, 0.1}, {0, -1, 0}}, 0.2 - off, true, false};
   };
   const Believed belief({plate}, {onto(0.08, -0.004), onto(0.12, 0.004)});
-  const ClosedMesh mesh = close_mesh(belief.crossings(kFineSide));
+  const Mesh mesh = belief.mesh(kFineResolution);
   int seen = 0;
   double turned = 0.0;
   for (const std::array<int, 3>& triangle : mesh.triangles) {
-    const auto of = [&](std::size_t i) -> const Crossings::Vertex& {
+    const auto of = [&](std::size_t i) -> const Mesh::Vertex& {
       return mesh.vertices[static_cast<std::size_t>(triangle[i])];
     };
-    const Vector3d across = (of(1).at - of(0).at).cross(of(2).at - of(0).at);
-    if (of(0).at.y() < 0.09 || (of(0).at - Vector3d(0.1, of(0).at.y(), 0.1)).norm() > 0.01) continue;
+    const Vector3d across = (of(1).position - of(0).position).cross(of(2).position - of(0).position);
+    if (of(0).position.y() < 0.09 || (of(0).position - Vector3d(0.1, of(0).position.y(), 0.1)).norm() > 0.01) continue;
     if (across.norm() < 1e-7) continue;  // a sliver has no direction
     ++seen;
     // Over a cube of 2 mm a surface that bends by a tenth over 2 cm turns by a hundredth.
@@ -178,7 +183,7 @@ TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
   for (const Piece::Form form : {Piece::Form::box, Piece::Form::cylinder, Piece::Form::ellipsoid}) {
     for (int i = 0; i < 4; ++i) {
       Piece piece{form, {0.1, 0.1, 0.1}, turned(random), {0.05, 0.03, 0.04}, 0.0};
-      const ClosedMesh whole = close_mesh(Believed({piece}).crossings(kFineSide));
+      const Mesh whole = Believed({piece}).mesh(kFineResolution);
       // Edges are cut by less than half a cube of 2 mm, and so is what bends, by its square over the radius: together
       // below one in a hundred of something 6 to 10 cm wide.
       EXPECT_NEAR(volume(whole) / piece.volume(), 1.0, 0.01);
@@ -192,7 +197,7 @@ TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
                             : form == Piece::Form::box
                                 ? 8.0 * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall)
                                 : 2.0 * kHalfTurn * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall);
-      const ClosedMesh vessel = close_mesh(Believed({piece}).crossings(kFineSide));
+      const Mesh vessel = Believed({piece}).mesh(kFineResolution);
       // Of a wall of 4 mm, rims included, the same is five in a hundred.
       EXPECT_NEAR(volume(vessel) / (outer - within), 1.0, 0.05);
     }
@@ -201,37 +206,35 @@ TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
 
 TEST(ClosedMesh, HasNoHoleInAWallOfThreeMillimetresNorOnAPage) {
   constexpr double kPageSide = 0.0025;  // see report/history.cpp
-  for (const double side : {kFineSide, kPageSide}) {
+  for (const double side : {kFineResolution, kPageSide}) {
     Random random(4, "test/mesh");
     for (int i = 0; i < 12; ++i) {
       Piece piece{static_cast<Piece::Form>(i % 3), {0.1, 0.1, 0.1}, turned(random), {0.04, 0.04, 0.05}, 0.003};
-      EXPECT_EQ(euler(close_mesh(Believed({piece}).crossings(side))), 2) << i << ", " << side;
+      EXPECT_EQ(euler(Believed({piece}).mesh(side)), 2) << i << ", " << side;
     }
   }
 }
 
 TEST(ClosedMesh, SaysHowLargeItsCubesAreWhereTheyHadToGrow) {
   const Piece small{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
-  const ClosedMesh fine = close_mesh(Believed({small}).crossings(kFineSide));
-  EXPECT_THAT(mesh_ply(surface_of(fine, 0.0), "quality", "a box"),
-              testing::HasSubstr("comment a box, of cubes of 2 mm\n"));
+  const Mesh fine = Believed({small}).mesh(kFineResolution);
+  EXPECT_THAT(mesh_ply(fine, "quality", "a box"), testing::HasSubstr("comment a box, of cubes of 2 mm\n"));
   const Piece large{Piece::Form::box, {0.2, 0.2, 0.18}, Matrix3d::Identity(), {0.17, 0.17, 0.17}, 0.0};
-  const ClosedMesh coarse = close_mesh(Believed({large}).crossings(kFineSide));
+  const Mesh coarse = Believed({large}).mesh(kFineResolution);
   // 34 x 34 x 35 cm are more than four million of 2 mm, and of 2.2 mm.
-  EXPECT_DOUBLE_EQ(coarse.side, 1.1 * 1.1 * kFineSide);
-  EXPECT_THAT(mesh_ply(surface_of(coarse, 0.0), "quality", "a box"),
-              testing::HasSubstr("comment a box, of cubes of 2.42 mm\n"));
+  EXPECT_DOUBLE_EQ(coarse.resolution, 1.1 * 1.1 * kFineResolution);
+  EXPECT_THAT(mesh_ply(coarse, "quality", "a box"), testing::HasSubstr("comment a box, of cubes of 2.42 mm\n"));
 }
 
 TEST(ClosedMesh, EndsAtTheDesk) {
   const Piece sunk{Piece::Form::box, {0.1, 0.1, 0.02}, Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
-  const ClosedMesh mesh = close_mesh(Believed({sunk}).crossings(kFineSide));
+  const Mesh mesh = Believed({sunk}).mesh(kFineResolution);
   EXPECT_NEAR(volume(mesh), 0.1 * 0.06 * 0.05, 0.01 * 0.1 * 0.06 * 0.05);
   EXPECT_EQ(euler(mesh), 2);
   int below = 0;
-  for (const Crossings::Vertex& one : mesh.vertices) {
-    EXPECT_GT(one.at.z(), -1e-6);
-    if (one.at.z() > 1e-6) continue;
+  for (const Mesh::Vertex& one : mesh.vertices) {
+    EXPECT_GT(one.position.z(), -1e-6);
+    if (one.position.z() > 1e-6) continue;
     EXPECT_EQ(one.normal, Vector3d(-Vector3d::UnitZ()));
     ++below;
   }
@@ -244,37 +247,39 @@ TEST(ClosedMesh, FollowsTheSkin) {
   const Believed belief({plate}, {{{{0.1, 0.3, 0.1}, {0, -1, 0}}, 0.195, true, false}});
   double front = 0.0;
   double back = 1.0;
-  for (const Crossings::Vertex& one : belief.crossings(kFineSide).vertices) {
-    if ((one.at - Vector3d(0.1, one.at.y(), 0.1)).norm() > 0.003) continue;
-    front = std::max(front, one.at.y());
-    back = std::min(back, one.at.y());
+  for (const Mesh::Vertex& one : belief.crossings(kFineResolution).vertices) {
+    if ((one.position - Vector3d(0.1, one.position.y(), 0.1)).norm() > 0.003) continue;
+    front = std::max(front, one.position.y());
+    back = std::min(back, one.position.y());
   }
   EXPECT_NEAR(front, 0.105, 2e-4);
   EXPECT_NEAR(back, 0.097, 4e-5);  // as far as vertices stay from nodes
 }
 
 TEST(ClosedMesh, IsNothingWhereNothingIsBelievedIn) {
-  const ClosedMesh mesh = close_mesh(Believed({}).crossings(kFineSide));
+  const Mesh mesh = Believed({}).mesh(kFineResolution);
   EXPECT_TRUE(mesh.vertices.empty());
   EXPECT_TRUE(mesh.triangles.empty());
 }
 
 TEST(ClosedMesh, IsAFileOfItsNumbers) {
   const Piece box{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
-  ClosedMesh mesh = close_mesh(Believed({box}).crossings(0.01));
-  mesh.vertices.front().deviation = 0.003;
-  const std::string file = mesh_ply(surface_of(mesh, 0.5), "quality", "a box");
+  Mesh mesh = Believed({box}).mesh(0.01, 0.5);
+  EXPECT_EQ(mesh.vertices.front().position,
+            Believed({box}).mesh(0.01).vertices.front().position + Vector3d(0.0, 0.0, 0.5));
+  mesh.vertices.front().standard_deviation = 0.003;
+  const std::string file = mesh_ply(mesh, "quality", "a box");
   EXPECT_THAT(file, testing::HasSubstr("\ncomment a box, of cubes of 10 mm\nelement vertex " +
                                        std::to_string(mesh.vertices.size())));
   const std::size_t body = file.find("end_header\n") + 11;
   ASSERT_EQ(file.size(), body + 28 * mesh.vertices.size() + 13 * mesh.triangles.size());
   std::array<float, 7> first{};
   std::memcpy(first.data(), file.data() + body, sizeof first);
-  const Crossings::Vertex& one = mesh.vertices.front();
-  EXPECT_EQ(first[0], static_cast<float>(one.at.x()));
-  EXPECT_EQ(first[2], static_cast<float>(one.at.z() + 0.5));
+  const Mesh::Vertex& one = mesh.vertices.front();
+  EXPECT_EQ(first[0], static_cast<float>(one.position.x()));
+  EXPECT_EQ(first[2], static_cast<float>(one.position.z()));
   EXPECT_EQ(first[5], static_cast<float>(one.normal.z()));
-  EXPECT_EQ(first[6], static_cast<float>(one.deviation));
+  EXPECT_EQ(first[6], static_cast<float>(one.standard_deviation));
   std::array<std::int32_t, 3> last{};
   std::memcpy(last.data(), file.data() + file.size() - sizeof last, sizeof last);
   EXPECT_EQ(last[2], mesh.triangles.back()[2]);

@@ -17,7 +17,7 @@ struct Alone {
         scene(build_scene(config.options.scene, 1, test::shared_host())),
         context(test::belief_context(config, *scene)),
         candidates(grid_by_count(scene->area(), 9)),
-        models(test::height_map_options(config), candidates, context) {
+        models(height_map_options(config.options, test::shared_host()), candidates, context) {
     build({quantity::kHeightMean, quantity::kObjectProbability});
   }
 

@@ -67,14 +67,14 @@ FactorReport factors_of(const Footprint& footprint) {
 }
 
 /// Probabilities with two decimals; nullopt for an empty list.
-std::optional<JsonList> list_of(const std::vector<SuspectedOutlier>& suspected) {
-  if (suspected.empty()) return std::nullopt;
+std::optional<JsonList> outliers_among(const std::vector<TapReading>& readings) {
   std::vector<std::string> rows;
-  for (const SuspectedOutlier& one : suspected) {
-    const double rounded = std::round(100.0 * one.probability) / 100.0;
+  for (const TapReading& one : readings) {
+    if (one.outlier_probability < OutlierModel::kRetapThreshold) continue;
+    const double rounded = std::round(100.0 * one.outlier_probability) / 100.0;
     rows.push_back(fmt::format(R"({{"tap": {}, "probability": {}}})", one.tap, rounded));
   }
-  return JsonList{fmt::format("[{}]", fmt::join(rows, ", "))};
+  return rows.empty() ? std::nullopt : std::optional(JsonList{fmt::format("[{}]", fmt::join(rows, ", "))});
 }
 
 ModelSet operator|(ModelSet a, const ModelSet& b) {
@@ -187,6 +187,7 @@ void HeightMap::read_again() {
     out.is_corrected = log.has_offset();
     out.moved = models_.has_moved(i);
     out.outlier_probability = models_.outlier_probability(i);
+    out.wrong_label_probability = models_.wrong_label_probability(i);
   }
 }
 
@@ -265,9 +266,7 @@ BeliefState HeightMap::state(std::optional<Eigen::Index> candidate) const {
   }
   const bool has_outliers = options_.height.outlier_probability.has_value();
   const OutlierModel* const outliers = models_.surface() ? models_.surface()->outliers() : nullptr;
-  if (has_outliers) {
-    out.add("suspected_outliers", outliers != nullptr ? list_of(outliers->suspected(models_.log())) : std::nullopt);
-  }
+  if (has_outliers) out.add("suspected_outliers", outliers_among(readings_));
   if (has_outliers && outliers != nullptr && !candidate) {
     count_factors(out, outliers->surface().report());
     out.diagnostics["variance_clamped"] += models_.surface()->variances_clamped();

@@ -42,7 +42,7 @@ class HeightMap final : public Belief {
   Errors errors() override;
   std::optional<ShownErrors> shown_errors() override;
   std::vector<ObjectErrors> object_errors() override;
-  Surface surface() override { return {reconstruction(maps()), {}, {}, 0.0}; }
+  Surface surface(double /*resolution*/) override { return {reconstruction(maps()), {}, {}, 0.0}; }
 
   const HeightModels& models() const { return models_; }
   const CandidateGrid& grid() const { return grid_; }

@@ -91,6 +91,11 @@ double HeightModels::outlier_probability(std::size_t contact) const {
   return outliers() != nullptr && index < outliers()->probabilities().size() ? outliers()->probabilities()(index) : 0.0;
 }
 
+double HeightModels::wrong_label_probability(std::size_t contact) const {
+  const double all = outlier_probability(contact);
+  return all > 0.0 ? std::min(all, outliers()->by_label()(static_cast<Eigen::Index>(contact))) : 0.0;
+}
+
 int HeightModels::failed_fits() const {
   return heights_.gp().failed_fits() + (labels_ ? labels_->failed_fits() : 0) +
          (surface_ ? surface_->gp().failed_fits() : 0);

@@ -90,10 +90,8 @@ class HeightModels {
 
   /// Returns the probability that a contact, counted from 0, is an outlier; 0 without an outlier model.
   double outlier_probability(std::size_t contact) const;
-  /// Returns the contacts that are probably outliers; none without an outlier model.
-  std::vector<SuspectedOutlier> suspected_outliers() const {
-    return outliers() != nullptr ? outliers()->suspected(log_) : std::vector<SuspectedOutlier>{};
-  }
+  /// Returns the part of it due to the contact's label.
+  double wrong_label_probability(std::size_t contact) const;
   /// Returns whether objects were pushed since a contact, so that it does not hold at its position.
   bool has_moved(std::size_t contact) const {
     return footprint_ && footprint_->has_moved(log_.prior_size() + static_cast<int>(contact));

@@ -56,14 +56,4 @@ bool OutlierModel::update(const ContactLog& log, const GpModel& objects, const F
   return true;
 }
 
-std::vector<SuspectedOutlier> OutlierModel::suspected(const ContactLog& log) const {
-  std::vector<SuspectedOutlier> out;
-  for (Eigen::Index i = 0; i < probabilities_.size(); ++i) {
-    const double probability = probabilities_(i);
-    if (probability < kRetapThreshold) continue;
-    out.push_back({log.tap_numbers()[static_cast<std::size_t>(i)], probability, std::min(probability, by_label_(i))});
-  }
-  return out;
-}
-
 }  // namespace palpate

@@ -11,16 +11,7 @@
 
 #include <Eigen/Core>
 
-#include <vector>
-
 namespace palpate {
-
-/// A contact that is an outlier with a probability of at least OutlierModel::kRetapThreshold.
-struct SuspectedOutlier {
-  int tap = 0;
-  double probability = 0.0;
-  double by_label = 0.0;  ///< the part due to its label, without its height
-};
 
 class OutlierModel {
  public:
@@ -39,7 +30,8 @@ class OutlierModel {
 
   /// Of each contact at the latest update(); empty before.
   const Eigen::VectorXd& probabilities() const { return probabilities_; }
-  std::vector<SuspectedOutlier> suspected(const ContactLog& log) const;
+  /// The same by its label alone, without its height.
+  const Eigen::VectorXd& by_label() const { return by_label_; }
 
   /// The surface without outliers. It has no map while is_surface() is false: then the surface is that of the GP.
   RobustSurface& surface() { return surface_; }

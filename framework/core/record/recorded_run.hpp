@@ -50,6 +50,8 @@ struct RecordedRun {
 
   /// Whether the scene of the config is what was tapped.
   bool truth_known() const { return rows.front().flag("true_on_object").has_value(); }
+  /// Whether taps came from any side, so that the surface is closed; else from above.
+  bool is_any_side() const { return !taps.empty() && !taps.front().request.line.from_above; }
   /// Whether the run ended because it could not continue.
   bool failed() const { return summary && summary->text("status") == "failed"; }
   /// Whether a program scored: it is not started again to read a record.

@@ -43,6 +43,12 @@ ResolvedConfig resolve_experiment(const Tree& composed, const PluginSource& plug
   return out;
 }
 
+HeightMapOptions height_map_options(const ExperimentOptions& options, const PluginSource& plugins) {
+  HeightMapOptions out;
+  fill(*options.belief.options, plugins, "belief", [&](Fields& fields) { out.list(fields); });
+  return out;
+}
+
 bool begins_with_id(const std::string& folder) {
   return folder.size() >= kIdLength && folder.find_first_not_of("0123456789abcdef") >= kIdLength;
 }

@@ -4,6 +4,7 @@
 
 #include "config/resolve.hpp"
 #include "experiment/experiment_options.hpp"
+#include "experiment/height_map_options.hpp"
 #include "record/expectation.hpp"
 
 #include <string>
@@ -19,6 +20,9 @@ struct ResolvedConfig {
   std::string identity;                   ///< 32 hex digits: a hash of all that decides what a run computes
   std::string id;                         ///< the first 12 of them
 };
+
+/// Returns the options of a config's belief, which is height_map.
+HeightMapOptions height_map_options(const ExperimentOptions& options, const PluginSource& plugins);
 
 /// Returns the text of which `identity` is the hash: a line `palpate-id 1`, then a line `path=value` for all that
 /// decides what a run computes, sorted by bytes.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "record/summary.hpp"
 
+#include "record/mesh_ply.hpp"
 #include "record/row.hpp"
-#include "space/mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -110,7 +110,7 @@ Eigen::VectorXd true_heights(const Candidates& candidates, const Scene& scene) {
 }
 
 std::pair<std::string, std::string> surface_file(Experiment& experiment) {
-  const Surface surface = experiment.belief().surface();
+  const Surface surface = experiment.belief().surface(kFineResolution);
   if (surface.heights.size() > 0) return {"surface.csv", surface_csv(experiment, surface.heights)};
   return {"surface.ply", mesh_ply(surface, "standard_deviation", "metres, in the frame of the area")};
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "space/mesh.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -252,8 +250,8 @@ Crossings cross_surface(const Composition& solids, const Skin& skin, double side
   return out;
 }
 
-ClosedMesh close_mesh(const Crossings& crossings) {
-  ClosedMesh out{crossings.vertices, {}, crossings.side};
+Surface close_mesh(const Crossings& crossings, double desk) {
+  Surface out{{}, crossings.vertices, {}, crossings.side};
   const std::array<int, 3> strides = crossings.strides();
   std::array<int, 8> corners{};
   for (int i = 0; i < 8; ++i)
@@ -293,12 +291,12 @@ ClosedMesh close_mesh(const Crossings& crossings) {
             ring.push_back(vertex_of(edge));
           }
           if (crowded && ring.size() > 3) {
-            Crossings::Vertex middle{Vector3d::Zero(), Vector3d::Zero(), 0.0};
+            Surface::Vertex middle{Vector3d::Zero(), Vector3d::Zero(), 0.0};
             for (const int i : ring) {
-              const Crossings::Vertex& one = out.vertices[static_cast<std::size_t>(i)];
-              middle.at += one.at / static_cast<double>(ring.size());
+              const Surface::Vertex& one = out.vertices[static_cast<std::size_t>(i)];
+              middle.position += one.position / static_cast<double>(ring.size());
               middle.normal += one.normal;
-              middle.deviation += one.deviation / static_cast<double>(ring.size());
+              middle.standard_deviation += one.standard_deviation / static_cast<double>(ring.size());
             }
             middle.normal.normalize();
             const auto hub = static_cast<int>(out.vertices.size());
@@ -312,38 +310,7 @@ ClosedMesh close_mesh(const Crossings& crossings) {
       }
     }
   }
-  return out;
-}
-
-Surface surface_of(const ClosedMesh& mesh, double desk) {
-  Surface out;
-  out.resolution = mesh.side;
-  out.triangles = mesh.triangles;
-  for (const Crossings::Vertex& one : mesh.vertices)
-    out.vertices.push_back({one.at + Eigen::Vector3d(0.0, 0.0, desk), one.normal, one.deviation});
-  return out;
-}
-
-std::string mesh_ply(const Surface& mesh, const std::string& deviation, const std::string& comment) {
-  std::string out = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment {}, of cubes of {:.3g} mm\nelement vertex {}\nproperty float "
-      "x\nproperty float y\n"
-      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float {}\n"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      comment, 1e3 * mesh.resolution, mesh.vertices.size(), deviation, mesh.triangles.size());
-  const auto append = [&](const auto& value) {
-    out.append(reinterpret_cast<const char*>(value.data()), sizeof(value[0]) * value.size());
-  };
-  out.reserve(out.size() + 28 * mesh.vertices.size() + 13 * mesh.triangles.size());
-  for (const Surface::Vertex& one : mesh.vertices) {
-    Eigen::Matrix<float, 7, 1> numbers;
-    numbers << one.position.cast<float>(), one.normal.cast<float>(), static_cast<float>(one.standard_deviation);
-    append(numbers);
-  }
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
-    out += '\3';
-    append(triangle);
-  }
+  for (Surface::Vertex& one : out.vertices) one.position += Vector3d(0.0, 0.0, desk);
   return out;
 }
 

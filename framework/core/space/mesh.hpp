@@ -16,7 +16,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace palpate {
@@ -24,16 +23,12 @@ namespace palpate {
 /// A grid of cubes with the nodes that lie within the surface, and where the surface crosses its edges: all of a mesh
 /// but its triangles. Lengths in metres, relative to the desk.
 struct Crossings {
-  struct Vertex {
-    Eigen::Vector3d at, normal;
-    double deviation = 0.0;  ///< standard deviation along the normal
-  };
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the first node
   double side = 0.0;                                 ///< of a cube
   std::array<int, 3> nodes{};                        ///< along x, y and z; 0 where nothing is believed in
   std::vector<std::uint8_t> inside;                  ///< 1 or 0 for each node, x fastest; 0 at the rim
   /// One for each edge with an end on either side: node by node, of each those along x, y and z that begin there.
-  std::vector<Vertex> vertices;
+  std::vector<Surface::Vertex> vertices;
 
   /// From a node to the next one along x, y and z, as they are counted.
   std::array<int, 3> strides() const { return {1, nodes[0], nodes[0] * nodes[1]}; }
@@ -51,23 +46,8 @@ struct Crossings {
 /// pieces, those of the composition. The deviations are left to SolidsBelief, which knows all compositions.
 Crossings cross_surface(const Composition& solids, const Skin& skin, double side);
 
-/// Triangles counter-clockwise seen from outside. Rings that could share a diagonal with those of the next cube have a
-/// vertex more, in their middle; these come last.
-struct ClosedMesh {
-  std::vector<Crossings::Vertex> vertices;
-  std::vector<std::array<int, 3>> triangles;
-  double side = 0.0;  ///< of the cubes
-};
-ClosedMesh close_mesh(const Crossings& crossings);
-/// Returns the mesh in the frame of the scene; `desk`: its height, metres.
-Surface surface_of(const ClosedMesh& mesh, double desk);
-
-/// The side of the cubes of a mesh to be kept: walls of 3 mm have no holes, as long as it need not be larger.
-inline constexpr double kFineSide = 0.002;
-
-/// PLY 1.0, binary with the least byte first, for a large mesh: vertices of x, y, z, nx, ny, nz and `deviation`, as the
-/// property is called, in single precision, and triangles. `comment` is one
-/// line, to which the side of the cubes is added.
-std::string mesh_ply(const Surface& mesh, const std::string& deviation, const std::string& comment);
+/// Returns the closed mesh; `desk`: its height, metres, with which heights become those of the scene. Rings that could
+/// share a diagonal with those of the next cube have a vertex more, in their middle; these come last.
+Surface close_mesh(const Crossings& crossings, double desk);
 
 }  // namespace palpate

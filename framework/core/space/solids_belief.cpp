@@ -3,6 +3,7 @@
 
 #include "experiment/belief_state.hpp"
 #include "experiment/policy.hpp"
+#include "space/mesh.hpp"
 #include "space/view.hpp"
 
 #include <palpate/error.hpp>
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -29,6 +31,16 @@ SolidsSettings settings_of(const SolidsOptions& options) {
   out.count = static_cast<int>(options.particles);
   out.moves = static_cast<int>(options.moves);
   out.misfit = options.model_discrepancy;
+  return out;
+}
+
+LineFacts::Solid facts_of(const Piece& piece) {
+  constexpr const char* kForms[] = {"box", "cylinder", "ellipsoid"};  // by Piece::Form
+  LineFacts::Solid out{kForms[static_cast<std::size_t>(piece.form)], 2.0 * piece.half, piece.wall};
+  if (piece.form == Piece::Form::ellipsoid && piece.hollow()) {
+    out.form = "bowl";
+    out.extent.z() *= 0.5;
+  }
   return out;
 }
 
@@ -195,22 +207,36 @@ std::optional<ShownErrors> SolidsBelief::shown_errors() {
   return ShownErrors{errors_.compare(is_ready() ? &solids_ : nullptr, skin_), std::nullopt};
 }
 
-Crossings SolidsBelief::crossings(double side) const {
+Surface SolidsBelief::surface(double resolution) {
   if (!is_ready()) return {};
-  Crossings out = cross_surface(solids_.best(), skin_, side);
+  Crossings crossings = cross_surface(solids_.best(), skin_, resolution);
   Cloud points;
-  for (const Crossings::Vertex& vertex : out.vertices) points.push_back(vertex.at);
+  for (const Surface::Vertex& vertex : crossings.vertices) points.push_back(vertex.position);
   const Eigen::VectorXd deviations = surface_std(points, solids_, skin_);
   require_finite(deviations, "the standard deviation of the surface", counts_.all);
-  for (std::size_t i = 0; i < points.size(); ++i) out.vertices[i].deviation = deviations(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    crossings.vertices[i].standard_deviation = deviations(static_cast<Eigen::Index>(i));
+  return close_mesh(crossings, context_.scene.desk());
+}
+
+LineFacts SolidsBelief::explain(const TapLine& line) const {
+  const Line own{line.start - Eigen::Vector3d(0.0, 0.0, context_.scene.desk()), line.direction};
+  const double free = std::min(line.length, distance_down_to(0.0, own));
+  LineFacts out;
+  for (const Composition& one : solids_.compositions()) {
+    const double hit = one.first_intersection(own);
+    out.particles.push_back({std::max(0.0, std::min(free, hit)), hit < free, {}});
+    for (const Composition::Part& part : one.parts) out.particles.back().solids.push_back(facts_of(part.piece));
+    if (&one == &solids_.best()) std::swap(out.particles.front(), out.particles.back());
+  }
+  const LineFacts::Particle& best = out.particles.front();
+  if (!best.on_object) return out;
+  const Eigen::Vector3d at = own.origin + best.distance * own.direction;
+  const Eigen::Vector3d normal = Skin::normal(solids_.best(), at);
+  out.surface_std = std::sqrt(skin_.variance({at, normal}));
+  out.prior_std = skin_.signal();
+  out.incidence_cosine = std::abs(normal.dot(line.direction));
   return out;
 }
-
-double SolidsBelief::distance(const TapLine& line, const Composition& particle) const {
-  const Line own{line.start - Eigen::Vector3d(0.0, 0.0, context_.scene.desk()), line.direction};
-  return std::max(0.0, std::min({line.length, distance_down_to(0.0, own), particle.first_intersection(own)}));
-}
-
-Surface SolidsBelief::mesh(double side) const { return surface_of(close_mesh(crossings(side)), context_.scene.desk()); }
 
 }  // namespace palpate

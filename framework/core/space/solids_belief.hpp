@@ -5,7 +5,6 @@
 
 #include "space/line_sampler.hpp"
 #include "space/line_values.hpp"
-#include "space/mesh.hpp"
 #include "space/skin.hpp"
 #include "space/solids.hpp"
 #include "space/solids_options.hpp"
@@ -59,15 +58,9 @@ class SolidsBelief final : public Belief {
   void set_truth(const Scene* scene) override { errors_.set_truth(scene); }
   Errors errors() override;
   std::optional<ShownErrors> shown_errors() override;
-  Surface surface() override { return mesh(kFineSide); }
-
-  /// Returns the mesh of the believed surface with cubes of `side`; without vertices before an object is known.
-  Surface mesh(double side) const;
-  /// The same without its triangles.
-  Crossings crossings(double side) const;
-
-  /// Returns how far along a line a tool comes if a particle is the truth: to it, to the desk, or to the end; metres.
-  double distance(const TapLine& line, const Composition& particle) const;
+  /// Without vertices before an object is known.
+  Surface surface(double resolution) override;
+  LineFacts explain(const TapLine& line) const override;
 
   const Solids& solids() const { return solids_; }
   const Skin& skin() const { return skin_; }

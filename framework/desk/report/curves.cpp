@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "report/curves.hpp"
-#include "report/beliefs.hpp"
 
 #include "record/fields.hpp"
 #include "report/words/titles.hpp"
+#include "report/words/words.hpp"
 
 #include <fmt/format.h>
 
@@ -25,15 +25,15 @@ Curve curve_of(const History& history, const std::string& name, const Get& get) 
   return curve;
 }
 
-/// Returns a curve for each name that the row of the last moment has.
-template <class RowAt>
-std::vector<Curve> named_curves(const History& history, const RowAt& row_at) {
-  std::vector<Curve> out;
+/// Returns a curve for each number that `numbers` finds in the state of the last moment.
+template <class Numbers>
+std::vector<Curve> named_curves(const History& history, const Numbers& numbers) {
+  const auto row_at = [&](const RunAtTap& moment) { return numbers(Row{moment.result.state.fields}); };
   const Row last = row_at(history.moments.back());
-  for (const auto& field : last.fields) {
-    const std::string& name = field.first;
-    out.push_back(curve_of(history, name, [&](const RunAtTap& moment) { return row_at(moment).number(name); }));
-  }
+  std::vector<Curve> out;
+  for (const auto& field : last.fields)
+    out.push_back(
+        curve_of(history, field.first, [&](const RunAtTap& moment) { return row_at(moment).number(field.first); }));
   return out;
 }
 
@@ -44,8 +44,7 @@ struct NamedState {
 constexpr std::array<NamedState, 3> kStates{
     {{"height GP", "height_gp."}, {"label GP", "label_gp."}, {"surface GP", "surface_gp."}}};
 
-Row likelihoods_of(const RunAtTap& moment) {
-  const Row state{moment.result.state.fields};
+Row likelihoods_of(const Row& state) {
   Row out;
   for (const NamedState& one : kStates) {
     if (const auto value = state.number(std::string(one.field) + "log_marginal_likelihood")) out.add(one.name, *value);
@@ -53,29 +52,16 @@ Row likelihoods_of(const RunAtTap& moment) {
   return out;
 }
 
-/// Returns the numbers of the state whose names begin with `prefix`, without it.
-Row numbers_below(const RunAtTap& moment, const std::string& prefix) {
-  Row out;
-  for (const auto& [name, value] : moment.result.state.fields) {
-    const double* const number = std::get_if<double>(&value);
-    if (number != nullptr && name.compare(0, prefix.size(), prefix) == 0) out.add(name.substr(prefix.size()), *number);
+Row parameters_of(const Row& state, const std::string& gp) {
+  Row out = numbers_below(state, gp + "kernel.");
+  for (const char* name : {"noise", "signal"}) {
+    if (const auto value = state.number(gp + name)) out.fields.insert(out.fields.begin(), {name, *value});
   }
   return out;
 }
 
-Row parameters_of(const RunAtTap& moment, const std::string& gp) {
-  const Row state{moment.result.state.fields};
-  Row out;
-  for (const char* name : {"signal", "noise"}) {
-    if (const auto value = state.number(gp + name)) out.add(name, *value);
-  }
-  const Row kernel = numbers_below(moment, gp + "kernel.");
-  out.fields.insert(out.fields.end(), kernel.fields.begin(), kernel.fields.end());
-  return out;
-}
-
-Row footprint_numbers(const RunAtTap& moment) {
-  Row out = numbers_below(moment, "footprint.");
+Row footprint_numbers(const Row& state) {
+  Row out = numbers_below(state, "footprint.");
   for (auto& field : out.fields) std::replace(field.first.begin(), field.first.end(), '_', ' ');
   return out;
 }
@@ -187,8 +173,8 @@ Curves without_constants(std::vector<CurvePanel> panels) {
 
 Curves curves_of(const RecordedRun& recording, const History& history) {
   const ExperimentOptions& options = recording.config.options;
-  const bool any_side = is_any_side(recording);
-  std::vector<CurvePanel> panels = error_panels(is_any_side(recording), history);
+  const bool any_side = recording.is_any_side();
+  std::vector<CurvePanel> panels = error_panels(recording.is_any_side(), history);
   const auto add = [&](std::string title, const char* unit, CurveAxis axis, std::vector<Curve> curves) {
     panels.push_back({std::move(title), unit, axis, std::move(curves)});
   };
@@ -205,10 +191,10 @@ Curves curves_of(const RecordedRun& recording, const History& history) {
   add("Log marginal likelihood", "nat", CurveAxis::free, named_curves(history, likelihoods_of));
   for (const NamedState& state : kStates) {
     add(fmt::format("Hyperparameters of the {}", state.name), "SI units", CurveAxis::logarithmic,
-        named_curves(history, [&](const RunAtTap& moment) { return parameters_of(moment, state.field); }));
+        named_curves(history, [&](const Row& row) { return parameters_of(row, state.field); }));
   }
   add(fmt::format("Numbers of footprint/{}", belief_option(options, "footprint.type")), "", CurveAxis::free,
-      named_curves(history, [](const RunAtTap& moment) { return footprint_numbers(moment); }));
+      named_curves(history, footprint_numbers));
   add("Time of a tap, by phase", "ms", CurveAxis::logarithmic, times(recording, history));
   if (history.moments.back().result.robot_seconds > 0.0)
     add("Robot time so far", "s", CurveAxis::from_zero,

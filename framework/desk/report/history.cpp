@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "report/history.hpp"
 
+#include "experiment/outlier_model.hpp"
+#include "experiment/policy.hpp"
 #include "record/fields.hpp"
 #include "record/summary.hpp"
-#include "report/beliefs.hpp"
 
 #include <fmt/format.h>
 
@@ -31,38 +32,64 @@ bool own_scores(const MapsAtTap& now) {
   return now.has_weight() ? now.scores != now.exploration() : now.scores != now.probability;
 }
 
+/// Sets all that maps and surfaces of a moment have in common, after the taps that `playback` has replayed.
+void set_common(RunAtTap& out, RunReplay& playback, const RecordedRun& recording) {
+  const Belief& belief = playback.experiment().belief();
+  out.taps = playback.taps();
+  out.next = playback.next();
+  out.is_next_known = out.next || !recording.scored_by_program();
+  if (out.next) {
+    const LineFacts facts = belief.explain(out.next->request.line);
+    if (!facts.particles.empty()) out.next_along = facts.particles.front().distance;
+  }
+  out.result = playback.result();
+  for (const TapReading& one : belief.readings()) {
+    if (one.outlier_probability >= OutlierModel::kRetapThreshold) out.suspected_outliers.push_back(one);
+  }
+}
+
 /// Returns the maps after the taps that `playback` has replayed, the first ones of `recording`.
 MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   Experiment& experiment = playback.experiment();
-  HeightMap& belief = height_map_of(experiment);
+  Belief& belief = experiment.belief();
   MapsAtTap out;
-  out.taps = playback.taps();
+  set_common(out, playback, recording);
   for (int i = 0; i < out.taps; ++i)
     out.marks.push_back(
         mark_of(recording, static_cast<std::size_t>(i), experiment.scene().desk(), experiment.counts()));
-  out.next = playback.next();
   out.has_scores = !recording.scored_by_program();
-  out.is_next_known = out.next || out.has_scores;
   out.scores = out.has_scores ? experiment.scores() : Eigen::VectorXd::Zero(belief.candidates().size());
   experiment.look();
-  out.surface = belief.surface().heights;
+  out.surface = belief.surface(kFineResolution).heights;
   out.deviation = belief.values(quantity::kHeightStd);
   out.uncertainty = belief.values(quantity::kUncertainty);
-  if (is_footprint_weight(belief)) {
-    out.weight = belief.values(quantity::kLabelMean);
-    out.least_weight = belief.models().label_map().mean().minCoeff();
-    out.most_weight = belief.models().label_map().mean().maxCoeff();
-  } else {
+  const Row state{belief.state(Eigen::Index{0}).fields};
+  if (state.number("p")) {  // of a footprint that is not the label GP
     out.probability = belief.values(quantity::kObjectProbability);
+  } else {
+    out.weight = belief.values(quantity::kLabelMean);
+    out.least_weight = state.number("min_weight");
+    out.most_weight = state.number("max_weight");
   }
   out.largest_deviation = belief.values(quantity::kMeasurementStd).maxCoeff();
-  out.result = playback.result();
-  if (!belief_option(recording.config.options, "height.outlier_probability").empty())
-    out.suspected_outliers = belief.models().suspected_outliers();
   return out;
 }
 
+/// Returns contours of the true scene as it stands now; empty if the truth is not known.
+std::vector<Ring> true_contours(Experiment& experiment) {
+  constexpr double kApart = 0.01;
+  constexpr double kOfGrid = 0.002;  // walls of 3 mm are whole
+  const Scene* const truth = experiment.truth();
+  return truth != nullptr ? contours(*truth, kApart, kOfGrid) : std::vector<Ring>{};
+}
+
 }  // namespace
+
+ReadPlan page_readers(const RecordedRun& recording) {
+  using namespace quantity;
+  if (recording.is_any_side()) return readers_from_first_tap("page", {});
+  return readers_from_first_tap("page", {kUncertainty, kMeasurementStd, kObjectProbability, kHeightMean, kHeightStd});
+}
 
 std::vector<MapsAtTap> maps_at_taps(RunReplay& playback, const RecordedRun& recording, const std::vector<int>& taps) {
   std::vector<MapsAtTap> out;
@@ -82,40 +109,32 @@ std::string count_words(const RunResult& result) {
 HistoryBuilder::HistoryBuilder(const Workshop& workshop, const RecordedRun& recording)
     : recording_(recording),
       playback_(workshop, recording, page_readers(recording)),
-      any_side_(is_any_side(recording)) {
+      any_side_(recording.is_any_side()) {
   history_.truth_lost = playback_.truth_lost();
-  if (any_side_) {
-    add_surface();
-    return;
+  if (!any_side_) {
+    const CandidateGrid all = grid_of(playback_.experiment().belief().candidates());
+    stride_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
+    history_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
+    history_.y = all.ys(Eigen::seq(0, Eigen::last, stride_));
   }
-  const CandidateGrid& all = height_map_of(playback_.experiment()).grid();
-  stride_ = (std::max(all.columns, all.rows) + kMostCellsAcross - 1) / kMostCellsAcross;
-  history_.x = all.xs(Eigen::seq(0, Eigen::last, stride_));
-  history_.y = all.ys(Eigen::seq(0, Eigen::last, stride_));
-  const bool weight = is_footprint_weight(height_map_of(playback_.experiment()));
-  for (const char* name : {"height", "deviation", "u", weight ? "w" : "p", "score"})
-    history_.maps.push_back({name, {}});
   add();
 }
 
 void HistoryBuilder::advance() {
   playback_.advance_to(playback_.taps() + 1);
-  any_side_ ? add_surface() : add();
+  add();
 }
+
+void HistoryBuilder::add() { any_side_ ? add_surface() : add_maps(); }
 
 void HistoryBuilder::add_surface() {
   Experiment& experiment = playback_.experiment();
-  const SolidsBelief& belief = solids_of(experiment);
-  constexpr double kSide = 0.0025;  // cell width, metres; walls of 3 mm are complete at this width
+  constexpr double kResolution = 0.0025;  // walls of 3 mm are complete
   RunAtTap now;
-  now.taps = playback_.taps();
-  now.next = playback_.next();
-  now.is_next_known = now.next || !recording_.scored_by_program();
-  if (now.next) now.next_along = belief.distance(now.next->request.line, belief.solids().best());
-  now.result = playback_.result();
-  history_.surfaces.push_back(belief.crossings(kSide));
-  for (const Crossings::Vertex& one : history_.surfaces.back().vertices)
-    now.largest_deviation = std::max(now.largest_deviation, one.deviation);
+  set_common(now, playback_, recording_);
+  history_.surfaces.push_back(experiment.belief().surface(kResolution));
+  for (const Surface::Vertex& one : history_.surfaces.back().vertices)
+    now.largest_deviation = std::max(now.largest_deviation, one.standard_deviation);
   if (history_.true_contours.empty() || experiment.scene().effects().push)
     history_.true_contours = true_contours(experiment);
   history_.shown.push_back(now.taps);
@@ -125,11 +144,19 @@ void HistoryBuilder::add_surface() {
   thin(kMost);
 }
 
-void HistoryBuilder::add() {
+void HistoryBuilder::add_maps() {
   const MapsAtTap now = maps_of(playback_, recording_);
-  const Eigen::VectorXd* const maps[]{&now.surface, &now.deviation, &now.uncertainty,
-                                      now.has_weight() ? &now.weight : &now.probability, &now.scores};
-  for (std::size_t i = 0; i < std::size(maps); ++i) history_.maps[i].frames.push_back(shown(*maps[i]));
+  const std::pair<const char*, const Eigen::VectorXd*> maps[]{
+      {"height", &now.surface},
+      {"deviation", &now.deviation},
+      {"u", &now.uncertainty},
+      now.has_weight() ? std::pair("w", &now.weight) : std::pair("p", &now.probability),
+      {"score", &now.scores}};
+  history_.maps.resize(std::size(maps));
+  for (std::size_t i = 0; i < std::size(maps); ++i) {
+    history_.maps[i].name = maps[i].first;
+    history_.maps[i].frames.push_back(shown(*maps[i].second));
+  }
   own_scores_ = own_scores_ || own_scores(now);
   largest_ = std::max(largest_, now.largest_deviation);
   if (const Scene* const truth = playback_.experiment().truth())
@@ -154,8 +181,8 @@ void HistoryBuilder::thin(std::size_t most) {
   std::size_t numbers = 0;
   for (const MapSeries& map : history_.maps)
     numbers += map.frames.size() * static_cast<std::size_t>(map.frames.front().size());
-  constexpr std::size_t kOfAVertex = 7;
-  for (const Crossings& one : history_.surfaces) numbers += kOfAVertex * one.vertices.size() + one.inside.size() / 8;
+  constexpr std::size_t kOfAVertex = 10;  // with those of its triangles
+  for (const Surface& one : history_.surfaces) numbers += kOfAVertex * one.vertices.size();
   if (history_.shown.size() < 2 || numbers <= most) return;
   for (MapSeries& map : history_.maps) drop(map.frames);
   if (!history_.surfaces.empty()) drop(history_.surfaces);
@@ -170,17 +197,11 @@ History HistoryBuilder::since(int moment) const {
     out.surfaces = {history_.surfaces.end() - (history_.shown.end() - first), history_.surfaces.end()};
   for (const MapSeries& map : history_.maps)
     out.maps.push_back({map.name, {map.frames.end() - (history_.shown.end() - first), map.frames.end()}});
-  return finished(std::move(out));
-}
-
-History HistoryBuilder::take() { return finished(std::move(history_)); }
-
-History HistoryBuilder::finished(History history) const {
-  if (history.maps.empty()) return history;
-  for (Eigen::VectorXf& frame : history.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest_));
-  if (!own_scores_) history.maps.pop_back();
-  if (truth_) history.maps.push_back({"truth", {*truth_}});
-  return history;
+  if (out.maps.empty()) return out;
+  for (Eigen::VectorXf& frame : out.maps[1].frames) frame = frame.cwiseMin(static_cast<float>(largest_));
+  if (!own_scores_) out.maps.pop_back();
+  if (truth_) out.maps.push_back({"truth", {*truth_}});
+  return out;
 }
 
 History make_history(const Workshop& workshop, const RecordedRun& recording, const OnProgress& progress) {
@@ -191,7 +212,7 @@ History make_history(const Workshop& workshop, const RecordedRun& recording, con
     builder.advance();
     progress(builder.taps(), last);
   }
-  return builder.take();
+  return builder.since(0);
 }
 
 }  // namespace palpate

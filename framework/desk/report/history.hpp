@@ -3,12 +3,11 @@
 // taps, so runs need not store their maps.
 #pragma once
 
-#include "experiment/outlier_model.hpp"
 #include "record/run_replay.hpp"
-#include "space/contours.hpp"
-#include "space/mesh.hpp"
+#include "report/contours.hpp"
 
 #include <palpate/error.hpp>
+#include <palpate/surface.hpp>
 #include <palpate/types.hpp>
 
 #include <functional>
@@ -34,9 +33,8 @@ struct RunAtTap {
   RunResult result;                  ///< the result if the run had ended here
   std::optional<TapRecord> next;     ///< the next tap; nullopt if no candidate is left, or if its choice is unknown
   bool is_next_known = true;         ///< false if a program chooses: reports do not start programs
-  std::optional<double> next_along;  ///< from any side: path length of the next tap up to the surface of the most
-                                     ///< probable composition
-  std::optional<std::vector<SuspectedOutlier>> suspected_outliers;  ///< with an outlier model
+  std::optional<double> next_along;  ///< from any side: path length of the next tap by the most probable particle
+  std::vector<TapReading> suspected_outliers;  ///< contacts that may be outliers
   double largest_deviation = 0.0;  ///< greatest standard deviation, metres: of the candidates' heights given all taps;
                                    ///< from any side of the surface
   /// Range of the label GP's mean over the candidates; nullopt if the footprint is not the weight.
@@ -58,6 +56,9 @@ struct MapsAtTap : RunAtTap {
   bool has_weight() const { return weight.size() > 0; }
   Eigen::VectorXd exploration() const { return uncertainty.cwiseProduct(weight); }  ///< e, defined if there is a w
 };
+
+/// Returns the readers of a page: all that it shows, from the first tap on.
+ReadPlan page_readers(const RecordedRun& recording);
 
 /// Returns the maps after each of these numbers of taps, which ascend from 1 to the number of all taps.
 std::vector<MapsAtTap> maps_at_taps(RunReplay& playback, const RecordedRun& recording, const std::vector<int>& taps);
@@ -82,7 +83,7 @@ struct History {
   Eigen::VectorXd x, y;  ///< coordinates of the maps' columns and rows, metres; maps are stored row by row
   /// From any side, instead of maps: the surface at each shown moment, empty before the first contact with an object.
   /// The contours of the true surface are those at the last moment; empty if the truth is unknown.
-  std::vector<Crossings> surfaces;
+  std::vector<Surface> surfaces;
   std::vector<Ring> true_contours;
   /// Reason why the truth is no longer known (RunReplay::truth_lost()); the errors are then those of the record.
   std::optional<Error> truth_lost;
@@ -112,13 +113,11 @@ class HistoryBuilder {
 
   /// Returns the history so far, with maps of the moments from `moment` on: the history of a run that ends here.
   History since(int moment) const;
-  /// Returns the whole history. The object must not be used afterwards.
-  History take();
 
  private:
   void add();
+  void add_maps();
   void add_surface();
-  History finished(History history) const;
   Eigen::VectorXf shown(const Eigen::VectorXd& map);
 
   const RecordedRun& recording_;
@@ -128,7 +127,7 @@ class HistoryBuilder {
   bool own_scores_ = false;
   std::optional<Eigen::VectorXf> truth_;  ///< after the taps so far; pushed objects change it
   double largest_ = 0.0;                  ///< greatest standard deviation of the height GP at any moment
-  History history_;                       ///< with unlimited deviations; finished() limits them
+  History history_;                       ///< with unlimited deviations; since() limits them
 };
 
 /// Builds the history of a whole recorded run. Throws Error as RunReplay does.

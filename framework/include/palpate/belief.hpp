@@ -111,6 +111,24 @@ struct ShownErrors {
   std::optional<double> expected_rmse;  ///< metres
 };
 
+/// Expectation of a tap along a line by the particles of a belief, for explanations. Lengths in metres.
+struct LineFacts {
+  struct Solid {
+    std::string form;                 ///< such as "box"
+    Eigen::Vector3d extent{0, 0, 0};  ///< along its own axes
+    double wall = 0.0;                ///< thickness of the wall; 0 without a hollow
+  };
+  struct Particle {
+    double distance = 0.0;  ///< path length of the tap: up to an object, the desk, or the end of the line
+    bool on_object = false;
+    std::vector<Solid> solids;
+  };
+  std::vector<Particle> particles;  ///< the most probable one first; empty for beliefs without particles
+  /// Where the line meets an object of the most probable particle: standard deviation of the surface along its normal,
+  /// the same far from all contacts, and cosine between line and normal.
+  double surface_std = 0.0, prior_std = 0.0, incidence_cosine = 0.0;
+};
+
 /// Returns for each line whether the backend can tap along it.
 using LineFilter = std::function<void(const Candidates& lines, BoolOut out)>;
 
@@ -182,8 +200,11 @@ class Belief : public BeliefView {
   /// Returns the errors of each object of the scene, in its order; empty for a belief that has none.
   virtual std::vector<ObjectErrors> object_errors() { return {}; }
 
-  /// Returns the reconstructed surface; in the stage `summary`.
-  virtual Surface surface() = 0;
+  /// Returns the reconstructed surface; in the stage `summary`. The cells of a mesh are about `resolution` metres wide,
+  /// or wider if the mesh would be too large.
+  virtual Surface surface(double resolution) = 0;
+  /// Returns the expectation of a tap along a line.
+  virtual LineFacts explain(const TapLine& /*line*/) const { return {}; }
 };
 
 }  // namespace palpate

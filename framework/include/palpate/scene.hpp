@@ -54,10 +54,7 @@ class Scene {
   virtual bool on_object(double height) const = 0;
 
   /// Returns the scene after this many taps, or null if it has not changed. The result must not outlive this scene.
-  virtual std::unique_ptr<const Scene> after(int taps) const {
-    static_cast<void>(taps);
-    return nullptr;
-  }
+  virtual std::unique_ptr<const Scene> after(int /*taps*/) const { return nullptr; }
 
   /// Returns the number of objects.
   virtual int objects() const = 0;

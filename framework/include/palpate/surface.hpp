@@ -9,6 +9,9 @@
 
 namespace palpate {
 
+/// Resolution of a surface that is stored, metres: a mesh has no holes in walls of 3 mm or more.
+inline constexpr double kFineResolution = 0.002;
+
 /// Lengths in metres, in the frame of the scene.
 struct Surface {
   /// M heights, if the candidates are fixed positions on the desk; else empty.

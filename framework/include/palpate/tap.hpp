@@ -118,6 +118,7 @@ struct TapReading {
   bool is_corrected = false;         ///< the position is corrected for the offset of the arm
   bool moved = false;                ///< an object was pushed since, so that the reading does not hold at its position
   double outlier_probability = 0.0;  ///< of the height or the label
+  double wrong_label_probability = 0.0;  ///< the part of it due to the label
 };
 
 }  // namespace palpate

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "report/exchange/mesh_export.hpp"
-#include "report/beliefs.hpp"
 
 #include "experiment/policy.hpp"
 #include "record/fields.hpp"
+#include "record/mesh_ply.hpp"
 #include "record/summary.hpp"
-#include "space/mesh.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ namespace {
 
 /// Returns the descent of the heights along one axis by central differences, one-sided at the edges. `at` is the
 /// position among `count`, and neighbours are `step` indices apart.
-double descent(const VectorView& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
+double descent(const Eigen::VectorXd& heights, const Eigen::VectorXd& places, int index, int at, int count, int step) {
   const int before = std::max(at - 1, 0);
   const int behind = std::min(at + 1, count - 1);
   if (before == behind) return 0.0;
@@ -26,20 +26,18 @@ double descent(const VectorView& heights, const Eigen::VectorXd& places, int ind
 
 }  // namespace
 
-// Views are passed by value, as in the interfaces. NOLINTNEXTLINE(performance-unnecessary-value-param)
-SurfaceMesh surface_mesh(const CandidateGrid& candidates, const VectorView& heights) {
+Surface surface_mesh(const CandidateGrid& candidates, const Eigen::VectorXd& heights,
+                     const Eigen::VectorXd& deviations) {
   const int columns = candidates.columns;
   const int rows = candidates.rows;
-  SurfaceMesh mesh;
-  mesh.points.resize(candidates.size(), 3);
-  mesh.points << candidates.points, heights;
-  mesh.normals.resize(candidates.size(), 3);
+  Surface mesh;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const int i = row * columns + column;
-      mesh.normals.row(i) = Eigen::RowVector3d(descent(heights, candidates.xs, i, column, columns, 1),
-                                               descent(heights, candidates.ys, i, row, rows, columns), 1.0)
-                                .normalized();
+      const Eigen::Vector3d upward(descent(heights, candidates.xs, i, column, columns, 1),
+                                   descent(heights, candidates.ys, i, row, rows, columns), 1.0);
+      mesh.vertices.push_back(
+          {{candidates.points(i, 0), candidates.points(i, 1), heights(i)}, upward.normalized(), deviations(i)});
       if (row + 1 == rows || column + 1 == columns) continue;
       mesh.triangles.push_back({i, i + 1, i + columns + 1});
       mesh.triangles.push_back({i, i + columns + 1, i + columns});
@@ -62,33 +60,32 @@ std::string header_text(const std::string& text) {
 ReconstructedSurface reconstruct(Experiment& experiment) {
   experiment.look();
   Belief& belief = experiment.belief();
-  ReconstructedSurface out{surface_mesh(grid_of(belief.candidates()), belief.surface().heights),
-                           belief.values(quantity::kHeightStd), belief.values(quantity::kObjectProbability),
-                           std::nullopt};
+  ReconstructedSurface out{surface_mesh(grid_of(belief.candidates()), belief.surface(kFineResolution).heights,
+                                        belief.values(quantity::kHeightStd)),
+                           belief.values(quantity::kObjectProbability), std::nullopt};
   if (const Scene* const truth = experiment.truth()) out.true_height = true_heights(belief.candidates(), *truth);
   return out;
 }
 
 std::string surface_ply(const ReconstructedSurface& surface, const std::string& run) {
-  const SurfaceMesh& mesh = surface.mesh;
+  const Surface& mesh = surface.mesh;
   std::string out = fmt::format(
       "ply\nformat ascii 1.0\ncomment palpate, {}\n"
       "comment lengths in metres; quality: standard deviation of the height\nelement vertex {}\n"
       "property double x\nproperty double y\nproperty double z\n"
       "property double nx\nproperty double ny\nproperty double nz\n"
       "property float quality\nproperty float object_probability\n",
-      header_text(run), mesh.points.rows());
+      header_text(run), mesh.vertices.size());
   if (surface.true_height) out += "property float true_height\n";
   if (!mesh.triangles.empty())  // some readers reject an empty list of faces
     out += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.triangles.size());
   out += "end_header\n";
-  for (Eigen::Index i = 0; i < mesh.points.rows(); ++i) {
-    out += fmt::format("{} {} {} {} {} {} {} {}", mesh.points(i, 0), mesh.points(i, 1), mesh.points(i, 2),
-                       mesh.normals(i, 0), mesh.normals(i, 1), mesh.normals(i, 2),
-                       static_cast<float>(surface.standard_deviation(i)),
-                       static_cast<float>(surface.object_probability(i)));
-    if (surface.true_height) out += fmt::format(" {}", static_cast<float>((*surface.true_height)(i)));
-    out += "\n";
+  Eigen::Index i = 0;
+  for (const Surface::Vertex& one : mesh.vertices) {
+    out += fmt::format("{} {} {} {}", fmt::join(one.position, " "), fmt::join(one.normal, " "),
+                       static_cast<float>(one.standard_deviation), static_cast<float>(surface.object_probability(i)));
+    out += surface.true_height ? fmt::format(" {}\n", static_cast<float>((*surface.true_height)(i))) : "\n";
+    ++i;
   }
   for (const auto& [a, b, c] : mesh.triangles) out += fmt::format("3 {} {} {}\n", a, b, c);
   return out;
@@ -102,7 +99,7 @@ std::string surface_ply(const Surface& mesh, const std::string& run) {
 std::string taps_ply(const RecordedRun& recording, const RunResult& counts, const std::string& run) {
   std::string points;
   int contacts = 0;
-  const bool any_side = is_any_side(recording);
+  const bool any_side = recording.is_any_side();
   for (std::size_t i = 0; i < recording.taps.size(); ++i) {
     const TapRecord& tap = recording.taps[i];
     if (!tap.is_contact()) continue;

@@ -6,31 +6,23 @@
 #include "experiment/experiment.hpp"
 #include "record/run_replay.hpp"
 
-#include <array>
+#include <palpate/surface.hpp>
+
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace palpate {
 
-/// A mesh over a grid of candidates: one vertex per candidate, in their order, and two triangles per four neighbours;
-/// no triangles if the grid is one candidate wide.
-struct SurfaceMesh {
-  using Triples = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-  Triples points;   ///< x, y, z, metres; one row per vertex
-  Triples normals;  ///< unit vectors, upward
-  /// Indices of each triangle's vertices, counter-clockwise seen from above.
-  std::vector<std::array<int, 3>> triangles;
-};
+/// Returns a mesh over a grid of candidates: one vertex per candidate, in their order, and two triangles per four
+/// neighbours; no triangles if the grid is one candidate wide. `heights` and their `deviations` are metres, one per
+/// candidate. Normals follow from central differences of the heights, one-sided at the edges. A direction with a single
+/// candidate counts as level.
+Surface surface_mesh(const CandidateGrid& candidates, const Eigen::VectorXd& heights,
+                     const Eigen::VectorXd& deviations);
 
-/// Returns the mesh of `heights`, metres, one per candidate of a grid. Normals follow from central differences of the
-/// heights, one-sided at the edges. A direction with a single candidate counts as level.
-SurfaceMesh surface_mesh(const CandidateGrid& candidates, const VectorView& heights);
-
-/// The reconstructed surface with its uncertainty; one value per candidate.
+/// The reconstructed surface; one value per candidate.
 struct ReconstructedSurface {
-  SurfaceMesh mesh;
-  Eigen::VectorXd standard_deviation;  ///< of the height, metres
+  Surface mesh;
   Eigen::VectorXd object_probability;  ///< by the footprint of the config
   std::optional<Eigen::VectorXd> true_height;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/groups.hpp"
 #include "record/run_directory.hpp"
-#include "report/beliefs.hpp"
 #include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
 

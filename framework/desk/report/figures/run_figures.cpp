@@ -3,7 +3,6 @@
 #include "analysis/mean_output.hpp"
 #include "config/layout.hpp"
 #include "record/fields.hpp"
-#include "report/beliefs.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"

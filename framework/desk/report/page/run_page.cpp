@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/run_page.hpp"
-#include "report/beliefs.hpp"
 
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
@@ -42,7 +41,7 @@ Json json_of_run(const RecordedRun& recording, const History& history) {
           {"depth", options.scene.area.depth},
           {"desk", options.scene.desk},
           {"truth", recording.truth_known() && !history.truth_lost},
-          {"any_side", is_any_side(recording)}};
+          {"any_side", recording.is_any_side()}};
 }
 
 /// Returns the config as a table of paths, values and origins, the files that config.yaml was composed from.
@@ -80,18 +79,8 @@ Table build_table(const Tree& manifest) {
 
 }  // namespace
 
-/// Returns the numbers of the taps whose label at this moment differs from their rows.
-static std::vector<int> relabelled(const RunAtTap& moment) {
-  std::vector<int> out;
-  for (const Relabelled& one : moment.result.relabelled) out.push_back(one.tap);
-  return out;
-}
-
-static Json suspected_json(const std::vector<SuspectedOutlier>& all) {
-  Json out = Json::array();
-  for (const SuspectedOutlier& one : all) out.push_back({{"tap", one.tap}, {"words", doubt_words(one)}});
-  return out;
-}
+static void to_json(Json& out, const Relabelled& one) { out = one.tap; }
+static void to_json(Json& out, const TapReading& one) { out = {{"tap", one.tap}, {"words", doubt_words(one)}}; }
 
 static void to_json(Json& out, const RunAtTap& moment) {
   const RunResult& result = moment.result;
@@ -104,15 +93,15 @@ static void to_json(Json& out, const RunAtTap& moment) {
               {"desk_taps", result.desk_taps},
               {"no_contact_taps", result.no_contact_taps},
               {"failed_taps", result.failed_taps},
-              {"relabelled", relabelled(moment)},
+              {"relabelled", result.relabelled},
               {"surface_drawn", moment.largest_deviation > 0.0},
               {"robot_seconds", result.robot_seconds},
               {kExpectedError, state.number(kExpectedError)},
               {"least_weight", moment.least_weight},
               {"most_weight", moment.most_weight},
               {"remark", state.text("footprint.remark")},
-              {"is_next_known", moment.is_next_known}});
-  if (moment.suspected_outliers) out["suspected_outliers"] = suspected_json(*moment.suspected_outliers);
+              {"is_next_known", moment.is_next_known},
+              {"suspected_outliers", moment.suspected_outliers}});
   if (moment.next) {
     out["next"] = {{"x", moment.next->target().x},
                    {"y", moment.next->target().y},
@@ -202,17 +191,17 @@ static Json true_contours_of(const History& history) {
   return out;
 }
 
-/// Returns the closed mesh: vertices in tenths of a millimetre, their standard deviations in hundredths of a
-/// millimetre, and the vertex indices of the triangles.
-static Json json_of_surface(const Crossings& surface) {
-  const ClosedMesh mesh = close_mesh(surface);
+/// Returns a mesh: vertices in tenths of a millimetre, their standard deviations in hundredths of a millimetre, and the
+/// vertex indices of the triangles.
+static Json json_of_surface(const Surface& mesh) {
   const auto along = [&](Eigen::Index axis) {
-    return steps_of(mesh.vertices, [axis](const Crossings::Vertex& one) { return 1e4 * one.at(axis); });
+    return steps_of(mesh.vertices, [axis](const Surface::Vertex& one) { return 1e4 * one.position(axis); });
   };
   const auto corners = [&](std::size_t corner) {
     return steps_of(mesh.triangles, [corner](const std::array<int, 3>& one) { return one[corner]; });
   };
-  const auto deviations = steps_of(mesh.vertices, [](const Crossings::Vertex& one) { return 1e5 * one.deviation; });
+  const auto deviations =
+      steps_of(mesh.vertices, [](const Surface::Vertex& one) { return 1e5 * one.standard_deviation; });
   return {{"x", along(0)},   {"y", along(1)},   {"z", along(2)},          {"i", corners(0)},
           {"j", corners(1)}, {"k", corners(2)}, {"deviation", deviations}};
 }
@@ -236,15 +225,8 @@ static Json json_of_standing(const RecordedRun& recording, const History& histor
           {"constants", curves.constants},     {"warnings", warnings_of(recording, history)}};
 }
 
-/// Returns the colour scale of each frame of standard deviations.
-static Json json_of_deviation_colours(const std::vector<Eigen::VectorXf>& frames) {
-  Json out = Json::array();
-  for (const Eigen::VectorXf& frame : frames) {
-    const Colours colours = deviation_colours(frame.minCoeff(), frame.maxCoeff());
-    out.push_back(
-        {{"low", colours.low}, {"high", colours.high}, {"logarithmic", colours.logarithmic}, {"label", colours.label}});
-  }
-  return out;
+static void to_json(Json& out, const Colours& one) {
+  out = {{"low", one.low}, {"high", one.high}, {"logarithmic", one.logarithmic}, {"label", one.label}};
 }
 
 Json run_data(const RecordedRun& recording, const History& history) {
@@ -283,7 +265,10 @@ std::string add_maps(Json& data, const History& history, std::size_t stride, std
     const PackedMaps packed = pack_maps(frames);
     described.push_back(
         {{"name", one.name}, {"least", packed.least}, {"most", packed.most}, {"frames", frames.size()}});
-    if (one.name == "deviation") described.back()["colours"] = json_of_deviation_colours(frames);
+    for (const Eigen::VectorXf& frame : frames) {
+      if (one.name == "deviation")
+        described.back()["colours"].push_back(deviation_colours(frame.minCoeff(), frame.maxCoeff()));
+    }
     bytes += packed.bytes;
   }
   data["surfaces"] = std::move(surfaces);

@@ -67,17 +67,6 @@ Json json_of_set(const GroupCurves& made) {
           {"curves", curves}};
 }
 
-/// Returns the metrics that a reader may choose: the main error, then the other headline fields that are not swept.
-std::vector<std::string> columns_of(const Sweep& sweep, const std::vector<Row>& results) {
-  std::vector<std::string> out{main_error(results)};
-  for (const RecordField& field : summary_fields()) {
-    const bool swept = std::find(sweep.keys.begin(), sweep.keys.end(), field.name) != sweep.keys.end();
-    if (field.first_look && field.name != out.front() && field.name != kAgainstTime && !swept)
-      out.push_back(field.name);
-  }
-  return out;
-}
-
 }  // namespace
 
 Json json_of_curves(const Sweep& sweep) {
@@ -85,14 +74,17 @@ Json json_of_curves(const Sweep& sweep) {
   const std::vector<Row> results = sweep_results(sweep);
   const std::vector<std::vector<std::string>> keys = choices_of_keys(sweep);
   if (keys.empty()) return {};
-  std::vector<std::string> metrics = columns_of(sweep, results);
+  std::vector<std::string> metrics = headline_fields(results);
   std::vector<std::string> read = metrics;
   read.emplace_back(kAgainstTime);
   std::vector<TapValues> values(sweep.jobs.size());
   const TapSummaries summaries(sweep, keep_values(values, read));
   if (!summaries.missing().empty()) return {};
-  const auto has_no_value = [&](const std::string& column) { return !any_has(values, column); };
-  metrics.erase(std::remove_if(metrics.begin(), metrics.end(), has_no_value), metrics.end());
+  const auto is_left_out = [&, first = metrics.front()](const std::string& column) {
+    const bool is_swept = std::find(sweep.keys.begin(), sweep.keys.end(), column) != sweep.keys.end();
+    return column == kAgainstTime || (is_swept && column != first) || !any_has(values, column);
+  };
+  metrics.erase(std::remove_if(metrics.begin(), metrics.end(), is_left_out), metrics.end());
   if (metrics.empty()) return {};
   const bool takes_time = std::any_of(values.begin(), values.end(), [](const TapValues& job) {
     const auto found = job.find(kAgainstTime);

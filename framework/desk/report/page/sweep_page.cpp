@@ -289,16 +289,15 @@ void add_columns(Json& data, const Sweep& sweep, const std::vector<JobResult>& j
   data["fronts"] = json_of_fronts(settings, columns, estimates);
 }
 
-/// Returns the headline fields: the main error, then the others in the order of the summary.
-std::vector<std::string> first_looks(const std::vector<Row>& results) {
+}  // namespace
+
+std::vector<std::string> headline_fields(const std::vector<Row>& results) {
   std::vector<std::string> names{main_error(results)};
   for (const RecordField& field : summary_fields()) {
     if (field.first_look && field.name != names.front()) names.push_back(field.name);
   }
   return names;
 }
-
-}  // namespace
 
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs) {
   Json data = sweep_data(sweep, progress, most_jobs);
@@ -322,7 +321,7 @@ Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most
            {"jobs", page.described},
            {"units_of_jobs", units},
            {"units", display_units(names_of(page.results))},
-           {"first_looks", first_looks(page.results)},
+           {"first_looks", headline_fields(page.results)},
            {"scene_keys", scene_keys(sweep)},
            {"tally", page.tally.json(sweep, step)},
            {"config", to_yaml(read_run_config(sweep.directory))}};

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace palpate {
 
@@ -19,6 +20,9 @@ inline constexpr std::size_t kMostJobsOnAPage = 20000;
 /// directory. With more than `most_jobs` jobs, it has every second, third, ... job and a note. `progress` counts jobs.
 /// Throws Error for a damaged record.
 std::string sweep_page(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs = kMostJobsOnAPage);
+
+/// Returns the headline fields: the main error, then the others in the order of the summary.
+std::vector<std::string> headline_fields(const std::vector<Row>& results);
 
 /// Returns the data of that page.
 Json sweep_data(const Sweep& sweep, const OnProgress& progress, std::size_t most_jobs = kMostJobsOnAPage);

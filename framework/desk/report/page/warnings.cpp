@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/warnings.hpp"
-#include "report/beliefs.hpp"
 
 #include "record/fields.hpp"
 #include "report/words/words.hpp"
@@ -47,7 +46,7 @@ void warn_of_end(const RecordedRun& recording, const RunResult& last, std::vecto
   } else if (!recording.summary) {
     out.push_back(fmt::format("The run has not ended: this page shows its state after {}.", counted(last.taps, "tap")));
   }
-  const bool any_side = is_any_side(recording);
+  const bool any_side = recording.is_any_side();
   if (last.object_taps + last.desk_taps == 0) {
     out.push_back(any_side ? "No tap touched anything." : "No tap touched anything: the maps show the prior.");
   } else if (last.object_taps == 0) {
@@ -60,7 +59,7 @@ void warn_of_end(const RecordedRun& recording, const RunResult& last, std::vecto
 }
 
 void warn_of_choices(const RecordedRun& recording, const History& history, std::vector<std::string>& out) {
-  const bool any_side = is_any_side(recording);
+  const bool any_side = recording.is_any_side();
   const RunResult& last = history.moments.back().result;
   if (const int fallbacks = diagnostics(last, "fallback"); fallbacks > 0) {
     out.push_back(

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/explain.hpp"
-#include "report/beliefs.hpp"
 
 #include "config/scale.hpp"
+#include "experiment/outlier_model.hpp"
+#include "experiment/policy.hpp"
 #include "record/fields.hpp"
 #include "report/words/explanation.hpp"
 #include "report/words/models.hpp"
@@ -38,14 +39,14 @@ class FromAboveExplained final : public Explanation {
 
  private:
   void explain() override {
-    playback_.experiment().look();
+    experiment_.look();
     text_.heading(heading(place_words(tap_.target().x, tap_.target().y)));
     text_.heading("Why there");
     explain_choice();
     text_.heading(fmt::format("The models used for the choice, from {}, {} of them on an object",
                               counted(hits_before() + before().desk_taps, "contact"), hits_before()));
     if (!has_models()) text_.add("This choice used no model.");
-    explain_models(text_, row_, options_, belief().models());
+    explain_models(text_, row_, options_, height_map_options(options_, workshop_.host), context_);
     text_.heading("Expected and found");
     explain_expectation();
     explain_outcome();
@@ -57,18 +58,17 @@ class FromAboveExplained final : public Explanation {
     explain_doubt();
   }
 
-  HeightMap& belief() { return height_map_of(playback_.experiment()); }
   /// Whether the record of the tap has the state of any model.
   bool has_models() const {
     const auto has = [&](const char* field) { return row_.number(field).has_value(); };
     return has("height_gp.signal") || has("label_gp.signal") || has("surface_gp.signal") || has("p");
   }
-  const RunResult& before() { return playback_.experiment().counts(); }
+  const RunResult& before() { return experiment_.counts(); }
   int hits_before() { return before().object_taps; }
 
   /// Returns the candidate of a tap.
   int candidate_of(const TapRecord& tap) {
-    return belief().grid().nearest(tap.target().x, tap.target().y, playback_.experiment().scene().area());
+    return grid_.nearest(tap.target().x, tap.target().y, experiment_.scene().area());
   }
 
   // The choice.
@@ -80,7 +80,7 @@ class FromAboveExplained final : public Explanation {
         break;
       case Source::acquisition:
         text_.add(fmt::format("The acquisition chose it: {}.", acquisition_words()));
-        explain_score(acquisition_scale());
+        explain_score(context_.create<Acquisition>(options_.acquisition)->prior_scale());
         break;
       case Source::fallback:
         explain_fallback();
@@ -118,12 +118,6 @@ class FromAboveExplained final : public Explanation {
                           options_.seed));
   }
 
-  double acquisition_scale() {
-    const Context context{workshop_.host, playback_.experiment().scene(), static_cast<std::uint64_t>(options_.seed),
-                          nullptr};
-    return context.create<Acquisition>(options_.acquisition)->prior_scale();
-  }
-
   void explain_fallback() {
     std::string why = row_.text("why");
     const bool of_caller = why.rfind(kOfCaller, 0) == 0;
@@ -158,7 +152,7 @@ class FromAboveExplained final : public Explanation {
     const auto score = row_.number("score");
     if (!score) return text_.add("The record holds no score.");
     const int out = left_out();
-    const int allowed = belief().grid().size() - out;
+    const int allowed = grid_.size() - out;
     const double ties = row_.number("ties").value_or(1.0);
     const auto second = row_.number("runner_up.score");
     const double best = second ? std::max(*score, *second) : *score;
@@ -222,9 +216,9 @@ class FromAboveExplained final : public Explanation {
     const bool two_part = belief_option(options_, "surface") == "two_part";
     if (two_part && hits_before() == 0) return text_.add("Expected: nothing, no tap has been on an object yet.");
     const int candidate = candidate_of(tap_);
-    const double height = belief().values(quantity::kHeightMean)(candidate);
+    const double height = belief_.values(quantity::kHeightMean)(candidate);
     text_.add(fmt::format("Expected, by the taps before: a height of {} with a standard deviation of {}{}.",
-                          length_words(height), length_words(belief().values(quantity::kHeightStd)(candidate)),
+                          length_words(height), length_words(belief_.values(quantity::kHeightStd)(candidate)),
                           two_part ? ", if an object is there (the surface GP)" : ""));
     if (!two_part || on_object()) expected_ = height;
   }
@@ -267,9 +261,10 @@ class FromAboveExplained final : public Explanation {
     text_.heading("Is it an outlier?");
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
-      playback_.experiment().look();
-      for (const SuspectedOutlier& one : belief().models().suspected_outliers()) {
-        if (one.tap == number_) return "may be an outlier: " + doubt_words(one);
+      experiment_.look();
+      for (const TapReading& one : belief_.readings()) {
+        if (one.tap == number_ && one.outlier_probability >= OutlierModel::kRetapThreshold)
+          return "may be an outlier: " + doubt_words(one);
       }
       return std::string("is not suspected");
     };
@@ -278,6 +273,8 @@ class FromAboveExplained final : public Explanation {
     if (all > number_) text_.add(fmt::format("After all {} taps, it {}.", all, said(all)));
   }
 
+  const CandidateGrid grid_ = grid_of(belief_.candidates());
+  const Context context_{workshop_.host, experiment_.scene(), static_cast<std::uint64_t>(options_.seed), nullptr};
   std::optional<double> expected_;  ///< expected height; the height of an object says nothing about the desk
 };
 
@@ -289,7 +286,7 @@ std::string explain_tap(const Workshop& workshop, const RecordedRun& recording, 
     throw Error(fmt::format("tap {}", tap), fmt::format("the run has {}", counted(taps, "tap")),
                 taps == 1 ? "choose tap 1" : fmt::format("choose one of 1 to {}", taps));
   }
-  if (is_any_side(recording)) return explain_approach(workshop, recording, tap);
+  if (recording.is_any_side()) return explain_approach(workshop, recording, tap);
   return FromAboveExplained(workshop, recording, tap).text();
 }
 

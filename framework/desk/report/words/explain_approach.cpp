@@ -6,10 +6,10 @@
 #include "report/words/words.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 namespace palpate {
@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 
 /// Returns "from x 1.00 cm, y 2.00 cm, z 3.00 cm, coming down at 20 degrees".
 std::string line_words(const TapLine& line) {
-  const double degrees = 180.0 / kHalfTurn * std::asin(std::clamp(-line.direction.z(), -1.0, 1.0));
+  constexpr double kDegrees = 57.29577951308232;  // of a radian
+  const double degrees = kDegrees * std::asin(std::clamp(-line.direction.z(), -1.0, 1.0));
   const std::string slope = degrees > 85.0            ? "straight down"
                             : std::abs(degrees) < 3.0 ? "level"
                                                       : fmt::format("coming {} at {:.0f} degrees",
@@ -28,15 +29,12 @@ std::string line_words(const TapLine& line) {
   return fmt::format("from {}, z {}, {}", place_words(from.x(), from.y()), place_words(from.z()), slope);
 }
 
-std::string piece_words(const Piece& piece) {
-  constexpr const char* kForms[] = {"box", "cylinder", "ellipsoid"};  // by Piece::Form
-  const bool bowl = piece.form == Piece::Form::ellipsoid && piece.hollow();
-  const Vector3d extent = 2.0 * piece.half;
-  const std::vector<double> sides{extent.x(), extent.y(), bowl ? 0.5 * extent.z() : extent.z()};
+std::string solid_words(const LineFacts::Solid& solid) {
+  const std::vector<double> sides(solid.extent.begin(), solid.extent.end());
   const Scale scale = readable_scale(Unit::metre, sides, 2, LengthKind::place);
-  std::string out = fmt::format("{} of {} x {} x {}", bowl ? "bowl" : kForms[static_cast<std::size_t>(piece.form)],
-                                scale.number(sides[0]), scale.number(sides[1]), scale.quantity(sides[2]));
-  if (piece.hollow()) out += fmt::format(" with a wall of {}", length_words(piece.wall));
+  std::string out = fmt::format("{} of {} x {} x {}", solid.form, scale.number(sides[0]), scale.number(sides[1]),
+                                scale.quantity(sides[2]));
+  if (solid.wall > 0.0) out += fmt::format(" with a wall of {}", length_words(solid.wall));
   return out;
 }
 
@@ -49,12 +47,13 @@ class ApproachExplained final : public Explanation {
     text_.heading(heading(line_words(line_)));
     text_.heading("Why there");
     explain_choice();
-    explain_place();
+    facts_ = belief_.explain(line_);
+    if (!all().empty()) explain_place();
     text_.heading(fmt::format("The belief after {}, {} of them on an object", counted(number_ - 1, "tap"),
                               experiment_.counts().object_taps));
-    explain_belief();
+    if (!all().empty()) explain_belief();
     text_.heading("Expected and found");
-    explain_expectation();
+    if (!all().empty()) explain_expectation();
     explain_outcome();
     text_.heading("Effect of the tap");
     Row before;
@@ -88,9 +87,8 @@ class ApproachExplained final : public Explanation {
           "From the same earlier taps, this build would choose another line: the run used another build or instruction "
           "set, so the other scores are unknown.");
     const Eigen::VectorXd scores = experiment_.scores();
-    const double score = scores(now->candidate);
     std::string text =
-        fmt::format("Its score is {}, the best of {}", plain_words(score), fmt::format("{} approaches", scores.size()));
+        fmt::format("Its score is {}, the best of {} approaches", plain_words(scores(now->candidate)), scores.size());
     if (now->ties.value_or(1) > 1)
       text += fmt::format("; {} are tied with it (tie_tolerance), and the first of them is taken", *now->ties - 1);
     text_.add(fmt::format("{}. The mean of all is {}.", text, plain_words(scores.mean())));
@@ -100,21 +98,17 @@ class ApproachExplained final : public Explanation {
 
   /// Adds the expected effects of the tap, if the scores use them.
   void explain_gains(int chosen) {
-    const QuantitySet available = belief_.available();
-    if (available.count(quantity::kExpectedDiscovery) != 0) {
-      const Eigen::VectorXd& expected_discovery = belief_.values(quantity::kExpectedDiscovery);
-      text_.add(
-          fmt::format("Of one further solid that no contact contradicts, this line is expected to find {} (mean over "
-                      "lines from all sides); the best line finds {}.",
-                      length_words(expected_discovery(chosen)), length_words(expected_discovery.maxCoeff())));
-    }
-    if (available.count(quantity::kStdReduction) != 0) {
-      const Eigen::VectorXd& std_reduction = belief_.values(quantity::kStdReduction);
-      text_.add(
-          fmt::format("A contact there is expected to reduce the mean standard deviation of the surface by {}; the "
-                      "best line reduces it by {}.",
-                      length_words(std_reduction(chosen)), length_words(std_reduction.maxCoeff())));
-    }
+    const auto add = [&](const char* quantity, const char* sentence) {
+      if (belief_.available().count(quantity) == 0) return;
+      const Eigen::VectorXd& gains = belief_.values(quantity);
+      text_.add(fmt::format(fmt::runtime(sentence), length_words(gains(chosen)), length_words(gains.maxCoeff())));
+    };
+    add(quantity::kExpectedDiscovery,
+        "Of one further solid that no contact contradicts, this line is expected to find {} (mean over lines from all "
+        "sides); the best line finds {}.");
+    add(quantity::kStdReduction,
+        "A contact there is expected to reduce the mean standard deviation of the surface by {}; the best line reduces "
+        "it by {}.");
   }
 
   void explain_second(const Eigen::VectorXd& scores, int chosen) {
@@ -132,64 +126,53 @@ class ApproachExplained final : public Explanation {
                             plain_words(*score)));
   }
 
-  const Composition& best() const { return belief_.solids().best(); }
-
-  /// Returns whether a tool stops after this path length at an object, and not at the desk or nowhere.
-  bool met(double along) const {
-    return along < std::min(line_.length, distance_down_to(experiment_.scene().desk(), line_.line()));
-  }
+  using Particle = LineFacts::Particle;
+  const std::vector<Particle>& all() const { return facts_.particles; }
 
   /// Adds the belief's values where the line meets the surface.
   void explain_place() {
-    const double along = belief_.distance(line_, best());
-    if (!met(along)) return text_.add("According to the most probable particle, no object is there.");
-    const Vector3d at = line_.at(along) - Vector3d(0.0, 0.0, experiment_.scene().desk());
-    const Vector3d normal = Skin::normal(best(), at);
-    const double deviation = std::sqrt(belief_.skin().variance({at, normal}));
+    if (!all().front().on_object) return text_.add("According to the most probable particle, no object is there.");
     text_.add(fmt::format(
         "Where the line meets the surface, the standard deviation along the surface normal is {}; far from all "
         "contacts it is {}. The cosine between line and normal is {:.3f} (1: perpendicular to the surface).",
-        length_words(deviation), length_words(belief_.skin().signal()), std::abs(normal.dot(line_.direction))));
+        length_words(facts_.surface_std), length_words(facts_.prior_std), facts_.incidence_cosine));
   }
 
   void explain_belief() {
-    const std::vector<Composition>& all = belief_.solids().compositions();
-    const auto [least, most] = std::minmax_element(all.begin(), all.end(), [](const auto& one, const auto& other) {
-      return one.parts.size() < other.parts.size();
+    const auto [least, most] = std::minmax_element(all().begin(), all().end(), [](const auto& one, const auto& other) {
+      return one.solids.size() < other.solids.size();
     });
-    std::string pieces;
-    for (const Composition::Part& part : best().parts) pieces += (pieces.empty() ? "" : ", ") + piece_words(part.piece);
-    const std::string most_words = counted(static_cast<long>(most->parts.size()), "solid");
-    const bool alike = least->parts.size() == most->parts.size();
-    text_.add(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all.size()), "particle"),
-                          alike ? most_words : fmt::format("{} to {}", least->parts.size(), most_words), pieces));
+    std::vector<std::string> solids;
+    for (const LineFacts::Solid& one : all().front().solids) solids.push_back(solid_words(one));
+    const std::string most_words = counted(static_cast<long>(most->solids.size()), "solid");
+    const bool alike = least->solids.size() == most->solids.size();
+    text_.add(fmt::format("{} of {}; the most probable one: {}.", counted(static_cast<long>(all().size()), "particle"),
+                          alike ? most_words : fmt::format("{} to {}", least->solids.size(), most_words),
+                          fmt::join(solids, ", ")));
   }
 
   void explain_expectation() {
-    const std::vector<Composition>& all = belief_.solids().compositions();
-    const double along = belief_.distance(line_, best());
+    const Particle& best = all().front();
     std::vector<double> hits;
-    for (const Composition& one : all) {
-      const double hit = belief_.distance(line_, one);
-      if (met(hit)) hits.push_back(hit);
+    for (const Particle& one : all()) {
+      if (one.on_object) hits.push_back(one.distance);
     }
-    const std::string what = met(along)             ? fmt::format("an object after {}", length_words(along))
-                             : along < line_.length ? fmt::format("the desk after {}", length_words(along))
-                                                    : fmt::format("nothing in {}", length_words(along));
-    std::string text = fmt::format("Expected, by the most probable particle: {}. ", what);
+    const std::string what = best.on_object                 ? "an object after"
+                             : best.distance < line_.length ? "the desk after"
+                                                            : "nothing in";
+    std::string text =
+        fmt::format("Expected, by the most probable particle: {} {}. ", what, length_words(best.distance));
     if (hits.empty()) {
-      text += fmt::format("None of {} has an object there.", all.size());
+      text += fmt::format("None of {} has an object there.", all().size());
     } else {
-      const auto count = static_cast<double>(hits.size());
-      const double mean = std::accumulate(hits.begin(), hits.end(), 0.0) / count;
-      double squares = 0.0;
-      for (const double one : hits) squares += (one - mean) * (one - mean);
-      text +=
-          fmt::format("{} of {} {} an object there, after {} with a standard deviation of {}.", hits.size(), all.size(),
-                      hits.size() == 1 ? "has" : "have", length_words(mean), length_words(std::sqrt(squares / count)));
+      const Eigen::Map<const Eigen::ArrayXd> distances(hits.data(), static_cast<Eigen::Index>(hits.size()));
+      const double mean = distances.mean();
+      text += fmt::format("{} of {} {} an object there, after {} with a standard deviation of {}.", hits.size(),
+                          all().size(), hits.size() == 1 ? "has" : "have", length_words(mean),
+                          length_words(std::sqrt((distances - mean).square().mean())));
     }
     text_.add(text);
-    if (met(along)) expected_ = along;
+    if (best.on_object) expected_ = best.distance;
   }
 
   void explain_outcome() {
@@ -217,9 +200,8 @@ class ApproachExplained final : public Explanation {
     explain_failure();
   }
 
-  Experiment& experiment_ = playback_.experiment();
-  SolidsBelief& belief_ = solids_of(experiment_);
   const TapLine& line_ = tap_.request.line;
+  LineFacts facts_;                 ///< of the belief before the tap
   std::optional<double> expected_;  ///< expected path length to an object
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/explanation.hpp"
-#include "report/beliefs.hpp"
 
 #include "record/fields.hpp"
 #include "report/words/titles.hpp"
@@ -71,7 +70,7 @@ void Explanation::explain_errors(const Row& before, const Row& after) {
     if (!length) others.push_back(fmt::format("The {} {} {}.", error.label, same ? "stays" : "goes", change));
   }
   if (!lengths.empty())
-    text_.add(fmt::format("{}: {}.", surface_error_title(is_any_side(recording_)), fmt::join(lengths, ", ")));
+    text_.add(fmt::format("{}: {}.", surface_error_title(recording_.is_any_side()), fmt::join(lengths, ", ")));
   for (const std::string& one : others) text_.add(one);
   if (lengths.empty() && others.empty())
     text_.add("The record has no errors from before and after it; 'palpate report' computes those of every tap.");

@@ -2,7 +2,7 @@
 // Common parts of explanations of taps from above and from any side.
 #pragma once
 
-#include "report/beliefs.hpp"
+#include "report/history.hpp"
 #include "report/words/words.hpp"
 
 #include <string>
@@ -42,6 +42,8 @@ class Explanation {
   const Row& row_ = recording_.rows[static_cast<std::size_t>(number_ - 1)];
   const TapRecord& tap_ = recording_.taps[static_cast<std::size_t>(number_ - 1)];
   RunReplay playback_{workshop_, recording_, page_readers(recording_)};
+  Experiment& experiment_ = playback_.experiment();
+  Belief& belief_ = experiment_.belief();
   TextSections text_;
 };
 

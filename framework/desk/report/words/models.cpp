@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/words/models.hpp"
 
+#include <palpate/kernel.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,13 +12,14 @@
 namespace palpate {
 namespace {
 
-/// A GP with its fields in the record, its units, and its present state.
+/// A GP with its fields in the record and its units.
 struct Subject {
   const char* title;
-  std::string prefix;           ///< of its fields, with the dot
-  bool metric;                  ///< whether targets are metres, else labels
-  std::string kernel, fitting;  ///< their types
-  HeightModels::Output now;
+  std::string prefix;  ///< of its fields, with the dot
+  bool metric;         ///< whether targets are metres, else labels
+  const PluginChoice& kernel;
+  const PluginChoice& fitting;
+  const Context& context;
   const Row& row;
 
   std::string amount(double value) const { return metric ? length_words(value) : plain_words(value); }
@@ -28,15 +31,6 @@ struct Subject {
   std::string text(const char* name) const { return row.text(prefix + name); }
 };
 
-/// Returns the names of the number fields that begin with `prefix`, without the prefix.
-std::vector<std::string> numbers_below(const Row& row, const std::string& prefix) {
-  std::vector<std::string> out;
-  for (const auto& [name, value] : row.fields) {
-    if (name.compare(0, prefix.size(), prefix) == 0 && row.number(name)) out.push_back(name.substr(prefix.size()));
-  }
-  return out;
-}
-
 /// Returns "length scale" for "length_scale", "kernels.0: length scale" for "kernels.0.length_scale".
 std::string parameter_words(std::string name) {
   const auto dot = name.rfind('.');
@@ -46,16 +40,14 @@ std::string parameter_words(std::string name) {
 }
 
 std::string kernel_words(const Subject& subject) {
-  const std::string prefix = subject.prefix + "kernel.";
-  std::string out = subject.kernel;
-  for (const std::string& name : numbers_below(subject.row, prefix)) {
-    Unit unit = Unit::none;  // the record has no units of parameters; the present model does
-    if (subject.now) {
-      for (const KernelParameter& one : subject.now.process->kernel().parameters())
-        unit = one.name == name ? one.unit : unit;
-    }
-    out += fmt::format(", {} {}", parameter_words(name),
-                       number_words(subject.row, prefix + name, unit == Unit::metre ? length_words : plain_words));
+  std::string out = subject.kernel.type;
+  const auto parameters = subject.context.create<Kernel>(subject.kernel)->parameters();  // the record has no units
+  const Row numbers = numbers_below(subject.row, subject.prefix + "kernel.");
+  for (const auto& field : numbers.fields) {
+    Unit unit = Unit::none;
+    for (const KernelParameter& one : parameters) unit = one.name == field.first ? one.unit : unit;
+    out += fmt::format(", {} {}", parameter_words(field.first),
+                       number_words(numbers, field.first, unit == Unit::metre ? length_words : plain_words));
   }
   return out;
 }
@@ -132,9 +124,10 @@ void explain_range_of_weight(TextSections& sections, const Row& row, bool clippe
 
 /// Adds type, numbers and remark of a footprint that is not the weight.
 void explain_footprint(TextSections& sections, const Row& row, const std::string& type) {
-  const std::string prefix = "footprint.";
-  std::vector<std::string> numbers = numbers_below(row, prefix);
-  for (std::string& one : numbers) one = fmt::format("{} {}", parameter_words(one), number_words(row, prefix + one));
+  std::vector<std::string> numbers;
+  const Row all = numbers_below(row, "footprint.");
+  for (const auto& field : all.fields)
+    numbers.push_back(fmt::format("{} {}", parameter_words(field.first), number_words(all, field.first)));
   sections.add(fmt::format("Footprint: {}; an object's outline is where its p is 1/2 or more{}.", type,
                            numbers.empty() ? "" : fmt::format(". Its numbers: {}", fmt::join(numbers, ", "))));
   if (const auto left = row.number("footprint.undiscovered_probability"))
@@ -146,25 +139,21 @@ void explain_footprint(TextSections& sections, const Row& row, const std::string
 
 }  // namespace
 
-void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const HeightModels& now) {
-  const auto type = [&](const char* own, const std::string& shared) {
-    const std::string given = belief_option(options, own);
-    return given.empty() ? shared : given;
-  };
-  const bool shared = belief_option(options, "label.hyperparameters") == "shared";
-  const std::string height_kernel = type("height.kernel.type", options.kernel.type);
-  const std::string height_fitting = type("height.fitting.type", options.fitting.type);
-  const std::string label_kernel = shared ? height_kernel : type("label.kernel.type", options.kernel.type);
-  const std::string label_fitting = shared ? height_fitting : type("label.fitting.type", options.fitting.type);
-  explain_process(sections, {"Height GP", "height_gp.", true, height_kernel, height_fitting, now.height_gp(), row});
+void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const HeightMapOptions& own, const Context& context) {
+  const bool shared = own.label.hyperparameters == LabelOptions::Hyperparameters::shared;
+  const PluginChoice height_kernel = own.height.kernel.value_or(options.kernel);
+  const PluginChoice height_fitting = own.height.fitting.value_or(options.fitting);
+  const PluginChoice label_kernel = shared ? height_kernel : own.label.kernel.value_or(options.kernel);
+  const PluginChoice label_fitting = shared ? height_fitting : own.label.fitting.value_or(options.fitting);
+  explain_process(sections, {"Height GP", "height_gp.", true, height_kernel, height_fitting, context, row});
   if (const std::string mean = number_words(row, "mean_standard_deviation", length_words); !mean.empty())
     sections.add(fmt::format("The standard deviation of the height is {} on average and {} at most.", mean,
                              number_words(row, "max_standard_deviation", length_words)));
-  explain_process(sections, {"Label GP", "label_gp.", false, label_kernel, label_fitting, now.label_gp(), row});
-  explain_range_of_weight(sections, row, belief_option(options, "label.clip") == "true");
-  if (row.number("p")) explain_footprint(sections, row, belief_option(options, "footprint.type"));
+  explain_process(sections, {"Label GP", "label_gp.", false, label_kernel, label_fitting, context, row});
+  explain_range_of_weight(sections, row, own.label.clip);
+  if (row.number("p")) explain_footprint(sections, row, own.footprint.type);
   explain_process(sections, {"Surface GP (from the taps on an object alone, with a free mean level)", "surface_gp.",
-                             true, height_kernel, height_fitting, now.surface_gp(), row});
+                             true, height_kernel, height_fitting, context, row});
 }
 
 }  // namespace palpate

@@ -30,11 +30,20 @@ std::string number_words(const Row& row, std::string_view field, std::string (*w
   return value ? words(*value) : std::string();
 }
 
-std::string doubt_words(const SuspectedOutlier& one) {
-  const char* const why = 2.0 * one.by_label > one.probability
+Row numbers_below(const Row& row, const std::string& prefix) {
+  Row out;
+  for (const auto& field : row.fields) {
+    if (field.first.compare(0, prefix.size(), prefix) != 0) continue;
+    if (const auto number = row.number(field.first)) out.add(field.first.substr(prefix.size()), *number);
+  }
+  return out;
+}
+
+std::string doubt_words(const TapReading& one) {
+  const char* const why = 2.0 * one.wrong_label_probability > one.outlier_probability
                               ? "by its position: outlines that fit the other taps have no object there"
                               : "by its height, which does not fit the heights of the other taps";
-  return fmt::format("{:.0f} %, {}", 100.0 * one.probability, why);
+  return fmt::format("{:.0f} %, {}", 100.0 * one.outlier_probability, why);
 }
 
 std::string counted(long count, const std::string& noun) {

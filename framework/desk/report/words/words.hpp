@@ -3,7 +3,6 @@
 #pragma once
 
 #include "experiment/experiment.hpp"
-#include "experiment/outlier_model.hpp"
 #include "record/row.hpp"
 
 #include <string>
@@ -31,9 +30,12 @@ std::string place_words(double coordinate);
 /// Returns the number in a field of a row, formatted by `words`; "" if there is none.
 std::string number_words(const Row& row, std::string_view field, std::string (*words)(double) = plain_words);
 
+/// Returns the numbers whose fields begin with `prefix`, by their names without it.
+Row numbers_below(const Row& row, const std::string& prefix);
+
 /// Returns probability and reason of a suspected outlier: "97 %, by its height, which does not fit the heights of the
 /// other taps".
-std::string doubt_words(const SuspectedOutlier& one);
+std::string doubt_words(const TapReading& one);
 
 /// Returns a sentence, without its full stop, for a run whose truth is no longer known (RunReplay::truth_lost()).
 std::string truth_lost_words(const Error& lost);

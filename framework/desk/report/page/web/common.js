@@ -2,11 +2,16 @@
 // Functions of all pages. Texts of a config reach a page only as the text of an element, or through plain() in a plot,
 // which interprets some markup.
 
-/// Decompresses the bytes of a packed element of this page. Returns a response to read.
+/// Decompresses bytes in base64. Returns a response to read.
+function inflate(text, format) {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format)));
+}
+
+/// Decompresses a packed element of this page. Returns a response to read.
 function unpack(id) {
   const { type, textContent } = document.getElementById(id);
-  const bytes = Uint8Array.from(atob(textContent), (c) => c.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream(type.replace("application/", ""))));
+  return inflate(textContent, type.replace("application/", ""));
 }
 
 /// Runs plotly, which sets the global Plotly.
@@ -192,6 +197,12 @@ function showError(trouble) {
 function inTurn(draw) {
   inTurn.last = (inTurn.last ?? Promise.resolve()).then(draw).catch(showError);
   return inTurn.last;
+}
+
+/// Draws what an input asks for. Of several requests during one drawing, the last one is drawn.
+function drawLatest(input, draw) {
+  const wanted = input.value;
+  return inTurn(() => (wanted === input.value ? draw(Number(wanted)) : undefined));
 }
 
 /// Publishes what is drawn, for tests that wait for it.

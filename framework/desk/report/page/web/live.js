@@ -77,9 +77,8 @@ async function growRun(slider, news) {
   for (const name of ["state", "stop_reason", "summary", "curves", "constants", "warnings"]) data[name] = news[name];
   data.true_contours = news.true_contours ?? data.true_contours;  // changes if objects are pushed
   if (news.bytes) {
-    const bytes = Uint8Array.from(atob(news.bytes), (c) => c.charCodeAt(0));
-    const plain = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")));
-    const further = unpackMoments(data, news, new Uint8Array(await plain.arrayBuffer()));
+    const bytes = await inflate(news.bytes, "deflate").arrayBuffer();
+    const further = unpackMoments(data, news, new Uint8Array(bytes));
     data.shown.push(...news.shown);
     slider.grow(further);
     if (slider.numbers(news) > kMostNumbers) return location.reload();

@@ -155,10 +155,9 @@ class Slider {
     });
   }
 
-  /// Draws the moment of the slider. Of several requests during one drawing, the last one is drawn.
+  /// Draws the moment of the slider.
   show() {
-    const wanted = this.input.value;
-    return inTurn(() => (wanted === this.input.value ? this.draw(Number(wanted)) : undefined));
+    return drawLatest(this.input, (at) => this.draw(at));
   }
 
   /// Draws all plots, at first and after changes of colours.
@@ -201,7 +200,7 @@ function mapSection(slider) {
 
 /// Unpacks the maps or surfaces of the moments in `described`.
 function unpackMoments(data, described, bytes) {
-  if (data.any_side) return described.surfaces.map((one) => unpackSurface(one, data.desk));
+  if (data.any_side) return described.surfaces.map(unpackSurface);
   return unpackMaps(bytes, described.maps, data.x.length, data.y.length);
 }
 

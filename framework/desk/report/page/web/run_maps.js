@@ -103,10 +103,15 @@ function mapPanels(data, maps) {
   return [panels.filter(varied), constant];
 }
 
+/// Returns the colour bar beside a surface, or below it on a narrow screen.
+function deviationBar(label) {
+  const below = { title: { text: label, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
+  return colourBar(label, kNarrow.matches ? below : { len: 0.8 });
+}
+
 /// Returns colours of standard deviations of the height, in centimetres, by the scale in the page's data.
 function deviationColours(lines, { low, high, logarithmic, label }) {
-  const below = { title: { text: label, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
-  const bar = colourBar(label, kNarrow.matches ? below : { len: 0.8 });
+  const bar = deviationBar(label);
   if (!logarithmic) return { surfacecolor: lines, cmin: low, cmax: high, colorbar: bar };
   const powers = [-4, -3, -2, -1, 0, 1, 2, 3, 4, 5].map((power) => 10 ** power);
   const ticks = powers.flatMap((power) => [power, 2 * power, 5 * power]).filter((value) => value >= low && value <= high);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Closed surface and taps of a run from any side at one moment.
 
-/// Returns the values whose differences the page has, times `unit`, plus `first`.
-function summed(steps, unit, first = 0) {
+/// Returns the values whose differences the page has, times `unit`.
+function summed(steps, unit) {
   let sum = 0;
-  return steps.map((step) => first + unit * (sum += step));
+  return steps.map((step) => unit * (sum += step));
 }
 
 /// Returns a mesh for plotly, in centimetres, with the deviations of its vertices in millimetres.
-function unpackSurface({ x, y, z, i, j, k, deviation }, desk) {
+function unpackSurface({ x, y, z, i, j, k, deviation }) {
   const corners = { i: summed(i, 1), j: summed(j, 1), k: summed(k, 1) };
-  return { x: summed(x, 0.01), y: summed(y, 0.01), z: summed(z, 0.01, kCentimetres * desk), ...corners, deviation: summed(deviation, 0.01) };
+  return { x: summed(x, 0.01), y: summed(y, 0.01), z: summed(z, 0.01), ...corners, deviation: summed(deviation, 0.01) };
 }
 
 const fromAnySide = (tap) => tap["direction.x"] !== undefined;
@@ -44,7 +44,7 @@ class SpaceView {
     const out = { x: [], y: [], z: [] };
     for (const ring of this.data.true_contours) {
       for (const side of kAxes3) {
-        const line = summed(ring[side], 0.01, side === "z" ? kCentimetres * this.data.desk : 0);
+        const line = summed(ring[side], 0.01);
         out[side].push(...line, line[0], null);
       }
     }
@@ -104,8 +104,6 @@ class SpaceView {
     const [on, off, others] = tapsUntil(this.data, moment.taps);
     const missed = others.filter((tap) => tap.outcome === "no_contact");  // the paths of other failed taps are unknown
     const most = Math.max(extent(surface.deviation)[1], 0);
-    const title = "standard deviation [mm]";
-    const below = { title: { text: title, side: "bottom" }, orientation: "h", y: 0, yanchor: "top", ypad: 0, thickness: 10, len: 0.9 };
     const next = nextOf(moment).map((one) => ({ ...one, on_object: one.along < one.length ? false : null }));
     const out = [
       ...this.arrows(on, "on the object", themed("ink")),
@@ -115,7 +113,7 @@ class SpaceView {
     ];
     out.unshift({
       type: "mesh3d", name: "surface", ...surface, intensity: surface.deviation, flatshading: false,
-      colorscale: kUnknown, cmin: 0, cmax: most, colorbar: colourBar(title, kNarrow.matches ? below : { len: 0.8 }),
+      colorscale: kUnknown, cmin: 0, cmax: most, colorbar: deviationBar("standard deviation [mm]"),
       lighting: { ambient: 0.55, diffuse: 0.75, specular: 0.12, roughness: 0.7, vertexnormalsepsilon: 0, facenormalsepsilon: 0 },
       lightposition: { x: -1000, y: -2000, z: 3000 },
       text: surface.deviation.map((value) => shown(value, 2)),

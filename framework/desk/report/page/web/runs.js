@@ -87,8 +87,7 @@ class Surfaces {
   }
 
   show() {
-    const wanted = this.input.value;
-    return inTurn(() => (wanted === this.input.value ? this.draw(Number(wanted)) : undefined));
+    return drawLatest(this.input, (taps) => this.draw(taps));
   }
 
   async draw(taps) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/contours.hpp"
+#include "report/contours.hpp"
 
 #include <Eigen/Geometry>
 
@@ -15,17 +15,10 @@ using Eigen::Vector3d;
 
 /// A plane with a grid of nodes, whose first and last rows and columns count as outside.
 struct Plane {
-  Vector3d origin, along, up;  ///< of the first node; unit vectors to the next in a row, and in a column
-  int columns = 0, rows = 0;
-  double side = 0.0;
-
-  std::vector<Stretch> row(const Scene& scene, int j) const { return cut(scene, origin + j * side * up, along); }
-  std::vector<Stretch> column(const Scene& scene, int i) const { return cut(scene, origin + i * side * along, up); }
-
- private:
-  static std::vector<Stretch> cut(const Scene& scene, const Vector3d& begin, const Vector3d& direction) {
-    return scene.intervals({begin + Vector3d(0.0, 0.0, scene.desk()), direction});
-  }
+  Vector3d origin;               ///< of the first node
+  std::array<Vector3d, 2> axes;  ///< unit vectors along rows and along columns
+  std::array<int, 2> nodes;      ///< number of nodes along each
+  double side = 0.0;             ///< distance between neighbours
 };
 
 /// Where the surface is between two nodes of a line, as a share of the way, `from` metres along it: in the middle where
@@ -57,43 +50,41 @@ Ring straightened(const Ring& ring, double most) {
   return out;
 }
 
-/// Cell by cell, as mesh.cpp goes from cube to cube: the line comes in over one side of a cell and leaves over another,
-/// and over the side between two cells it leaves the one and comes into the other.
+/// Cell by cell: the line comes in over one side of a cell and leaves over another, and over the side between two cells
+/// it leaves the one and comes into the other.
 void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out) {
-  const auto node_of = [&](int i, int j) {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(plane.columns) + static_cast<std::size_t>(i);
+  const auto [columns, rows] = plane.nodes;
+  const auto node_of = [width = static_cast<std::size_t>(columns)](int i, int j) {
+    return static_cast<std::size_t>(j) * width + static_cast<std::size_t>(i);
   };
-  const std::size_t count = node_of(0, plane.rows);
+  const std::size_t count = node_of(0, rows);
   std::vector<bool> inside(count);
   std::vector<Vector3d> crossing(2 * count);  // of the edge to the next node of the row, and of the column
   bool any = false;
-  for (int j = 1; j + 1 < plane.rows; ++j) {
-    const std::vector<Stretch> row = plane.row(scene, j);
-    any = any || !row.empty();
-    const auto within = [&](int i) {
-      return std::any_of(row.begin(), row.end(),
-                         [at = i * plane.side](const Stretch& one) { return one.begin <= at && at <= one.end; });
-    };
-    for (int i = 1; i + 1 < plane.columns; ++i) inside[node_of(i, j)] = within(i);
-    for (int i = 0; i + 1 < plane.columns; ++i) {
-      if (inside[node_of(i, j)] == inside[node_of(i + 1, j)]) continue;
-      const double at = i + share_between(row, i * plane.side, plane.side);
-      crossing[2 * node_of(i, j)] = plane.origin + plane.side * (at * plane.along + j * plane.up);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    for (int line = 1; line + 1 < plane.nodes[1 - axis]; ++line) {
+      const Vector3d begin = plane.origin + line * plane.side * plane.axes[1 - axis];
+      const std::vector<Stretch> intervals = scene.intervals({begin, plane.axes[axis]});
+      any = any || !intervals.empty();
+      const auto node = [&](int k) { return axis == 0 ? node_of(k, line) : node_of(line, k); };
+      const auto within = [&](double at) {
+        return std::any_of(intervals.begin(), intervals.end(),
+                           [&](const Stretch& one) { return one.begin <= at && at <= one.end; });
+      };
+      for (int k = 1; axis == 0 && k + 1 < columns; ++k) inside[node(k)] = within(k * plane.side);
+      for (int k = 0; k + 1 < plane.nodes[axis]; ++k) {
+        if (inside[node(k)] == inside[node(k + 1)]) continue;
+        const double at = k + share_between(intervals, k * plane.side, plane.side);
+        crossing[2 * node(k) + axis] =
+            plane.origin + plane.side * (at * plane.axes[axis] + line * plane.axes[1 - axis]);
+      }
     }
-  }
-  if (!any) return;
-  for (int i = 1; i + 1 < plane.columns; ++i) {
-    const std::vector<Stretch> column = plane.column(scene, i);
-    for (int j = 0; j + 1 < plane.rows; ++j) {
-      if (inside[node_of(i, j)] == inside[node_of(i, j + 1)]) continue;
-      const double at = j + share_between(column, j * plane.side, plane.side);
-      crossing[2 * node_of(i, j) + 1] = plane.origin + plane.side * (i * plane.along + at * plane.up);
-    }
+    if (!any) return;
   }
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::vector<std::size_t> next(2 * count, kNone);
-  for (int j = 0; j + 1 < plane.rows; ++j) {
-    for (int i = 0; i + 1 < plane.columns; ++i) {
+  for (int j = 0; j + 1 < rows; ++j) {
+    for (int i = 0; i + 1 < columns; ++i) {
       // Nodes and sides counter-clockwise.
       const std::array<std::size_t, 4> nodes{node_of(i, j), node_of(i + 1, j), node_of(i + 1, j + 1),
                                              node_of(i, j + 1)};
@@ -122,20 +113,24 @@ void add_section(const Scene& scene, const Plane& plane, std::vector<Ring>& out)
 
 }  // namespace
 
-std::vector<Ring> contours(const Scene& scene, const Vector3d& centre, double radius, double apart, double side) {
-  std::vector<Ring> out;
+std::vector<Ring> contours(const Scene& scene, double apart, double side) {
+  constexpr double kRadius = 0.46;  // of the longer side of the area
+  constexpr double kHeight = 0.65;  // of the centre, in radii
+  const Area area = scene.area();
+  const double radius = kRadius * std::max(area.width, area.depth);
+  const double top = (1.0 + kHeight) * radius;
+  const Vector3d corner(area.width / 2 - radius, area.depth / 2 - radius, scene.desk());
+  const Vector3d low = corner - Vector3d::Constant(side / 2);
   const int across = 2 + static_cast<int>(std::ceil(2.0 * radius / side));
-  const double top = centre.z() + radius;
   const int up = 2 + static_cast<int>(std::ceil(top / side));
-  const Vector3d low(centre.x() - radius - side / 2, centre.y() - radius - side / 2, -side / 2);
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  std::vector<Ring> out;
   for (double offset = apart / 2; offset < 2.0 * radius; offset += apart) {
-    const Vector3d x(centre.x() - radius + offset, low.y(), low.z());
-    const Vector3d y(low.x(), centre.y() - radius + offset, low.z());
-    add_section(scene, {x, Vector3d::UnitY(), Vector3d::UnitZ(), across, up, side}, out);
-    add_section(scene, {y, Vector3d::UnitX(), Vector3d::UnitZ(), across, up, side}, out);
+    add_section(scene, {{corner.x() + offset, low.y(), low.z()}, {y, z}, {across, up}, side}, out);
+    add_section(scene, {{low.x(), corner.y() + offset, low.z()}, {x, z}, {across, up}, side}, out);
   }
   for (double height = apart / 2; height < top; height += apart)
-    add_section(scene, {{low.x(), low.y(), height}, Vector3d::UnitX(), Vector3d::UnitY(), across, across, side}, out);
+    add_section(scene, {{low.x(), low.y(), corner.z() + height}, {x, y}, {across, across}, side}, out);
   return out;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Contours of solids whose sections are known.
-#include "space/contours.hpp"
-#include "space/piece.hpp"
+#include "report/contours.hpp"
 #include "support/shape_cases.hpp"
 
 #include <Eigen/Geometry>
@@ -16,10 +15,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSide = 0.002;
+constexpr double kPi = 3.14159265358979323846;
 
-std::vector<Ring> contours_of(const std::string& object) {
-  return contours(*scene_of({object}), {0.2, 0.2, 0.1}, 0.12, 0.01, kSide);
-}
+std::vector<Ring> contours_of(const std::string& object) { return contours(*scene_of({object}), 0.01, kSide); }
 
 /// Counter-clockwise, as somebody sees it to whom `normal` points.
 double area_of(const Ring& ring, const Vector3d& normal) {
@@ -53,11 +51,11 @@ TEST(Contours, OfARingAreTwoCirclesOnEachLevelAndRectanglesUpright) {
     ++levels;
     // Chords of at most 2 mm, and points left out within 0.2 mm of a straight line, lie that far inside at most.
     const double radius = std::abs(std::hypot(ring[0].x() - 0.2, ring[0].y() - 0.2) - outer) < 1e-9 ? outer : -inner;
-    const double area = std::copysign(kHalfTurn * radius * radius, radius);
-    EXPECT_NEAR(area_of(ring, Vector3d::UnitZ()), area, 2.0 * kHalfTurn * std::abs(radius) * 0.0003);
+    const double area = std::copysign(kPi * radius * radius, radius);
+    EXPECT_NEAR(area_of(ring, Vector3d::UnitZ()), area, 2.0 * kPi * std::abs(radius) * 0.0003);
   }
   EXPECT_EQ(levels, 2 * 6);  // at 0.5 to 5.5 cm
-  // Of 24 planes along either axis those within 5 cm of the middle; through the hole, two rectangles each.
+  // Of 37 planes along either axis those within 5 cm of the middle; through the hole, two rectangles each.
   EXPECT_EQ(upright, 2 * (10 + 6));
 }
 
@@ -76,9 +74,7 @@ TEST(Contours, OfABoxAreItsEdgesInEachPlane) {
   }
 }
 
-TEST(Contours, AreNoneOfAnEmptyDesk) {
-  EXPECT_TRUE(contours(*scene_of({}), {0.2, 0.2, 0.1}, 0.12, 0.01, kSide).empty());
-}
+TEST(Contours, AreNoneOfAnEmptyDesk) { EXPECT_TRUE(contours(*scene_of({}), 0.01, kSide).empty()); }
 
 }  // namespace
 }  // namespace palpate::test
