@@ -139,7 +139,8 @@ void explain_footprint(TextSections& sections, const Row& row, const std::string
 
 }  // namespace
 
-void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const HeightMapOptions& own, const Context& context) {
+void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options,
+                    const HeightMapOptions& own, const Context& context) {
   const bool shared = own.label.hyperparameters == LabelOptions::Hyperparameters::shared;
   const PluginChoice height_kernel = own.height.kernel.value_or(options.kernel);
   const PluginChoice height_fitting = own.height.fitting.value_or(options.fitting);

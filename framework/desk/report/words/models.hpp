@@ -11,6 +11,7 @@ namespace palpate {
 
 /// Adds a paragraph per GP in the record of the tap: hyperparameters with their fit, likelihood, condition, engine,
 /// jitter, and range of its map. `context` creates kernels, which know the units of their parameters.
-void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options, const HeightMapOptions& own, const Context& context);
+void explain_models(TextSections& sections, const Row& row, const ExperimentOptions& options,
+                    const HeightMapOptions& own, const Context& context);
 
 }  // namespace palpate
