@@ -38,14 +38,14 @@ void Experiment::run(Observer& observer, int most_taps) {
 
 std::optional<TapRecord> Experiment::begin(Observer& observer, int most_taps, const TapOverride* override) {
   belief_->update();  // take in the last tap, fit
-  show();
   std::optional<std::string> reason;
   std::optional<TapRecord> tap;
   try {
+    show();
     reason = reason_to_stop(most_taps, override);
     if (!reason && !(tap = choose_next(override))) reason = "no candidate is left";
   } catch (const Error&) {
-    // An interrupted program of an acquisition is no failure.
+    // An interrupted program of an acquisition or a backend is no failure.
     if (!is_stop_wished()) throw;
     reason = kStoppedByUser;
   }
@@ -263,7 +263,7 @@ Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& 
     throw Error("backend",
                 fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
                             belief_name(options_)),
-                "choose another backend, or a scene with touch: top");
+                "choose another backend, with backend process protocol: 2, or a scene with touch: top");
   }
   if (options_.space && options_.space->view && !backend_->scene_is_truth()) {
     throw Error("space.view",
@@ -272,7 +272,6 @@ Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& 
   }
   models_ = belief_->plan(plan_);
   belief_->update();
-  draw_candidates();
 }
 
 }  // namespace palpate
