@@ -32,12 +32,12 @@ struct ReplayOptions : Options {
                               "tap, force, robot_seconds; for lines of any direction also with z, direction.x, "
                               "direction.y, direction.z, length and along (m)")
                             .needed());
-    fields.real(
-        tolerance,
-        Field("tolerance", "maximum distance between the positions of a requested and a recorded tap; for lines of any "
-                           "direction between their starts and between their ends")
-            .in(Unit::metre)
-            .at_least(0));
+    fields.real(tolerance,
+                Field("tolerance",
+                      "maximum distance between the positions of a requested and a recorded tap; for lines of any "
+                      "direction between their starts and between their ends")
+                    .in(Unit::metre)
+                    .at_least(0));
     fields.flag(
         scene_is_truth,
         Field(

@@ -19,9 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Eigen::Vector3d vector_of(const Json& numbers) {
-  return Eigen::Vector3d(numbers.get<std::array<double, 3>>().data());
-}
+Eigen::Vector3d vector_of(const Json& numbers) { return Eigen::Vector3d(numbers.get<std::array<double, 3>>().data()); }
 
 TapLine line_of(const Json& line, bool from_above) {
   return {vector_of(line.at("start")), vector_of(line.at("direction")), line.at("length"), from_above};

@@ -2,6 +2,7 @@
 // `palpate run` as a user calls it: what it prints, where, with which exit status, and what it leaves behind.
 #include "record/files.hpp"
 #include "record/json.hpp"
+#include "support/lasting.hpp"
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 

@@ -30,23 +30,24 @@ HeightBounds height_bounds(double desk, double overrun, double hover) {
 
 void complete_contact(const TapLine& line, TapResult& answer) {
   if (answer.is_contact() && answer.distance && !answer.contact) answer.contact = line.at(*answer.distance);
-  if (answer.contact && !answer.distance) answer.distance = (*answer.contact - line.start).dot(line.direction);
+  const bool is_point = answer.contact && answer.contact->allFinite();
+  if (is_point && !answer.distance) answer.distance = (*answer.contact - line.start).dot(line.direction);
   if (!line.from_above) return;
   if (answer.contact) answer.contact->head<2>() = line.start.head<2>();
   answer.distance.reset();
 }
 
 std::optional<AnswerFault> find_fault(const TapResult& answer, const TapLine& line, const HeightBounds& bounds) {
-  if (answer.is_contact() && (!answer.contact || !(line.from_above || answer.contact->allFinite()))) {
-    return AnswerFault{"the contact has no position",
-                       line.from_above ? "give its height" : "give the distance along the line"};
-  }
   if (answer.distance && !is_within(*answer.distance, 0.0, line.length)) {
     return AnswerFault{fmt::format("distance {:.6g} m is outside 0 to {:.4g} m (the length of the line)",
                                    *answer.distance, line.length),
                        "give metres from the start of the line (are these millimetres?)"};
   }
-  if (!line.from_above && answer.contact && !(answer.contact->cwiseAbs().maxCoeff() <= kAnyArm.highest)) {
+  if (answer.is_contact() && (!answer.contact || !(line.from_above || answer.distance))) {
+    return AnswerFault{"the contact has no position",
+                       line.from_above ? "give its height" : "give the distance along the line"};
+  }
+  if (!line.from_above && answer.contact && !(answer.contact->array().abs() <= kAnyArm.highest).all()) {
     return AnswerFault{"the position of the contact is more than 10 m away (no arm is that long)",
                        "give metres in the scene's frame (are these millimetres?)"};
   }

@@ -115,10 +115,9 @@ class Process final : public Backend {
 
   std::vector<std::string> describe(const TapRequest& request) override {
     const std::optional<Target> from = request.previous ? std::optional(request.previous->target()) : std::nullopt;
-    std::vector<std::string> out =
-        request.line.from_above
-            ? tapping::describe(options_.motion.of_request(request), context_.scene.desk(), request, from)
-            : std::vector{describe(request.line)};
+    std::vector<std::string> out = request.line.from_above ? tapping::describe(options_.motion.of_request(request),
+                                                                               context_.scene.desk(), request, from)
+                                                           : std::vector{describe(request.line)};
     out.insert(out.begin(),
                fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
                            programs::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
