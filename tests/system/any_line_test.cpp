@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstdlib>
 
 namespace palpate {
@@ -108,10 +109,42 @@ TEST_F(AnyLine, AnInvalidAnswerAboutLinesEndsTheRunBeforeATap) {
     const std::string command = "python3 -SE '" + write("program.py", test::python(body)).string() + "'";
     const Ended ended = palpate(Words{"run", any_side(), "--quiet", "--force"} + kFew + with_program(command));
     EXPECT_EQ(ended.status, 1);
-    EXPECT_THAT(ended.err, HasSubstr("the program has to answer 'reaches' with null or a text of 500 digits 0 and 1, "
-                                     "but printed '" +
-                                     std::string(answer) + "'"));
+    EXPECT_THAT(
+        ended.err,
+        HasSubstr("backend/process: the program has to answer 'reaches' with null or a text of 500 digits 0 and 1, "
+                  "but printed '" +
+                  std::string(answer) + "'"));
   }
+}
+
+TEST_F(AnyLine, AnInterruptedQuestionAboutLinesFailsNoRunAndNoneFollowsTheLastTap) {
+  // Each of its processes answers six questions, then the program waits.
+  const std::string body =
+      "count = 0\n"
+      "for ask in asks():\n"
+      "    if count == 6: time.sleep(1000)\n"
+      "    count += 1\n"
+      "    if 'reaches' in ask: print(json.dumps({'reaches': '1' * len(ask['reaches'])}), flush=True)\n"
+      "    else: tell(ask, outcome='no_contact', seconds=1)\n";
+  const std::string command = "python3 -SE '" + write("program.py", test::python(body)).string() + "'";
+  const Words words = Words{"run",
+                            any_side(),
+                            "--quiet",
+                            "taps=6",
+                            "space.approaches=400",
+                            "space.moves=50",
+                            "backend={type: process, protocol: 2, command: " + test::yaml_quoted(command) + "}"};
+  const auto child = begin(words);
+  const auto taps = [&] {
+    return fs::exists(here() / "runs") && fs::exists(directory() / "record.jsonl") ? lines(part_of(directory(), "tap"))
+                                                                                   : 0;
+  };
+  ASSERT_TRUE(test::eventually([&] { return taps() == 3; }));
+  child->signal(SIGINT);
+  EXPECT_EQ(child->wait().status, 130);
+  const Ended resumed = resume(directory());
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(taps(), 6);
 }
 
 TEST_F(AnyLine, AProgramOfVersion1IsRejectedBeforeTheFirstTap) {

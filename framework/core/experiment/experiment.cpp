@@ -38,10 +38,10 @@ void Experiment::run(Observer& observer, int most_taps) {
 
 std::optional<TapRecord> Experiment::begin(Observer& observer, int most_taps, const TapOverride* override) {
   belief_->update();  // take in the last tap, fit
+  show();
   std::optional<std::string> reason;
   std::optional<TapRecord> tap;
   try {
-    show();
     reason = reason_to_stop(most_taps, override);
     if (!reason && !(tap = choose_next(override))) reason = "no candidate is left";
   } catch (const Error&) {
@@ -136,7 +136,7 @@ void Experiment::begin_stages(Source source) {
 void Experiment::show() {
   if (counts().taps == 0) return;
   belief_->begin(Stage::first_tap);
-  infer();
+  if (!backend_->reads().empty()) infer();
   const PhaseClock::Scope log(clock_, Phase::log);
   backend_->show(*belief_);
 }
@@ -169,7 +169,10 @@ void Experiment::look() {
 RunResult Experiment::result() {
   belief_->update();
   belief_->begin(Stage::summary);
-  infer();
+  belief_->update();
+  // The backend, which may have ended, is not asked after the last tap.
+  belief_->draw_candidates([](const Candidates&, BoolOut out) { out.setConstant(true); });
+  belief_->infer();
   return monitor_.result(*belief_);
 }
 

@@ -246,7 +246,7 @@ class Process final : public Backend {
       reply = failed(fmt::format("has to answer 'reaches' with null or a text of {} digits 0 and 1, but printed {}",
                                  count, programs::shown(reply.line)));
     }
-    throw Error("backend/process", reply.fault, "correct the cause, then run 'palpate resume --retry-failed'",
+    throw Error("", reply.fault, "correct the cause, then run 'palpate resume --retry-failed'",
                 Error::Kind::run);
   }
 
