@@ -47,7 +47,7 @@ tests/report 1301 85
 tests/slurm 483 0
 tests/stability 2435 0
 tests/support 2266 0 # the simulator as a program of the backend process
-tests/system 9124 0 # lines of any direction for programs and records
+tests/system 9156 0 # lines of any direction for programs and records
 tests/unit 17322 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution
 tests/ur_rtde 0 230
 tests/versions 50 17

@@ -246,8 +246,7 @@ class Process final : public Backend {
       reply = failed(fmt::format("has to answer 'reaches' with null or a text of {} digits 0 and 1, but printed {}",
                                  count, programs::shown(reply.line)));
     }
-    throw Error("", reply.fault, "correct the cause, then run 'palpate resume --retry-failed'",
-                Error::Kind::run);
+    throw Error("", reply.fault, "correct the cause, then run 'palpate resume --retry-failed'", Error::Kind::run);
   }
 
   /// The most frequent cause of a missing first answer is output buffering in the program.
