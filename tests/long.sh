@@ -7,7 +7,7 @@
 set -u
 cd "$(dirname "$(readlink -f "$0")")/.." || exit 1
 tests=build/release/tests
-names="sanitizers stress fuzz accuracy coverage same_taps stability robots chaos clang tsan threads arm64"
+names="sanitizers stress fuzz accuracy coverage same_taps lines stability robots chaos clang tsan threads arm64"
 names="$names debian_12 pages_12 packages_12 debian_13 pages_13 packages_13 benchmarks"
 for name in "$@"; do
   case " $names " in *" $name "*) continue ;; esac
@@ -51,6 +51,12 @@ coverage() {
     $tests/interval_coverage 1000 build/long/coverage/*/*/results.csv=rmse_m
 }
 
+# lines: taps from any side by a program and by ask and tell, against those of the simulator.
+lines() {
+  gtest system 'AnyLine.*' &&
+    PALPATE_LONG=1 ctest --test-dir build/release --output-on-failure --no-tests=error -R who_tells_distances_in_the_scene
+}
+
 # threads: eight threads of Python over one run, for a minute, under both sanitizers.
 threads() {
   [ -d build/release/python ] || { echo "the Python module is missing"; return 77; }
@@ -69,6 +75,7 @@ campaign() {
     accuracy) sh tests/accuracy.sh build/release --long ;;
     coverage) coverage ;;
     same_taps) gtest system 'Of/SameTaps.*' ;;
+    lines) lines ;;
     stability) gtest stability '*' ;;
     robots) needs $tests/baxter_tests && sh tests/robot_campaign.sh ;;
     chaos) needs $tests/baxter_tests && PALPATE_CHAOS=1000:5000 $tests/baxter_tests --gtest_brief=1 --gtest_filter='Chaos.*' ;;

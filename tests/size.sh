@@ -21,11 +21,11 @@ framework/core 18290 49 # parts of the GP and of the outlier model in files of t
 framework/desk 9910 126 # facts of pages are computed in C++, tables by one model; contours of the true scene, which core had
 framework/include 985 0 # beliefs, lines and named quantities
 framework/lab 2740 20 # a table of launchers; pooled records in files of their own
-framework/python 720 609 # one file per class of the module
+framework/python 742 625 # one file per class of the module; lines of any direction
 framework/shared 1376 0
 plugins 33 78
 plugins/acquisitions 799 96 # each folder builds itself
-plugins/backends 5791 528
+plugins/backends 5895 528 # lines of any direction for programs and records
 plugins/fitting 953 18 # each folder builds itself
 plugins/footprints 2422 15 # each folder builds itself
 plugins/kernels 547 9 # each folder builds itself
@@ -42,13 +42,13 @@ tests/crash 414 434
 tests/fake_baxter 2425 47
 tests/fuzz 380 0
 tests/lab 4085 0
-tests/python 0 1108
+tests/python 0 1181 # taps from any side by ask and tell
 tests/report 1301 85
 tests/slurm 483 0
 tests/stability 2435 0
-tests/support 2211 0
-tests/system 9088 0
-tests/unit 17320 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution
+tests/support 2266 0 # the simulator as a program of the backend process
+tests/system 9156 0 # lines of any direction for programs and records
+tests/unit 17322 0 # oracles of the footprint: pushes, calibration, enumeration, joint distribution
 tests/ur_rtde 0 230
 tests/versions 50 17
 '

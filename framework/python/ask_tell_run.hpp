@@ -11,6 +11,8 @@
 #include "threads.hpp"
 #include "values.hpp"
 
+#include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,7 +43,7 @@ class AskTellRun {
 
   std::optional<TapRecord> ask(const std::optional<Array>& scores) {
     std::optional<Eigen::VectorXd> values;
-    if (scores) values = checked(*scores);
+    if (scores) values = checked(*scores, has_grid() ? py::ssize_t{rows()} * columns() : lines().rows);
     const ObjectGuard guard(lock_);
     const TapRecord* tap = open().ask(values ? &*values : nullptr);
     return tap != nullptr ? std::optional(*tap) : std::nullopt;
@@ -73,11 +75,24 @@ class AskTellRun {
     const ObjectGuard guard(lock_);
     return open().experiment().counts().taps;
   }
-  /// Returns a copy of the values of a quantity as of now.
-  Map map(const char* quantity) {
+  /// Returns a copy of the values of a quantity as of now: a map, or without a grid a single row.
+  Map map(const std::string& quantity) {
     const ObjectGuard guard(lock_);
-    return {open().look({quantity}).values(quantity), rows(), columns()};
+    const Eigen::VectorXd& values = open().look({quantity}).values(quantity);
+    return has_grid() ? Map{values, rows(), columns()} : Map{values, 1, static_cast<int>(values.size())};
   }
+  /// Returns a row per candidate as of now: start, direction and length.
+  Map lines() {
+    const ObjectGuard guard(lock_);
+    const Candidates& lines = open().look({}).candidates();
+    Eigen::Matrix<double, 7, Eigen::Dynamic> all(7, lines.size());
+    for (Eigen::Index i = 0; i < lines.size(); ++i) {
+      const TapLine line = lines.line(i);
+      all.col(i) << line.start, line.direction, line.length;
+    }
+    return {all.reshaped(), static_cast<int>(lines.size()), 7};
+  }
+  bool has_grid() const { return rows() > 0; }
 
   const std::string& directory() const { return directory_; }
   const std::string& label() const { return label_; }
@@ -107,8 +122,7 @@ class AskTellRun {
     if (!run_) throw Error("experiment", "is closed", "resume the run with palpate.Experiment.resume(DIR)");
     return *run_;
   }
-  Eigen::VectorXd checked(const Array& scores) const {
-    const auto wanted = static_cast<py::ssize_t>(rows()) * columns();
+  static Eigen::VectorXd checked(const Array& scores, py::ssize_t wanted) {
     if (scores.size() != wanted) {
       throw Error("scores", "has " + std::to_string(scores.size()) + " values",
                   "give one per candidate, " + std::to_string(wanted));
@@ -129,18 +143,21 @@ class AskTellRun {
 };
 
 /// Returns the result of a tap as a backend would return it. Throws Error for an outcome that no answer may have.
-inline TapResult contact_of(const std::string& outcome, double height, double force, double seconds,
-                            const std::string& reason, bool ends_run) {
+inline TapResult result_of(const std::string& outcome, std::optional<double> height, std::optional<double> distance,
+                           const std::optional<std::array<double, 3>>& contact, double force, double seconds,
+                           const std::string& reason, bool ends_run) {
   const std::optional<Outcome> known = answered_outcome(outcome);
   if (!known) {
     throw Error("tell", "unknown outcome '" + plain_line(outcome) + "'",
                 "use contact, no_contact, unreachable, timeout or aborted");
   }
-  TapResult out =
-      *known == Outcome::contact ? contact_on({}, height, force, seconds) : tap_without_contact(*known, seconds);
+  TapResult out = tap_without_contact(*known, seconds, reason, ends_run);
+  // Only on a line from above does the height determine the touched point.
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (height) out.contact.emplace(kUnknown, kUnknown, *height);
+  if (contact) out.contact.emplace((*contact)[0], (*contact)[1], (*contact)[2]);
+  out.distance = distance;
   out.force = force;
-  out.reason = reason;
-  out.ends_run = ends_run;
   return out;
 }
 

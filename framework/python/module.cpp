@@ -196,6 +196,9 @@ void bind_tap(py::module_& module) {
       .def_property_readonly("number", &TapRecord::number)
       .def_property_readonly("x", [](const TapRecord& tap) { return tap.target().x; })
       .def_property_readonly("y", [](const TapRecord& tap) { return tap.target().y; })
+      .def_property_readonly("start", [](const TapRecord& tap) { return vector_of(tap.request.line.start); })
+      .def_property_readonly("direction", [](const TapRecord& tap) { return vector_of(tap.request.line.direction); })
+      .def_property_readonly("length", [](const TapRecord& tap) { return tap.request.line.length; })
       .def_readonly("candidate", &TapRecord::candidate)
       .def_readonly("score", &TapRecord::score)
       .def_property_readonly("source", [](const TapRecord& tap) { return source_name(tap.request.source); })
@@ -204,22 +207,27 @@ void bind_tap(py::module_& module) {
 
 void bind_ask_tell_run(py::module_& module) {
   // Arrays are read-only, because a changed array would not change the belief.
-  const auto map = [](const char* quantity, bool squared = false) {
-    return [quantity, squared](AskTellRun& self) {
-      Map values = self.map(quantity);
-      if (squared) values.values = values.values.cwiseAbs2().eval();
-      Array out = array_of(values);
-      out.attr("setflags")(py::arg("write") = false);
-      return out;
-    };
+  const auto fixed = [](Array out) {
+    out.attr("setflags")(py::arg("write") = false);
+    return out;
+  };
+  const auto values = [fixed](AskTellRun& self, const std::string& quantity) {
+    const Map map = self.map(quantity);
+    return fixed(self.has_grid() ? array_of(map) : vector_of(map.values));
+  };
+  const auto map = [values](const char* quantity) {
+    return [values, quantity](AskTellRun& self) { return values(self, quantity); };
   };
   py::class_<AskTellRun>(module, "AskTellRun")
       .def(py::init<const std::string&, const std::vector<std::string>&, const std::string&, bool>())
       .def(py::init<const std::string&, bool, bool>())
       .def("ask", &AskTellRun::ask)
-      .def("tell", [](AskTellRun& self, const std::string& outcome, double height, double force, double seconds,
-                      const std::string& reason,
-                      bool ends_run) { self.tell(contact_of(outcome, height, force, seconds, reason, ends_run)); })
+      .def("tell",
+           [](AskTellRun& self, const std::string& outcome, std::optional<double> height,
+              std::optional<double> distance, const std::optional<std::array<double, 3>>& contact, double force,
+              double seconds, const std::string& reason, bool ends_run) {
+             self.tell(result_of(outcome, height, distance, contact, force, seconds, reason, ends_run));
+           })
       .def("finish", &AskTellRun::finish)
       .def("close", &AskTellRun::close)
       .def("finished", &AskTellRun::finished)
@@ -232,7 +240,9 @@ void bind_ask_tell_run(py::module_& module) {
       .def("weight", map(quantity::kLabelMean))
       .def("probability", map(quantity::kObjectProbability))
       .def("height_mean", map(quantity::kHeightMean))
-      .def("height_variance", map(quantity::kHeightStd, true));
+      .def("height_std", map(quantity::kHeightStd))
+      .def("values", values)
+      .def("lines", [fixed](AskTellRun& self) { return fixed(array_of(self.lines())); });
 }
 
 }  // namespace

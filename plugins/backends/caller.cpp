@@ -51,6 +51,7 @@ class Caller final : public Backend {
   /// The scene of the caller is unknown, so taps count as not repeatable.
   bool repeatable() const override { return false; }
   bool scene_is_truth() const override { return scene_is_truth_; }
+  bool taps_any_line() const override { return true; }
 
  private:
   bool scene_is_truth_;

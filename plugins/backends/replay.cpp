@@ -29,11 +29,15 @@ struct ReplayOptions : Options {
   void list(Fields& fields) override {
     fields.text(record, Field("record",
                               "run directory, or CSV file with the columns x, y, outcome, height (m) and optionally "
-                              "tap, force, robot_seconds")
+                              "tap, force, robot_seconds; for lines of any direction also with z, direction.x, "
+                              "direction.y, direction.z, length and along (m)")
                             .needed());
-    fields.real(
-        tolerance,
-        Field("tolerance", "maximum distance between a target and the recorded tap").in(Unit::metre).at_least(0));
+    fields.real(tolerance,
+                Field("tolerance",
+                      "maximum distance between the positions of a requested and a recorded tap; for lines of any "
+                      "direction between their starts and between their ends")
+                    .in(Unit::metre)
+                    .at_least(0));
     fields.flag(
         scene_is_truth,
         Field(
@@ -46,7 +50,7 @@ namespace {
 
 struct Recorded {
   int number = 0;
-  Target place;
+  TapLine line;
   TapResult result;
 };
 
@@ -85,6 +89,8 @@ class Table {
       if (columns_.count(needed) == 0) throw Error(file, std::string("has no column '") + needed + "'");
     }
   }
+
+  bool has(const std::string& column) const { return columns_.count(column) != 0; }
 
   bool next() {
     if (!read_row()) return false;
@@ -155,26 +161,57 @@ class Table {
   int next_line_ = 1;  ///< first line of the next row
 };
 
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// Returns the line of a row, from above if the table has no lengths. A missing number is NaN.
+TapLine read_line(const Table& table) {
+  const auto number = [&](const char* column) { return table.number(column, kMissing); };
+  if (!table.has("length")) return line_from_above({number("x"), number("y")});
+  return {{number("x"), number("y"), number("z")},
+          {number("direction.x"), number("direction.y"), number("direction.z")},
+          number("length")};
+}
+
+/// Returns the larger distance between the starts and between the ends of two lines. Lines from above are compared by
+/// their positions; one of them is far from any line that is not from above.
+double distance_between(const TapLine& one, const TapLine& other) {
+  if (one.from_above != other.from_above) return std::numeric_limits<double>::infinity();
+  const double starts = math::hypot(one.start.x() - other.start.x(), one.start.y() - other.start.y());
+  if (one.from_above) return starts;
+  return std::max((one.start - other.start).norm(), (one.at(one.length) - other.at(other.length)).norm());
+}
+
+/// Reads how far the tool came along a line that is not from above.
+void read_along(const Table& table, Recorded& tap) {
+  const double along = table.number("along", kMissing);
+  if (!std::isfinite(tap.line.at(tap.line.length).sum())) throw Error(table.where(), "lacks z, direction or length");
+  if (!std::isnan(along)) tap.result.distance = along;
+  if (!tap.result.is_contact()) return;
+  if (!tap.result.distance) throw Error(table.where(), "lacks along");
+  tap.result.contact->head<2>() = tap.line.at(along).head<2>();
+}
+
 std::vector<Recorded> read_record(const std::string& path) {
   const std::string file = std::filesystem::is_directory(path) ? path + "/taps.csv" : path;
   Table table(file);
   std::vector<Recorded> taps;
-  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   while (table.next()) {
-    Recorded one;
-    one.number = table.count("tap");
-    one.place = {table.number("x", kMissing), table.number("y", kMissing)};
+    Recorded one{table.count("tap"), read_line(table), {}};
+    const TapLine& line = one.line;
     const Outcome outcome = outcome_of(table.text("outcome"), table.where());
     const double seconds = table.number("robot_seconds", 0.0);
+    const bool is_free_line = !line.from_above && outcome == Outcome::no_contact;
     if (outcome == Outcome::contact) {
-      one.result =
-          contact_on(line_from_above(one.place), table.number("height", kMissing), table.number("force", 0.0), seconds);
+      one.result = contact_on(line, table.number("height", kMissing), 0.0, seconds);
     } else {
-      one.result = tap_without_contact(outcome, seconds, "recorded without a reason");
-      one.result.force = table.number("force", 0.0);
+      one.result = tap_without_contact(outcome, seconds, is_free_line ? "" : "recorded without a reason");
     }
-    if (std::isnan(one.place.x + one.place.y + one.result.height())) throw Error(table.where(), "lacks x, y or height");
-    if (const auto fault = find_fault(one.result, kAnyArm)) throw Error(table.where(), fault->reason, fault->remedy);
+    one.result.force = table.number("force", 0.0);
+    const double numbers = line.start.x() + line.start.y() + one.result.height();
+    if (std::isnan(numbers)) throw Error(table.where(), "lacks x, y or height");
+    if (!line.from_above) read_along(table, one);
+    if (const auto fault = find_fault(one.result, line, kAnyArm))
+      throw Error(table.where(), fault->reason, fault->remedy);
     taps.push_back(std::move(one));
   }
   return taps;
@@ -193,8 +230,7 @@ class Replay final : public Backend {
     const Recorded* best = nullptr;
     double least = options_.tolerance;
     for (const Recorded& one : taps_) {
-      const Target target = request.line.target();
-      const double distance = math::hypot(one.place.x - target.x, one.place.y - target.y);
+      const double distance = distance_between(one.line, request.line);
       if (distance > options_.tolerance) continue;
       if (one.number == request.number) return one.result;
       if (best == nullptr || distance < least) {
@@ -208,6 +244,7 @@ class Replay final : public Backend {
 
   bool repeatable() const override { return true; }
   bool scene_is_truth() const override { return options_.scene_is_truth; }
+  bool taps_any_line() const override { return !taps_.empty() && !taps_.front().line.from_above; }
 
  private:
   ReplayOptions options_;

@@ -108,7 +108,7 @@ class Believer {
         out += fmt::format("{}: {}\n", one.name, *number);
       }
     }
-    const Surface surface = belief_->surface();
+    const Surface surface = belief_->surface(kFineResolution);
     out += fmt::format("heights {}\n", fmt::join(surface.heights.begin(), surface.heights.end(), " "));
     for (const Surface::Vertex& one : surface.vertices)
       out += fmt::format("{} {}\n", one.position.x(), one.position.z());

@@ -74,7 +74,8 @@ void answer(const std::string& bytes) {
   constexpr double kLowest = -0.04;
   constexpr double kHighest = 0.135;
   const TapRequest request = test::request_at({0.1, 0.1}, 2);
-  const process::Answer answer = process::read_answer(bytes, request, {kLowest, kHighest, ""});
+  const process::Answer answer =
+      process::read_answer(bytes, request, {kLowest, kHighest, ""}, process::Protocol::any_line);
   if (!answer.accepted) return;
   if (!answer.in_step) throw std::logic_error("an answer to another tap was accepted");
   const TapResult& result = answer.result;

@@ -170,6 +170,7 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
 TEST(FromAnySide, AnObjectAtTheEndOfALongAreaIsLookedForAndCompared) {
   Touching run({"taps=25", "candidates.count=1000", "scene.area={width: 60 cm, depth: 20 cm}",
                 "scene.objects=[{type: block, length: 6 cm, width: 6 cm, height: 8 cm, at: [8 cm, 10 cm]}]"});
+  run.experiment.infer();
   int aimed = 0;
   const Candidates& lines = run.belief().candidates();
   for (Eigen::Index i = 0; i < lines.size(); ++i)

@@ -113,15 +113,16 @@ INSTANTIATE_TEST_SUITE_P(Every, OddAnswer, testing::ValuesIn(odd_answers()),
                          [](const auto& one) { return one.param.name; });
 
 TEST(Answer, HasTheSameBoundsForItsPeakAsForItsForce) {
-  TapResult contact = contact_on({}, 0.05, 8.0, 1.0);
-  EXPECT_FALSE(find_fault(contact, kAnyArm));
+  const TapLine line = line_from_above({});
+  TapResult contact = contact_on(line, 0.05, 8.0, 1.0);
+  EXPECT_FALSE(find_fault(contact, line, kAnyArm));
   for (const double peak : {0.0, 8.0, 1000.0}) {
     contact.peak_force = peak;
-    EXPECT_FALSE(find_fault(contact, kAnyArm)) << peak;
+    EXPECT_FALSE(find_fault(contact, line, kAnyArm)) << peak;
   }
   for (const double peak : {-1.0, 1000.1, 1e300, HUGE_VAL, std::nan("")}) {
     contact.peak_force = peak;
-    const auto fault = find_fault(contact, kAnyArm);
+    const auto fault = find_fault(contact, line, kAnyArm);
     ASSERT_TRUE(fault) << peak;
     EXPECT_THAT(fault->reason, testing::HasSubstr("N is outside 0 to 1000 N"));
   }

@@ -44,7 +44,7 @@ std::optional<TapRecord> Experiment::begin(Observer& observer, int most_taps, co
     reason = reason_to_stop(most_taps, override);
     if (!reason && !(tap = choose_next(override))) reason = "no candidate is left";
   } catch (const Error&) {
-    // An interrupted program of an acquisition is no failure.
+    // An interrupted program of an acquisition or a backend is no failure.
     if (!is_stop_wished()) throw;
     reason = kStoppedByUser;
   }
@@ -135,7 +135,7 @@ void Experiment::begin_stages(Source source) {
 void Experiment::show() {
   if (counts().taps == 0) return;
   belief_->begin(Stage::first_tap);
-  infer();
+  if (!backend_->reads().empty()) infer();
   const PhaseClock::Scope log(&clock_, Phase::log);
   backend_->show(*belief_);
 }
@@ -168,7 +168,10 @@ void Experiment::look() {
 RunResult Experiment::result() {
   belief_->update();
   belief_->begin(Stage::summary);
-  infer();
+  belief_->update();
+  // The backend, which may have ended, is not asked after the last tap.
+  belief_->draw_candidates([](const Candidates&, BoolOut out) { out.setConstant(true); });
+  belief_->infer();
   return monitor_.result(*belief_);
 }
 
@@ -255,7 +258,7 @@ std::shared_ptr<Backend> Experiment::make_backend(const ExperimentSetup& setup) 
     throw Error("backend",
                 fmt::format("{} only taps from above, which the belief {} does not", options_.backend.type,
                             options_.belief.type),
-                "choose another backend, or belief=height_map");
+                "choose another backend, with backend process protocol: 2, or belief=height_map");
   }
   if (belief_->reads_scene() && !backend->scene_is_truth()) {
     throw Error("belief.view",
@@ -286,7 +289,6 @@ Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& 
   require_offered(plan_, *belief_, options_.belief.type);
   models_ = belief_->plan(plan_);
   belief_->update();
-  draw_candidates();
 }
 
 }  // namespace palpate

@@ -68,6 +68,9 @@ class Experiment final {
   /// Has the readers of the first tap read, and computes their arrays as of now: for those who only look.
   void look();
 
+  /// Brings the models of all begun stages up to date, in arrays too, and draws the lines of the next tap.
+  void infer();
+
   /// Ends the run before its budget, for this reason.
   void stop(const std::string& reason) { monitor_.stop(reason); }
 
@@ -97,8 +100,6 @@ class Experiment final {
  private:
   std::shared_ptr<Backend> make_backend(const ExperimentSetup& setup);
   ReadPlan make_plan(const ReadPlan& more) const;
-  /// Brings the models of all begun stages up to date, in arrays too.
-  void infer();
   /// Begins the stages of a tap by `source`.
   void begin_stages(Source source);
   void draw_candidates();

@@ -278,7 +278,8 @@ class WrappedBelief final : public Wrapper<Belief> {
   Errors errors() override { return call(&Belief::errors); }
   std::optional<ShownErrors> shown_errors() override { return call(&Belief::shown_errors); }
   std::vector<ObjectErrors> object_errors() override { return call(&Belief::object_errors); }
-  Surface surface() override { return call(&Belief::surface); }
+  Surface surface(double resolution) override { return call(&Belief::surface, resolution); }
+  LineFacts explain(const TapLine& line) const override { return call(&Belief::explain, line); }
 
  private:
   void check_candidates() const {

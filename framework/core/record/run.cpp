@@ -350,19 +350,20 @@ Belief& Run::look(const QuantitySet& quantities) {
   Belief& own = experiment_->belief();
   own.update();
   if (has_all(own.available())) {
-    own.infer();
+    experiment_->infer();
     return own;
   }
   // An exception may leave taps half taken in. So the copy is kept only after success.
   std::unique_ptr<Experiment> copy = std::move(copy_);
   if (!copy || !has_all(looked_at_)) {
-    looked_at_ = looked_at_ | quantities;
+    const QuantitySet wanted = looked_at_ | quantities;
     const ExperimentSetup setup{environment_->host,
                                 environment_->interrupted,
                                 no_backend(experiment_->backend().scene_is_truth()),
                                 {},
-                                readers_from_first_tap("display", looked_at_)};
+                                readers_from_first_tap("display", wanted)};
     copy = std::make_unique<Experiment>(config_.options, setup);
+    looked_at_ = wanted;
   }
   const std::vector<TapRecord> taps = read_taps(directory_->rows(), directory_->path());
   copy->resume({taps.begin() + copy->counts().taps, taps.end()});
@@ -393,11 +394,11 @@ const TapRecord* Run::ask(const Eigen::VectorXd* scores) {
 
 void Run::tell(TapResult result) {
   if (!tap_) throw Error("tell", "no tap is pending", "call ask() first");
-  if (const auto fault = find_fault(result, bounds_of(config_, *experiment_)))
+  const TapLine& line = tap_->request.line;
+  complete_contact(line, result);
+  if (const auto fault = find_fault(result, line, bounds_of(config_, *experiment_)))
     throw Error("tell", fault->reason, fault->remedy);
   result.reason = plain_line(result.reason);
-  const TapLine& line = tap_->request.line;
-  if (line.from_above && result.is_contact()) result.contact->head<2>() = line.start.head<2>();
   tap_->result = std::move(result);
   const std::string failure = failure_in([&] { experiment_->end(*tap_, *recorder_); });
   tap_.reset();

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 from os import PathLike
 from types import TracebackType
-from typing import Any, Callable, Iterable, Iterator
+from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,12 @@ class Tap:
     def x(self) -> float: ...
     @property
     def y(self) -> float: ...
+    @property
+    def start(self) -> _Map: ...
+    @property
+    def direction(self) -> _Map: ...
+    @property
+    def length(self) -> float: ...
     @property
     def candidate(self) -> int: ...
     @property
@@ -107,6 +113,9 @@ class Belief:
     def height_mean(self) -> _Map: ...
     @property
     def height_variance(self) -> _Map: ...
+    @property
+    def lines(self) -> _Map: ...
+    def values(self, quantity: str) -> _Map: ...
 
 class Experiment:
     directory: str
@@ -131,6 +140,8 @@ class Experiment:
         force: float | None = None,
         seconds: float | None = None,
         *,
+        distance: float | None = None,
+        contacts: Sequence[Mapping[str, ArrayLike]] | None = None,
         outcome: str | None = None,
         reason: str = "",
         ends_run: bool = False,

@@ -58,7 +58,19 @@ class Belief:
     @property
     def height_variance(self) -> np.ndarray:
         """Variance of the height, square metres."""
-        return self._run.height_variance()
+        variance = np.square(self._run.height_std())
+        variance.setflags(write=False)
+        return variance
+
+    @property
+    def lines(self) -> np.ndarray:
+        """Lines among which the next tap is chosen, M x 7: start, unit direction and length, metres. From any side, they are
+        drawn before each tap; the maps above then have the shape (M,)."""
+        return self._run.lines()
+
+    def values(self, quantity) -> np.ndarray:
+        """Values of any quantity of the belief, such as "surface_std", one per line."""
+        return self._run.values(quantity)
 
 
 class Experiment:
@@ -128,24 +140,30 @@ class Experiment:
         """
         return self._run.ask(None if scores is None else np.asarray(scores, dtype=float))
 
-    def tell(self, height=None, force=None, seconds=None, *, outcome=None, reason="", ends_run=False) -> None:
+    def tell(self, height=None, force=None, seconds=None, *, distance=None, contacts=None, outcome=None, reason="",
+             ends_run=False) -> None:
         """Takes the result of the tap that ask() returned.
 
-        `height`: of the contact, metres; `force` at the contact, newtons; `seconds`: duration. A tap without a height has an
-        `outcome`: "no_contact", "unreachable", "timeout" or "aborted", and a `reason` in words. `ends_run`: a person has to
-        check the robot before the next tap. The run fails, and resume(retry_failed=True) resumes it.
+        `height`: of the contact, metres; `force` at the contact, newtons; `seconds`: duration. From any side, `distance` along
+        the line replaces the height; `contacts`, a list whose first item has the touched point as "position", can be added or
+        replace it. A tap without a contact has an `outcome`: "no_contact", "unreachable", "timeout" or "aborted", and a
+        `reason` in words. `ends_run`: a person has to check the robot before the next tap. The run fails, and
+        resume(retry_failed=True) resumes it.
 
         Raises InputError, a ValueError, for a value that no arm can have measured: a height outside 1 cm below desk -
-        `backend.overrun` to desk + `backend.hover` (in metres; 4 cm below to 13.5 cm above the desk by default), a force
-        outside 0 to 1000 N, seconds outside 0 to 86400, or NaN. Then nothing is recorded, and the tap stays pending.
+        `backend.overrun` to desk + `backend.hover` (in metres; 4 cm below to 13.5 cm above the desk by default), a distance
+        outside the line, a force outside 0 to 1000 N, seconds outside 0 to 86400, or NaN. Then nothing is recorded, and the
+        tap stays pending.
         """
+        point = contacts[0]["position"] if contacts else None
+        has_contact = height is not None or point is not None
         if outcome is None:
-            if height is None:
+            if not has_contact and distance is None:
                 raise make_error("tell", "neither a height nor an outcome is given", 'give a height, or outcome="no_contact"')
             outcome = "contact"
-        elif (outcome == "contact") != (height is not None):
+        elif (outcome == "contact") != has_contact and (outcome != "contact" or distance is None):
             raise make_error("tell", "a height is valid only with the outcome contact", "leave one of the two out")
-        self._run.tell(outcome, float(height or 0.0), float(force or 0.0), float(seconds or 0.0), reason, ends_run)
+        self._run.tell(outcome, height, distance, point, float(force or 0.0), float(seconds or 0.0), reason, ends_run)
 
     def finish(self) -> dict:
         """Ends the run, also before its budget is spent, and returns its summary."""

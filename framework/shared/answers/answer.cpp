@@ -28,8 +28,30 @@ HeightBounds height_bounds(double desk, double overrun, double hover) {
   return {desk - overrun - kBelowFloor, desk + hover, "1 cm below desk - overrun to desk + hover"};
 }
 
-std::optional<AnswerFault> find_fault(const TapResult& answer, const HeightBounds& bounds) {
-  if (answer.is_contact() && !is_within(answer.height(), bounds.lowest, bounds.highest)) {
+void complete_contact(const TapLine& line, TapResult& answer) {
+  if (answer.is_contact() && answer.distance && !answer.contact) answer.contact = line.at(*answer.distance);
+  const bool is_point = answer.contact && answer.contact->allFinite();
+  if (is_point && !answer.distance) answer.distance = (*answer.contact - line.start).dot(line.direction);
+  if (!line.from_above) return;
+  if (answer.contact) answer.contact->head<2>() = line.start.head<2>();
+  answer.distance.reset();
+}
+
+std::optional<AnswerFault> find_fault(const TapResult& answer, const TapLine& line, const HeightBounds& bounds) {
+  if (answer.distance && !is_within(*answer.distance, 0.0, line.length)) {
+    return AnswerFault{fmt::format("distance {:.6g} m is outside 0 to {:.4g} m (the length of the line)",
+                                   *answer.distance, line.length),
+                       "give metres from the start of the line (are these millimetres?)"};
+  }
+  if (answer.is_contact() && (!answer.contact || !(line.from_above || answer.distance))) {
+    return AnswerFault{"the contact has no position",
+                       line.from_above ? "give its height" : "give the distance along the line"};
+  }
+  if (!line.from_above && answer.contact && !(answer.contact->array().abs() <= kAnyArm.highest).all()) {
+    return AnswerFault{"the position of the contact is more than 10 m away (no arm is that long)",
+                       "give metres in the scene's frame (are these millimetres?)"};
+  }
+  if (line.from_above && answer.is_contact() && !is_within(answer.height(), bounds.lowest, bounds.highest)) {
     return AnswerFault{fmt::format("height {:.6g} m is outside {:.4g} to {:.4g} m ({})", answer.height(), bounds.lowest,
                                    bounds.highest, bounds.meaning),
                        "give metres in the scene's frame (are these millimetres?)"};

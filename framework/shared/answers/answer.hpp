@@ -31,9 +31,15 @@ struct AnswerFault {
   std::string remedy;
 };
 
-/// Returns the first value of an answer that is out of its bounds or not finite, or nullopt. The height of a contact
-/// has to be within `bounds`, force and peak force within 0 to 1000 N, the duration within 0 to 86400 s, one day.
-std::optional<AnswerFault> find_fault(const TapResult& answer, const HeightBounds& bounds);
+/// Completes an answer that has only the touched point or only the distance along `line`. On a line from above, the
+/// distance becomes a height.
+void complete_contact(const TapLine& line, TapResult& answer);
+
+/// Returns the first value of an answer that is out of its bounds or not finite, or nullopt. On a line from above, the
+/// height of a contact has to be within `bounds`. On other lines, the distance has to be within 0 to the line's length,
+/// and the touched point within 10 m. Force and peak force have to be within 0 to 1000 N, the duration within 0 to
+/// 86400 s, one day.
+std::optional<AnswerFault> find_fault(const TapResult& answer, const TapLine& line, const HeightBounds& bounds);
 
 /// Returns the outcome with this name. Returns nullopt for other names and for `unknown`, which stands for a missing
 /// answer.

@@ -14,8 +14,11 @@
 
 #include <palpate/error.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -26,6 +29,7 @@ using programs::Child;
 struct ProcessOptions : Options {
   std::string command;
   std::string checksum;
+  std::int64_t protocol = 1;
   double deadline = 90.0;
   double start = 30.0;
   bool repeatable = false;
@@ -37,6 +41,12 @@ struct ProcessOptions : Options {
     const auto words = programs::list_command(command, fields);
     if (words && checksum.empty()) checksum = programs::content_of(*words).checksum;
     programs::list_checksum(checksum, fields);
+    fields.integer(protocol, Field("protocol",
+                                   "version of requests and answers. Version 2 has lines of any direction, "
+                                   "which taps from any side need")
+                                 .at_least(1)
+                                 .at_most(2)
+                                 .neutral(1));
     fields.real(deadline,
                 Field("deadline",
                       "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")
@@ -76,25 +86,38 @@ class Process final : public Backend {
 
   TapResult tap(const TapRequest& request) override {
     const auto begin = Clock::now();
-    double seconds = options_.deadline;
-    // The program starts with the first tap, because the folder of the record does not exist earlier.
-    if (!child_) {
-      start(patience(begin, options_.start));
-      seconds += options_.start;
-    }
-    process::Answer answer = child_ ? ask(request, patience(begin, seconds)) : left_behind();
+    tapping::MotionOptions motion = options_.motion.of_request(request);
+    const Reply reply = ask(process::ask_line(request, context_, motion, protocol()));
+    const bool is_line = reply.fault.empty();
+    process::Answer answer{false, false, tap_without_contact(reply.outcome, 0.0, reply.fault, reply.ends_run)};
+    if (is_line) answer = process::read_answer(reply.line, request, bounds_of(motion), protocol());
     if (!answer.in_step) {
       child_.reset();
+      if (is_line && !may_restart()) answer.result.ends_run = true;
       if (answer.result.ends_run) answer.result.reason += "; check the robot, then run 'palpate resume --retry-failed'";
     }
     if (!answer.accepted) answer.result.seconds = Seconds(Clock::now() - begin).count();
     return std::move(answer.result);
   }
 
+  bool taps_any_line() const override { return protocol() == Protocol::any_line; }
+
+  void reaches(const Candidates& lines, BoolOut out) const override {
+    out.setConstant(true);
+    if (lines.from_above || !taps_any_line()) return;
+    for (Eigen::Index first = 0; first < lines.size() && !reaches_all_; first += kMostLines) {
+      const Eigen::Index count = std::min(kMostLines, lines.size() - first);
+      const std::vector<bool> answer = ask_reaches(process::reaches_line(lines, first, count, context_), count);
+      reaches_all_ = answer.empty();
+      for (std::size_t i = 0; i < answer.size(); ++i) out(first + static_cast<Eigen::Index>(i)) = answer[i];
+    }
+  }
+
   std::vector<std::string> describe(const TapRequest& request) override {
     const std::optional<Target> from = request.previous ? std::optional(request.previous->target()) : std::nullopt;
-    std::vector<std::string> out =
-        tapping::describe(options_.motion.of_request(request), context_.scene.desk(), request, from);
+    std::vector<std::string> out = request.line.from_above ? tapping::describe(options_.motion.of_request(request),
+                                                                               context_.scene.desk(), request, from)
+                                                           : std::vector{describe(request.line)};
     out.insert(out.begin(),
                fmt::format("{} {}, which has {:g} s, for this motion:", child_ ? "ask" : "start",
                            programs::shown(options_.command), options_.deadline + (child_ ? 0.0 : options_.start)));
@@ -112,7 +135,29 @@ class Process final : public Backend {
   using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
 
+  using Protocol = process::Protocol;
+
   static constexpr const char* kLock = "process.lock";
+  static constexpr const char* kInterrupted = "interrupted";
+  static constexpr Eigen::Index kMostLines = 500;  ///< of a question: about 64 KiB, which a pipe takes at once
+
+  /// A line that the program printed, or the reason why there is none.
+  struct Reply {
+    std::string line;
+    std::string fault;  ///< empty if there is a line
+    Outcome outcome = Outcome::aborted;
+    bool ends_run = false;
+  };
+
+  Protocol protocol() const { return static_cast<Protocol>(options_.protocol); }
+
+  static std::string describe(const TapLine& line) {
+    const auto words = [](const Eigen::Vector3d& vector, double factor) {
+      return fmt::format("({:.4g}, {:.4g}, {:.4g})", factor * vector.x(), factor * vector.y(), factor * vector.z());
+    };
+    return fmt::format("from {} cm along {}, at most {}", words(line.start, 100.0), words(line.direction, 1.0),
+                       tapping::centimetres(line.length));
+  }
 
   programs::WaitLimit patience(Clock::time_point begin, double seconds) const {
     return {begin + std::chrono::duration_cast<Clock::duration>(Seconds(seconds)), context_.interrupted};
@@ -125,7 +170,7 @@ class Process final : public Backend {
 
   /// Starts the program. If taps are not repeatable, it first waits until no program of an earlier attempt runs,
   /// because two must not move one arm. If one still runs at the end of `patience`, child_ stays empty.
-  void start(const programs::WaitLimit& patience) {
+  void start(const programs::WaitLimit& patience) const {
     Descriptor lock;
     if (!options_.repeatable && !context_.directory.empty()) {
       lock = programs::lock_file(recorded(kLock), patience);
@@ -135,12 +180,12 @@ class Process final : public Backend {
     if (lock) programs::write_holder(lock, child_->pid());
   }
 
-  process::Answer left_behind() const {
-    if (context_.interrupted != nullptr && context_.interrupted->load()) return interrupted();
-    process::Answer answer = failed("of an earlier attempt, process " + programs::read_holder(recorded(kLock)) +
-                                    ", is still running: end it");
-    answer.result.ends_run = true;
-    return answer;
+  Reply left_behind() const {
+    if (context_.interrupted != nullptr && context_.interrupted->load()) return {{}, kInterrupted};
+    Reply out = failed("of an earlier attempt, process " + programs::read_holder(recorded(kLock)) +
+                       ", is still running: end it");
+    out.ends_run = true;
+    return out;
   }
 
   HeightBounds bounds_of(const tapping::MotionOptions& motion) const {
@@ -149,23 +194,33 @@ class Process final : public Backend {
 
   bool may_restart() const { return options_.repeatable || options_.restart; }
 
-  process::Answer ask(const TapRequest& request, const programs::WaitLimit& patience) {
+  /// Asks the program, which is started with the first question: the folder of the record does not exist earlier.
+  /// Ends it if it does not answer.
+  Reply ask(const std::string& question) const {
+    const auto begin = Clock::now();
+    double seconds = options_.deadline;
+    if (!child_) {
+      start(patience(begin, options_.start));
+      seconds += options_.start;
+    }
+    Reply reply = child_ ? exchange(question, patience(begin, seconds)) : left_behind();
+    if (!reply.fault.empty()) child_.reset();
+    return reply;
+  }
+
+  Reply exchange(const std::string& question, const programs::WaitLimit& patience) const {
     std::string line;
-    process::Answer answer;
     // A line before the request is not an answer to it. The arm must not move then.
     Child::ReadResult heard = child_->read(line, {Clock::now(), context_.interrupted});
     if (heard == Child::ReadResult::complete) return failed("printed more than its answer: " + programs::shown(line));
     if (heard == Child::ReadResult::late) {
-      tapping::MotionOptions motion = options_.motion.of_request(request);
-      heard = child_->send(process::ask_line(request, context_, motion), patience);
+      heard = child_->send(question, patience);
       if (heard == Child::ReadResult::complete) heard = child_->read(line, patience);
     }
     switch (heard) {
       case Child::ReadResult::complete:
-        answer = process::read_answer(line, request, bounds_of(options_.motion.of_request(request)));
         answered_ = true;
-        if (!answer.in_step && !may_restart()) answer.result.ends_run = true;
-        return answer;
+        return {line, {}};
       case Child::ReadResult::ended:
         return failed(child_->describe_end());
       case Child::ReadResult::late:
@@ -177,7 +232,21 @@ class Process final : public Backend {
       case Child::ReadResult::interrupted:
         break;
     }
-    return interrupted();
+    return {{}, kInterrupted};
+  }
+
+  /// Asks which of `count` lines the program reaches, twice if it may be started again: the question moves nothing.
+  /// Returns a truth value per line; empty if it reaches all. Throws Error without a valid answer.
+  std::vector<bool> ask_reaches(const std::string& question, Eigen::Index count) const {
+    Reply reply = ask(question);
+    if (!reply.fault.empty() && reply.fault != kInterrupted && may_restart()) reply = ask(question);
+    if (reply.fault.empty()) {
+      if (const auto answer = process::read_reaches(reply.line, count)) return *answer;
+      child_.reset();
+      reply = failed(fmt::format("has to answer 'reaches' with null or a text of {} digits 0 and 1, but printed {}",
+                                 count, programs::shown(reply.line)));
+    }
+    throw Error("", reply.fault, "correct the cause, then run 'palpate resume --retry-failed'", Error::Kind::run);
   }
 
   /// The most frequent cause of a missing first answer is output buffering in the program.
@@ -186,20 +255,18 @@ class Process final : public Backend {
            (answered_ ? "" : " and has never answered, check that it flushes its output after each line");
   }
 
-  static process::Answer interrupted() {
-    return {false, false, tap_without_contact(Outcome::aborted, 0.0, "interrupted")};
-  }
-
-  process::Answer failed(const std::string& what, Outcome outcome = Outcome::aborted) const {
-    return {false, false, tap_without_contact(outcome, 0.0, "the program " + what, !may_restart())};
+  Reply failed(const std::string& what, Outcome outcome = Outcome::aborted) const {
+    return {{}, "the program " + what, outcome, !may_restart()};
   }
 
   Options options_;
   const Context& context_;
   std::vector<std::string> words_;
   std::string file_;
-  std::unique_ptr<Child> child_;
-  bool answered_ = false;  ///< whether any started program has answered
+  // A question about lines may start the program, too.
+  mutable std::unique_ptr<Child> child_;
+  mutable bool answered_ = false;     ///< whether any started program has answered
+  mutable bool reaches_all_ = false;  ///< as the program has answered
 };
 
 PALPATE_PLUGIN(Backend, Process, "process",

@@ -6,9 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace palpate::process {
 namespace {
@@ -61,9 +64,11 @@ class Written final : public Fields {
 /// Reads the fields of one answer. The first error is kept; values read after it are meaningless.
 class Reader {
  public:
-  explicit Reader(const Json& answer) : answer_(answer) {
+  Reader(const Json& answer, const TapLine& line, Protocol protocol) : answer_(answer) {
+    std::set<std::string> known{"tap", "outcome", "force", "seconds", "reason", "ends_run"};
+    if (line.from_above) known.insert("height");
+    if (protocol == Protocol::any_line) known.insert({"distance", "contacts"});
     for (const auto& [key, value] : answer.items()) {
-      static const std::set<std::string> known{"tap", "outcome", "height", "force", "seconds", "reason", "ends_run"};
       if (known.count(key) == 0) refuse("has an unknown field " + shown(key));
     }
   }
@@ -75,6 +80,18 @@ class Reader {
     if (!has(field)) return refuse(lacks(field)), 0.0;
     if (!answer_[field].is_number()) return refuse(bad(field, "that is not a number")), 0.0;
     return answer_[field].get<double>();
+  }
+
+  /// Returns the position of the first contact.
+  std::optional<Eigen::Vector3d> position() {
+    if (!has("contacts")) return std::nullopt;
+    const Json& contacts = answer_["contacts"];
+    const bool has_first = contacts.is_array() && !contacts.empty() && contacts[0].is_object();
+    const Json position = has_first ? contacts[0].value("position", Json()) : Json();
+    bool is_point = position.is_array() && position.size() == 3;
+    for (const Json& one : position) is_point = is_point && one.is_number();
+    if (!is_point) return refuse(bad("contacts", "whose first item has no 'position' of three numbers")), std::nullopt;
+    return Eigen::Vector3d(position[0].get<double>(), position[1].get<double>(), position[2].get<double>());
   }
 
   std::string text(const char* field) {
@@ -118,12 +135,33 @@ class Reader {
 TapResult read_result(Reader& reader, const TapLine& line, const HeightBounds& bounds) {
   const Outcome outcome = reader.outcome();  // first: its fault is told before that of the time
   TapResult out = tap_without_contact(outcome, reader.number("seconds"));
+  if (reader.has("distance")) out.distance = reader.number("distance");
   if (out.outcome == Outcome::contact) {
-    out = contact_on(line, reader.number("height"), reader.has("force") ? reader.number("force") : 0.0, out.seconds);
+    out.contact = reader.position();
+    const bool is_height = line.from_above && !out.distance && !out.contact;
+    if (is_height) out.contact.emplace(line.start.x(), line.start.y(), reader.number("height"));
+    out.force = reader.has("force") ? reader.number("force") : 0.0;
   }
   out.ends_run = reader.flag("ends_run");
-  if (out.outcome != Outcome::contact || out.ends_run) out.reason = reader.reason();
-  if (const auto fault = find_fault(out, bounds)) reader.refuse("is rejected, " + fault->reason + ", " + fault->remedy);
+  const bool is_free_line = !line.from_above && outcome == Outcome::no_contact;
+  const bool needs_reason = out.ends_run || (!is_free_line && outcome != Outcome::contact);
+  if (needs_reason || (is_free_line && reader.has("reason"))) out.reason = reader.reason();
+  complete_contact(line, out);
+  if (const auto fault = find_fault(out, line, bounds))
+    reader.refuse("is rejected, " + fault->reason + ", " + fault->remedy);
+  return out;
+}
+
+Json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+Json json_of(const TapLine& line) {
+  return {{"start", json_of(line.start)}, {"direction", json_of(line.direction)}, {"length", line.length}};
+}
+Json position_of(const TapLine& line) { return {{"x", line.start.x()}, {"y", line.start.y()}}; }
+
+/// Returns the first fields of a request. The name of the record's folder is the run's id.
+Json header(const Context& context, Protocol protocol) {
+  Json out{{"palpate", static_cast<int>(protocol)}};
+  if (protocol == Protocol::any_line) out["run"] = std::filesystem::path(context.directory).filename().string();
   return out;
 }
 
@@ -140,14 +178,21 @@ Answer refused(const std::string& line, const std::string& why, bool in_step, bo
 
 }  // namespace
 
-std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion) {
-  Json ask;
-  ask["palpate"] = kProtocol;
+std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion,
+                     Protocol protocol) {
+  Json ask = header(context, protocol);
   ask["tap"] = request.number;
-  ask["x"] = request.line.start.x();
-  ask["y"] = request.line.start.y();
+  if (request.line.from_above) ask.update(position_of(request.line));
+  if (protocol == Protocol::any_line) {
+    ask["line"] = json_of(request.line);
+    ask["lowest_height"] = context.scene.desk();
+  }
   ask["previous"] = nullptr;
-  if (request.previous) ask["previous"] = {{"x", request.previous->start.x()}, {"y", request.previous->start.y()}};
+  if (request.previous) {
+    Json& previous = ask["previous"] = Json::object();
+    if (request.previous->from_above) previous = position_of(*request.previous);
+    if (protocol == Protocol::any_line) previous.update(json_of(*request.previous));
+  }
   ask["predicted"] = nullptr;
   if (request.predicted) {
     ask["predicted"] = {{"height", request.predicted->height},
@@ -163,7 +208,7 @@ std::string ask_line(const TapRequest& request, const Context& context, tapping:
   return ask.dump() + "\n";
 }
 
-Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds) {
+Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds, Protocol protocol) {
   const Json json = Json::parse(line, nullptr, false);
   if (json.is_discarded()) {
     const bool python = line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
@@ -174,10 +219,34 @@ Answer read_answer(const std::string& line, const TapRequest& request, const Hei
   if (!json.contains("tap")) return refused(line, "lacks 'tap'", false, ends_run);
   if (json["tap"] != Json(request.number))
     return refused(line, "does not belong to tap " + std::to_string(request.number), false, ends_run);
-  Reader reader(json);
+  Reader reader(json, request.line, protocol);
   TapResult result = read_result(reader, request.line, bounds);
   if (!reader.trouble.empty()) return refused(line, reader.trouble, true, ends_run);
   return {true, true, std::move(result)};
+}
+
+std::string reaches_line(const Candidates& lines, Eigen::Index first, Eigen::Index count, const Context& context) {
+  Json ask = header(context, Protocol::any_line);
+  Json& all = ask["reaches"] = Json::array();
+  for (Eigen::Index i = first; i < std::min(first + count, lines.size()); ++i) {
+    const TapLine line = lines.line(i);
+    all.push_back({line.start.x(), line.start.y(), line.start.z(), line.direction.x(), line.direction.y(),
+                   line.direction.z(), line.length});
+  }
+  return ask.dump() + "\n";
+}
+
+std::optional<std::vector<bool>> read_reaches(const std::string& line, Eigen::Index count) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object() || json.size() != 1 || !json.contains("reaches")) return std::nullopt;
+  if (json["reaches"].is_null()) return std::vector<bool>();
+  if (!json["reaches"].is_string()) return std::nullopt;
+  std::vector<bool> out;
+  for (const char one : json["reaches"].get<std::string>()) {
+    if (one != '0' && one != '1') return std::nullopt;
+    out.push_back(one == '1');
+  }
+  return static_cast<Eigen::Index>(out.size()) == count ? std::optional(out) : std::nullopt;
 }
 
 }  // namespace palpate::process

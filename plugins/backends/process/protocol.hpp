@@ -6,17 +6,21 @@
 #include "answers/answer.hpp"
 #include "tapping/motion.hpp"
 
+#include <palpate/belief.hpp>
 #include <palpate/plugin.hpp>
 
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace palpate::process {
 
 /// Version of the protocol, in every request. It increases if the meaning of a request or an answer changes.
-constexpr int kProtocol = 1;
+enum class Protocol { from_above = 1, any_line = 2 };
 
 /// Returns the request for a tap, with its line end, in SI units. It is complete, so that the program needs no state.
-std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion);
+std::string ask_line(const TapRequest& request, const Context& context, tapping::MotionOptions& motion,
+                     Protocol protocol);
 
 /// Result of reading a line as the answer to a tap.
 struct Answer {
@@ -26,6 +30,13 @@ struct Answer {
   TapResult result;
 };
 /// Reads `line` as the answer to `request`. Values that find_fault() reports are rejected.
-Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds);
+Answer read_answer(const std::string& line, const TapRequest& request, const HeightBounds& bounds, Protocol protocol);
+
+/// Returns the question which of `lines` from `first` on, at most `count`, can be tapped along, with its line end.
+std::string reaches_line(const Candidates& lines, Eigen::Index first, Eigen::Index count, const Context& context);
+
+/// Reads `line` as the answer to that question: one truth value per line, empty if the program reaches all. Returns
+/// nullopt for any other answer.
+std::optional<std::vector<bool>> read_reaches(const std::string& line, Eigen::Index count);
 
 }  // namespace palpate::process

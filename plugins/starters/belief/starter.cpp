@@ -76,7 +76,7 @@ class MyBelief final : public Belief {
     if (truth_ == nullptr || height_.size() == 0) return {};
     return height_errors(lines_, height_, probability_.array() > 0.5, *truth_);
   }
-  Surface surface() override { return {height_, {}, {}, 0.0}; }
+  Surface surface(double /*resolution*/) override { return {height_, {}, {}, 0.0}; }
 
  private:
   Options options_;
