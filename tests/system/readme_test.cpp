@@ -131,7 +131,15 @@ TEST(Documents, AreShortAndEachPageIsTriedAndLinkedFromReadme) {
     EXPECT_THAT(readme, HasSubstr("](" + name + ")"));
   }
   // The examples of python.md run in tests/python.
-  EXPECT_EQ(pages, 13) << "a new page needs its test above";
+  EXPECT_EQ(pages, 14) << "a new page needs its test above";
+}
+
+TEST(Documents, MapTheCodeOnOnePage) {
+  const std::string map = text_of(test::source_folder() / "framework/README.md");
+  EXPECT_LE(lines(map), 120);
+  const auto changes = map.find("\n| to change | look at |\n");
+  ASSERT_NE(changes, std::string::npos);
+  EXPECT_LE(lines(map.substr(changes + 1)), 2 + 40) << "the table is last: its head and 40 rows";
 }
 
 /// Appends to `text` the scripts of the project that it names, and those that they name.
