@@ -14,7 +14,7 @@ import re
 import sys
 
 MOST_FUNCTIONS, MOST_MEMBERS = 20, 15
-FOLDERS = ["framework/core/experiment", "framework/core/record", "framework/core/space", "framework/core/gp"]
+FOLDERS = ["framework/experiment", "framework/record", "framework/space", "framework/gp"]
 HEAD = re.compile(r"\b(class|struct)\s+(?:\[\[[^\]]*\]\]\s*)?(\w+)\s*(final)?\s*(:[^;{]*)?$")
 
 

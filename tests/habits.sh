@@ -11,36 +11,40 @@ found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
 
 # A folder uses those above it in this list, which is that of framework/README.md, never those below.
-folders="math children reading answers regular config plugin scene view gp experiment space record sweep launch analysis calibrate report watch cli"
-for file in $(git ls-files 'framework/core/*.[ch]pp' 'framework/lab/*.[ch]pp' 'framework/desk/*.[ch]pp' 'framework/cli/*.[ch]pp'); do
+folders="math children reading answers regular config host scene gp belief space experiment record sweep launch analysis calibrate report watch cli"
+# The folders of palpate_core.
+core="framework/config framework/host framework/scene framework/gp framework/belief framework/space framework/experiment framework/record"
+# The table of built-in plugins names each of them.
+for file in $(git ls-files 'framework/*.[ch]pp' ':!framework/include' ':!framework/shared' ':!framework/python' ':!*/builtin_plugins.cpp'); do
   [ ! -f "$file" ] || sed -n "s|^#include \"\([a-z_]*\)/.*|$file \1|p" "$file"
 done | awk -v folders="$folders" '
   BEGIN { n = split(folders, names, " "); for (i = 1; i <= n; ++i) rank[names[i]] = i }
-  { split($1, path, "/"); from = path[2] == "cli" ? "cli" : path[3]
+  { split($1, path, "/"); from = path[2]
     if (!($2 in rank)) print $1 ": includes " $2 "/, which is no folder of the framework"
     else if (rank[$2] > rank[from]) print $1 ": " from " knows nothing of " $2 ", which stands below it" }' >"$found/arrows"
 # What a tap may depend on has the same bytes on every machine: palpate/math.hpp. Baxter's driver runs on one, and texts
 # of numbers (config/scale.cpp) decide nothing.
+# shellcheck disable=SC2086 # the names are to be split
 git grep -nE '(std|Eigen)::(exp2?|expm1|log|log1p|log2|log10|hypot|sin|cos|tan|a?sinh?|a?cosh?|atan2?|a?tanh|pow|cbrt|erfc?|l?tgamma)\(|Eigen::(AngleAxis|Rotation2D)|(\)|array)\.(exp|log|log1p|pow|sin|cos|tan|atan|tanh|erf)\(\)' -- \
-  'framework/core/*.[ch]pp' 'framework/include/*.hpp' 'framework/shared/*.[ch]pp' 'plugins/*.[ch]pp' \
-  ':!framework/shared/math' ':!framework/core/config/scale.cpp' ':!plugins/backends/baxter' |
+  $core 'framework/include/*.hpp' 'framework/shared/*.[ch]pp' 'plugins/*.[ch]pp' \
+  ':!framework/shared/math' ':!framework/config/scale.cpp' ':!plugins/backends/baxter' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: an elementary function of the platform, palpate/math.hpp has its own|' >"$found/elementary" || true
 
 # Plugins see what their authors see, and each other's folders.
-git grep -nE '^#include "(config|plugin|scene|view|gp|experiment|space|record|sweep|launch|analysis|report|watch|cli)/' -- plugins |
+git grep -nE '^#include "(config|host|scene|gp|belief|space|experiment|record|sweep|launch|analysis|report|watch|cli)/' -- plugins |
   sed 's|:.*"\(.*\)"|: a plugin includes \1, which is not for plugins|' >"$found/plugins" || true
 
 # Files of others are read by the bounded reader alone (shared/reading): regular ones, up to a limit, through no link in a
 # record. record/files.cpp and record_files.cpp open what they write; the devices named here are nobody's.
 git grep -nE 'std::i?fstream|fopen *\(|(^|[ =(!])::open(at)?\(|directory_iterator|opendir *\(|LoadFile *\(' -- \
   'framework/*.[ch]pp' 'plugins/*.[ch]pp' |
-  grep -vE '^(framework/shared/reading/reading|framework/core/record/files|plugins/programs/record_files)\.cpp:' |
+  grep -vE '^(framework/shared/reading/reading|framework/record/files|plugins/programs/record_files)\.cpp:' |
   grep -vE '"/dev/(null|full)"' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: opens a file or lists a folder itself, which is for shared/reading|' >"$found/reading" || true
 
 # People see quantities by config/scale.hpp: no line fixes the decimals of a length or a time itself.
-git grep -nE '\{:\.[0-9]f\} (cm|mm|m|s)\b|toFixed\(' -- 'framework/cli/*.cpp' 'framework/desk/analysis/*.cpp' \
-  'framework/desk/report/*.cpp' 'framework/desk/report/page/web/*.js' |
+git grep -nE '\{:\.[0-9]f\} (cm|mm|m|s)\b|toFixed\(' -- 'framework/cli/*.cpp' 'framework/analysis/*.cpp' \
+  'framework/report/*.cpp' 'framework/report/page/web/*.js' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: fixes the decimals of a quantity, which is for config/scale.hpp or common.js|' >"$found/quantities" || true
 
 # Retired names, as whole words; a word that has another meaning, too, is listed with its key. Three lines a file are shown.
@@ -48,6 +52,7 @@ git grep -nE '\{:\.[0-9]f\} (cm|mm|m|s)\b|toFixed\(' -- 'framework/cli/*.cpp' 'f
 git grep -nowIF --untracked -f - -- . ':!tests/habits.sh' ':!tests/same_taps.csv' <<'names' |
 "doubted"
 "handed_over"
+Workshop
 acquisition=foresight
 acquisition=inside
 acquisition=mixture
@@ -86,6 +91,9 @@ footprint=classifier
 footprint=regression
 footprint=shape
 foresight
+framework/core
+framework/desk
+framework/lab
 gates.md
 haste
 height.lies
@@ -108,6 +116,8 @@ on_surface_above
 on_surface_probability
 on_surface_taps
 outline_and_fill
+palpate_desk
+palpate_lab
 plugins footprint/classifier
 plugins footprint/regression
 plugins footprint/shape
@@ -213,7 +223,7 @@ fi
 # what it says.
 each() { echo "$1" | xargs -r -P "$(nproc)" -I FILE sh -c "{ $2; } >\$(mktemp $found/each.XXXXXX) 2>/dev/null || true"; }
 
-includes="-Iframework/core -Iframework/lab -Iframework/desk -Iframework/shared -Iframework -Iframework/include -isystem /usr/include/eigen3 $(/usr/bin/python3-config --includes 2>/dev/null || true)"
+includes="-Iframework/shared -Iframework -Iframework/include -isystem /usr/include/eigen3 $(/usr/bin/python3-config --includes 2>/dev/null || true)"
 # Highway's header is read once for each instruction set, by a file that has named itself.
 each "$(echo "$changed" | grep '^framework/.*\.hpp$' | grep -v '^framework/shared/math/highway\.hpp$')" \
   "g++ -std=c++17 -fsyntax-only $includes -x c++ FILE || echo 'FILE: does not stand alone: it lacks an include'"

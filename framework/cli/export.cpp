@@ -5,8 +5,8 @@
 #include "cli/output.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
-#include "report/exchange/mesh_export.hpp"
 #include "report/history.hpp"
+#include "report/mesh_export.hpp"
 
 #include <palpate/error.hpp>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "config/compose.hpp"
-#include "plugin/host.hpp"
+#include "host/host.hpp"
 #include "record/run.hpp"
 
 #include <filesystem>
@@ -18,7 +18,7 @@ constexpr int kBusy = 75;
 constexpr int kInterrupted = 130;
 
 /// The environment of a command.
-struct Program : Workshop {
+struct Program : RunEnvironment {
   Composer& composer;
 };
 

@@ -67,26 +67,26 @@ void warn_lost(const History& history) {
   if (history.truth_lost) print_message(truth_lost_words(*history.truth_lost) + "\n");
 }
 
-void report_run(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
-  const RecordedRun recording = read_recorded_run(workshop.host, arguments.directories.front());
+void report_run(const RunEnvironment& environment, const ReportArguments& arguments, const fs::path& to) {
+  const RecordedRun recording = read_recorded_run(environment.host, arguments.directories.front());
   if (arguments.figures || arguments.paper)
     check_from_above(recording, "--figures and --paper are only for runs from above");
   ProgressMessages progress("taps");
-  const History history = make_history(workshop, recording, std::ref(progress));
+  const History history = make_history(environment, recording, std::ref(progress));
   warn_lost(history);
   write_page(to / "report.html", run_page(recording, history, std::ref(progress)));
-  if (arguments.figures) show(write_run_figures(workshop, recording, history, to / "figures"));
-  if (arguments.paper) show(write_paper_figures(workshop, recording, to / "figures"));
+  if (arguments.figures) show(write_run_figures(environment, recording, history, to / "figures"));
+  if (arguments.paper) show(write_paper_figures(environment, recording, to / "figures"));
 }
 
-void report_sweep(const Workshop& workshop, const ReportArguments& arguments, const fs::path& to) {
+void report_sweep(const RunEnvironment& environment, const ReportArguments& arguments, const fs::path& to) {
   const Sweep sweep = read_sweep(arguments.directories.front());
   write_page(to / "report.html", sweep_page(sweep, ProgressMessages("jobs")));
   if (arguments.figures) show(write_sweep_figures(sweep, to / "figures"));
-  if (arguments.paper) show(write_paper_figures(workshop, sweep, to / "figures"));
+  if (arguments.paper) show(write_paper_figures(environment, sweep, to / "figures"));
 }
 
-void report_several(const Workshop& workshop, const ReportArguments& arguments) {
+void report_several(const RunEnvironment& environment, const ReportArguments& arguments) {
   const std::vector<std::string>& directories = arguments.directories;
   const auto refuse = [](const std::string& reason, const std::string& hint) {
     throw Error("command line", reason, hint);
@@ -101,9 +101,9 @@ void report_several(const Workshop& workshop, const ReportArguments& arguments) 
   for (const std::string& directory : directories) {
     if (is_sweep(directory))
       refuse(directory + " is a sweep, but a page of several runs needs single runs", "name its jobs: SWEEP/jobs/ID");
-    RecordedRun recording = read_recorded_run(workshop.host, directory);
+    RecordedRun recording = read_recorded_run(environment.host, directory);
     check_from_above(recording, "pages of several runs are only for runs from above");
-    History history = make_history(workshop, recording, ProgressMessages("taps"));
+    History history = make_history(environment, recording, ProgressMessages("taps"));
     warn_lost(history);
     name += "_" + recording.config.id;
     runs.push_back({std::move(recording), std::move(history)});

@@ -5,7 +5,7 @@ string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # that of SOURCE_DATE_
 file(READ ${CPACK_PALPATE_SOURCE}/LICENSE license)
 string(REGEX REPLACE "^MIT License\n\nCopyright \\(c\\) ([^\n]*)\n\n" "" license "${license}")
 set(holder ${CMAKE_MATCH_1})
-file(STRINGS ${CPACK_PALPATE_SOURCE}/framework/desk/report/page/vendor/plotly/LICENSE plotly REGEX "^Copyright ")
+file(STRINGS ${CPACK_PALPATE_SOURCE}/framework/report/page/vendor/plotly/LICENSE plotly REGEX "^Copyright ")
 string(REPLACE "Copyright (c) " "" plotly "${plotly}")
 string(REGEX REPLACE "\n\n" "\n.\n" license "${license}")
 string(REGEX REPLACE "\n([^\n])" "\n \\1" license "${license}")
@@ -35,7 +35,7 @@ Files: *
 Copyright: ${holder}
 License: Expat
 
-Files: framework/desk/report/page/vendor/plotly/*
+Files: framework/report/page/vendor/plotly/*
 Copyright: ${plotly}
 License: Expat
 Comment: plotly.js, which draws the pages of reports and is carried in each.

@@ -28,12 +28,13 @@ class AskTellRun {
              bool force) {
     const ObjectGuard guard(lock_);
     const ResolvedConfig resolved = resolve(config, overrides);
-    run_ = started(Run::start(environment_.workshop, resolved, directory_of(resolved, runs), {force, Taps::by_caller}));
+    run_ = started(
+        Run::start(environment_.run_environment, resolved, directory_of(resolved, runs), {force, Taps::by_caller}));
     describe();
   }
   AskTellRun(const std::string& directory, bool retry_failed, bool force) {
     const ObjectGuard guard(lock_);
-    run_ = started(Run::resume(environment_.workshop, directory, {retry_failed, force, Taps::by_caller}));
+    run_ = started(Run::resume(environment_.run_environment, directory, {retry_failed, force, Taps::by_caller}));
     describe();
   }
   /// In a forked child the run is leaked, because its destructor would wait for threads that the child lacks.

@@ -46,7 +46,8 @@ inline ModuleEnvironment& module_environment() {
 /// Environment of one run, with a flag of its own that interrupts the run.
 struct InterruptibleEnvironment {
   std::atomic<bool> interrupted{false};
-  Workshop workshop{module_environment().host, module_environment().installation, {"python"}, &interrupted};
+  RunEnvironment run_environment{
+      module_environment().host, module_environment().installation, {"python"}, &interrupted};
 };
 
 inline std::vector<Override> parsed_overrides(const std::vector<std::string>& overrides) {

@@ -69,7 +69,7 @@ std::string run(const std::string& config, const std::vector<std::string>& overr
   {
     const GilRelease no_gil;
     const ResolvedConfig resolved = resolve(config, overrides);
-    report = start_run(environment.workshop, resolved, directory_of(resolved, runs), {force}, {&observer});
+    report = start_run(environment.run_environment, resolved, directory_of(resolved, runs), {force}, {&observer});
   }
   if (observer.trouble()) throw *observer.trouble();
   return report.directory.string();

@@ -2,9 +2,9 @@
 // Records for Python: a run with its taps and models, a sweep with its jobs.
 #pragma once
 
+#include "belief/metrics.hpp"
 #include "environment.hpp"
 #include "experiment/experiment.hpp"
-#include "experiment/metrics.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/run_replay.hpp"
@@ -43,7 +43,7 @@ inline NamedMaps maps_of(Experiment& experiment) {
 class Record {
  public:
   explicit Record(const std::string& directory)
-      : recording_(read_recorded_run(environment_.workshop.host, directory)) {}
+      : recording_(read_recorded_run(environment_.run_environment.host, directory)) {}
   /// In a forked child the models are leaked, because their destructor would wait for threads that the child lacks.
   ~Record() {
     if (!lock_.is_here()) static_cast<void>(playback_.release());
@@ -103,7 +103,7 @@ class Record {
                   "read its surface from surface.ply");
     }
     return std::make_unique<RunReplay>(
-        environment_.workshop, recording_,
+        environment_.run_environment, recording_,
         readers_from_first_tap("maps", {kUncertainty, kLabelMean, kObjectProbability, kHeightMean, kHeightStd}));
   }
   RunReplay& playback() {

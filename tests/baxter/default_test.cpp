@@ -139,8 +139,8 @@ TEST(DefaultOnTheArm, IsSimulatedByWhatCalibrateMakesOfFortyOfItsTaps) {
     recording.taps.push_back(tap);
   }
   const Installation installation;
-  const Workshop workshop{palpate::test::shared_host(), installation, {}, nullptr};
-  const std::string file = calibrate(workshop, {recording});
+  const RunEnvironment environment{palpate::test::shared_host(), installation, {}, nullptr};
+  const std::string file = calibrate(environment, {recording});
   SCOPED_TRACE(file);
   Tree twin = arm.config.tree;
   twin.at("scene").at("effects") = parse_yaml(file, "effects.yaml").at("effects");

@@ -54,7 +54,7 @@ def tree(folder):
     """Path below `folder` -> what is lasting of the file."""
     out = {}
     for root, folders, files in os.walk(folder):
-        # A sweep that was never published: the next sweep after a minute removes it (tests/lab/draft_test.cpp).
+        # A sweep that was never published: the next sweep after a minute removes it (tests/sweep/draft_test.cpp).
         folders[:] = [one for one in folders if not one.startswith(".sweep-")]
         for name in files:
             path = os.path.join(root, name)

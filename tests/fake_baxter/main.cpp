@@ -2,7 +2,7 @@
 // fake_baxter CONFIG [KEY=VALUE ...]: simulates the robot of an experiment on the ROS network of ROS_MASTER_URI.
 #include "config/compose.hpp"
 #include "fake_baxter/node.hpp"
-#include "plugin/host.hpp"
+#include "host/host.hpp"
 #include "record/resolved.hpp"
 #include "scene/scene_options.hpp"
 

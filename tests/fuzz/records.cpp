@@ -24,8 +24,8 @@ const Installation& installation() {
   return one;
 }
 
-const Workshop& workshop() {
-  static const Workshop one{host(), installation(), {"palpate"}, nullptr};
+const RunEnvironment& environment() {
+  static const RunEnvironment one{host(), installation(), {"palpate"}, nullptr};
   return one;
 }
 
@@ -41,7 +41,7 @@ fs::path sound_run() {
   const fs::path directory = directory_of(config, ground().path() / "runs");
   StartOptions options;
   options.force = true;
-  start_run(workshop(), config, directory, options);
+  start_run(environment(), config, directory, options);
   return directory;
 }
 
@@ -95,8 +95,8 @@ void record(const std::string& bytes) {
   const auto [name, content] = divided(bytes, files);
   const Changed changed(run / name, content);
   attempt([&] { read_status(run); });
-  attempt([&] { objection_to_build(workshop(), load_run(host(), run), read_run_record(run)); });
-  attempt([&] { replay_run(workshop(), run); });
+  attempt([&] { objection_to_build(environment(), load_run(host(), run), read_run_record(run)); });
+  attempt([&] { replay_run(environment(), run); });
 }
 
 void plan(const std::string& bytes) {

@@ -56,9 +56,9 @@ TEST_P(AnySidePage, DrawsTheSurfaceAfterEachTapAndTheTapsAsArrows) {
                   "return document.getElementById('standing').textContent"});
   ASSERT_EQ(seen.values.size(), 11U);
   const Installation installation;
-  const Workshop workshop{test::shared_host(), installation, {}, nullptr};
-  const RecordedRun recording = read_recorded_run(workshop.host, directory);
-  const History history = make_history(workshop, recording, [](int, int) {});
+  const RunEnvironment environment{test::shared_host(), installation, {}, nullptr};
+  const RecordedRun recording = read_recorded_run(environment.host, directory);
+  const History history = make_history(environment, recording, [](int, int) {});
   ASSERT_EQ(history.surfaces.size(), 1U + kTaps);
   for (const auto& [value, taps] : {std::pair(0, kTaps), std::pair(3, kTaps - 1)}) {
     const Surface& mesh = history.surfaces[static_cast<std::size_t>(taps)];

@@ -11,7 +11,7 @@
 namespace palpate::test {
 namespace {
 
-const int kMany = brief() ? 200 : 1000;
+const int kTouches = brief() ? 200 : 1000;
 
 const std::vector<std::pair<std::string, std::string>>& footprints() {
   static const std::vector<std::pair<std::string, std::string>> all{
@@ -30,14 +30,14 @@ std::vector<Touch> touches_of(const std::string& labels, int count) {
 class FootprintExtremes : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(FootprintExtremes, AloneGiveProbabilitiesFromOneTouchToAThousand) {
-  const std::vector<Touch> touches = touches_of(GetParam(), kMany);
+  const std::vector<Touch> touches = touches_of(GetParam(), kTouches);
   for (const auto& [name, options] : footprints()) {
     const auto footprint = test::make<Footprint>(test::shared_host(), name, options);
     int taken = 0;
     for (const Touch& touch : touches) {
       footprint->add(touch);
       ++taken;
-      if (taken != 1 && taken != 10 && taken != 100 && taken != kMany) continue;
+      if (taken != 1 && taken != 10 && taken != 100 && taken != kTouches) continue;
       EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, test::lattice(47, 47)))) << name << taken;
       const Points touched{{touch.place.x, touch.place.y}};
       EXPECT_TRUE(all_probabilities(test::probability_of(*footprint, touched))) << name << taken;
@@ -71,7 +71,7 @@ TEST(FootprintHeights, OfAnySizeLeaveProbabilities) {
     const auto footprint =
         test::make<Footprint>(test::shared_host(), "primitives", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
     int number = 0;
-    for (Touch touch : test::disorderly_touches(kMany / 10)) {
+    for (Touch touch : test::disorderly_touches(kTouches / 10)) {
       touch.height = ++number % 3 == 0 ? -height : height;
       footprint->add(touch);
     }
@@ -80,7 +80,7 @@ TEST(FootprintHeights, OfAnySizeLeaveProbabilities) {
     // All alike at one place: each of the others makes the piece a hundred times as probable.
     const auto one =
         test::make<Footprint>(test::shared_host(), "primitives", "{kernel: {type: rbf, length_scale: 3.5 cm}}");
-    for (int i = 0; i < kMany / 10; ++i) one->add({{0.1, 0.12}, height, true});
+    for (int i = 0; i < kTouches / 10; ++i) one->add({{0.1, 0.12}, height, true});
     EXPECT_NEAR(test::probability_of(*one, Points{{0.1, 0.12}})(0), 1.0, 1e-6) << height;
   }
 }

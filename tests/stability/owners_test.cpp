@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The rows of the stability matrix that are not the default's: one per owner of a factorisation, over noise, length
 // scale and taps, with places apart, repeated and nearly repeated. The sum over outliers and the default have theirs in
-// matrix_test.cpp. PALPATE_LONG=1 adds the cells of 1000 taps, half an hour; of the skin they have 100.
+// matrix_test.cpp. PALPATE_LONG=1 adds the cells of 1000 taps, half an hour; of the residual GP they have 100.
 #include "objective.hpp"
 #include "space/reduction.hpp"
-#include "space/skin.hpp"
+#include "space/residual_gp.hpp"
 #include "stability/check.hpp"
 #include "stability/oracle.hpp"
 #include "stability/reference.hpp"
@@ -190,27 +190,27 @@ TEST_P(Owners, CeresObjectiveIsTheDensityAndItsGradientThatOfDifferences) {
   }
 }
 
-const Piece kBox{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+const Primitive kBox{Primitive::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
 
 constexpr double kMicrometres = 1e-5;  // metres; of objects that are off by millimetres
 
 /// The means at the rows that entered, by a factorisation with 64 bits of the very matrix, jitter included.
-LongVector means_of(const Skin& skin) {
+LongVector means_of(const ResidualGp& residual_gp) {
   using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-  const Wide k = skin.covariance(skin.rows()).cast<long double>();
+  const Wide k = residual_gp.covariance(residual_gp.rows()).cast<long double>();
   Wide noisy = k;
   LongVector targets(k.rows());
   for (Eigen::Index i = 0; i < k.rows(); ++i) {
-    const Skin::Row& row = skin.rows()[static_cast<std::size_t>(i)];
+    const ResidualGp::Row& row = residual_gp.rows()[static_cast<std::size_t>(i)];
     targets(i) = row.target;
-    noisy(i, i) += static_cast<long double>(row.free ? 0.0 : skin.report().jitter) * k(i, i) +
+    noisy(i, i) += static_cast<long double>(row.free ? 0.0 : residual_gp.report().jitter) * k(i, i) +
                    static_cast<long double>(row.noise) * row.noise;
   }
   return k * Eigen::LDLT<Wide>(noisy).solve(targets);
 }
 
 // Finite, no variance beyond that before any touch, and at its rows the surface of the same model by other means.
-TEST_P(Owners, SkinAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
+TEST_P(Owners, ResidualGpAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
   Random random(6, "owners skin");
   Solids solids({0.26, 0.26}, {6, 20}, Random(9, "solids"));
   std::vector<SurfaceTouch> all;
@@ -227,26 +227,26 @@ TEST_P(Owners, SkinAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
     all.push_back({line, kBox.first_intersection(line), true, false});
   }
   solids.add(all);
-  Skin::Places places;
-  for (const SurfaceTouch& touch : all) places.push_back({touch.end(), Skin::normal(solids.best(), touch.end())});
+  ResidualGp::Places places;
+  for (const SurfaceTouch& touch : all) places.push_back({touch.end(), ResidualGp::normal(solids.best(), touch.end())});
   for (const double noise : kNoises) {
-    Skin skin(test::make<Kernel>(test::shared_host(), "matern32", kernel()), {0.006, noise});
-    skin.fit(solids.best(), all);
-    const Skin::Posterior posterior = skin.posterior(places);
+    ResidualGp residual_gp(test::make<Kernel>(test::shared_host(), "matern32", kernel()), {0.006, noise});
+    residual_gp.fit(solids.best(), all);
+    const ResidualGp::Posterior posterior = residual_gp.posterior(places);
     ASSERT_TRUE(posterior.mean.allFinite() && posterior.variance.allFinite()) << noise;
     EXPECT_GE(posterior.variance.minCoeff(), 0.0) << noise;
-    EXPECT_LE(posterior.variance.maxCoeff(), skin.deviation() * skin.deviation() * (1.0 + 1e-9)) << noise;
-    const LongVector means = means_of(skin);
-    for (std::size_t i = 0; i < skin.rows().size(); ++i)
-      EXPECT_NEAR(skin.mean(skin.rows()[i].place), static_cast<double>(means(static_cast<Eigen::Index>(i))),
-                  kMicrometres)
+    EXPECT_LE(posterior.variance.maxCoeff(), residual_gp.deviation() * residual_gp.deviation() * (1.0 + 1e-9)) << noise;
+    const LongVector means = means_of(residual_gp);
+    for (std::size_t i = 0; i < residual_gp.rows().size(); ++i)
+      EXPECT_NEAR(residual_gp.mean(residual_gp.rows()[i].place),
+                  static_cast<double>(means(static_cast<Eigen::Index>(i))), kMicrometres)
           << noise;
     FactorReport report;
-    const Eigen::VectorXd reductions = expected_reductions(solids, skin, places, &report);
+    const Eigen::VectorXd reductions = expected_reductions(solids, residual_gp, places, &report);
     ASSERT_TRUE(reductions.allFinite() && std::isfinite(report.jitter)) << noise;
     EXPECT_GE(reductions.minCoeff(), 0.0) << noise;
     // No contact takes off more than all of the deviation, that of the solids included.
-    EXPECT_LE(reductions.maxCoeff(), skin.deviation() + 0.02) << noise;
+    EXPECT_LE(reductions.maxCoeff(), residual_gp.deviation() + 0.02) << noise;
   }
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "config/tree.hpp"
-#include "plugin/host.hpp"
+#include "host/host.hpp"
 
 #include <palpate/plugin.hpp>
 

@@ -3,9 +3,9 @@
 // own, and whole runs.
 #pragma once
 
+#include "belief/height_map.hpp"
 #include "config/compose.hpp"
 #include "experiment/experiment.hpp"
-#include "experiment/height_map.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/resolved.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Honest uncertainty: on surfaces drawn from the very model, 95 % intervals hold 95 % of what was not tapped.
-#include "experiment/metrics.hpp"
+#include "belief/metrics.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/testing.hpp"

@@ -2,7 +2,7 @@
 // Clouds against all pairs of their points.
 #include "space/cloud.hpp"
 
-#include "space/piece.hpp"
+#include "space/primitive.hpp"
 #include "support/shape_laws.hpp"
 #include "support/testing.hpp"
 

@@ -103,7 +103,7 @@ class Follower final : public Observer {
 TEST(Experiment, RecordsTheSameWhoeverFollowsItsErrors) {
   const TemporaryFolder folder;
   const Installation installation;
-  const Workshop environment{shared_host(), installation, {}, nullptr};
+  const RunEnvironment environment{shared_host(), installation, {}, nullptr};
   for (const auto& [acquisition, surface] : {std::pair<std::string, std::string>{"random", "two_part"},
                                              {"uncertainty", "two_part"},
                                              {"uncertainty", "single"},

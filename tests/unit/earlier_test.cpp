@@ -19,11 +19,11 @@ class Earlier : public InFolder, public testing::WithParamInterface<std::vector<
     std::vector<std::string> words = GetParam();
     words.push_back("taps=" + std::to_string(taps));
     const fs::path directory = folder_.path() / std::to_string(taps);
-    return start_run(workshop_, shipped_config("default.yaml", words), directory, {});
+    return start_run(environment_, shipped_config("default.yaml", words), directory, {});
   }
 
   std::vector<Row> summaries_after(const RecordedRun& recorded, const std::vector<int>& taps) {
-    const std::vector<Row> all = earlier_summaries(workshop_, recorded);
+    const std::vector<Row> all = earlier_summaries(environment_, recorded);
     EXPECT_EQ(all.size() + 1, recorded.rows.size());
     std::vector<Row> out;
     for (const int count : taps) out.push_back(all.at(static_cast<std::size_t>(count - 1)));
@@ -31,7 +31,7 @@ class Earlier : public InFolder, public testing::WithParamInterface<std::vector<
   }
 
   Installation installation_;
-  Workshop workshop_{test::shared_host(), installation_, {}, nullptr};
+  RunEnvironment environment_{test::shared_host(), installation_, {}, nullptr};
 };
 
 std::string cell(const Row& row, const std::string& name) {

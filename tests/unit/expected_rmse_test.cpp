@@ -111,7 +111,7 @@ TEST(ExpectedRmse, OfOneProcessForObjectAndDeskIsNearTheTrueOneOverManySeedsAndF
   EXPECT_LT(moments.last.expected / moments.last.count, 0.5 * moments.first.expected / moments.first.count);
 }
 
-/// The formula of experiment/expected_rmse.hpp, cell by cell and by matrices of the taps alone. The kernel is rbf.
+/// The formula of belief/expected_rmse.hpp, cell by cell and by matrices of the taps alone. The kernel is rbf.
 double rmse_by_the_formula(const Prepared& run, double length_scale) {
   const HeightMapOptions options = height_map_options(run.config.options, shared_host());
   const HeightModels& models = run.models();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What error is expected, and whether a run that stops for it was right to.
-#include "experiment/expected_rmse.hpp"
+#include "belief/expected_rmse.hpp"
 
 #include "experiment/stop_rules.hpp"
 #include "support/gaussian_process.hpp"

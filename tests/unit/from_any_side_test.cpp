@@ -212,7 +212,7 @@ struct TrueSurface {
 Errors errors_against(const Scene& scene, const SolidsBelief& belief) {
   SurfaceErrors out(belief.region());
   out.set_truth(&scene);
-  return out.compare(belief.is_ready() ? &belief.solids() : nullptr, belief.skin());
+  return out.compare(belief.is_ready() ? &belief.solids() : nullptr, belief.residual_gp());
 }
 
 TEST(FromAnySide, TheTruthIsTheSceneAsItStandsAfterWhatWasPushed) {

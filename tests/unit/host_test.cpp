@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/host.hpp"
+#include "host/host.hpp"
 
 #include "config/describe.hpp"
 #include "support/programs.hpp"

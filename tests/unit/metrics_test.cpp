@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "experiment/metrics.hpp"
+#include "belief/metrics.hpp"
 
 #include "support/runs.hpp"
 #include "support/testing.hpp"

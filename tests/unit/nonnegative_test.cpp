@@ -89,7 +89,7 @@ TEST(NonnegativeUnknowns, WithWhichTheFormIsNotPositiveDefiniteAreSetAsideAndCou
   EXPECT_GT(aside, 200);
 }
 
-/// As the free ways of a skin are: values of one smooth process, some of them close to each other.
+/// As the free ways of a residual GP are: values of one smooth process, some of them close to each other.
 TEST(NonnegativeUnknowns, OfPlacesCloseToEachOtherAreFoundInTheEnd) {
   Random random(4, "test/nonnegative");
   for (int k = 0; k < 3000; ++k) {

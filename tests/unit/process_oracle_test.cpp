@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Mean and variance of whole runs against a computation with 50 digits that shares nothing with ours: the covariance
 // is built from the recorded taps, factorised and solved anew after every tap, in Boost.Multiprecision over MPFR.
-#include "experiment/height_map.hpp"
+#include "belief/height_map.hpp"
 #include "support/arrays.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whether a contact was with an object is read again when more is known of what the arm adds to all heights.
-#include "experiment/height_map.hpp"
+#include "belief/height_map.hpp"
 
 #include "record/json.hpp"
 #include "support/runs.hpp"

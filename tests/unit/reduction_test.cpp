@@ -20,20 +20,20 @@ using Eigen::Vector3d;
 
 constexpr double kNoise = 0.0005;
 
-/// A box that is touched from all sides, and what is believed of it: compositions that differ, as they moved little.
+/// A box that is touched from all sides, and what is believed of it: assemblies that differ, as they moved little.
 class Reductions : public testing::Test {
  protected:
   explicit Reductions(int touches = 25, double noise = kNoise)
-      : skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, noise}) {
+      : residual_gp(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, noise}) {
     Random random(4, "test/reduction");
     for (int i = 0; i < touches; ++i) touch(random);
-    skin.fit(solids.best(), all);
+    residual_gp.fit(solids.best(), all);
     for (int i = 0; i < 400; ++i) {
       const Line line = towards(random);
       const double hit = solids.best().first_intersection(line);
       if (hit == kNoHit) continue;
       const Vector3d at = line.origin + hit * line.direction;
-      places.push_back({at, Skin::normal(solids.best(), at)});
+      places.push_back({at, ResidualGp::normal(solids.best(), at)});
     }
     some = representatives(places, 60).places;
   }
@@ -57,34 +57,34 @@ class Reductions : public testing::Test {
     all.push_back({line, std::min(hit, desk), true, desk <= hit});
     solids.add({all.back()});
   }
-  double offset(const Composition& one, const Vector3d& at) const {
+  double offset(const Assembly& one, const Vector3d& at) const {
     const double far = solids.best().distance(at) - one.distance(at);
     return std::max(-0.02, std::min(0.02, far));
   }
   /// The covariance of what is off, contacts first, as reduction.hpp has it.
-  MatrixXd covariance(const Skin::Places& at) const {
-    MatrixXd out = skin.prior_covariance(at);
-    for (const Composition& one : solids.compositions()) {
+  MatrixXd covariance(const ResidualGp::Places& at) const {
+    MatrixXd out = residual_gp.prior_covariance(at);
+    for (const Assembly& one : solids.assemblies()) {
       for (Eigen::Index i = 0; i < out.rows(); ++i) {
         for (Eigen::Index j = 0; j < out.cols(); ++j) {
           out(i, j) += offset(one, at[static_cast<std::size_t>(i)].at) *
                        offset(one, at[static_cast<std::size_t>(j)].at) /
-                       static_cast<double>(solids.compositions().size());
+                       static_cast<double>(solids.assemblies().size());
         }
       }
     }
     return out;
   }
-  Skin::Places contacts() const {
-    Skin::Places out;
-    for (const Skin::Row& row : skin.rows()) {
+  ResidualGp::Places contacts() const {
+    ResidualGp::Places out;
+    for (const ResidualGp::Row& row : residual_gp.rows()) {
       if (!row.free) out.push_back(row.place);
     }
     return out;
   }
   /// The mean standard deviation of `some`, given contacts at these places.
-  double deviation_given(const Skin::Places& known) const {
-    Skin::Places at = known;
+  double deviation_given(const ResidualGp::Places& known) const {
+    ResidualGp::Places at = known;
     at.insert(at.end(), some.begin(), some.end());
     const MatrixXd all_of_it = covariance(at);
     const auto n = static_cast<Eigen::Index>(known.size());
@@ -92,26 +92,26 @@ class Reductions : public testing::Test {
     MatrixXd left = all_of_it.bottomRightCorner(m, m);
     if (n > 0) {
       MatrixXd noisy = all_of_it.topLeftCorner(n, n);
-      noisy.diagonal().array() += skin.noise() * skin.noise();
+      noisy.diagonal().array() += residual_gp.noise() * residual_gp.noise();
       left -= all_of_it.bottomLeftCorner(m, n) * noisy.fullPivLu().inverse() * all_of_it.topRightCorner(n, m);
     }
     return left.diagonal().cwiseMax(0.0).cwiseSqrt().mean();
   }
 
-  const Piece box{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+  const Primitive box{Primitive::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   Solids solids{{0.26, 0.26}, few(), Random(9, "solids")};
-  Skin skin;
+  ResidualGp residual_gp;
   std::vector<SurfaceTouch> all;
-  Skin::Places places, some;
+  ResidualGp::Places places, some;
 };
 
 TEST_F(Reductions, AreWhatOneContactMoreTakesOffTheMeanDeviation) {
   ASSERT_GT(contacts().size(), 5U);
   ASSERT_GT(some.size(), 20U);
-  const Eigen::VectorXd found = expected_reductions(solids, skin, some);
+  const Eigen::VectorXd found = expected_reductions(solids, residual_gp, some);
   const double before = deviation_given(contacts());
   for (std::size_t i = 0; i < some.size(); ++i) {
-    Skin::Places known = contacts();
+    ResidualGp::Places known = contacts();
     known.push_back(some[i]);
     // Rounding: the inverse of a matrix with a condition of 1e6, and a slack of 1e-9 of the diagonal.
     EXPECT_NEAR(found(static_cast<Eigen::Index>(i)), before - deviation_given(known), 1e-6 * before);
@@ -121,10 +121,10 @@ TEST_F(Reductions, AreWhatOneContactMoreTakesOffTheMeanDeviation) {
 }
 
 TEST_F(Reductions, AreLessWhereTheSurfaceWasTouchedThanElsewhere) {
-  Skin::Places with = some;
+  ResidualGp::Places with = some;
   const std::size_t first = with.size();
-  for (const Skin::Place& place : contacts()) with.push_back(place);
-  const Eigen::VectorXd found = expected_reductions(solids, skin, with);
+  for (const ResidualGp::Place& place : contacts()) with.push_back(place);
+  const Eigen::VectorXd found = expected_reductions(solids, residual_gp, with);
   const auto n = static_cast<Eigen::Index>(first);
   EXPECT_LT(found.tail(found.size() - n).mean(), 0.2 * found.head(n).maxCoeff()) << "a contact twice tells little";
 }
@@ -137,8 +137,8 @@ class WithoutNoise : public Reductions {
 TEST_F(WithoutNoise, AreFiniteWhereTheSameContactIsMadeAgain) {
   const std::vector<SurfaceTouch> once = all;
   for (int i = 0; i < 3; ++i) all.insert(all.end(), once.begin(), once.end());
-  skin.fit(solids.best(), all);
-  const Eigen::VectorXd found = expected_reductions(solids, skin, some);
+  residual_gp.fit(solids.best(), all);
+  const Eigen::VectorXd found = expected_reductions(solids, residual_gp, some);
   EXPECT_TRUE(found.allFinite());
   EXPECT_GE(found.minCoeff(), 0.0);
   EXPECT_GT(found.maxCoeff(), 0.0);
@@ -151,13 +151,13 @@ class BeforeAnyTouch : public Reductions {
 
 TEST_F(BeforeAnyTouch, AreThoseOfThePrior) {
   ASSERT_TRUE(contacts().empty());
-  const Eigen::VectorXd found = expected_reductions(solids, skin, some);
+  const Eigen::VectorXd found = expected_reductions(solids, residual_gp, some);
   for (std::size_t i = 0; i < some.size(); ++i)
     EXPECT_NEAR(found(static_cast<Eigen::Index>(i)), deviation_given({}) - deviation_given({some[i]}), 1e-9);
 }
 
 TEST_F(Reductions, AreNoneWhereNoPlaceIsAsked) {
-  EXPECT_EQ(expected_reductions(solids, skin, {}).size(), 0);
+  EXPECT_EQ(expected_reductions(solids, residual_gp, {}).size(), 0);
   EXPECT_TRUE(representatives({}, 60).places.empty());
 }
 
@@ -169,7 +169,7 @@ TEST_F(Reductions, AreAskedOfPlacesThatStandForAllNearThemOnTheSameSide) {
     ASSERT_EQ(found.stands_for.size(), places.size());
     std::set<std::size_t> used;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const Skin::Place& other = found.places[found.stands_for[i]];
+      const ResidualGp::Place& other = found.places[found.stands_for[i]];
       used.insert(found.stands_for[i]);
       Eigen::Index axis = 0;
       other.normal.cwiseAbs().maxCoeff(&axis);

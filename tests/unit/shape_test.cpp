@@ -50,9 +50,9 @@ std::shared_ptr<const Shape> shape_of(const ShapeCase& one) {
   return context_of(shared_host()).create<const Shape>(scene.objects[0].shape);
 }
 
-class Primitive : public testing::TestWithParam<ShapeCase> {};
+class ShippedShape : public testing::TestWithParam<ShapeCase> {};
 
-TEST_P(Primitive, HasTheHeightOfTheHighestPointThatIsInside) {
+TEST_P(ShippedShape, HasTheHeightOfTheHighestPointThatIsInside) {
   // The lift comes from triangles within 3e-6 of the surface; rounding is far below.
   constexpr double kSlack = 5e-6;
   const int places = brief() ? 100 : 300;
@@ -79,7 +79,7 @@ TEST_P(Primitive, HasTheHeightOfTheHighestPointThatIsInside) {
   }
 }
 
-TEST_P(Primitive, ReachesAsFarAsItsTriangles) {
+TEST_P(ShippedShape, ReachesAsFarAsItsTriangles) {
   const auto shape = shape_of(GetParam());
   const Surface triangles = GetParam().surface();
   Random random(2, "test/primitive");
@@ -92,12 +92,12 @@ TEST_P(Primitive, ReachesAsFarAsItsTriangles) {
   }
 }
 
-TEST_P(Primitive, KeepsTheLawsOfShapes) { check_shape_laws(*shape_of(GetParam())); }
+TEST_P(ShippedShape, KeepsTheLawsOfShapes) { check_shape_laws(*shape_of(GetParam())); }
 
-INSTANTIATE_TEST_SUITE_P(Every, Primitive, testing::ValuesIn(shape_cases()),
+INSTANTIATE_TEST_SUITE_P(Every, ShippedShape, testing::ValuesIn(shape_cases()),
                          [](const auto& one) { return one.param.name; });
 
-TEST(PrimitiveByHand, HasItsClosedForm) {
+TEST(ShapeByHand, HasItsClosedForm) {
   const auto at = [](const std::string& object, double s, double t) {
     return scene_of({with_fields(object, "at: [20 cm, 20 cm]")})->height(0.2 + s, 0.2 + t);
   };
@@ -112,7 +112,7 @@ TEST(PrimitiveByHand, HasItsClosedForm) {
   EXPECT_EQ(at("{type: ring, outer: 10 cm, inner: 6 cm, height: 2 cm}", 0.0, 0.0), 0.0) << "through the hole";
 }
 
-TEST(PrimitiveByHand, LiesOnItsSlantWhenABlockIsTilted) {
+TEST(ShapeByHand, LiesOnItsSlantWhenABlockIsTilted) {
   // A block 10 cm long and 1 cm high, lifted by 30 degrees: over the middle its top is at 5 cm * sin + 1 cm / cos.
   const auto scene =
       scene_of({"{type: block, length: 10 cm, width: 4 cm, height: 1 cm, tilt: 30 deg, at: [20 cm, 20 cm]}"});

@@ -18,7 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// 10 x 6 x 6 cm, on the desk in the middle of an area of 26 cm.
-const Piece kStanding{Piece::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+const Primitive kStanding{
+    Primitive::Form::box, {0.13, 0.13, 0.03}, Eigen::Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
 
 TEST(Solids, FindABoxFromTouchesOfIt) {
   Random random(7, "test/solids");
@@ -35,7 +36,7 @@ TEST(Solids, FindABoxFromTouchesOfIt) {
     const double hit = std::min(kStanding.first_intersection(line), desk);
     solids.add({{line, hit, true, hit == desk}});
   }
-  const Composition& best = solids.best();
+  const Assembly& best = solids.best();
   EXPECT_TRUE(std::isfinite(best.posterior()));
   const Bundle bundle(kStanding.centre, 0.12, 60, 0.01);
   Cloud truth, believed;
@@ -49,8 +50,8 @@ TEST(Solids, FindABoxFromTouchesOfIt) {
   EXPECT_GT(compare_clouds(thinned(believed, 0.003), thinned(truth, 0.003)).f_score, 0.95);
 }
 
-/// What a camera would see of a piece on the desk, as touches.
-std::vector<SurfaceTouch> seen(const Piece& piece) {
+/// What a camera would see of a primitive on the desk, as touches.
+std::vector<SurfaceTouch> seen(const Primitive& primitive) {
   std::vector<SurfaceTouch> out;
   const Vector3d eye(0.6, 0.13, 0.4);
   for (int i = 0; i < 13; ++i) {
@@ -58,7 +59,7 @@ std::vector<SurfaceTouch> seen(const Piece& piece) {
       const Vector3d at(0.13, 0.13 + 0.02 * (i - 6), 0.03 + 0.015 * (j - 6));
       const Line line{eye, (at - eye).normalized()};
       const double desk = line.direction.z() < 0 ? -eye.z() / line.direction.z() : kNoHit;
-      const double hit = piece.first_intersection(line);
+      const double hit = primitive.first_intersection(line);
       out.push_back({line, std::min({hit, desk, 1.0}), std::min(hit, desk) < 1.0, desk <= hit});
     }
   }
@@ -66,7 +67,8 @@ std::vector<SurfaceTouch> seen(const Piece& piece) {
 }
 
 TEST(Solids, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
-  const Piece bowl{Piece::Form::ellipsoid, {0.13, 0.13, 0.07}, Eigen::Matrix3d::Identity(), {0.08, 0.08, 0.07}, 0.004};
+  const Primitive bowl{
+      Primitive::Form::ellipsoid, {0.13, 0.13, 0.07}, Eigen::Matrix3d::Identity(), {0.08, 0.08, 0.07}, 0.004};
   SolidsSettings settings;
   settings.count = 8;
   int hollow = 0;
@@ -74,7 +76,7 @@ TEST(Solids, KnowABowlThatWasSeenFromOneSideWhateverModeCameFirst) {
   for (int seed = 1; seed <= seeds; ++seed) {
     Solids solids({0.26, 0.26}, settings, Random(static_cast<std::uint64_t>(seed), "solids"));
     solids.look(seen(bowl));
-    const Composition& best = solids.best();
+    const Assembly& best = solids.best();
     hollow += std::abs(best.distance({0.13, 0.13, 0.002})) < 0.008 && best.distance({0.13, 0.13, 0.05}) > 0.02 ? 1 : 0;
   }
   EXPECT_GE(hollow, seeds == 1 ? 1 : seeds - 1) << "the rest may have stayed in a mode that is wrong";
@@ -97,15 +99,15 @@ TEST(Solids, HaveNothingUnseenWhereATouchHasBeen) {
         {line, std::min(kStanding.first_intersection(line), desk), true, desk <= kStanding.first_intersection(line)});
     solids.add({touches.back()});
     if (i % 13 != 12) continue;
-    const std::vector<Piece> unseen = solids.unseen(solids.best(), 300, random);
-    EXPECT_LT(unseen.size(), before) << "the more was touched, the less is left";
-    before = unseen.size();
+    const std::vector<Primitive> undiscovered = solids.undiscovered(solids.best(), 300, random);
+    EXPECT_LT(undiscovered.size(), before) << "the more was touched, the less is left";
+    before = undiscovered.size();
     EXPECT_GT(before, 0U);
-    for (const Piece& piece : unseen) {
+    for (const Primitive& primitive : undiscovered) {
       for (const SurfaceTouch& touch : touches) {
-        const Chord first = piece.inside(touch.line)[0];
+        const Chord first = primitive.inside(touch.line)[0];
         if (first.empty() || first.begin >= touch.length) continue;
-        EXPECT_LT(std::min((touch.length - first.begin) * first.begin_cosine, piece.aside(touch.line)), 0.001);
+        EXPECT_LT(std::min((touch.length - first.begin) * first.begin_cosine, primitive.aside(touch.line)), 0.001);
       }
     }
   }
@@ -125,20 +127,20 @@ TEST(Solids, KeepWhatTheySumUpTrueThroughAllMoves) {
     solids.add({touches.back()});
   }
   // A copy that takes in nothing new computes all of it again.
-  for (const Composition& one : solids.compositions()) {
+  for (const Assembly& one : solids.assemblies()) {
     EXPECT_TRUE(std::isfinite(one.posterior()));
     double prior = 0.0;
-    for (const Composition::Part& part : one.parts) {
+    for (const Assembly::Part& part : one.parts) {
       prior += part.prior;
       for (std::size_t i = 0; i < touches.size(); ++i)
-        EXPECT_EQ(part.reach[i], touches[i].contact ? std::abs(part.piece.distance(touches[i].end())) : 0.0);
+        EXPECT_EQ(part.reach[i], touches[i].contact ? std::abs(part.primitive.distance(touches[i].end())) : 0.0);
     }
     EXPECT_NEAR(one.prior, prior, 1e-9);
     double likelihood = 0.0;
     for (std::size_t i = 0; i < touches.size(); ++i) {
       double reach = touches[i].contact ? 0.3 : 0.0;
       double depth = 0.0;
-      for (const Composition::Part& part : one.parts) {
+      for (const Assembly::Part& part : one.parts) {
         reach = std::min(reach, part.reach[i]);
         depth = std::max(depth, part.depth[i]);
       }
@@ -163,18 +165,18 @@ std::vector<SurfaceTouch> touches_of(int count) {
   return out;
 }
 
-TEST(Solids, GoOnWhereNoCompositionIsPossibleAtAll) {
+TEST(Solids, GoOnWhereNoAssemblyIsPossibleAtAll) {
   SolidsSettings settings;
   settings.count = 4;
   settings.moves = 20;
   settings.misfit = 1e-200;
   Solids solids({0.26, 0.26}, settings, Random(7, "solids"));
   for (const SurfaceTouch& touch : touches_of(5)) solids.add({touch});
-  EXPECT_EQ(solids.compositions().size(), 4U);
+  EXPECT_EQ(solids.assemblies().size(), 4U);
   EXPECT_THROW(shipped_config("any_side.yaml", {"belief.model_discrepancy=1e-200m"}), Error);
 }
 
-TEST(Solids, MakeNoPieceOfOneContactInTheAirWhereATouchMayBeALie) {
+TEST(Solids, MakeNoPrimitiveOfOneContactInTheAirWhereATouchMayBeALie) {
   const Vector3d air(0.15, 0.14, 0.16);
   int made = 0, made_of_lies = 0;
   for (const double most : {kNoHit, 5.5}) {
@@ -203,13 +205,13 @@ TEST(Solids, AreWeighedByTouchesAsTheyAreReadNow) {
   for (const SurfaceTouch& touch : touches) solids.add({touch});
   for (SurfaceTouch& touch : touches) touch.length -= 0.004;
   solids.read_again(touches, 0.003, kNoHit);
-  for (const Composition& one : solids.compositions()) {
+  for (const Assembly& one : solids.assemblies()) {
     double likelihood = 0.0;
     for (const SurfaceTouch& touch : touches) {
       double reach = touch.desk ? 0.0 : 0.3;
       if (!touch.desk) reach = std::min(reach, std::abs(one.distance(touch.end())));
       double depth = 0.0;
-      for (const Composition::Part& part : one.parts)
+      for (const Assembly::Part& part : one.parts)
         depth = std::max(depth, part.depth[static_cast<std::size_t>(&touch - touches.data())]);
       likelihood -= 2.0 * std::log1p((reach * reach + depth * depth) / (3.0 * 0.003 * 0.003));
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What tests of space share: a piece of any form, by its words a set of points; and a cup.
+// What tests of space share: a primitive of any form, by its words a set of points; and a cup.
 #pragma once
 
-#include "space/piece.hpp"
+#include "space/primitive.hpp"
 #include "support/runs.hpp"
 #include "support/shape_laws.hpp"
 #include "support/support.hpp"
@@ -16,9 +16,9 @@
 
 namespace palpate::test {
 
-inline Piece random_piece(Random& random) {
-  Piece out;
-  out.form = static_cast<Piece::Form>(random.index(3));
+inline Primitive random_primitive(Random& random) {
+  Primitive out;
+  out.form = static_cast<Primitive::Form>(random.index(3));
   out.centre = 0.05 * random_direction(random);
   out.turn = Eigen::AngleAxisd(3.0 * random.uniform(), random_direction(random)).toRotationMatrix();
   for (Eigen::Index i = 0; i < 3; ++i) out.half(i) = 0.02 + 0.05 * random.uniform();
@@ -26,23 +26,23 @@ inline Piece random_piece(Random& random) {
   return out;
 }
 
-/// By the words of Piece: within the form, and not in its hollow.
-inline bool holds(const Piece& piece, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d at = piece.turn.transpose() * (point - piece.centre);
+/// By the words of Primitive: within the form, and not in its hollow.
+inline bool holds(const Primitive& primitive, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d at = primitive.turn.transpose() * (point - primitive.centre);
   const auto within = [&](const Eigen::Vector3d& half, double low, double top) {
     if (at.z() < low || at.z() > top) return false;
     const double x = std::abs(at.x()) / half.x();
     const double y = std::abs(at.y()) / half.y();
-    if (piece.form == Piece::Form::box) return x <= 1 && y <= 1;
-    const double z = piece.form == Piece::Form::ellipsoid ? at.z() / half.z() : 0.0;
+    if (primitive.form == Primitive::Form::box) return x <= 1 && y <= 1;
+    const double z = primitive.form == Primitive::Form::ellipsoid ? at.z() / half.z() : 0.0;
     return x * x + y * y + z * z <= 1;
   };
-  const double up = piece.half.z();
-  const bool bowl = piece.hollow() && piece.form == Piece::Form::ellipsoid;
-  if (!within(piece.half, -up, bowl ? 0.0 : up)) return false;
-  if (!piece.hollow()) return true;
-  const Eigen::Vector3d inner = piece.half.array() - piece.wall;
-  return bowl ? !within(inner, -inner.z(), 1.0) : !within(inner, piece.wall - up, 1.0);
+  const double up = primitive.half.z();
+  const bool bowl = primitive.hollow() && primitive.form == Primitive::Form::ellipsoid;
+  if (!within(primitive.half, -up, bowl ? 0.0 : up)) return false;
+  if (!primitive.hollow()) return true;
+  const Eigen::Vector3d inner = primitive.half.array() - primitive.wall;
+  return bowl ? !within(inner, -inner.z(), 1.0) : !within(inner, primitive.wall - up, 1.0);
 }
 
 /// A cup: 8 cm wide, 6 cm deep, its wall 1 cm, its bottom open, in the middle of an area of 26 cm.

@@ -21,19 +21,19 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Mesh = palpate::Surface;
 
-/// A composition and the skin over it, after touches that were off by a millimetre or two.
+/// An assembly and the residual GP over it, after touches that were off by a millimetre or two.
 struct Believed {
-  explicit Believed(const std::vector<Piece>& pieces, std::vector<SurfaceTouch> made = {})
-      : skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005}),
+  explicit Believed(const std::vector<Primitive>& primitives, std::vector<SurfaceTouch> made = {})
+      : residual_gp(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005}),
         touches(std::move(made)) {
-    for (const Piece& piece : pieces) solids.parts.push_back({piece, {}, {}, 0.0});
-    skin.fit(solids, touches);
+    for (const Primitive& primitive : primitives) solids.parts.push_back({primitive, {}, {}, 0.0});
+    residual_gp.fit(solids, touches);
   }
-  Crossings crossings(double side) const { return cross_surface(solids, skin, side); }
+  Crossings crossings(double side) const { return cross_surface(solids, residual_gp, side); }
   Mesh mesh(double side, double desk = 0.0) const { return close_mesh(crossings(side), desk); }
 
-  Composition solids;
-  Skin skin;
+  Assembly solids;
+  ResidualGp residual_gp;
   std::vector<SurfaceTouch> touches;
 };
 
@@ -42,17 +42,18 @@ Matrix3d turned(Random& random) {
 }
 
 Believed any_belief(Random& random) {
-  std::vector<Piece> pieces;
+  std::vector<Primitive> primitives;
   for (std::size_t i = 0; i <= random.index(4); ++i) {
-    Piece piece;
-    piece.form = static_cast<Piece::Form>(random.index(3));
-    piece.centre = Vector3d(0.1, 0.1, 0.06) + 0.04 * random_direction(random);
-    piece.turn = turned(random);
-    for (Eigen::Index k = 0; k < 3; ++k) piece.half(k) = 0.006 + 0.04 * random.uniform();
-    if (random.uniform() < 0.5) piece.wall = std::min(0.002 + 0.004 * random.uniform(), 0.5 * piece.half.minCoeff());
-    pieces.push_back(piece);
+    Primitive primitive;
+    primitive.form = static_cast<Primitive::Form>(random.index(3));
+    primitive.centre = Vector3d(0.1, 0.1, 0.06) + 0.04 * random_direction(random);
+    primitive.turn = turned(random);
+    for (Eigen::Index k = 0; k < 3; ++k) primitive.half(k) = 0.006 + 0.04 * random.uniform();
+    if (random.uniform() < 0.5)
+      primitive.wall = std::min(0.002 + 0.004 * random.uniform(), 0.5 * primitive.half.minCoeff());
+    primitives.push_back(primitive);
   }
-  const Believed bare(pieces);
+  const Believed bare(primitives);
   std::vector<SurfaceTouch> touches;
   for (int i = 0; i < 15; ++i) {
     const Vector3d direction = random_direction(random);
@@ -62,11 +63,11 @@ Believed any_belief(Random& random) {
     touches.push_back({line, hit + 0.004 * (random.uniform() - 0.5), true, false});
     // And a way past it, a little inside.
     const Vector3d at = line.origin + hit * direction;
-    const Vector3d out = Skin::normal(bare.solids, at);
+    const Vector3d out = ResidualGp::normal(bare.solids, at);
     const Vector3d along = out.unitOrthogonal();
     if (i % 3 == 0) touches.push_back({{at - 0.003 * random.uniform() * out - 0.3 * along, along}, 0.6, false, false});
   }
-  return Believed(pieces, touches);
+  return Believed(primitives, touches);
 }
 
 /// How many edges there are; a failure where one is not shared by two triangles that go along it in either direction.
@@ -116,26 +117,28 @@ TEST(ClosedMesh, DoesNotLie) {
   std::size_t free = 0;
   for (int i = 0; i < 20; ++i) {
     const Believed belief = any_belief(random);
-    free += belief.skin.free_points().size();
+    free += belief.residual_gp.free_points().size();
     for (const Mesh::Vertex& one : belief.crossings(0.003).vertices) {
-      const Vector3d normal = Skin::normal(belief.solids, one.position);
-      const double value =
-          std::max(belief.solids.distance(one.position) - belief.skin.mean({one.position, normal}), -one.position.z());
+      const Vector3d normal = ResidualGp::normal(belief.solids, one.position);
+      const double value = std::max(
+          belief.solids.distance(one.position) - belief.residual_gp.mean({one.position, normal}), -one.position.z());
       // Vertices stay a hundredth of a cube, 3e-5, away from its corners, and f rises by little more than 1.
       off += std::abs(value) > 4e-5 ? 1 : 0;
       ++all;
-      // The skin jumps where normals do, and there is a surface between: from no less than -reach() to no more than it.
-      EXPECT_LT(std::abs(value), 2.0 * belief.skin.reach() + 4e-5);
+      // The residual GP jumps where normals do, and there is a surface between: from no less than -reach() to no more
+      // than it.
+      EXPECT_LT(std::abs(value), 2.0 * belief.residual_gp.reach() + 4e-5);
       EXPECT_NEAR(one.normal.norm(), 1.0, 1e-9);
     }
   }
   EXPECT_GT(free, 10U);
-  // Normals jump along the edges of pieces and where two of them meet, lines on a surface that has a thousand vertices.
+  // Normals jump along the edges of primitives and where two of them meet, lines on a surface that has a thousand
+  // vertices.
   EXPECT_LT(off, all / 50);
 }
 
 TEST(ClosedMesh, IsWhereAWayHasPushedTheSurface) {
-  const Piece plate{Piece::Form::box, {0.1, 0.05, 0.1}, Matrix3d::Identity(), {0.1, 0.05, 0.1}, 0.0};
+  const Primitive plate{Primitive::Form::box, {0.1, 0.05, 0.1}, Matrix3d::Identity(), {0.1, 0.05, 0.1}, 0.0};
   const auto onto = [](double x, double off) {
     return SurfaceTouch{{{x, 0.3, 0.1}, {0, -1, 0}}, 0.2 - off, true, false};
   };
@@ -145,7 +148,8 @@ TEST(ClosedMesh, IsWhereAWayHasPushedTheSurface) {
   for (const Mesh::Vertex& one : belief.crossings(0.0025).vertices) {
     if (std::abs(one.position.x() - 0.1) > 0.01 || std::abs(one.position.z() - 0.1) > 0.03 || one.position.y() < 0.05)
       continue;
-    const double value = belief.solids.distance(one.position) - belief.skin.mean({one.position, Vector3d::UnitY()});
+    const double value =
+        belief.solids.distance(one.position) - belief.residual_gp.mean({one.position, Vector3d::UnitY()});
     EXPECT_NEAR(value, 0.0, 4e-5);  // as in DoesNotLie
     least = std::min(least, one.position.y());
   }
@@ -153,8 +157,8 @@ TEST(ClosedMesh, IsWhereAWayHasPushedTheSurface) {
 }
 
 TEST(ClosedMesh, HasTheNormalsOfItsTriangles) {
-  // The skin rises from one contact to the other, by a tenth.
-  const Piece plate{Piece::Form::box, {0.1, 0.05, 0.1}, Matrix3d::Identity(), {0.1, 0.05, 0.1}, 0.0};
+  // The residual GP rises from one contact to the other, by a tenth.
+  const Primitive plate{Primitive::Form::box, {0.1, 0.05, 0.1}, Matrix3d::Identity(), {0.1, 0.05, 0.1}, 0.0};
   const auto onto = [](double x, double off) {
     return SurfaceTouch{{{x, 0.3, 0.1}, {0, -1, 0}}, 0.2 - off, true, false};
   };
@@ -175,29 +179,29 @@ TEST(ClosedMesh, HasTheNormalsOfItsTriangles) {
     turned = std::max(turned, (across.normalized() - Vector3d::UnitY()).norm());
   }
   EXPECT_GT(seen, 50);
-  EXPECT_GT(turned, 0.1);  // the composition's normals would not do
+  EXPECT_GT(turned, 0.1);  // the assembly's normals would not do
 }
 
 TEST(ClosedMesh, EnclosesWhatTheSolidsDo) {
   Random random(3, "test/mesh");
-  for (const Piece::Form form : {Piece::Form::box, Piece::Form::cylinder, Piece::Form::ellipsoid}) {
+  for (const Primitive::Form form : {Primitive::Form::box, Primitive::Form::cylinder, Primitive::Form::ellipsoid}) {
     for (int i = 0; i < 4; ++i) {
-      Piece piece{form, {0.1, 0.1, 0.1}, turned(random), {0.05, 0.03, 0.04}, 0.0};
-      const Mesh whole = Believed({piece}).mesh(kFineResolution);
+      Primitive primitive{form, {0.1, 0.1, 0.1}, turned(random), {0.05, 0.03, 0.04}, 0.0};
+      const Mesh whole = Believed({primitive}).mesh(kFineResolution);
       // Edges are cut by less than half a cube of 2 mm, and so is what bends, by its square over the radius: together
       // below one in a hundred of something 6 to 10 cm wide.
-      EXPECT_NEAR(volume(whole) / piece.volume(), 1.0, 0.01);
+      EXPECT_NEAR(volume(whole) / primitive.volume(), 1.0, 0.01);
       EXPECT_EQ(euler(whole), 2);
-      piece.wall = 0.004;
-      const double outer = form == Piece::Form::ellipsoid ? piece.volume() : volume(whole);
-      const Vector3d inner = piece.half.array() - piece.wall;
-      Piece hollow = piece;
+      primitive.wall = 0.004;
+      const double outer = form == Primitive::Form::ellipsoid ? primitive.volume() : volume(whole);
+      const Vector3d inner = primitive.half.array() - primitive.wall;
+      Primitive hollow = primitive;
       hollow.half = inner;
-      const double within = form == Piece::Form::ellipsoid ? hollow.volume()
-                            : form == Piece::Form::box
-                                ? 8.0 * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall)
-                                : 2.0 * kHalfTurn * inner.x() * inner.y() * (inner.z() + 0.5 * piece.wall);
-      const Mesh vessel = Believed({piece}).mesh(kFineResolution);
+      const double within = form == Primitive::Form::ellipsoid ? hollow.volume()
+                            : form == Primitive::Form::box
+                                ? 8.0 * inner.x() * inner.y() * (inner.z() + 0.5 * primitive.wall)
+                                : 2.0 * kHalfTurn * inner.x() * inner.y() * (inner.z() + 0.5 * primitive.wall);
+      const Mesh vessel = Believed({primitive}).mesh(kFineResolution);
       // Of a wall of 4 mm, rims included, the same is five in a hundred.
       EXPECT_NEAR(volume(vessel) / (outer - within), 1.0, 0.05);
     }
@@ -209,17 +213,18 @@ TEST(ClosedMesh, HasNoHoleInAWallOfThreeMillimetresNorOnAPage) {
   for (const double side : {kFineResolution, kPageSide}) {
     Random random(4, "test/mesh");
     for (int i = 0; i < 12; ++i) {
-      Piece piece{static_cast<Piece::Form>(i % 3), {0.1, 0.1, 0.1}, turned(random), {0.04, 0.04, 0.05}, 0.003};
-      EXPECT_EQ(euler(Believed({piece}).mesh(side)), 2) << i << ", " << side;
+      Primitive primitive{
+          static_cast<Primitive::Form>(i % 3), {0.1, 0.1, 0.1}, turned(random), {0.04, 0.04, 0.05}, 0.003};
+      EXPECT_EQ(euler(Believed({primitive}).mesh(side)), 2) << i << ", " << side;
     }
   }
 }
 
 TEST(ClosedMesh, SaysHowLargeItsCubesAreWhereTheyHadToGrow) {
-  const Piece small{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
+  const Primitive small{Primitive::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
   const Mesh fine = Believed({small}).mesh(kFineResolution);
   EXPECT_THAT(mesh_ply(fine, "quality", "a box"), testing::HasSubstr("comment a box, of cubes of 2 mm\n"));
-  const Piece large{Piece::Form::box, {0.2, 0.2, 0.18}, Matrix3d::Identity(), {0.17, 0.17, 0.17}, 0.0};
+  const Primitive large{Primitive::Form::box, {0.2, 0.2, 0.18}, Matrix3d::Identity(), {0.17, 0.17, 0.17}, 0.0};
   const Mesh coarse = Believed({large}).mesh(kFineResolution);
   // 34 x 34 x 35 cm are more than four million of 2 mm, and of 2.2 mm.
   EXPECT_DOUBLE_EQ(coarse.resolution, 1.1 * 1.1 * kFineResolution);
@@ -227,7 +232,7 @@ TEST(ClosedMesh, SaysHowLargeItsCubesAreWhereTheyHadToGrow) {
 }
 
 TEST(ClosedMesh, EndsAtTheDesk) {
-  const Piece sunk{Piece::Form::box, {0.1, 0.1, 0.02}, Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
+  const Primitive sunk{Primitive::Form::box, {0.1, 0.1, 0.02}, Matrix3d::Identity(), {0.05, 0.03, 0.03}, 0.0};
   const Mesh mesh = Believed({sunk}).mesh(kFineResolution);
   EXPECT_NEAR(volume(mesh), 0.1 * 0.06 * 0.05, 0.01 * 0.1 * 0.06 * 0.05);
   EXPECT_EQ(euler(mesh), 2);
@@ -241,8 +246,8 @@ TEST(ClosedMesh, EndsAtTheDesk) {
   EXPECT_GT(below, 1000);
 }
 
-TEST(ClosedMesh, FollowsTheSkin) {
-  const Piece plate{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.05, 0.003, 0.05}, 0.0};
+TEST(ClosedMesh, FollowsTheResidualGp) {
+  const Primitive plate{Primitive::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.05, 0.003, 0.05}, 0.0};
   // 2 mm in front of one side.
   const Believed belief({plate}, {{{{0.1, 0.3, 0.1}, {0, -1, 0}}, 0.195, true, false}});
   double front = 0.0;
@@ -263,7 +268,7 @@ TEST(ClosedMesh, IsNothingWhereNothingIsBelievedIn) {
 }
 
 TEST(ClosedMesh, IsAFileOfItsNumbers) {
-  const Piece box{Piece::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
+  const Primitive box{Primitive::Form::box, {0.1, 0.1, 0.1}, Matrix3d::Identity(), {0.02, 0.03, 0.04}, 0.0};
   Mesh mesh = Believed({box}).mesh(0.01, 0.5);
   EXPECT_EQ(mesh.vertices.front().position,
             Believed({box}).mesh(0.01).vertices.front().position + Vector3d(0.0, 0.0, 0.5));

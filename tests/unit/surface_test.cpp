@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `surface: two_part`: heights from the taps on an object alone, gated by the weight.
-#include "experiment/metrics.hpp"
+#include "belief/metrics.hpp"
 #include "record/summary.hpp"
 #include "support/arrays.hpp"
 #include "support/runs.hpp"

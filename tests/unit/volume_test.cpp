@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is solid, by cubes: of a scene, of pieces, and with what the skin adds.
+// What is solid, by cubes: of a scene, of primitives, and with what the residual GP adds.
 #include "space/volume.hpp"
 
 #include "space_bench.hpp"
@@ -28,16 +28,16 @@ TEST(Cubes, HoldWhatIsSolidAndNotWhatItEncloses) {
   EXPECT_EQ(intersection_over_union(Cubes::Held(truth.size()), Cubes::Held(truth.size())), 1.0);
 }
 
-TEST(Cubes, OfACompositionAreThoseWhoseCentresThePiecesHold) {
+TEST(Cubes, OfAnAssemblyAreThoseWhoseCentresThePrimitivesHold) {
   Random random(9, "test/cubes");
-  const Skin nothing(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005});
+  const ResidualGp nothing(make<Kernel>(shared_host(), "matern32", "{length_scale: 4 cm}"), {0.006, 0.0005});
   const Cubes cubes({0.0, 0.0, 0.1}, 0.12, 0.006);
   for (int i = 0; i < 10; ++i) {
-    Composition one;
+    Assembly one;
     for (int k = 0; k < 2; ++k) {
-      Piece piece = random_piece(random);
-      piece.centre.z() += 0.1;
-      one.parts.push_back({piece, {}, {}, 0.0});
+      Primitive primitive = random_primitive(random);
+      primitive.centre.z() += 0.1;
+      one.parts.push_back({primitive, {}, {}, 0.0});
     }
     const Cubes::Held held = cubes.of(one, nothing);
     std::size_t index = 0;
@@ -46,7 +46,7 @@ TEST(Cubes, OfACompositionAreThoseWhoseCentresThePiecesHold) {
       for (int y = 0; y < 40; ++y) {
         for (int z = 0; z < 37; ++z, ++index) {
           const Vector3d at(-0.117 + 0.006 * x, -0.117 + 0.006 * y, 0.003 + 0.006 * z);
-          const bool within = holds(one.parts[0].piece, at) || holds(one.parts[1].piece, at);
+          const bool within = holds(one.parts[0].primitive, at) || holds(one.parts[1].primitive, at);
           count += held[index] == within ? 0 : 1;
         }
       }
@@ -56,28 +56,29 @@ TEST(Cubes, OfACompositionAreThoseWhoseCentresThePiecesHold) {
   }
 }
 
-TEST(Cubes, AreFewerOrMoreByWhatTheSkinAdds) {
-  Composition ball;
+TEST(Cubes, AreFewerOrMoreByWhatTheResidualGpAdds) {
+  Assembly ball;
   ball.parts.push_back(
-      {{Piece::Form::ellipsoid, {0, 0, 0.1}, Eigen::Matrix3d::Identity(), {0.05, 0.05, 0.05}, 0.0}, {}, {}, 0.0});
-  Skin skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 8 cm}"), {0.006, 0.0005});
+      {{Primitive::Form::ellipsoid, {0, 0, 0.1}, Eigen::Matrix3d::Identity(), {0.05, 0.05, 0.05}, 0.0}, {}, {}, 0.0});
+  ResidualGp residual_gp(make<Kernel>(shared_host(), "matern32", "{length_scale: 8 cm}"), {0.006, 0.0005});
   std::vector<SurfaceTouch> touches;  // 4 mm outside all around
   Random random(10, "test/cubes");
   for (int i = 0; i < 150; ++i) {
     const Vector3d out = random_direction(random);
     touches.push_back({{Vector3d(0, 0, 0.1) + 0.154 * out, -out}, 0.1, true, false});
   }
-  skin.fit(ball, touches);
-  const Cubes::Held held = Cubes({0, 0, 0.1}, 0.12, 0.003).of(ball, skin);
+  residual_gp.fit(ball, touches);
+  const Cubes::Held held = Cubes({0, 0, 0.1}, 0.12, 0.003).of(ball, residual_gp);
   const double volume = 2.7e-8 * static_cast<double>(std::count(held.begin(), held.end(), true));
   EXPECT_NEAR(std::cbrt(volume * 3 / (4 * kHalfTurn)), 0.054, 5e-4);
 }
 
-TEST(Cubes, OfPiecesSideBySideHaveWhatTheSkinAddsToEach) {
+TEST(Cubes, OfPrimitivesSideBySideHaveWhatTheResidualGpAddsToEach) {
   // Two plates that face y, from -4.5 to 0.5 mm and from 7 to 9 mm. The first is 2.5 mm farther out in front.
-  Composition plates;
+  Assembly plates;
   for (const auto& [middle, half] : {std::pair(-0.002, 0.0025), {0.008, 0.001}}) {
-    const Piece plate{Piece::Form::box, {0, middle, 0.06}, Eigen::Matrix3d::Identity(), {0.048, half, 0.048}, 0.0};
+    const Primitive plate{
+        Primitive::Form::box, {0, middle, 0.06}, Eigen::Matrix3d::Identity(), {0.048, half, 0.048}, 0.0};
     plates.parts.push_back({plate, {}, {}, 0.0});
   }
   std::vector<SurfaceTouch> touches;
@@ -87,9 +88,9 @@ TEST(Cubes, OfPiecesSideBySideHaveWhatTheSkinAddsToEach) {
       touches.push_back({{{0.01 * x, 0.2, 0.01 * z}, {0, -1, 0}}, 0.191, true, false});
     }
   }
-  Skin skin(make<Kernel>(shared_host(), "matern32", "{length_scale: 1 cm}"), {0.006, 0.0001});
-  skin.fit(plates, touches);
-  const Cubes::Held held = Cubes({0, 0, 0.06}, 0.08, 0.004).of(plates, skin);
+  ResidualGp residual_gp(make<Kernel>(shared_host(), "matern32", "{length_scale: 1 cm}"), {0.006, 0.0001});
+  residual_gp.fit(plates, touches);
+  const Cubes::Held held = Cubes({0, 0, 0.06}, 0.08, 0.004).of(plates, residual_gp);
   // Centres at y = -2 and 2 mm, 24 across and 24 up, but for some at the corners, far from contacts. Those at 10 mm,
   // half as many, would be solid with what is added to the other.
   EXPECT_NEAR(static_cast<double>(std::count(held.begin(), held.end(), true)), 2 * 24 * 24, 24);

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The belief `height_map`: one height per position on the desk, tapped from above.
+#pragma once
+
+#include "belief/height_models.hpp"
+#include "belief/metrics.hpp"
+
+#include <palpate/belief.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+
+class HeightMap final : public Belief {
+ public:
+  using Options = HeightMapOptions;
+  /// `context` must outlive it. Throws Error for options that a plugin rejects.
+  HeightMap(const HeightMapOptions& options, const Context& context);
+
+  std::vector<Quantity> offers() const override;
+  std::vector<PlannedModel> plan(const ReadPlan& plan) override;
+  void begin(Stage stage) override;
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override;
+  void add(const TapRequest& request, const TapResult& result) override;
+  void update() override;
+  void infer() override;
+  QuantitySet available() const override;
+
+  const Candidates& candidates() const override { return lines_; }
+  TapCounts counts() const override { return counts_; }
+  const std::vector<TapReading>& readings() const override { return readings_; }
+  const Eigen::VectorXd& values(std::string_view quantity) const override;
+  std::optional<double> scalar(std::string_view quantity) const override;
+  const HypothesisSample& hypotheses() const override;
+  Prediction predict(Eigen::Index candidate, bool probability) const override;
+
+  BeliefState state(std::optional<Eigen::Index> candidate) const override;
+  void set_truth(const Scene* scene) override;
+  Errors errors() override;
+  std::optional<ShownErrors> shown_errors() override;
+  std::vector<ObjectErrors> object_errors() override;
+  Surface surface(double /*resolution*/) override { return {reconstruction(maps()), {}, {}, 0.0}; }
+
+  const HeightModels& models() const { return models_; }
+  const CandidateGrid& grid() const { return grid_; }
+
+ private:
+  /// Returns the arrays of the surface that `models` have.
+  SurfaceMaps maps(const ModelSet& models) const;
+  SurfaceMaps maps() const { return maps(begun_); }
+  std::optional<double> expected_rmse_of(const SurfaceMaps& maps) const;
+  const Truth* truth();
+  void read_again();
+  void add_gp_states(BeliefState& out, bool summary) const;
+  void add_values(BeliefState& out, Eigen::Index candidate) const;
+  void add_calibration(BeliefState& out) const;
+
+  const HeightMapOptions options_;
+  const Context& context_;
+  Candidates lines_;
+  CandidateGrid grid_;
+  HeightModels models_;
+  ReadPlan plan_;
+  ModelSet begun_;  ///< the models of begun stages, which the record has
+  TapCounts counts_;
+  std::vector<TapReading> readings_;
+  mutable Eigen::VectorXd height_std_, measurement_std_;  ///< computed when they are read
+  const Scene* scene_ = nullptr;                          ///< the truth
+  std::optional<Truth> truth_;                            ///< the same at the candidates
+};
+
+}  // namespace palpate

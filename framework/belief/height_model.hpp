@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The GP of the heights of all contacts, and its maps over the candidates; the map of the labels.
+#pragma once
+
+#include "belief/gp_model.hpp"
+
+#include <Eigen/Core>
+
+#include <utility>
+
+namespace palpate {
+
+/// Maps have M values, and are empty before the first update.
+class HeightModel {
+ public:
+  /// `has_mean`: whether the mean is the surface (`surface: single`). `desk`: its height, metres.
+  HeightModel(GpModel gp, bool has_mean, double desk) : gp_(std::move(gp)), has_mean_(has_mean), desk_(desk) {}
+
+  GpModel& gp() { return gp_; }
+  const GpModel& gp() const { return gp_; }
+
+  /// Brings the maps up to date with the GP, after `taps` taps. Throws Error for values that are not finite.
+  void update_maps(int taps);
+
+  /// Variance relative to the prior, noise excluded, in [0, 1], and the variance itself, square metres.
+  const Eigen::VectorXd& uncertainty() const { return uncertainty_; }
+  const Eigen::VectorXd& variance() const { return variance_; }
+  /// Metres, in the frame of the scene.
+  const Eigen::VectorXd& mean() const { return mean_; }
+
+ private:
+  GpModel gp_;
+  bool has_mean_;
+  double desk_;
+  Eigen::VectorXd uncertainty_, variance_, mean_;
+};
+
+/// The map of a GP of labels, which is output 1 of the height GP if both have the same hyperparameters.
+class LabelMap {
+ public:
+  /// `clip`: whether weight() is clipped.
+  explicit LabelMap(bool clip) : clip_(clip) {}
+
+  /// Reads the map of an output, after `taps` taps. Throws Error for values that are not finite.
+  void update(const GaussianProcess& process, int output, int taps);
+
+  /// The mean of the labels.
+  const Eigen::VectorXd& mean() const { return mean_; }
+  /// The mean clipped to [0, 1]: the probability of `footprint: gp_regression`.
+  const Eigen::VectorXd& clipped() const { return clipped_; }
+  /// The weight of the paper's acquisition: one of the two.
+  const Eigen::VectorXd& weight() const { return clip_ ? clipped_ : mean_; }
+
+ private:
+  bool clip_;
+  Eigen::VectorXd mean_, clipped_;
+};
+
+/// Sets `out` to the posterior mean of output 0 in the frame of the scene, metres. Throws Error for values that are not
+/// finite.
+void read_surface(const GaussianProcess& process, double desk, int taps, Eigen::VectorXd& out);
+
+}  // namespace palpate

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include "belief/height_models.hpp"
+
+#include "config/tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace palpate {
+
+// The level of an object is not known before it is touched: a thousand signals make it as good as free, unless the
+// surface varies by less than a thousandth of its height.
+constexpr double kFreeLevel = 1000.0;
+// With outliers the level has a size: a level that may have any value makes an outlier of the first tap.
+constexpr double kLevelWithOutliers = 1.0;
+
+namespace {
+
+EngineSettings posterior_settings(const EngineOptions& options, const RunSettings& run, int prior_points) {
+  EngineSettings out;
+  out.engine = static_cast<EngineSettings::Kind>(options.type);
+  out.accuracy = std::min(options.accuracy, 0.1 * run.tie_tolerance);
+  out.tolerance = options.tolerance;
+  out.taps = static_cast<int>(run.taps) + prior_points;
+  out.workers = std::make_shared<Workers>(static_cast<int>(options.threads));
+  return out;
+}
+
+bool same(const PluginChoice& a, const PluginChoice& b) {
+  return a.type == b.type && a.options->canonical() == b.options->canonical();
+}
+
+GpModel make_height_gp(const HeightOptions& height, const EngineSettings& posterior, const CandidateGrid& candidates,
+                       const Context& context, bool only_objects) {
+  GpSettings settings{height.signal, height.noise, 0.0};
+  if (only_objects) settings.mean_ratio = height.outlier_probability ? kLevelWithOutliers : kFreeLevel;
+  const GpModel::Data data{only_objects ? "fitting/surface" : "fitting/height", false, only_objects};
+  return {data,
+          height.kernel.value_or(context.run.kernel),
+          height.fitting.value_or(context.run.fitting),
+          settings,
+          posterior,
+          candidates,
+          context};
+}
+
+}  // namespace
+
+HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid& candidates, const Context& context)
+    : clock_(context.clock),
+      log_(options, context.scene),
+      heights_(make_height_gp(options.height, posterior_settings(options.engine, context.run, log_.prior_size()),
+                              candidates, context, false),
+               options.surface == HeightMapOptions::Surface::single, context.scene.desk()),
+      label_map_(options.label.clip) {
+  const EngineSettings& engine = heights_.gp().engine();
+  const HeightOptions& height = options.height;
+  const LabelOptions& label = options.label;
+  GpSettings settings{label.signal, label.noise, label.prior_mean};
+  if (label.hyperparameters != LabelOptions::Hyperparameters::shared) {
+    const PluginChoice kernel = label.kernel.value_or(context.run.kernel);
+    labels_.emplace(GpModel::Data{"fitting/weight", true}, kernel, label.fitting.value_or(context.run.fitting),
+                    settings, engine, candidates, context);
+    // Models that are equal and stay so are two outputs of one process.
+    const auto taps = static_cast<int>(context.run.taps);
+    if (same(height.kernel.value_or(context.run.kernel), kernel) &&
+        height.noise / height.signal == label.noise / label.signal && !heights_.gp().is_fitted_within(taps) &&
+        !labels_->is_fitted_within(taps))
+      labels_.reset();
+  }
+  if (is_joined()) {
+    // By the ratio of noise to signal, the labels' noise is that of the heights.
+    settings.noise = height.noise / height.signal * settings.signal;
+    heights_.gp().add_labels(settings);
+  }
+  footprint_.emplace(options.footprint, candidates, context);
+  if (footprint_->is_label_gp()) footprint_.reset();
+  if (options.surface == HeightMapOptions::Surface::two_part)
+    surface_.emplace(make_height_gp(height, engine, candidates, context, true), height.outlier_probability, candidates,
+                     context.scene.desk());
+}
+
+void HeightModels::add(const TapRequest& request, const TapResult& result) {
+  log_.add(request, result, height_noise());
+  if (result.is_contact()) is_updated_ = is_inferred_ = false;
+}
+
+double HeightModels::outlier_probability(std::size_t contact) const {
+  const auto index = static_cast<Eigen::Index>(contact);
+  return outliers() != nullptr && index < outliers()->probabilities().size() ? outliers()->probabilities()(index) : 0.0;
+}
+
+double HeightModels::wrong_label_probability(std::size_t contact) const {
+  const double all = outlier_probability(contact);
+  return all > 0.0 ? std::min(all, outliers()->by_label()(static_cast<Eigen::Index>(contact))) : 0.0;
+}
+
+int HeightModels::failed_fits() const {
+  return heights_.gp().failed_fits() + (labels_ ? labels_->failed_fits() : 0) +
+         (surface_ ? surface_->gp().failed_fits() : 0);
+}
+
+ModelSet HeightModels::models_of(const QuantitySet& quantities, bool at_one_candidate) const {
+  using namespace quantity;
+  const auto has = [&](const char* name) { return quantities.count(name) != 0; };
+  const bool rmse = has(kExpectedRmse);
+  const bool height = has(kHeightMean) || has(kHeightStd) || rmse;
+  const bool probability = has(kObjectProbability) || (rmse && is_two_part());
+  ModelSet out;
+  out.footprint = footprint_ && (probability || has(kHypotheses) || has(kUndiscoveredProbability));
+  out.hypotheses = footprint_ && has(kHypotheses);
+  out.labels = has(kLabelMean) || (probability && !footprint_);
+  if (is_two_part()) {
+    // The surface without outliers needs no map for the height at one candidate.
+    out.surface_map = height && !(at_one_candidate && surface_->has_outliers());
+    out.surface = height || has(kOutliers);
+  }
+  out.heights = has(kUncertainty) || has(kMeasurementStd) || (height && !is_two_part()) || (out.labels && is_joined());
+  return out;
+}
+
+std::vector<std::string> HeightModels::names_of(const ModelSet& models) const {
+  std::vector<std::string> out;
+  if (models.heights) out.emplace_back("height GP");
+  if (models.surface) out.emplace_back("surface GP");
+  if (models.labels) out.emplace_back("label GP");
+  if (models.footprint) out.push_back("footprint " + footprint_->name());
+  return out;
+}
+
+void HeightModels::build(const ModelSet& models) {
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  bool more = false;
+  if (models.heights) more = heights_.gp().show(0) || more;
+  if (models.labels) more = (labels_ ? *labels_ : heights_.gp()).show(label_output()) || more;
+  if (models.surface) more = surface_->show(models.surface_map) || more;
+  if (models.footprint) more = footprint_->show(models.hypotheses) || more;
+  if (more) is_updated_ = false;
+}
+
+void HeightModels::update() {
+  if (is_updated_) return;
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  add_data();
+  find_outliers();
+  is_updated_ = true;
+  is_inferred_ = false;
+}
+
+template <class Visit>
+void HeightModels::for_each_gp(const Visit& visit) {
+  visit(heights_.gp());
+  if (labels_) visit(*labels_);
+  if (surface_) visit(surface_->gp());
+}
+
+/// Has all models take in the contacts since, as they are read now.
+void HeightModels::add_data() {
+  if (log_.has_changed_labels()) {
+    log_.reset_changed_labels();
+    // A GP of heights alone stays: only their values change.
+    if (is_joined()) heights_.gp().reset();
+    if (labels_) labels_->reset();
+    if (surface_) surface_->reset();
+    if (footprint_) footprint_->reset();
+  }
+  for_each_gp([&](GpModel& gp) { gp.add_data(log_, clock_); });
+  if (log_.has_offset()) {
+    heights_.gp().set_heights(log_);
+    if (surface_) surface_->gp().set_heights(log_);
+  }
+  if (!footprint_ || !footprint_->is_shown()) return;
+  footprint_->update(log_);
+  for_each_gp([&](GpModel& gp) { gp.set_positions(log_, footprint_->positions()); });
+}
+
+/// Has the models of heights trust each contact as far as it is no outlier.
+void HeightModels::find_outliers() {
+  Eigen::VectorXd probabilities;
+  if (outliers() != nullptr) {
+    surface_->find_outliers(log_, footprint_ && footprint_->is_shown() ? &footprint_->plugin() : nullptr);
+    probabilities = outliers()->probabilities();
+  } else if (log_.has_uneven_noise()) {
+    probabilities = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(log_.contacts().size()));
+  } else {
+    return;
+  }
+  const Eigen::VectorXd trust = log_.trust(probabilities, height_noise());
+  heights_.gp().set_trust(log_, trust);
+  if (surface_) surface_->gp().set_trust(log_, trust);
+}
+
+void HeightModels::infer() {
+  if (is_inferred_) return;
+  const PhaseClock::Scope infer(clock_, Phase::infer);
+  if (heights_.gp().is_stale()) {
+    heights_.update_maps(log_.taps());
+    if (is_joined() && label_gp()) label_map_.update(heights_.gp().process(), label_output(), log_.taps());
+    heights_.gp().set_stale(false);
+  }
+  if (labels_ && labels_->is_stale()) {
+    labels_->update_maps();
+    label_map_.update(labels_->process(), label_output(), log_.taps());
+    labels_->set_stale(false);
+  }
+  if (surface_) surface_->update_maps(log_);
+  is_inferred_ = true;
+}
+
+HeightModels::Output HeightModels::output(const GpModel& model, int output) {
+  if (!model.shows(output)) return {};
+  return {&model.process(), output, model.last_fit()};
+}
+
+Prediction HeightModels::predict(Eigen::Index candidate, bool probability) const {
+  Prediction out = surface_ && surface_->has_outliers()
+                       ? surface_->predict(static_cast<int>(candidate), log_)
+                       : Prediction{height_mean()(candidate), std::sqrt(height_variance()(candidate))};
+  if (probability) out.probability = this->probability()(candidate);
+  return out;
+}
+
+}  // namespace palpate

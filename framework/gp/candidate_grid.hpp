@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// CandidateGrid for the next tap: the centres of a grid of cells over the area.
+#pragma once
+
+#include <palpate/belief.hpp>
+#include <palpate/scene.hpp>
+#include <palpate/types.hpp>
+
+namespace palpate {
+
+/// columns x rows positions, row by row: index = row * columns + column. x increases with the column, y with the row.
+struct CandidateGrid {
+  int columns = 0;
+  int rows = 0;
+  Points points;
+  /// Coordinates of columns and rows: point i is at (xs(i % columns), ys(i / columns)). Empty if the positions are not
+  /// a product grid.
+  Eigen::VectorXd xs, ys;
+
+  int size() const { return static_cast<int>(points.rows()); }
+  bool is_grid() const { return xs.size() > 0; }
+  Target target(int index) const { return {points(index, 0), points(index, 1)}; }
+
+  /// Returns the candidate whose cell contains (x, y), or the nearest cell for a position outside the area.
+  int nearest(double x, double y, const Area& area) const;
+};
+
+/// Returns a grid with `count` cells along each side, at least 1.
+CandidateGrid grid_by_count(const Area& area, int count);
+
+/// Returns a grid with cells of about `spacing` metres: cells_along() per side, at most kMaxCellsPerSide.
+CandidateGrid grid_by_spacing(const Area& area, double spacing);
+
+/// Returns the positions (x, y) for all y of `ys` and, for each, all x of `xs`. Order and spacing are arbitrary.
+CandidateGrid product_grid(Eigen::VectorXd xs, Eigen::VectorXd ys);
+
+/// Returns round(side / spacing), at least 1. A real number, because it may exceed every integer.
+double cells_along(double side, double spacing);
+
+/// Returns the grid of fixed candidates.
+CandidateGrid grid_of(const Candidates& candidates);
+
+}  // namespace palpate

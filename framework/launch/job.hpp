@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// The execution of one job of a sweep, at most once to its end, however many processes try. The guarantee needs no
+// cooperation of launchers:
+//
+// 1. The process takes the lock of the job's record, or the job is busy.
+// 2. The last line of the record shows whether anything is left to do.
+// 3. The process appends the attempt, and starts the run or resumes it after its last recorded tap.
+// 4. The line `end` is the result, and summary.json is its copy. A process that dies earlier leaves an unfinished run,
+//    which can be resumed.
+#pragma once
+
+#include "record/run.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace palpate {
+
+/// The end of an attempt, also used as the exit status of the child process.
+enum class JobEnd {
+  done = 0,           ///< by this attempt or before
+  failed = 1,         ///< by this attempt or before; the record has the reason
+  unrecorded = 2,     ///< the end could not be recorded
+  blocked = 3,        ///< the arm or the program is not available; the job stays open
+  busy = 75,          ///< another process runs the job; nothing was done
+  interrupted = 130,  ///< by the user; the job can be resumed
+};
+
+/// Message of a child before it ends with `blocked`, because a plugin may end the child with the same status.
+inline constexpr const char* kBlocked = "blocked";
+
+/// Runs the job in `directory`, whose name is the job's id. Does nothing if the job is done, or has failed and
+/// options.retry_failed is false. An error becomes the reason of a recorded failure, except for a deleted config, which
+/// `palpate sweep` writes again.
+///
+/// Throws Error if nothing can be recorded, or if a file of a done job cannot be written. Throws Error (busy) if
+/// another process uses the arm, or if the external program has changed.
+JobEnd run_job(const RunEnvironment& environment, const std::filesystem::path& directory, const ResumeOptions& options);
+
+/// Returns whether the job is done or has failed.
+bool has_ended(const std::filesystem::path& directory);
+
+/// Returns the number of attempts since the job last ended, according to its record.
+int attempts_of(const std::filesystem::path& directory);
+
+/// Records a failure of a job whose process died, unless the job has ended or another process runs it.
+void record_failure(const std::filesystem::path& directory, const std::string& reason);
+
+}  // namespace palpate

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// The interface of launchers, which run the jobs of a sweep on this machine or on a cluster. A launcher accepts jobs
+// and returns them. The directory of a job alone records whether the job is done, because schedulers err. The job
+// itself (launch/job.hpp) guarantees that it runs only once, also when several launchers hold it.
+//
+// A new launcher NAME is a file launch/NAME_launcher.cpp that defines the LauncherType NAME_launcher, and its name in
+// the table of palpate_sweep.cmake.
+#pragma once
+
+#include "record/run.hpp"
+#include "sweep/sweep.hpp"
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+class Launcher {
+ public:
+  /// The result of poll().
+  struct State {
+    std::vector<std::size_t> returned;  ///< jobs that ended or were given up since the last call
+    bool all_recorded = true;           ///< false: a returned job could not record its end or write its files
+    bool blocked = false;               ///< a job could not begin, for a reason that holds for all; no job is waiting
+    int running = 0;                    ///< number of jobs, as far as the launcher can see
+    int waiting = 0;                    ///< number of jobs
+    bool empty_handed() const { return running == 0 && waiting == 0; }
+  };
+
+  virtual ~Launcher() = default;
+
+  /// Accepts jobs (ascending indices into Sweep::jobs, none accepted before) and returns without waiting for them.
+  /// Throws Error if no job can be accepted.
+  virtual void submit(const std::vector<std::size_t>& jobs) = 0;
+
+  /// Waits for the next event, for at most `seconds`. Returns early after a signal, and at once if no job runs or
+  /// waits. Throws Error if the state of the jobs can no longer be found out.
+  virtual State poll(double seconds) = 0;
+
+  /// Stops running jobs after their present tap and drops waiting jobs. poll() still returns the running jobs.
+  virtual void cancel() = 0;
+
+  /// Returns the command that ends the jobs that outlive this process; "" if no job does.
+  virtual std::string stop_command() const { return {}; }
+};
+
+/// Options for the scheduler of a cluster.
+struct ClusterOptions {
+  std::string partition, time, account;  ///< in the form that the scheduler reads; "": the default of the cluster
+  std::vector<std::string> words{};      ///< further options of the scheduler, dashes included
+};
+
+struct LaunchOptions {
+  int workers = 1;              ///< parallel jobs; on a cluster: parallel jobs of one task, each with its own core
+  ResumeOptions resume;         ///< of every job
+  int most_attempts = 3;        ///< starts per job; a job that was killed this often has failed
+  bool wait_for_others = true;  ///< waits for jobs that other processes run, and runs them if those processes die
+  // Only for clusters:
+  bool one_at_a_time = false;  ///< runs one task at a time, over all arrays
+  ClusterOptions cluster{};
+  int jobs_per_task = 1;
+};
+
+/// An array of tasks in the queue of a cluster.
+struct TaskArray {
+  int id = 0;
+  int tasks = 0;
+  int jobs = 0;  ///< of all tasks
+  std::filesystem::path logs;
+  std::string doubt;  ///< message of the scheduler if no node can run the array now; else ""
+};
+
+/// What a launcher is made from. `environment` and `sweep` must outlive the launcher.
+struct LaunchOrder {
+  const RunEnvironment& environment;
+  const Sweep& sweep;
+  LaunchOptions options;
+  std::function<void(const TaskArray&)> submitted;  ///< called with each array once the cluster has accepted it
+};
+
+/// An entry of the table of launchers.
+struct LauncherType {
+  std::unique_ptr<Launcher> (*make)(const LaunchOrder& order);
+  /// Throws Error for options that this launcher rejects; null: it accepts all.
+  void (*check_options)(const ClusterOptions& options) = nullptr;
+  /// Throws Error if this machine lacks the programs of the scheduler; null: none is needed.
+  void (*check_installed)() = nullptr;
+};
+
+/// The launcher of this machine. All others are clusters, where jobs go on without this process.
+inline constexpr const char* kLocal = "local";
+
+/// The names in the table of launchers (palpate_sweep.cmake). A program needs no launcher to read them.
+inline constexpr std::array kLaunchers{
+#define PALPATE_LAUNCHER(name) #name,
+#include "launch/launcher_table.inc"
+#undef PALPATE_LAUNCHER
+};
+
+/// Returns the entry with this name, one of kLaunchers.
+const LauncherType& launcher_type(const std::string& name);
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+# palpate_sweep: many runs from one config, and the launchers that run them.
+# The table of launchers, in the order of `--launcher`; the first one is the default. launch/NAME_launcher.cpp has NAME.
+set(launchers
+  local
+  slurm)
+list(TRANSFORM launchers PREPEND launch/ OUTPUT_VARIABLE launcher_files)
+list(TRANSFORM launcher_files APPEND _launcher.cpp)
+list(TRANSFORM launchers REPLACE "(.+)" "PALPATE_LAUNCHER(\\1)\n" OUTPUT_VARIABLE launcher_table)
+list(JOIN launcher_table "" launcher_table)
+file(CONFIGURE OUTPUT launch/launcher_table.inc CONTENT "${launcher_table}")
+
+add_library(palpate_sweep STATIC
+  sweep/condition.cpp sweep/sobol.cpp sweep/description.cpp sweep/plan.cpp sweep/draft.cpp
+  sweep/sweep.cpp sweep/pooled_sweep.cpp sweep/pooled_keys.cpp sweep/pooled_values.cpp sweep/earlier_results.cpp sweep/tap_summaries.cpp
+  launch/job.cpp launch/execute_jobs.cpp launch/children.cpp launch/slurm.cpp launch/mounts.cpp
+  launch/launcher_table.cpp ${launcher_files})
+target_include_directories(palpate_sweep PUBLIC ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR})
+target_link_libraries(palpate_sweep PUBLIC palpate_core PRIVATE palpate_warnings Boost::headers)
+# Other targets with the same compiler flags reuse this precompiled header.
+target_precompile_headers(palpate_sweep PRIVATE <Eigen/Core> <algorithm> <filesystem> <fmt/format.h> <functional>
+                                                <memory> <optional> <string> <vector>)
+target_compile_options(palpate_sweep PRIVATE ${quick_to_build})
+palpate_in_batches(palpate_sweep)

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "space/nonnegative.hpp"
+
+#include <cmath>
+
+namespace palpate {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+void Nonnegative::append(const Eigen::MatrixXd& s, const VectorXd& d) {
+  const Index n = d_.size();
+  const Index m = d.size();
+  s_.conservativeResize(n + m, n + m);
+  s_.rightCols(m) = s;
+  s_.bottomRows(m).leftCols(n) = s.topRows(n).transpose();
+  d_.conservativeResize(n + m);
+  d_.tail(m) = d;
+  is_.resize(static_cast<std::size_t>(n + m), Is::free);
+}
+
+bool Nonnegative::hold(int unknown) {
+  const bool regular = factor_.append(VectorXd(s_.col(unknown)(held_)), s_(unknown, unknown));
+  is_[static_cast<std::size_t>(unknown)] = regular ? Is::held : Is::aside;
+  if (regular) {
+    held_.push_back(unknown);
+  } else {
+    ++set_aside_;
+  }
+  return regular;
+}
+
+void Nonnegative::hold_only(const std::vector<int>& unknowns) {
+  for (const int one : held_) is_[static_cast<std::size_t>(one)] = Is::free;
+  held_.clear();
+  factor_.clear();
+  for (const int one : unknowns) hold(one);
+}
+
+VectorXd Nonnegative::unbounded() const {
+  VectorXd out = d_(held_);
+  for (int i = 0; i < factor_.size(); ++i) out(i) = (out(i) - factor_.row(i).dot(out.head(i))) / factor_.pivot(i);
+  for (int i = factor_.size() - 1; i >= 0; --i) {
+    out(i) /= factor_.pivot(i);
+    out.head(i) -= out(i) * factor_.row(i);
+  }
+  return out;
+}
+
+void Nonnegative::settle() {
+  while (true) {
+    const VectorXd best = unbounded();
+    // As far towards it as none becomes negative; whoever is 0 first is let go, whatever rounding makes of its value.
+    double share = 1.0;
+    Index first = -1;
+    for (Index i = 0; i < best.size(); ++i) {
+      if (best(i) > 0.0) continue;
+      const double way = values_(i) > 0.0 ? values_(i) / (values_(i) - best(i)) : 0.0;
+      if (first >= 0 && !(way < share)) continue;
+      share = way;
+      first = i;
+    }
+    if (first < 0) {
+      values_ = best;
+      return;
+    }
+    std::vector<int> kept;
+    VectorXd left = VectorXd::Zero(d_.size());
+    for (Index i = 0; i < best.size(); ++i) {
+      const double value = values_(i) + share * (best(i) - values_(i));
+      if (i == first || !(value > 0.0)) continue;
+      kept.push_back(held_[static_cast<std::size_t>(i)]);
+      left(kept.back()) = value;
+    }
+    hold_only(kept);
+    values_ = left(held_);
+  }
+}
+
+void Nonnegative::solve() {
+  if (d_.size() == 0) return;
+  const double rounding = 1e-13 * d_.cwiseAbs().maxCoeff();
+  const auto cost = [&] { return -0.5 * values_.dot(VectorXd(d_(held_))); };  // where they are optimal
+  std::vector<bool> refused(is_.size());
+  while (true) {
+    const VectorXd pull = d_ - s_(Eigen::all, held_) * values_;
+    int next = -1;
+    for (int i = 0; i < static_cast<int>(is_.size()); ++i) {
+      const auto one = static_cast<std::size_t>(i);
+      if (is_[one] == Is::free && !refused[one] && pull(i) > (next < 0 ? rounding : pull(next))) next = i;
+    }
+    if (next < 0) return;
+    const std::vector<int> before = held_;
+    const VectorXd values = values_;
+    const double least = cost();
+    if (!hold(next)) continue;
+    values_.conservativeResize(values.size() + 1);
+    values_.tail(1).setZero();
+    settle();
+    // By more than rounding: the same set in another order is no better.
+    constexpr double kMinRelativeDecrease = 1e-13;
+    if (cost() < least - kMinRelativeDecrease * std::abs(least)) continue;
+    hold_only(before);
+    values_ = values;
+    refused[static_cast<std::size_t>(next)] = true;
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "space/solids_belief.hpp"
+
+#include "belief/belief_state.hpp"
+#include "belief/finite.hpp"
+#include "space/mesh.hpp"
+#include "space/view.hpp"
+
+#include <palpate/error.hpp>
+#include <palpate/math.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+/// Nats that a touch costs at most once contacts are known to err: less than a primitive that floats, so that one
+/// contact in the air makes none. Two outliers in a hundred, anywhere on the way, are about as much.
+constexpr double kMostCost = 6.5;
+
+constexpr std::int64_t kLines = 2000;  // drawn before each tap
+
+SolidsSettings settings_of(const SolidsOptions& options) {
+  SolidsSettings out;
+  out.count = static_cast<int>(options.particles);
+  out.moves = static_cast<int>(options.moves);
+  out.misfit = options.model_discrepancy;
+  return out;
+}
+
+LineFacts::Solid facts_of(const Primitive& primitive) {
+  constexpr const char* kForms[] = {"box", "cylinder", "ellipsoid"};  // by Primitive::Form
+  LineFacts::Solid out{kForms[static_cast<std::size_t>(primitive.form)], 2.0 * primitive.half, primitive.wall};
+  if (primitive.form == Primitive::Form::ellipsoid && primitive.hollow()) {
+    out.form = "bowl";
+    out.extent.z() *= 0.5;
+  }
+  return out;
+}
+
+/// Radius of the tip of every tool, whoever moves it.
+double tip_of(const Scene& scene) { return scene.effects().tip_radius ? scene.effects().tip_radius->radius : 0.0; }
+
+}  // namespace
+
+SolidsBelief::SolidsBelief(const SolidsOptions& options, const Context& context)
+    : context_(context),
+      options_(options),
+      region_(context.scene.area()),
+      touches_(context.scene.desk(), tip_of(context.scene), context.scene.min_object_height()),
+      solids_(context.scene.area(), settings_of(options), context.random("space/solids")),
+      residual_gp_(context.create<Kernel>(context.run.kernel),
+                   ResidualGpSettings{options.residual.signal, options.residual.noise}),
+      values_(context.scene.desk()),
+      errors_(region_) {
+  lines_.lines.fixed = false;
+  if (context.run.fitting.type != "fixed") {
+    throw Error(
+        "fitting",
+        fmt::format("{} fits nothing for the belief solids, which has fixed hyperparameters", context.run.fitting.type),
+        "use fitting=fixed");
+  }
+  if (!options.view) return;
+  constexpr std::size_t kMost = 160;  // rays that are kept: the cost of a touch grows with them
+  const std::vector<SurfaceTouch> view =
+      side_view(*options.view, context.scene, region_.centre, region_.radius, context.random("space/view"));
+  object_seen_ = shows_object(view);
+  touches_.look(thinned_view(view, kMost));
+}
+
+std::vector<Quantity> SolidsBelief::offers() const {
+  using namespace quantity;
+  return {{kUncertainty, "variance of the surface where a line along its normal meets it, relative to the largest"},
+          {kMeasurementStd, "standard deviation of the surface along its normal where the line meets it (m)"},
+          {kExpectedDistance, "distance along the line to the most probable particle, the desk or the end (m)"},
+          {kSurfaceStd, "the same as measurement_std (m)"},
+          {kIncidenceCosine, "cosine between line and normal, 0 without an object"},
+          {kExpectedDiscovery, "expected change of the surface by objects that a tap discovers (m)"},
+          {kStdReduction, "expected reduction of the mean standard deviation of the surface by a tap (m)"},
+          {kObjectSeen, "whether a camera saw an object before the first tap"}};
+}
+
+std::vector<PlannedModel> SolidsBelief::plan(const ReadPlan& plan) {
+  plan_ = plan;
+  return {{"particles", "belief solids"}, {"residual GP", "belief solids"}};
+}
+
+void SolidsBelief::begin(Stage stage) {
+  reads_ = reads_ | plan_.reads(stage);
+  is_surface_read_ = is_surface_read_ || stage == plan_.surface_from;
+}
+
+std::optional<TapReading> SolidsBelief::read(const TapRequest& request, const TapResult& result) const {
+  const std::optional<SurfaceTouch> touch = touches_.read(request, result);
+  if (!touch) return std::nullopt;
+  TapReading out;
+  out.tap = request.number;
+  out.position = touch->end() + Eigen::Vector3d(0.0, 0.0, context_.scene.desk());
+  out.is_contact = touch->contact;
+  out.on_object = touch->contact && !touch->desk;
+  return out;
+}
+
+void SolidsBelief::add(const TapRequest& request, const TapResult& result) {
+  ++counts_.all;
+  if (request.source == Source::initial) ++counts_.initial;
+  touches_.add(request, result);
+  readings_ = touches_.readings();
+}
+
+void SolidsBelief::update() {
+  if (updated_for_ == counts_.all) return;
+  updated_for_ = counts_.all;
+  drawn_for_ = -1;
+  const std::vector<SurfaceTouch>& touches = touches_.touches();
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
+  const auto first = [&](std::size_t count) {
+    return std::vector<SurfaceTouch>(touches.begin(), touches.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  if (taken_in_ < touches_.seen()) {
+    solids_.look(first(touches_.seen()));
+    taken_in_ = touches_.seen();
+  }
+  if (touches_.has_changed()) {
+    // A touch errs by the distance of the solids to the objects, and by the error of its report.
+    const double error = touches_.overtravel().spread();
+    const double spread = error > Overtravel::kLeastSpread ? error : 0.0;
+    solids_.read_again(first(taken_in_), math::hypot(options_.model_discrepancy, spread), kMostCost);
+    residual_gp_.set_noise(std::max(options_.residual.noise, spread));
+    touches_.set_unchanged();
+  }
+  for (; taken_in_ < touches.size(); ++taken_in_) solids_.add({touches[taken_in_]});
+  residual_gp_.fit(solids_.best(), touches);
+}
+
+void SolidsBelief::draw_candidates(const LineFilter& filter) {
+  if (drawn_for_ == counts_.all) return;
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
+  // A stream per tap: the lines depend on the touches alone, and a resumed run draws the same.
+  Random random = context_.random("space/approaches", static_cast<std::uint64_t>(counts_.all));
+  const bool is_known = counts_.all > 0 || touches_.seen() > 0;
+  lines_ =
+      sample_lines(region_, context_.scene.desk(), static_cast<std::size_t>(context_.run.candidates.value_or(kLines)),
+                   is_known ? &solids_.best() : nullptr, random, filter);
+  drawn_for_ = counts_.all;
+  inferred_for_ = -1;
+}
+
+void SolidsBelief::infer() {
+  if (reads_.empty() || (inferred_for_ == counts_.all && inferred_ == reads_)) return;
+  inferred_ = reads_;
+  inferred_for_ = counts_.all;
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
+  values_.compute(lines_, solids_, residual_gp_, reads_,
+                  context_.random("space/unseen", static_cast<std::uint64_t>(counts_.all)));
+  available_.clear();
+  for (const std::string& one : reads_) {
+    const Eigen::VectorXd* const values = values_.find(one);
+    if (values == nullptr) continue;
+    require_finite(*values, one.c_str(), counts_.all);
+    available_.insert(one);
+  }
+}
+
+bool SolidsBelief::is_ready() const {
+  return object_seen_ ||
+         std::any_of(readings_.begin(), readings_.end(), [](const TapReading& one) { return one.on_object; });
+}
+
+const Eigen::VectorXd& SolidsBelief::values(std::string_view quantity) const {
+  const Eigen::VectorXd* const out = values_.find(quantity);
+  if (out == nullptr || out->size() != lines_.lines.size())
+    throw std::logic_error(std::string(quantity) + " is read, but no begun reader has it");
+  return *out;
+}
+
+std::optional<double> SolidsBelief::scalar(std::string_view quantity) const {
+  return quantity == quantity::kObjectSeen ? std::optional(object_seen_ ? 1.0 : 0.0) : std::nullopt;
+}
+
+const HypothesisSample& SolidsBelief::hypotheses() const {
+  static const HypothesisSample none;
+  return none;
+}
+
+BeliefState SolidsBelief::state(std::optional<Eigen::Index> candidate) const {
+  BeliefState out;
+  if (candidate) return out;
+  FactorReport factors = residual_gp_.report();
+  factors.jitter *= residual_gp_.deviation() * residual_gp_.deviation();
+  factors.add(values_.factors());
+  count_factors(out, factors);
+  out.diagnostics["fit_failed"] = 0;
+  out.diagnostics["variance_clamped"] = values_.variances_clamped();
+  out.diagnostics["violated_free_paths"] = residual_gp_.violated_free_paths();
+  return out;
+}
+
+Errors SolidsBelief::errors() { return is_surface_read_ ? shown_errors()->errors : Errors(); }
+
+std::optional<ShownErrors> SolidsBelief::shown_errors() {
+  return ShownErrors{errors_.compare(is_ready() ? &solids_ : nullptr, residual_gp_), std::nullopt};
+}
+
+Surface SolidsBelief::surface(double resolution) {
+  if (!is_ready()) return {};
+  Crossings crossings = cross_surface(solids_.best(), residual_gp_, resolution);
+  Cloud points;
+  for (const Surface::Vertex& vertex : crossings.vertices) points.push_back(vertex.position);
+  const Eigen::VectorXd deviations = surface_std(points, solids_, residual_gp_);
+  require_finite(deviations, "the standard deviation of the surface", counts_.all);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    crossings.vertices[i].standard_deviation = deviations(static_cast<Eigen::Index>(i));
+  return close_mesh(crossings, context_.scene.desk());
+}
+
+LineFacts SolidsBelief::explain(const TapLine& line) const {
+  const Line own{line.start - Eigen::Vector3d(0.0, 0.0, context_.scene.desk()), line.direction};
+  const double free = std::min(line.length, distance_down_to(0.0, own));
+  LineFacts out;
+  for (const Assembly& one : solids_.assemblies()) {
+    const double hit = one.first_intersection(own);
+    out.particles.push_back({std::max(0.0, std::min(free, hit)), hit < free, {}});
+    for (const Assembly::Part& part : one.parts) out.particles.back().solids.push_back(facts_of(part.primitive));
+    if (&one == &solids_.best()) std::swap(out.particles.front(), out.particles.back());
+  }
+  const LineFacts::Particle& best = out.particles.front();
+  if (!best.on_object) return out;
+  const Eigen::Vector3d at = own.origin + best.distance * own.direction;
+  const Eigen::Vector3d normal = ResidualGp::normal(solids_.best(), at);
+  out.surface_std = std::sqrt(residual_gp_.variance({at, normal}));
+  out.prior_std = residual_gp_.signal();
+  out.incidence_cosine = std::abs(normal.dot(line.direction));
+  return out;
+}
+
+}  // namespace palpate

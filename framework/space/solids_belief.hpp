@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The belief `solids`: closed surfaces in space, tapped from any side. Particles made of simple solids, and a residual
+// GP that corrects the best of them.
+#pragma once
+
+#include "space/line_sampler.hpp"
+#include "space/line_values.hpp"
+#include "space/residual_gp.hpp"
+#include "space/solids.hpp"
+#include "space/solids_options.hpp"
+#include "space/surface_errors.hpp"
+#include "space/touch_log.hpp"
+
+#include <palpate/belief.hpp>
+#include <palpate/plugin.hpp>
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+
+/// Its quantities of a line, by the most probable particle:
+/// - expected_discovery, metres: what a tap is expected to find that nobody has touched yet, were one primitive more
+///   expected a priori than is believed: the probability that there is one which no touch so far contradicts and which
+///   the line meets before all that is believed, times how far it moves the surface: the mean over lines from all sides
+///   of how much earlier they are met, of which no line counts more than 3 cm.
+/// - std_reduction, metres: by how much a tap is expected to lower the standard deviation of the believed surface, the
+///   mean over all of it; 0 for lines that meet no object, or meet it at less than 30 degrees.
+/// - surface_std, metres: standard deviation of the surface along its normal where the line meets it; else 0.
+class SolidsBelief final : public Belief {
+ public:
+  using Options = SolidsOptions;
+  /// `context` must outlive it. Throws Error for a kernel that is not one of the distance alone, and for a fitting: no
+  /// hyperparameter is fitted.
+  SolidsBelief(const SolidsOptions& options, const Context& context);
+
+  std::vector<Quantity> offers() const override;
+  std::vector<PlannedModel> plan(const ReadPlan& plan) override;
+  void begin(Stage stage) override;
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override;
+  void add(const TapRequest& request, const TapResult& result) override;
+  void update() override;
+  void infer() override;
+  QuantitySet available() const override { return available_; }
+  void draw_candidates(const LineFilter& filter) override;
+  bool is_ready() const override;
+  bool reads_scene() const override { return options_.view.has_value(); }
+
+  const Candidates& candidates() const override { return lines_.lines; }
+  TapCounts counts() const override { return counts_; }
+  const std::vector<TapReading>& readings() const override { return readings_; }
+  const Eigen::VectorXd& values(std::string_view quantity) const override;
+  std::optional<double> scalar(std::string_view quantity) const override;
+  const HypothesisSample& hypotheses() const override;
+
+  BeliefState state(std::optional<Eigen::Index> candidate) const override;
+  void set_truth(const Scene* scene) override { errors_.set_truth(scene); }
+  Errors errors() override;
+  std::optional<ShownErrors> shown_errors() override;
+  /// Without vertices before an object is known.
+  Surface surface(double resolution) override;
+  LineFacts explain(const TapLine& line) const override;
+
+  const Solids& solids() const { return solids_; }
+  const ResidualGp& residual_gp() const { return residual_gp_; }
+  const TouchLog& touches() const { return touches_; }
+  const Region& region() const { return region_; }
+
+ private:
+  const Context& context_;
+  const SolidsOptions options_;
+  Region region_;
+  TouchLog touches_;
+  Solids solids_;
+  ResidualGp residual_gp_;
+  SampledLines lines_;
+  LineValues values_;
+  SurfaceErrors errors_;
+  ReadPlan plan_;
+  bool is_surface_read_ = false;
+  bool object_seen_ = false;                                   ///< by a camera before the first tap
+  std::size_t taken_in_ = 0;                                   ///< of the touches, by the solids
+  int updated_for_ = -1, drawn_for_ = -1, inferred_for_ = -1;  ///< taps after which that was done
+  QuantitySet reads_, inferred_;                               ///< of begun stages; for which infer() computed last
+  QuantitySet available_;                                      ///< those of inferred_ that have arrays
+  TapCounts counts_;
+  std::vector<TapReading> readings_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// A run that goes on, replayed tap by tap while its record grows.
+#pragma once
+
+#include "record/run_replay.hpp"
+#include "report/history.hpp"
+#include "watch/growing_log.hpp"
+#include "watch/live_record.hpp"
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace palpate {
+
+/// Follows the run in a directory, which may have no tap yet, and only reads. Its page equals the run's report, except
+/// that long runs lose the maps of some moments.
+///
+/// A run that is killed and resumed goes on. If another record replaces it (--force), pages begin again.
+class RunFollower final : public LiveRecord {
+ public:
+  /// `environment` must outlive the object.
+  RunFollower(const RunEnvironment& environment, std::filesystem::path directory);
+
+  bool look(double seconds) override;
+  std::string page() override;
+  std::optional<std::string> news(const std::string& at) override;
+  bool goes_on() const override;
+
+ private:
+  void read_record();
+  void replay_next_tap();
+  void add_times();
+  void start_over();
+  std::string at() const;
+  std::string waiting_reason() const;
+
+  const RunEnvironment& environment_;
+  std::filesystem::path directory_;
+  GrowingLog log_;
+  std::optional<Tree> manifest_;
+  std::vector<TapTimes> timings_;
+  std::deque<Row> pending_;                  ///< recorded taps that are not yet in recording_
+  std::unique_ptr<RecordedRun> recording_;   ///< null before the first tap
+  std::unique_ptr<HistoryBuilder> builder_;  ///< has as many taps as recording_
+  std::string trouble_;                      ///< error of the present record, "" for none
+  std::string standing_;                     ///< lock and summary at the last look
+  int generation_ = 1;  ///< counts replacements of the record; pages of another generation begin again
+  int revision_ = 0;    ///< counts changes without a new tap
+};
+
+}  // namespace palpate
