@@ -14,7 +14,7 @@ import re
 import sys
 
 MOST_FUNCTIONS, MOST_MEMBERS = 20, 15
-FOLDERS = ["framework/experiment", "framework/record", "framework/space", "framework/gp"]
+FOLDERS = ["framework/experiment", "framework/record", "framework/belief", "plugins/beliefs/solids", "framework/gp"]
 HEAD = re.compile(r"\b(class|struct)\s+(?:\[\[[^\]]*\]\]\s*)?(\w+)\s*(final)?\s*(:[^;{]*)?$")
 
 

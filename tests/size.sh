@@ -31,7 +31,7 @@ framework/record 4641 0
 framework/report 5822 97 # facts of pages are computed in C++
 framework/scene 749 0
 framework/shared 1376 0
-framework/space 3045 0
+plugins/beliefs 3060 0
 framework/sweep 1839 0 # pooled records in files of their own
 framework/watch 714 0
 plugins 33 78

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "belief/height_map.hpp"
 #include "host/builtin.hpp"
-#include "space/solids_belief.hpp"
 
 namespace palpate {
 
 const std::vector<PluginManifest>& builtin_plugins() {
   static const std::vector<PluginManifest> all{
-      manifest_of<Belief, HeightMap>("height_map", "one height per position on the desk, for taps from above"),
-      manifest_of<Belief, SolidsBelief>("solids", "closed surfaces of solids, for taps from any side")};
+      manifest_of<Belief, HeightMap>("height_map", "one height per position on the desk, for taps from above")};
   return all;
 }
 

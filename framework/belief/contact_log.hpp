@@ -4,7 +4,7 @@
 #pragma once
 
 #include "belief/height_map_options.hpp"
-#include "belief/offset_model.hpp"
+#include "gp/offset_model.hpp"
 #include "belief/view.hpp"
 
 #include <palpate/scene.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "belief/height_map.hpp"
 
-#include "belief/belief_state.hpp"
+#include "regular/count_factors.hpp"
 #include "belief/expected_rmse.hpp"
 #include "belief/object_errors.hpp"
 #include "gp/candidate_grid.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "belief/surface_model.hpp"
 
-#include "belief/finite.hpp"
+#include "gp/finite.hpp"
 #include "belief/height_model.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/tap_selector.hpp"
 
-#include "belief/finite.hpp"
+#include "gp/finite.hpp"
 #include "belief/outlier_model.hpp"
 
 #include <palpate/error.hpp>

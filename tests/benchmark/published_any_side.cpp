@@ -15,9 +15,9 @@
 // comes only from where palpate's may, and the surface is compared where palpate's is: flood-filled from the known
 // points, brought to the value 0 by two steps of Newton's, without the part that no tool could reach.
 #include "experiment/experiment_options.hpp"
-#include "space/cloud.hpp"
-#include "space/line_sampler.hpp"
-#include "space/view.hpp"
+#include "solids/cloud.hpp"
+#include "solids/line_sampler.hpp"
+#include "solids/view.hpp"
 #include "support/runs.hpp"
 
 #include <CLI/CLI.hpp>
@@ -272,7 +272,7 @@ class Run {
     view.elevation = settings.elevation / 180.0 * kHalfTurn;
     Cloud seen;
     for (const SurfaceTouch& ray : side_view(view, *scene_, region_.centre, region_.radius,
-                                             Random(static_cast<std::uint64_t>(seed), "space/view"))) {
+                                             Random(static_cast<std::uint64_t>(seed), "solids/view"))) {
       if (ray.contact && !ray.desk) seen.push_back(ray.end());
     }
     for (const Vector3d& at : thinned(seen, 0.006)) implicit_.know(at);

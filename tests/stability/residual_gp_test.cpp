@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The process over space against 100 digits. Of the framework the oracle takes the rows that are known, and nothing
 // else: slopes are differences of its own covariance, 1e-20 metres apart.
-#include "space/residual_gp.hpp"
+#include "solids/residual_gp.hpp"
 #include "stability/oracle.hpp"
 #include "support/sanitizers.hpp"
 #include "support/shape_laws.hpp"

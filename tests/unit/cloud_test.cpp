@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Clouds against all pairs of their points.
-#include "space/cloud.hpp"
+#include "solids/cloud.hpp"
 
-#include "space/primitive.hpp"
+#include "solids/primitive.hpp"
 #include "support/shape_laws.hpp"
 #include "support/testing.hpp"
 

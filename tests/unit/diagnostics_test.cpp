@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a run counts of the factorisations of its models: each once, and jitter is a variance, never a count.
-#include "belief/belief_state.hpp"
+#include "regular/count_factors.hpp"
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 

@@ -3,8 +3,8 @@
 #include "experiment/experiment.hpp"
 #include "record/run_replay.hpp"
 #include "record/summary.hpp"
-#include "space/line_sampler.hpp"
-#include "space/solids_belief.hpp"
+#include "solids/line_sampler.hpp"
+#include "solids/solids_belief.hpp"
 #include "support/runs.hpp"
 
 #include <palpate/error.hpp>
@@ -37,11 +37,27 @@ class Answering final : public Backend {
   std::function<TapResult(const TapRequest&)> answer_;
 };
 
+/// Creates the belief itself, not behind the checks that a plugin has.
+class OwnSolids final : public PluginFactory {
+ public:
+  std::shared_ptr<void> create(const PluginChoice& choice, const Context& context) const override {
+    if (choice.kind != Belief::kKind) return shared_host().create(choice, context);
+    SolidsOptions options;
+    fill(*choice.options, shared_host(), "belief", [&](Fields& fields) { options.list(fields); });
+    return std::shared_ptr<Belief>(std::make_shared<SolidsBelief>(options, context));
+  }
+};
+
+const PluginFactory& own_solids() {
+  static const OwnSolids out;
+  return out;
+}
+
 struct Touching {
   explicit Touching(const std::vector<std::string>& more, std::function<TapResult(const TapRequest&)> answer = nullptr)
       : config(shipped_config("any_side.yaml", words(more))),
         experiment(config.options,
-                   {shared_host(), nullptr, answer ? std::make_shared<Answering>(std::move(answer)) : nullptr}) {}
+                   {own_solids(), nullptr, answer ? std::make_shared<Answering>(std::move(answer)) : nullptr}) {}
   static std::vector<std::string> words(std::vector<std::string> more) {
     more.insert(more.begin(), {"scene=object_i", "candidates.count=50", "belief.moves=20", "belief.particles=4"});
     return more;

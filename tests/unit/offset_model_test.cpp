@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What motion and arm add to heights, against least squares by the book and against what the desk is like near objects.
-#include "belief/offset_model.hpp"
+#include "gp/offset_model.hpp"
 
 #include "support/testing.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How deep contacts come, learnt from the desk, and which are with it: against what made them.
-#include "space/overtravel.hpp"
+#include "solids/overtravel.hpp"
 
 #include "support/testing.hpp"
 

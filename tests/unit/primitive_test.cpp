@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Solids of one primitive against their definition as sets of points.
-#include "space/primitive.hpp"
+#include "solids/primitive.hpp"
 
 #include "space_bench.hpp"
 #include "support/testing.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a poke is expected to take off the deviation of a surface, against the formulas for normal distributions.
-#include "space/reduction.hpp"
+#include "solids/reduction.hpp"
 
 #include "support/shape_laws.hpp"
 #include "support/support.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The process over space: what many places cost and say, free ways, normals that are felt, and what it does of data
 // that no surface has. That its numbers are right to many digits is for tests/stability/residual_gp_test.cpp.
-#include "space/residual_gp.hpp"
+#include "solids/residual_gp.hpp"
 
 #include "support/mocks.hpp"
 #include "support/shape_laws.hpp"

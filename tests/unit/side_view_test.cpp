@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A look from one side, at a cup.
-#include "space/view.hpp"
+#include "solids/view.hpp"
 
 #include "experiment/experiment.hpp"
-#include "space/cloud.hpp"
+#include "solids/cloud.hpp"
 #include "space_bench.hpp"
 #include "support/testing.hpp"
 

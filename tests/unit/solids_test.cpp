@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The search of what simple solids stand there, and what it sums up.
-#include "space/solids.hpp"
+#include "solids/solids.hpp"
 
-#include "space/cloud.hpp"
+#include "solids/cloud.hpp"
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"
 #include "support/shape_laws.hpp"

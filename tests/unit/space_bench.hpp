@@ -2,7 +2,7 @@
 // What tests of space share: a primitive of any form, by its words a set of points; and a cup.
 #pragma once
 
-#include "space/primitive.hpp"
+#include "solids/primitive.hpp"
 #include "support/runs.hpp"
 #include "support/shape_laws.hpp"
 #include "support/support.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The mesh of what is believed in space: closed whatever it is made from, on the surface, and as large as solids are.
 #include "record/mesh_ply.hpp"
-#include "space/mesh.hpp"
+#include "solids/mesh.hpp"
 #include "support/plugins.hpp"
 #include "support/shape_laws.hpp"
 #include "support/support.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What is solid, by cubes: of a scene, of primitives, and with what the residual GP adds.
-#include "space/volume.hpp"
+#include "solids/volume.hpp"
 
 #include "space_bench.hpp"
 #include "support/testing.hpp"

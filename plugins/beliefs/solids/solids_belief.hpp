@@ -3,13 +3,13 @@
 // GP that corrects the best of them.
 #pragma once
 
-#include "space/line_sampler.hpp"
-#include "space/line_values.hpp"
-#include "space/residual_gp.hpp"
-#include "space/solids.hpp"
-#include "space/solids_options.hpp"
-#include "space/surface_errors.hpp"
-#include "space/touch_log.hpp"
+#include "solids/line_sampler.hpp"
+#include "solids/line_values.hpp"
+#include "solids/residual_gp.hpp"
+#include "solids/solids.hpp"
+#include "solids/solids_options.hpp"
+#include "solids/surface_errors.hpp"
+#include "solids/touch_log.hpp"
 
 #include <palpate/belief.hpp>
 #include <palpate/plugin.hpp>

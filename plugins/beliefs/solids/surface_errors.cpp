@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/surface_errors.hpp"
+#include "solids/surface_errors.hpp"
 
 #include <algorithm>
 

@@ -2,11 +2,11 @@
 // Errors of a closed surface against the true scene: by points where lines from all sides first meet it, and by volume.
 #pragma once
 
-#include "space/cloud.hpp"
-#include "space/line_sampler.hpp"
-#include "space/residual_gp.hpp"
-#include "space/solids.hpp"
-#include "space/volume.hpp"
+#include "solids/cloud.hpp"
+#include "solids/line_sampler.hpp"
+#include "solids/residual_gp.hpp"
+#include "solids/solids.hpp"
+#include "solids/volume.hpp"
 
 #include <palpate/errors.hpp>
 #include <palpate/scene.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "space/line_sampler.hpp"
+#include "solids/line_sampler.hpp"
 
-#include "space/residual_gp.hpp"
+#include "solids/residual_gp.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>

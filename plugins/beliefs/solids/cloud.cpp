@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "space/cloud.hpp"
+#include "solids/cloud.hpp"
 
-#include "space/primitive.hpp"
+#include "solids/primitive.hpp"
 
 #include <Eigen/Geometry>
 

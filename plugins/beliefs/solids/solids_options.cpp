@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/solids_options.hpp"
+#include "solids/solids_options.hpp"
 
 namespace palpate {
 

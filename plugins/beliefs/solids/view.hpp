@@ -3,8 +3,8 @@
 // up to what was seen.
 #pragma once
 
-#include "space/solids_options.hpp"
-#include "space/surface_touch.hpp"
+#include "solids/solids_options.hpp"
+#include "solids/surface_touch.hpp"
 
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>

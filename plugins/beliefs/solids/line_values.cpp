@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "space/line_values.hpp"
+#include "solids/line_values.hpp"
 
-#include "space/reduction.hpp"
+#include "solids/reduction.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/overtravel.hpp"
+#include "solids/overtravel.hpp"
 
 #include <algorithm>
 #include <cmath>

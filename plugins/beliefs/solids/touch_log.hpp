@@ -3,8 +3,8 @@
 // desk. Later contacts with the desk show how deep contacts are reported, and change how earlier ones are read.
 #pragma once
 
-#include "space/overtravel.hpp"
-#include "space/surface_touch.hpp"
+#include "solids/overtravel.hpp"
+#include "solids/surface_touch.hpp"
 
 #include <palpate/tap.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "space/residual_gp.hpp"
+#include "solids/residual_gp.hpp"
 
 #include "gp/factor.hpp"
-#include "space/nonnegative.hpp"
+#include "solids/nonnegative.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>

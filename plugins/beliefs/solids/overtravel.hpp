@@ -14,8 +14,8 @@
 // tells.
 #pragma once
 
-#include "belief/offset_model.hpp"
-#include "space/surface_touch.hpp"
+#include "gp/offset_model.hpp"
+#include "solids/surface_touch.hpp"
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/nonnegative.hpp"
+#include "solids/nonnegative.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/mesh.hpp"
+#include "solids/mesh.hpp"
 
 #include <algorithm>
 #include <cmath>

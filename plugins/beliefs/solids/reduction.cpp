@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/reduction.hpp"
+#include "solids/reduction.hpp"
 
 #include <algorithm>
 #include <array>

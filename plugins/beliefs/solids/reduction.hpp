@@ -16,8 +16,8 @@
 // the design of experiments, active learning by Cohn's criterion (Cohn 1996), of deviations instead of variances.
 #pragma once
 
-#include "space/residual_gp.hpp"
-#include "space/solids.hpp"
+#include "solids/residual_gp.hpp"
+#include "solids/solids.hpp"
 
 #include <Eigen/Core>
 

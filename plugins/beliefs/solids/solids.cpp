@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/solids.hpp"
+#include "solids/solids.hpp"
 
 #include "scene/rotation.hpp"
 

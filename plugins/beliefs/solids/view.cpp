@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "space/view.hpp"
+#include "solids/view.hpp"
 
-#include "space/cloud.hpp"
-#include "space/primitive.hpp"
+#include "solids/cloud.hpp"
+#include "solids/primitive.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/primitive.hpp"
+#include "solids/primitive.hpp"
 
 #include <Eigen/Geometry>
 

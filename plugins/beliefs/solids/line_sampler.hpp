@@ -3,7 +3,7 @@
 // surface that is believed.
 #pragma once
 
-#include "space/solids.hpp"
+#include "solids/solids.hpp"
 
 #include <palpate/belief.hpp>
 #include <palpate/random.hpp>

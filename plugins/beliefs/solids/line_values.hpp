@@ -2,9 +2,9 @@
 // The quantities of lines by the solids and the residual GP that are believed.
 #pragma once
 
-#include "space/line_sampler.hpp"
-#include "space/residual_gp.hpp"
-#include "space/solids.hpp"
+#include "solids/line_sampler.hpp"
+#include "solids/residual_gp.hpp"
+#include "solids/solids.hpp"
 
 #include <palpate/quantity.hpp>
 #include <palpate/random.hpp>

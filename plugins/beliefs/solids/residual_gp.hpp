@@ -24,7 +24,7 @@
 
 #include "gp/loops.hpp"
 #include "regular/regular_factor.hpp"
-#include "space/solids.hpp"
+#include "solids/solids.hpp"
 
 #include <palpate/kernel.hpp>
 #include <palpate/types.hpp>

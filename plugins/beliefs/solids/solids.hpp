@@ -4,8 +4,8 @@
 // mean that the process of residual_gp.hpp corrects.
 #pragma once
 
-#include "space/primitive.hpp"
-#include "space/surface_touch.hpp"
+#include "solids/primitive.hpp"
+#include "solids/surface_touch.hpp"
 
 #include <palpate/random.hpp>
 #include <palpate/scene.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/volume.hpp"
+#include "solids/volume.hpp"
 
 #include <algorithm>
 #include <cmath>

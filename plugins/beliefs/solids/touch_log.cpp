@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "space/touch_log.hpp"
+#include "solids/touch_log.hpp"
 
 namespace palpate {
 namespace {

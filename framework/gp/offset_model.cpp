@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "belief/offset_model.hpp"
+#include "gp/offset_model.hpp"
 
 #include <palpate/math.hpp>
 

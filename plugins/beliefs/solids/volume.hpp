@@ -2,8 +2,8 @@
 // How much of what is solid two descriptions of it have in common: cubes over a region, by their centres.
 #pragma once
 
-#include "space/residual_gp.hpp"
-#include "space/solids.hpp"
+#include "solids/residual_gp.hpp"
+#include "solids/solids.hpp"
 
 #include <palpate/scene.hpp>
 

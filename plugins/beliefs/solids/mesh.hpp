@@ -7,8 +7,8 @@
 // on the face between them in the same way. So every edge of the mesh is shared by two triangles, whatever f does.
 #pragma once
 
-#include "space/residual_gp.hpp"
-#include "space/solids.hpp"
+#include "solids/residual_gp.hpp"
+#include "solids/solids.hpp"
 
 #include <palpate/surface.hpp>
 
