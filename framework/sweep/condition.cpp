@@ -21,7 +21,7 @@ using Value = Condition::Value;
 /// The truth of a condition; nullopt: undecided.
 using Decision = std::optional<bool>;
 
-constexpr const char* kHowTo = "write it like taps >= 12 and not surface == two_part";
+constexpr const char* kHowTo = "write it like taps >= 12 and not belief.surface == two_part";
 constexpr int kMaxDepth = 100;
 
 bool is_sign(char c) { return std::string_view("=!<>&|").find(c) != std::string_view::npos; }

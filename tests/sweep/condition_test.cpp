@@ -59,12 +59,13 @@ TEST(Condition, ComparesQuantitiesWithTheirUnits) {
 }
 
 TEST(Condition, ComparesTextsAsTheyStand) {
-  all_hold({"surface == two_part", "surface != single", "name == object i", "name == 'object i'", "surface != 17"});
-  none_holds({"surface == single", "taps == many"});
+  all_hold({"belief.surface == two_part", "belief.surface != single", "name == object i", "name == 'object i'",
+            "belief.surface != 17"});
+  none_holds({"belief.surface == single", "taps == many"});
 }
 
 TEST(Condition, TakesTheRightForANameWhereOneIsKnown) {
-  all_hold({"reach == clearance", "seed < taps", "kernel != surface"});
+  all_hold({"reach == clearance", "seed < taps", "kernel != belief.surface"});
 }
 
 TEST(Condition, TakesWhatIsInQuotesForAText) {
@@ -131,15 +132,16 @@ TEST(Condition, LooksNoFurtherThanItNeedsTo) {
 }
 
 TEST(Condition, RefusesANameThatIsNotKnownWhereverItStands) {
-  EXPECT_EQ(refusal("taps == 1 and surfac == single"),
-            "c.yaml:3:5: the condition 'surfac == single' has the unknown name 'surfac', did you mean 'surface'?");
+  EXPECT_EQ(refusal("taps == 1 and belief.surfac == single"),
+            "c.yaml:3:5: the condition 'belief.surfac == single' has the unknown name 'belief.surfac', did you mean "
+            "'belief.surface'?");
   EXPECT_EQ(refusal("taps == 17 or not (tap == 3)"),
             "c.yaml:3:5: the condition 'tap == 3' has the unknown name 'tap', did you mean 'taps'?");
 }
 
 TEST(Condition, RefusesAnOrderOfTexts) {
-  EXPECT_EQ(refusal("surface < single"),
-            "c.yaml:3:5: the condition 'surface < single' compares the order of texts: 'two_part' and 'single', "
+  EXPECT_EQ(refusal("belief.surface < single"),
+            "c.yaml:3:5: the condition 'belief.surface < single' compares the order of texts: 'two_part' and 'single', "
             "compare texts with == or !=");
   EXPECT_EQ(refusal("spacing > 2 mm"),
             "c.yaml:3:5: the condition 'spacing > 2 mm' compares the order of texts: 'none' and '2 mm', compare texts "
@@ -156,7 +158,7 @@ TEST(Condition, RefusesUnitsThatDoNotGoTogether) {
 }
 
 TEST(Condition, RefusesWhatIsNoCondition) {
-  const std::string how_to = ", write it like taps >= 12 and not surface == two_part";
+  const std::string how_to = ", write it like taps >= 12 and not belief.surface == two_part";
   const auto expect = [](const std::string& text, const std::string& rest) {
     EXPECT_EQ(refusal(text), "c.yaml:3:5: the condition '" + text + "': " + rest);
   };
@@ -203,7 +205,7 @@ TEST(Condition, RefusesWhatIsNoText) {
   Tree list = Tree::list();
   list.place = text_at("").place;
   EXPECT_EQ(test::error_of([&] { const Condition condition(list); }),
-            "c.yaml:3:5: a condition is a text, write it like taps >= 12 and not surface == two_part");
+            "c.yaml:3:5: a condition is a text, write it like taps >= 12 and not belief.surface == two_part");
 }
 
 }  // namespace

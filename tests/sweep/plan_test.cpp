@@ -6,6 +6,8 @@
 #include "support/runs.hpp"
 #include "support/testing.hpp"
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -145,7 +147,7 @@ TEST(Plan, DropsUnwantedCombinationsBeforeTheyAreResolved) {
 
 TEST(Plan, AsksTheConfigForNamesThatAreNotSwept) {
   EXPECT_EQ(rows(plan_of({"seed=1,2", "sweep.where=kernel == rbf and taps == 17"})).size(), 2U);
-  EXPECT_EQ(rows(plan_of({"seed=1,2", "sweep.where=surface == single or seed == 1"})).size(), 2U)
+  EXPECT_EQ(rows(plan_of({"seed=1,2", "sweep.where=belief.surface == single or seed == 1"})).size(), 2U)
       << "a default that the config does not write";
   EXPECT_EQ(rows(plan_of({"seed=1,2", "sweep.where=kernel.length_scale == 17 mm and seed < 2"})).size(), 1U);
   EXPECT_EQ(refused({"seed=1,2", "sweep.where=surfaces == single"}).substr(0, 86),
@@ -153,8 +155,9 @@ TEST(Plan, AsksTheConfigForNamesThatAreNotSwept) {
 }
 
 TEST(Plan, DoesNotAskTheConfigForWhatASweptStrategyDecides) {
-  EXPECT_EQ(refused({"strategy=random,weighted", "sweep.where=surface == single"}),
-            "command line: 'surface' depends on 'strategy', which is swept, sweep it too, or compare 'strategy'");
+  EXPECT_EQ(
+      refused({"strategy=random,weighted", "sweep.where=belief.surface == single"}),
+      "command line: 'belief.surface' depends on 'strategy', which is swept, sweep it too, or compare 'strategy'");
   EXPECT_EQ(rows(plan_of({"strategy=random,weighted", "sweep.where=taps == 17"})).size(), 2U);
 }
 
@@ -168,7 +171,7 @@ TEST(Plan, RefusesASweepOfNothing) {
 TEST(Plan, SaysWhatAJobHasWhereOtherItemsOfAListSayIt) {
   const SweepPlan plan =
       plan_of({"sweep.list=[{taps: 12}, {acquisition: grid, acquisition.count: [3, 4]}, {belief.surface: two_part}]"});
-  EXPECT_EQ(plan.sweep.keys, (Texts{"taps", "acquisition", "acquisition.count", "surface"}));
+  EXPECT_EQ(plan.sweep.keys, (Texts{"taps", "acquisition", "acquisition.count", "belief.surface"}));
   EXPECT_EQ(rows(plan),
             (Texts{"12|weighted||single", "17|grid|3|single", "17|grid|4|single", "17|weighted||two_part"}));
 }
@@ -256,8 +259,9 @@ TEST(Plan, DoesNotAskTheConfigForTheMotionThatASweptBackendDecides) {
 TEST(Plan, NamesASweepAlikeOnAnyNumberOfThreads) {
   const test::TemporaryFolder folder;
   const auto directory = [&](const std::string& engine) {
-    const std::string block = engine.empty() ? "" : "belief: {engine: {" + engine + "}}\n";
-    const fs::path file = folder.write("c.yaml", test::text_of(kPaper) + block);
+    const std::string block = engine.empty() ? "" : "  engine: {" + engine + "}\n";
+    const fs::path file =
+        folder.write("c.yaml", boost::replace_first_copy(test::text_of(kPaper), "belief:\n", "belief:\n" + block));
     return planned(file, {"seed=1,2"}).plan.sweep.directory;
   };
   EXPECT_EQ(directory("type: auto, threads: 1"), directory("type: auto, threads: 2"));

@@ -126,7 +126,7 @@ TEST_F(RunsTable, PutsTheSettingFirstThatSetsARunApartFromMostOthers) {
   }
   const std::vector<Row> rows = rows_of(std::move(records));
   EXPECT_EQ(rows.at(0).text("apart"), "seed 1, taps 9");
-  EXPECT_EQ(rows.at(1).text("apart"), "repeat allow, seed 1, taps 9");
+  EXPECT_EQ(rows.at(1).text("apart"), "choice.repeat allow, seed 1, taps 9");
   EXPECT_EQ(rows.at(2).text("apart"), "taps 12, seed 1");
   EXPECT_EQ(rows.at(3).text("apart"), "kernel.type rbf, seed 1, taps 9");
   EXPECT_EQ(rows.at(4).text("apart"), "seed 2, taps 9");

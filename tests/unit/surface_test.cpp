@@ -131,6 +131,7 @@ TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyAsksForIt) {
   ASSERT_TRUE(number_of(tap.state, "surface_gp.signal") && tap.errors.rmse && tap.errors.rmse_height);
   EXPECT_EQ(prepared.models().surface_gp().process->settings().mean_ratio, 1000.0);
   prepared.belief().update();
+  prepared.belief().infer();
   const std::string maps = maps_csv(prepared.belief(), prepared.belief().state(0));
   EXPECT_THAT(maps, testing::StartsWith("x,y,height_mean,height_standard_deviation,"));
 }

@@ -45,8 +45,7 @@ struct ProcessOptions : Options {
                                    "version of requests and answers. Version 2 has lines of any direction, "
                                    "which taps from any side need")
                                  .at_least(1)
-                                 .at_most(2)
-                                 .neutral(1));
+                                 .at_most(2));
     fields.real(deadline,
                 Field("deadline",
                       "time limit of the answer to a tap. After this time, the tap fails and palpate ends the program")

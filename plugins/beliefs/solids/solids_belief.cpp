@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "solids/solids_belief.hpp"
 
-#include "regular/count_factors.hpp"
 #include "gp/finite.hpp"
+#include "regular/count_factors.hpp"
 #include "solids/mesh.hpp"
 #include "solids/view.hpp"
 
@@ -54,7 +54,7 @@ SolidsBelief::SolidsBelief(const SolidsOptions& options, const Context& context)
       options_(options),
       region_(context.scene.area()),
       touches_(context.scene.desk(), tip_of(context.scene), context.scene.min_object_height()),
-      solids_(context.scene.area(), settings_of(options), context.random("solids/solids")),
+      solids_(context.scene.area(), settings_of(options), context.random("space/solids")),
       residual_gp_(context.create<Kernel>(context.run.kernel),
                    ResidualGpSettings{options.residual.signal, options.residual.noise}),
       values_(context.scene.desk()),
@@ -69,7 +69,7 @@ SolidsBelief::SolidsBelief(const SolidsOptions& options, const Context& context)
   if (!options.view) return;
   constexpr std::size_t kMost = 160;  // rays that are kept: the cost of a touch grows with them
   const std::vector<SurfaceTouch> view =
-      side_view(*options.view, context.scene, region_.centre, region_.radius, context.random("solids/view"));
+      side_view(*options.view, context.scene, region_.centre, region_.radius, context.random("space/view"));
   object_seen_ = shows_object(view);
   touches_.look(thinned_view(view, kMost));
 }
@@ -143,7 +143,7 @@ void SolidsBelief::draw_candidates(const LineFilter& filter) {
   if (drawn_for_ == counts_.all) return;
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
   // A stream per tap: the lines depend on the touches alone, and a resumed run draws the same.
-  Random random = context_.random("solids/approaches", static_cast<std::uint64_t>(counts_.all));
+  Random random = context_.random("space/approaches", static_cast<std::uint64_t>(counts_.all));
   const bool is_known = counts_.all > 0 || touches_.seen() > 0;
   lines_ =
       sample_lines(region_, context_.scene.desk(), static_cast<std::size_t>(context_.run.candidates.value_or(kLines)),
@@ -158,7 +158,7 @@ void SolidsBelief::infer() {
   inferred_for_ = counts_.all;
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
   values_.compute(lines_, solids_, residual_gp_, reads_,
-                  context_.random("solids/unseen", static_cast<std::uint64_t>(counts_.all)));
+                  context_.random("space/unseen", static_cast<std::uint64_t>(counts_.all)));
   available_.clear();
   for (const std::string& one : reads_) {
     const Eigen::VectorXd* const values = values_.find(one);
