@@ -131,8 +131,8 @@ int run(Program& program, const RunArguments& arguments) {
   }
   const std::filesystem::path directory = directory_of(config, arguments.runs);
   if (arguments.dry_run) {
-    print_plan(config, directory);
     print_models(program, config, "");
+    print_plan(config, directory);
     return kDone;
   }
   check_junit(arguments.junit);

@@ -200,7 +200,10 @@ ReadPlan Experiment::make_plan(const ReadPlan& more) const {
   if (options_.log.maps) plan.readers.push_back({"log.maps", {quantity::kDeskPosition}, Stage::first_tap});
   if (options_.candidates.spacing)
     plan.readers.push_back({"candidates.spacing", {quantity::kDeskPosition}, Stage::first_tap});
-  plan.readers.insert(plan.readers.end(), more.readers.begin(), more.readers.end());
+  for (ReadPlan::Reader reader : more.readers) {
+    if (reader.is_optional) leave_out_unoffered(reader, *belief_);
+    plan.readers.push_back(std::move(reader));
+  }
   plan.surface_from = more.surface_from;
   const bool is_needed = backend_->scene_is_truth() || options_.log.surface;
   if (!plan.surface_from && is_needed) plan.surface_from = Stage::summary;

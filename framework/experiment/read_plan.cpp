@@ -5,11 +5,28 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+
 namespace palpate {
 
+namespace {
+
+QuantitySet offered_by(const Belief& belief) {
+  QuantitySet out;
+  for (const Quantity& one : belief.offers()) out.insert(one.name);
+  return out;
+}
+
+}  // namespace
+
+void leave_out_unoffered(ReadPlan::Reader& reader, const Belief& belief) {
+  const QuantitySet offered = offered_by(belief);
+  for (auto one = reader.reads.begin(); one != reader.reads.end();)
+    one = offered.count(*one) != 0 ? std::next(one) : reader.reads.erase(one);
+}
+
 void require_offered(const ReadPlan& plan, const Belief& belief, const std::string& name) {
-  QuantitySet offered;
-  for (const Quantity& one : belief.offers()) offered.insert(one.name);
+  const QuantitySet offered = offered_by(belief);
   for (const ReadPlan::Reader& reader : plan.readers) {
     for (const std::string& quantity : reader.reads) {
       if (offered.count(quantity) != 0) continue;

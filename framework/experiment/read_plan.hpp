@@ -8,6 +8,9 @@
 
 namespace palpate {
 
+/// Removes the quantities that `belief` does not offer from an optional reader.
+void leave_out_unoffered(ReadPlan::Reader& reader, const Belief& belief);
+
 /// Throws Error for a reader of a quantity that `belief`, by its `name`, does not offer.
 void require_offered(const ReadPlan& plan, const Belief& belief, const std::string& name);
 

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Returns their manifests. Defined in experiment/, whose belief is one of them.
+/// Returns their manifests. Defined in belief/builtin_plugins.cpp; the belief `height_map` is the only one.
 const std::vector<PluginManifest>& builtin_plugins();
 
 }  // namespace palpate

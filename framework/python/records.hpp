@@ -24,19 +24,23 @@ namespace palpate {
 
 using NamedMaps = std::vector<std::pair<const char*, Map>>;
 
-/// Returns maps of the present belief. Heights are in metres.
+/// Returns those of the maps that the present belief offers. Heights are in metres.
 inline NamedMaps maps_of(Experiment& experiment) {
   experiment.look();
   Belief& belief = experiment.belief();
   const auto map = [&](const Eigen::VectorXd& values) {
     return Map{values, belief.candidates().rows, belief.candidates().columns};
   };
-  return {{"height_mean", map(belief.values(quantity::kHeightMean))},
-          {"height_standard_deviation", map(belief.values(quantity::kHeightStd))},
-          {"uncertainty", map(belief.values(quantity::kUncertainty))},
-          {"weight", map(belief.values(quantity::kLabelMean))},
-          {"probability", map(belief.values(quantity::kObjectProbability))},
-          {"surface", map(belief.surface(kFineResolution).heights)}};
+  NamedMaps out;
+  const QuantitySet available = belief.available();
+  for (const auto& [name, quantity] :
+       {std::pair{"height_mean", quantity::kHeightMean}, std::pair{"height_standard_deviation", quantity::kHeightStd},
+        std::pair{"uncertainty", quantity::kUncertainty}, std::pair{"weight", quantity::kLabelMean},
+        std::pair{"probability", quantity::kObjectProbability}}) {
+    if (available.count(quantity) != 0) out.emplace_back(name, map(belief.values(quantity)));
+  }
+  out.emplace_back("surface", map(belief.surface(kFineResolution).heights));
+  return out;
 }
 
 /// A run directory and its models. Any thread may call the methods, with the GIL; one thread at a time uses the models.
@@ -104,7 +108,7 @@ class Record {
     }
     return std::make_unique<RunReplay>(
         environment_.run_environment, recording_,
-        readers_from_first_tap("maps", {kUncertainty, kLabelMean, kObjectProbability, kHeightMean, kHeightStd}));
+        readers_from_first_tap("maps", {kUncertainty, kLabelMean, kObjectProbability, kHeightMean, kHeightStd}, true));
   }
   RunReplay& playback() {
     if (!playback_) playback_ = make_replay();

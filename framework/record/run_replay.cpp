@@ -120,8 +120,8 @@ std::shared_ptr<Backend> no_backend(bool truth_known) {
   return std::make_shared<RecordedBackend>(nullptr, truth_known);
 }
 
-ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quantities) {
-  return {{{name, quantities, Stage::first_tap}}, Stage::first_tap};
+ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quantities, bool is_optional) {
+  return {{{name, quantities, Stage::first_tap, false, is_optional}}, Stage::first_tap};
 }
 
 RunReplay::RunReplay(const RunEnvironment& environment, const RecordedRun& run, const ReadPlan& readers) : run_(run) {

@@ -63,7 +63,8 @@ class RunReplay {
 };
 
 /// Returns a plan whose one reader, by its name, reads these quantities and the surface from the first tap on.
-ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quantities);
+/// `is_optional`: ReadPlan::Reader::is_optional.
+ReadPlan readers_from_first_tap(const std::string& name, const QuantitySet& quantities, bool is_optional = false);
 
 /// A number that came out differently in a replay.
 struct Difference {

@@ -64,7 +64,8 @@ MapsAtTap maps_of(RunReplay& playback, const RecordedRun& recording) {
   out.deviation = belief.values(quantity::kHeightStd);
   out.uncertainty = belief.values(quantity::kUncertainty);
   const Row state{belief.state(Eigen::Index{0}).fields};
-  if (state.number("p")) {  // of a footprint that is not the label GP
+  const bool has_weight = belief.available().count(quantity::kLabelMean) != 0;
+  if (state.number("p") || !has_weight) {  // of a footprint that is not the label GP
     out.probability = belief.values(quantity::kObjectProbability);
   } else {
     out.weight = belief.values(quantity::kLabelMean);

@@ -26,7 +26,7 @@ TEST_F(Beliefs, OneThatIsNoGaussianProcessRunsAndComparesOnTwelveObjects) {
   EXPECT_THAT(compared.out, AllOf(HasSubstr("height_map"), HasSubstr("nearest_neighbour")));
 }
 
-TEST_F(Beliefs, OneThatIsNoGaussianProcessResumesAndReplaysToTheSameNumbers) {
+TEST_F(Beliefs, OneThatIsNoGaussianProcessResumesAndReplaysToTheSameNumbersAndHasAPage) {
   const fs::path run = ran(nearest_ + "taps=9");
   const std::string taps = part_of(run, "tap");
   EXPECT_THAT(taps, HasSubstr("rmse_m"));
@@ -35,6 +35,8 @@ TEST_F(Beliefs, OneThatIsNoGaussianProcessResumesAndReplaysToTheSameNumbers) {
   break_off(run);
   ASSERT_EQ(resume(run).status, 0);
   EXPECT_EQ(part_of(run, "tap"), taps);
+  const Ended reported = palpate({"report", run});
+  EXPECT_EQ(reported.status, 0) << reported.err;
 }
 
 TEST_F(Beliefs, AMapOfTheNearestContactsHasTheirHeights) {

@@ -99,7 +99,7 @@ TEST_F(ARun, NamesEveryModelWithWhoReadsItInThePrintedConfigAndInTheManifest) {
             "# models for the choice of taps, and the parts that read them:\n"
             "#   height GP: acquisition weighted, fallback uncertainty, from its first use on\n"
             "#   label GP: acquisition weighted\n");
-  EXPECT_EQ(models("acquisition=random choice.fallback=none"), "");
+  EXPECT_EQ(models("acquisition=random choice.fallback=none"), "# models for the choice of taps: none\n");
   EXPECT_EQ(models("acquisition=random choice.fallback=none motion=adaptive"),
             "# models for the choice of taps, and the parts that read them:\n#   height GP: backend simulator\n");
   EXPECT_THAT(run("kernel.length_scale=1e-300m scene.objects.0.at=[30cm,5cm] --print-config").out,

@@ -56,7 +56,7 @@ TEST_F(SeveralSweeps, AreComparedDrawnAndRankedAsTheOneSweepOfAllTheirJobs) {
 
 TEST_F(SeveralSweeps, DoNotDifferInTheNumberOfThreads) {
   const auto with_engine = [&](const std::string& name, const std::string& engine) {
-    return named(name, {"belief.engine." + engine}, paper());
+    return named(name, {"belief.engine=" + ("{" + engine + "}")}, paper());
   };
   const fs::path first = with_engine("first", "threads: 1");
   const auto notes = [&](const fs::path& other) {

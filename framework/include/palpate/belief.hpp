@@ -82,6 +82,7 @@ struct ReadPlan {
     QuantitySet reads;
     Stage from = Stage::first_acquisition_tap;
     bool at_one_candidate = false;  ///< by predict() alone
+    bool is_optional = false;       ///< a quantity that the belief does not offer is left out
   };
   std::vector<Reader> readers;
   /// From when on errors, expected RMSE and surface are read; nullopt: never.

@@ -4,7 +4,7 @@
 //
 // What is touched gives way under the force, and an arm that trails its set-point or hears late comes further. So a
 // contact is told too deep by a + b F, with F the force of the contact; a and b are learnt as OffsetModel learns offset
-// and drift (belief/offset_model.hpp), the force in the place of the time. Never less than 0: a tool is not stopped
+// and drift (gp/offset_model.hpp), the force in the place of the time. Never less than 0: a tool is not stopped
 // by what it has not reached. So where contacts with the desk lie on it, nothing is changed.
 //
 // By how much contacts err from one to the next, the spread, is seen below the desk alone: what is above it may be a

@@ -6,10 +6,13 @@ using namespace palpate;
 
 struct MyBeliefOptions : Options {
   double reach = 0.03;
+  double signal = 0.05;
 
   void list(Fields& fields) override {
     fields.real(reach,
                 Field("reach", "distance over which a contact tells the height nearby").in(Unit::metre).above(0));
+    fields.real(signal,
+                Field("signal", "standard deviation of the height far from all contacts").in(Unit::metre).above(0));
   }
 };
 
@@ -20,10 +23,13 @@ class MyBelief final : public Belief {
       : options_(options), scene_(context.scene), lines_(grid_from_above(context)) {}
 
   std::vector<Quantity> offers() const override {
-    return {{quantity::kUncertainty, "1 - exp(-(d / reach)^2 / 2), with the distance d to the nearest contact"},
-            {quantity::kHeightMean, "height of the nearest contact (m)"},
-            {quantity::kObjectProbability, "1 if the nearest contact is on an object, otherwise 0"},
-            {quantity::kDeskPosition, "fixed positions of the candidates on the desk"}};
+    return {
+        {quantity::kUncertainty, "1 - exp(-(d / reach)^2 / 2), with the distance d to the nearest contact"},
+        {quantity::kMeasurementStd, "standard deviation of the height: signal times the root of the uncertainty (m)"},
+        {quantity::kHeightMean, "height of the nearest contact (m)"},
+        {quantity::kHeightStd, "the same as measurement_std (m)"},
+        {quantity::kObjectProbability, "1 if the nearest contact is on an object, otherwise 0"},
+        {quantity::kDeskPosition, "fixed positions of the candidates on the desk"}};
   }
 
   const Candidates& candidates() const override { return lines_; }
@@ -60,15 +66,18 @@ class MyBelief final : public Belief {
         probability_(i) = one.on_object ? 1.0 : 0.0;
       }
     }
+    std_ = options_.signal * uncertainty_.cwiseSqrt();
   }
 
   QuantitySet available() const override {
-    return {quantity::kUncertainty, quantity::kHeightMean, quantity::kObjectProbability};
+    using namespace quantity;
+    return {kUncertainty, kMeasurementStd, kHeightMean, kHeightStd, kObjectProbability};
   }
   const Eigen::VectorXd& values(std::string_view quantity) const override {
-    return quantity == quantity::kUncertainty  ? uncertainty_
-           : quantity == quantity::kHeightMean ? height_
-                                               : probability_;
+    if (quantity == quantity::kUncertainty) return uncertainty_;
+    if (quantity == quantity::kHeightMean) return height_;
+    if (quantity == quantity::kObjectProbability) return probability_;
+    return std_;
   }
 
   void set_truth(const Scene* scene) override { truth_ = scene; }
@@ -84,7 +93,7 @@ class MyBelief final : public Belief {
   Candidates lines_;
   TapCounts counts_;
   std::vector<TapReading> readings_;
-  Eigen::VectorXd uncertainty_, height_, probability_;  ///< M values
+  Eigen::VectorXd uncertainty_, std_, height_, probability_;  ///< M values
   const Scene* truth_ = nullptr;
 };
 
