@@ -100,10 +100,8 @@ RunResult RunMonitor::result(Belief& belief) {
 }
 
 void require_finite(const Errors& errors, int taps) {
-  for (const std::optional<double>& one :
-       {errors.rmse, errors.rmse_object, errors.rmse_height, errors.footprint_iou, errors.surface_distance,
-        errors.rms_surface_distance, errors.f_score, errors.coverage, errors.volume_iou}) {
-    if (std::isfinite(one.value_or(0.0))) continue;
+  for (const auto member : kErrors) {
+    if (std::isfinite((errors.*member).value_or(0.0))) continue;
     throw Error("maps", fmt::format("their errors are not finite numbers after tap {}", taps),
                 "check for heights that no arm can report, or choose a larger belief.height.noise", Error::Kind::run);
   }

@@ -4,6 +4,8 @@
 #include "support/programs.hpp"
 #include "system/shell.hpp"
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +58,9 @@ TEST_F(SeveralSweeps, AreComparedDrawnAndRankedAsTheOneSweepOfAllTheirJobs) {
 
 TEST_F(SeveralSweeps, DoNotDifferInTheNumberOfThreads) {
   const auto with_engine = [&](const std::string& name, const std::string& engine) {
-    return named(name, {"belief.engine=" + ("{" + engine + "}")}, paper());
+    const std::string block = "belief:\n  engine: {" + engine + "}\n";
+    const std::string text = boost::replace_first_copy(text_of(paper()), "belief:\n", block);
+    return named(name, {}, write(name + ".yaml", text).string());
   };
   const fs::path first = with_engine("first", "threads: 1");
   const auto notes = [&](const fs::path& other) {

@@ -23,6 +23,12 @@ struct Errors {
   std::optional<double> overall() const { return rmse ? rmse : rms_surface_distance; }
 };
 
+/// All errors, for checks of all of them.
+inline constexpr std::optional<double> Errors::*kErrors[]{
+    &Errors::rmse,          &Errors::rmse_object,      &Errors::rmse_height,
+    &Errors::footprint_iou, &Errors::surface_distance, &Errors::rms_surface_distance,
+    &Errors::f_score,       &Errors::coverage,         &Errors::volume_iou};
+
 /// Reconstruction of one object of the scene.
 struct ObjectErrors {
   int cells = 0;        ///< candidates that are on the object and not on a higher one
