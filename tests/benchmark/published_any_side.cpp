@@ -272,7 +272,7 @@ class Run {
     view.elevation = settings.elevation / 180.0 * kHalfTurn;
     Cloud seen;
     for (const SurfaceTouch& ray : side_view(view, *scene_, region_.centre, region_.radius,
-                                             Random(static_cast<std::uint64_t>(seed), "solids/view"))) {
+                                             Random(static_cast<std::uint64_t>(seed), "space/view"))) {
       if (ray.contact && !ray.desk) seen.push_back(ray.end());
     }
     for (const Vector3d& at : thinned(seen, 0.006)) implicit_.know(at);

@@ -48,7 +48,7 @@ TEST_F(Benchmark, TapsWithEachAcquisitionForEachBeliefFromTheSameFirstTaps) {
     const std::string resolved = text_of(job_of(directory, job) / "config.yaml");
     const bool whole = job >= 10;
     EXPECT_THAT(resolved, HasSubstr("initial:\n  design: search  # "));
-    EXPECT_THAT(resolved, HasSubstr(std::string("footprint:\n  type: ") + (whole ? "primitives" : "gp_regression")));
+    EXPECT_THAT(resolved, HasSubstr(std::string("footprint:\n    type: ") + (whole ? "primitives" : "gp_regression")));
     EXPECT_THAT(resolved, HasSubstr(std::string("surface: ") + (job >= 5 ? "two_part" : "single")));
     const char* const types[] = {"random", "grid", "uncertainty", "weighted", "sum"};
     EXPECT_THAT(resolved, HasSubstr(std::string("\nacquisition:\n  type: ") + types[job % 5]));
