@@ -69,10 +69,12 @@ void LabelOptions::list(Fields& fields) {
                   {}}});
   list_plugins(fields);
   const bool shared = hyperparameters == Hyperparameters::shared;
-  fields.require(!shared || !kernel, "kernel",
-                 "has no effect with label.hyperparameters: shared, remove it or set label.hyperparameters: own");
-  fields.require(!shared || !fitting, "fitting",
-                 "has no effect with label.hyperparameters: shared, remove it or set label.hyperparameters: own");
+  fields.require(
+      !shared || !kernel, "kernel",
+      "has no effect with belief.label.hyperparameters: shared, remove it or set belief.label.hyperparameters: own");
+  fields.require(
+      !shared || !fitting, "fitting",
+      "has no effect with belief.label.hyperparameters: shared, remove it or set belief.label.hyperparameters: own");
 }
 
 void EngineOptions::list(Fields& fields) {

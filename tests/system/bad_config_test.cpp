@@ -72,13 +72,10 @@ std::vector<Case> cases() {
       line("TypoInAKey", "sed: 1", "10:1: unknown option 'sed', did you mean 'seed'?"),
       line("TypoInANestedKey", "initial: {desing: grid}", "10:11: unknown option 'desing', did you mean 'design'?"),
       line("UnknownTopLevelKey", "colour: red",
-           "10:1: unknown option 'colour', known: complete, name, seed, taps, initial, candidates, kernel, height, "
-           "label, "
-           "prior, surface, space, engine, acquisition, fitting, footprint, fallback, repeat, "
-           "tie_tolerance, "
-           "stop, scene, backend, motion, log, defaults, strategy, sweep, expect"),
+           "10:1: unknown option 'colour', known: complete, name, seed, taps, initial, candidates, kernel, fitting, "
+           "acquisition, choice, belief, backend, motion, scene, stop, log, defaults, strategy, sweep, expect"),
       line("DottedKeyInAFile", "belief.label.clip: yes",
-           "10:1: unknown option 'belief.label.clip', write label: {clip: yes}"),
+           "10:1: unknown option 'belief.label.clip', write belief: {label: {clip: yes}}"),
       whole("DottedKeyWhereItsGroupIsNeeded", without("  - backend") + "backend.type: simulator\n",
             "9:1: unknown option 'backend.type', write backend: {type: simulator}"),
       group("TypoInAGroupFile", "configs/kernel/rbf.yaml", "kernel:\n  type: rbf\n  length_scal: 1.7 cm\n",
@@ -159,7 +156,7 @@ std::vector<Case> cases() {
       whole("NoBackend", without("  - backend"),
             "1:1: no backend is chosen, write backend: {type: ...} or name a group under 'defaults'"),
       line("PluginWithoutType", "belief: {height: {kernel: }}",
-           "10:10: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
+           "10:19: no kernel is chosen, write kernel: {type: ...} or name a group under 'defaults'"),
       whole("NoScene", without("  - scene"),
             "1:1: 'scene.area' is missing, set it: rectangle of the desk in which taps are allowed"),
       line("ObjectWithoutType", "scene: {objects: [{height: 5 cm}]}",
@@ -169,7 +166,7 @@ std::vector<Case> cases() {
       whole("BothCountAndSpacing", without("candidates") + "candidates: {count: 8, spacing: 5 mm}\n",
             "9:33: candidates.spacing: is given together with count, set one of them to none"),
       whole("TooFineASpacing", without("candidates") + "candidates: {spacing: 1 um}\n",
-            "9:23: candidates.spacing: cuts the area into 230000 x 230000 cells, at most 2000 per side are possible"),
+            "9:23: candidates.spacing: cuts the area into more than 2000 cells along a side, use larger cells"),
       line("FewerTapsThanInitialOnes", "initial: {count: 6}",
            "8:7: taps: the budget is smaller than the 6 initial taps, raise it or lower initial.count"),
       whole("MoreInitialTapsThanCandidates", without("candidates") + "candidates: {count: 1}\ninitial: {count: 2}\n",
@@ -205,13 +202,15 @@ std::vector<Case> cases() {
            "10:43: kernel.alpha: 1e-5 is out of range, it must be at least 0.0001"),
 
       line("GridPosteriorWithANonSeparableKernel", "belief: {engine: {type: grid}}\nkernel: {type: matern32}",
-           "10:25: belief.engine.type: grid cannot be used with the kernel matern32: the kernel is not a product of a "
+           "10:25: belief/height_map: engine.type: grid cannot be used with the kernel matern32: the kernel is not a "
+           "product of a "
            "factor "
            "along "
            "x and a factor along y, engine: {type: dense} serves every kernel"),
       line("LowrankPosteriorWithASum",
            "belief: {engine: {type: lowrank}, height: {kernel: {type: sum, kernels: [{type: rbf}]}}}",
-           "10:25: belief.engine.type: lowrank cannot be used with the kernel sum: the kernel is not a product of a "
+           "10:25: belief/height_map: engine.type: lowrank cannot be used with the kernel sum: the kernel is not a "
+           "product of a "
            "factor "
            "along x "
            "and a factor along y, engine: {type: dense} serves every kernel"),
