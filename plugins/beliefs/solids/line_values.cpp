@@ -59,7 +59,7 @@ void LineValues::find_contacts(const SampledLines& lines, const Assembly& best) 
     distance_(i) = std::min({hit, lines.lines.line(i).length, distance_down_to(0.0, one)});
     if (hit > distance_(i)) continue;
     const Eigen::Vector3d at = one.origin + hit * one.direction;
-    const Eigen::Vector3d normal = ResidualGp::normal(best, at);
+    const Eigen::Vector3d normal = best.normal(at);
     places_.push_back({at, normal});
     meets_.push_back(i);
     incidence_cosine_(i) = std::min(1.0, std::abs(normal.dot(one.direction)));

@@ -163,7 +163,7 @@ BeliefState SolidsBelief::state(std::optional<Eigen::Index> candidate) const {
   count_factors(out, factors);
   out.diagnostics["fit_failed"] = 0;
   out.diagnostics["variance_clamped"] = values_.variances_clamped();
-  out.diagnostics["violated_free_paths"] = residual_gp_.violated_free_paths();
+  out.diagnostics["violated_free_paths"] = residual_gp_.free_paths().violated;
   return out;
 }
 
@@ -198,7 +198,7 @@ LineFacts SolidsBelief::explain(const TapLine& line) const {
   const LineFacts::Particle& best = out.particles.front();
   if (!best.on_object) return out;
   const Eigen::Vector3d at = own.origin + best.distance * own.direction;
-  const Eigen::Vector3d normal = ResidualGp::normal(solids_.best(), at);
+  const Eigen::Vector3d normal = solids_.best().normal(at);
   out.surface_std = std::sqrt(residual_gp_.variance({at, normal}));
   out.prior_std = residual_gp_.signal();
   out.incidence_cosine = std::abs(normal.dot(line.direction));
