@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "belief/height_map.hpp"
 
-#include "regular/count_factors.hpp"
 #include "belief/expected_rmse.hpp"
 #include "belief/object_errors.hpp"
 #include "gp/candidate_grid.hpp"
+#include "regular/count_factors.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/grid.hpp>
@@ -152,8 +152,7 @@ std::optional<TapReading> HeightMap::read(const TapRequest& request, const TapRe
 
 void HeightMap::add(const TapRequest& request, const TapResult& result) {
   models_.add(request, result);
-  ++counts_.all;
-  if (request.source == Source::initial) ++counts_.initial;
+  taps_.add(request);
   read_again();
 }
 
@@ -177,10 +176,10 @@ QuantitySet HeightMap::available() const {
 
 void HeightMap::read_again() {
   const ContactLog& log = models_.log();
-  readings_.resize(log.contacts().size());
-  for (std::size_t i = 0; i < readings_.size(); ++i) {
+  taps_.readings.resize(log.contacts().size());
+  for (std::size_t i = 0; i < taps_.readings.size(); ++i) {
     const Touch& contact = log.contacts()[i];
-    TapReading& out = readings_[i];
+    TapReading& out = taps_.readings[i];
     out.tap = log.tap_numbers()[i];
     out.position = {contact.place.x, contact.place.y, context_.scene.desk() + contact.height};
     out.on_object = contact.on;
@@ -221,7 +220,7 @@ std::optional<double> HeightMap::expected_rmse_of(const SurfaceMaps& maps) const
   return expected_rmse(maps, models_.height_variance(), models_.surface_gp().process, models_.log().object_contacts());
 }
 
-std::optional<ShownErrors> HeightMap::shown_errors() {
+std::optional<BeliefErrors> HeightMap::errors_for_displays() {
   const ModelSet all = truth() != nullptr ? models_.models_of({quantity::kHeightMean, quantity::kObjectProbability})
                                           : models_.models_of({quantity::kExpectedRmse});
   const bool has_all = (!all.heights || models_.height_gp()) && (!all.labels || models_.label_gp()) &&
@@ -231,7 +230,7 @@ std::optional<ShownErrors> HeightMap::shown_errors() {
   models_.update();
   models_.infer();
   const SurfaceMaps shown = maps(all);
-  return ShownErrors{truth() != nullptr ? errors_of(shown, *truth_) : Errors(), expected_rmse_of(shown)};
+  return BeliefErrors{truth() != nullptr ? errors_of(shown, *truth_) : Errors(), {}, expected_rmse_of(shown)};
 }
 
 const HypothesisSample& HeightMap::hypotheses() const {
@@ -266,7 +265,7 @@ BeliefState HeightMap::state(std::optional<Eigen::Index> candidate) const {
   }
   const bool has_outliers = options_.height.outlier_probability.has_value();
   const OutlierModel* const outliers = models_.surface() ? models_.surface()->outliers() : nullptr;
-  if (has_outliers) out.add("suspected_outliers", outliers_among(readings_));
+  if (has_outliers) out.add("suspected_outliers", outliers_among(taps_.readings));
   if (has_outliers && outliers != nullptr && !candidate) {
     count_factors(out, outliers->surface().report());
     out.diagnostics["variance_clamped"] += models_.surface()->variances_clamped();
@@ -323,7 +322,7 @@ void HeightMap::add_calibration(BeliefState& out) const {
   Calibration calibrated;
   if (truth_ && all.height != nullptr) {
     std::vector<bool> tapped(static_cast<std::size_t>(grid_.size()), false);
-    for (const TapReading& one : readings_) {
+    for (const TapReading& one : taps_.readings) {
       const int candidate = grid_.nearest(one.position.x(), one.position.y(), context_.scene.area());
       tapped[static_cast<std::size_t>(candidate)] = true;
     }
@@ -343,10 +342,12 @@ const Truth* HeightMap::truth() {
   return truth_ ? &*truth_ : nullptr;
 }
 
-Errors HeightMap::errors() { return truth() != nullptr ? errors_of(maps(), *truth_) : Errors(); }
-
-std::vector<ObjectErrors> HeightMap::object_errors() {
-  return truth() != nullptr ? palpate::object_errors(maps(), *truth_, grid_) : std::vector<ObjectErrors>();
+std::optional<BeliefErrors> HeightMap::errors(ErrorsFor purpose) {
+  if (purpose == ErrorsFor::display) return errors_for_displays();
+  if (truth() == nullptr) return BeliefErrors();
+  BeliefErrors out{errors_of(maps(), *truth_)};
+  if (purpose == ErrorsFor::summary) out.objects = object_errors(maps(), *truth_, grid_);
+  return out;
 }
 
 }  // namespace palpate

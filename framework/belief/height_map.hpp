@@ -30,8 +30,7 @@ class HeightMap final : public Belief {
   QuantitySet available() const override;
 
   const Candidates& candidates() const override { return lines_; }
-  TapCounts counts() const override { return counts_; }
-  const std::vector<TapReading>& readings() const override { return readings_; }
+  const TapsSoFar& taps() const override { return taps_; }
   const Eigen::VectorXd& values(std::string_view quantity) const override;
   std::optional<double> scalar(std::string_view quantity) const override;
   const HypothesisSample& hypotheses() const override;
@@ -39,9 +38,7 @@ class HeightMap final : public Belief {
 
   BeliefState state(std::optional<Eigen::Index> candidate) const override;
   void set_truth(const Scene* scene) override;
-  Errors errors() override;
-  std::optional<ShownErrors> shown_errors() override;
-  std::vector<ObjectErrors> object_errors() override;
+  std::optional<BeliefErrors> errors(ErrorsFor purpose) override;
   Surface surface(double /*resolution*/) override { return {reconstruction(maps()), {}, {}, 0.0}; }
 
   const HeightModels& models() const { return models_; }
@@ -52,6 +49,7 @@ class HeightMap final : public Belief {
   SurfaceMaps maps(const ModelSet& models) const;
   SurfaceMaps maps() const { return maps(begun_); }
   std::optional<double> expected_rmse_of(const SurfaceMaps& maps) const;
+  std::optional<BeliefErrors> errors_for_displays();
   const Truth* truth();
   void read_again();
   void add_gp_states(BeliefState& out, bool summary) const;
@@ -65,8 +63,7 @@ class HeightMap final : public Belief {
   HeightModels models_;
   ReadPlan plan_;
   ModelSet begun_;  ///< the models of begun stages, which the record has
-  TapCounts counts_;
-  std::vector<TapReading> readings_;
+  TapsSoFar taps_;
   mutable Eigen::VectorXd height_std_, measurement_std_;  ///< computed when they are read
   const Scene* scene_ = nullptr;                          ///< the truth
   std::optional<Truth> truth_;                            ///< the same at the candidates

@@ -127,7 +127,7 @@ void Experiment::begin_stages(Source source) {
   if (source != Source::initial) belief_->begin(Stage::first_scored_tap);
   if (source == Source::acquisition || source == Source::fallback) belief_->begin(Stage::first_acquisition_tap);
   if (source == Source::fallback) belief_->begin(Stage::first_fallback);
-  const std::vector<TapReading>& readings = belief_->readings();
+  const std::vector<TapReading>& readings = belief_->taps().readings;
   if (std::any_of(readings.begin(), readings.end(), [](const TapReading& one) { return one.on_object; }))
     belief_->begin(Stage::first_object_contact);
 }

@@ -90,7 +90,7 @@ void MotionSelector::read_desk(const Belief& belief) {
     shown.squares = 0.0;
     shown.on_desk = 0;
   }
-  for (const TapReading& one : belief.readings()) {
+  for (const TapReading& one : belief.taps().readings) {
     const double height = one.position.z() - desk_;
     if (one.on_object || std::abs(height) > kMostOffDesk) continue;
     Shown& shown = shown_[static_cast<std::size_t>(motion_of_tap_[static_cast<std::size_t>(one.tap - 1)])];

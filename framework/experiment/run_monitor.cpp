@@ -51,7 +51,7 @@ void RunMonitor::take_in(const TapRecord& tap, Belief& belief) {
   result_.object_taps = result_.desk_taps = 0;
   result_.first_hit_tap.reset();
   result_.relabelled.clear();
-  for (const TapReading& one : belief.readings()) {
+  for (const TapReading& one : belief.taps().readings) {
     if (!one.is_contact) continue;
     ++(one.on_object ? result_.object_taps : result_.desk_taps);
     if (one.on_object && !result_.first_hit_tap) result_.first_hit_tap = one.tap;
@@ -77,7 +77,7 @@ void RunMonitor::describe(TapRecord& tap, Belief& belief) {
   tap.state = belief.state(tap.candidate);
   if (scene == nullptr) return;
   tap.true_on_object = ends_on_object(*scene, tap.request.line);
-  tap.errors = belief.errors();
+  tap.errors = belief.errors(ErrorsFor::tap).value_or(BeliefErrors()).errors;
 }
 
 RunResult RunMonitor::result(Belief& belief) {
@@ -86,12 +86,13 @@ RunResult RunMonitor::result(Belief& belief) {
   out.from_above = belief.candidates().from_above;
   const Scene* const scene = truth(belief);
   if (scene != nullptr) {
-    out.errors = belief.errors();
+    const BeliefErrors all = belief.errors(ErrorsFor::summary).value_or(BeliefErrors());
+    out.errors = all.errors;
     require_finite(out.errors, out.taps);
-    const std::vector<ObjectErrors> objects = belief.object_errors();
     touches_.resize(static_cast<std::size_t>(scene->objects()));
     if (out.from_above) out.objects.emplace();
-    for (std::size_t i = 0; out.objects && i < objects.size(); ++i) out.objects->push_back({objects[i], touches_[i]});
+    for (std::size_t i = 0; out.objects && i < all.objects.size(); ++i)
+      out.objects->push_back({all.objects[i], touches_[i]});
   }
   BeliefState state = belief.state(std::nullopt);
   for (const auto& [kind, count] : result_.state.diagnostics) state.diagnostics[kind] += count;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "experiment/tap_selector.hpp"
 
-#include "gp/finite.hpp"
 #include "belief/outlier_model.hpp"
+#include "gp/finite.hpp"
 
 #include <palpate/error.hpp>
 
@@ -45,14 +45,14 @@ bool TapSelector::is_starting(const Belief& belief) const {
   if (!search_) return taps_.size() < initial_.size();
   if (is_seen || static_cast<int>(taps_.size()) >= grid_.size()) return false;
   constexpr double kProbablyNone = 0.5;
-  return std::none_of(belief.readings().begin(), belief.readings().end(),
+  return std::none_of(belief.taps().readings.begin(), belief.taps().readings.end(),
                       [](const TapReading& one) { return one.on_object && one.outlier_probability < kProbablyNone; });
 }
 
 std::optional<int> TapSelector::second_look(const Belief& belief) const {
   constexpr double kSurelyOutlier = 0.95;
   if (!search_) return std::nullopt;
-  for (const TapReading& one : belief.readings()) {
+  for (const TapReading& one : belief.taps().readings) {
     const int candidate = taps_[static_cast<std::size_t>(one.tap - 1)].candidate;
     if (!one.on_object || one.outlier_probability > kSurelyOutlier || !allowed_(candidate)) continue;
     const auto contacts = std::count_if(
@@ -69,7 +69,7 @@ void TapSelector::allow(const Belief& belief) {
     if (!tap.is_contact) allowed_(tap.candidate) = false;
   }
   if (options_.choice.repeat == ChoiceOptions::Repeat::allow) return;
-  for (const TapReading& one : belief.readings()) {
+  for (const TapReading& one : belief.taps().readings) {
     if (one.outlier_probability < OutlierModel::kRetapThreshold && !one.moved)
       allowed_(taps_[static_cast<std::size_t>(one.tap - 1)].candidate) = false;
   }

@@ -36,8 +36,7 @@ class Declared final : public BeliefView {
   Declared(const BeliefView& belief, QuantitySet reads, const std::string& name)
       : belief_(belief), reads_(std::move(reads)), name_(name) {}
   const Candidates& candidates() const override { return belief_.candidates(); }
-  TapCounts counts() const override { return belief_.counts(); }
-  const std::vector<TapReading>& readings() const override { return belief_.readings(); }
+  const TapsSoFar& taps() const override { return belief_.taps(); }
   const Eigen::VectorXd& values(std::string_view quantity) const override {
     return declared(quantity).values(quantity);
   }
@@ -234,8 +233,7 @@ class WrappedBelief final : public Wrapper<Belief> {
  public:
   using Wrapper::Wrapper;
   const Candidates& candidates() const override { return call(&Belief::candidates); }
-  TapCounts counts() const override { return call(&Belief::counts); }
-  const std::vector<TapReading>& readings() const override { return call(&Belief::readings); }
+  const TapsSoFar& taps() const override { return call(&Belief::taps); }
   const Eigen::VectorXd& values(std::string_view quantity) const override {
     const Eigen::VectorXd& out = call(&Belief::values, quantity);
     if (out.size() != candidates().size())
@@ -275,9 +273,7 @@ class WrappedBelief final : public Wrapper<Belief> {
   }
   BeliefState state(std::optional<Eigen::Index> candidate) const override { return call(&Belief::state, candidate); }
   void set_truth(const Scene* scene) override { call(&Belief::set_truth, scene); }
-  Errors errors() override { return call(&Belief::errors); }
-  std::optional<ShownErrors> shown_errors() override { return call(&Belief::shown_errors); }
-  std::vector<ObjectErrors> object_errors() override { return call(&Belief::object_errors); }
+  std::optional<BeliefErrors> errors(ErrorsFor purpose) override { return call(&Belief::errors, purpose); }
   Surface surface(double resolution) override { return call(&Belief::surface, resolution); }
   LineFacts explain(const TapLine& line) const override { return call(&Belief::explain, line); }
 

@@ -223,10 +223,11 @@ class Run::Recorder final : public Observer {
   }
 
   /// Returns what displays show, by the models of the run; where these lack one and the truth is known, by a copy.
-  ShownErrors errors_for_displays() {
-    if (const std::optional<ShownErrors> own = experiment_.belief().shown_errors()) return *own;
+  BeliefErrors errors_for_displays() {
+    if (const auto own = experiment_.belief().errors(ErrorsFor::display)) return *own;
     if (!experiment_.backend().scene_is_truth()) return {};
-    return run_.look({quantity::kHeightMean, quantity::kObjectProbability}).shown_errors().value_or(ShownErrors());
+    Belief& copy = run_.look({quantity::kHeightMean, quantity::kObjectProbability});
+    return copy.errors(ErrorsFor::display).value_or(BeliefErrors());
   }
 
   void write_maps(const TapRecord& tap) const {
@@ -240,7 +241,7 @@ class Run::Recorder final : public Observer {
   RunDirectory& directory_;
   Experiment& experiment_;
   std::vector<Observer*> observers_;
-  ShownErrors shown_;  ///< of the state that the current tap was chosen from
+  BeliefErrors shown_;  ///< of the state that the current tap was chosen from
 };
 
 Run::Run(const Stopwatch& watch, const RunEnvironment& environment, const ResolvedConfig& config,

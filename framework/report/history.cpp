@@ -43,7 +43,7 @@ void set_common(RunAtTap& out, RunReplay& playback, const RecordedRun& recording
     if (!facts.particles.empty()) out.next_along = facts.particles.front().distance;
   }
   out.result = playback.result();
-  for (const TapReading& one : belief.readings()) {
+  for (const TapReading& one : belief.taps().readings) {
     if (one.outlier_probability >= OutlierModel::kRetapThreshold) out.suspected_outliers.push_back(one);
   }
 }

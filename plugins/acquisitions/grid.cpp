@@ -31,7 +31,7 @@ class GridSearch final : public Acquisition {
   /// Returns 1 at the next point, decreasing to 0 at the area's far corner. The nearest candidate has the highest
   /// score.
   void score(const BeliefView& belief, VectorOut out) const override {
-    const auto [x, y] = due(belief.counts().all - belief.counts().initial);
+    const auto [x, y] = due(belief.taps().count - belief.taps().initial);
     const Points3& places = belief.candidates().starts;
     const double diagonal = math::hypot(area_.width, area_.depth);
     out = 1.0 - ((places.col(0).array() - x).square() + (places.col(1).array() - y).square()).sqrt() / diagonal;

@@ -13,7 +13,7 @@ class RandomSearch final : public Acquisition {
   QuantitySet reads() const override { return {}; }
   /// Draws from a stream per tap: the score stays a pure function of the belief, and a resumed run draws the same.
   void score(const BeliefView& belief, VectorOut out) const override {
-    Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(belief.counts().all));
+    Random random(seed_, "acquisition/random", static_cast<std::uint64_t>(belief.taps().count));
     for (double& one : out) one = random.uniform() + 0x1.0p-54;
   }
   double prior_scale() const override { return 0.0; }

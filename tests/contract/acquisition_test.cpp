@@ -12,7 +12,7 @@ namespace {
 /// A belief from above of `count` candidates whose arrays are drawn.
 WrittenBelief drawn(Eigen::Index count, int taps, double least_weight, double most_weight, double most_uncertainty) {
   WrittenBelief out;
-  out.taps = {taps, std::min(taps, 3)};
+  out.tapped = {taps, std::min(taps, 3)};
   Random random(static_cast<std::uint64_t>(taps), "contract/belief");
   const auto draw = [&](double low, double high) -> Eigen::VectorXd {
     return Eigen::VectorXd::NullaryExpr(count, [&] { return low + (high - low) * random.uniform(); });
@@ -48,7 +48,7 @@ std::vector<WrittenBelief> surfaces() {
     const auto draw = [&](double most) -> Eigen::VectorXd {
       return Eigen::VectorXd::NullaryExpr(20, [&] { return most * random.uniform(); });
     };
-    one.taps = {7, 3};
+    one.tapped = {7, 3};
     one.lines.starts.setZero(20, 3);
     one.lines.directions = Eigen::RowVector3d(0.0, 0.0, -1.0).replicate(20, 1);
     one.lines.lengths = Eigen::VectorXd::Constant(20, 0.6);
@@ -127,7 +127,7 @@ class AcquisitionContract : public testing::TestWithParam<std::string> {
 
 TEST_P(AcquisitionContract, GivesEveryCandidateAFiniteScore) {
   for (const WrittenBelief& belief : readable()) {
-    EXPECT_TRUE(score(*acquisition_, belief).allFinite()) << belief.taps.all << " taps";
+    EXPECT_TRUE(score(*acquisition_, belief).allFinite()) << belief.tapped.count << " taps";
   }
 }
 

@@ -73,7 +73,7 @@ class Believer {
   std::pair<TapRequest, TapResult> tapped(Eigen::Index candidate) const {
     const Scene& scene = context_.scene;
     TapRequest request;
-    request.number = belief_->counts().all + 1;
+    request.number = belief_->taps().count + 1;
     request.line = belief_->candidates().line(candidate);
     const double desk = distance_down_to(scene.desk(), request.line.line());
     const double along = std::min({scene.first_intersection(request.line.line()), desk, request.line.length});
@@ -96,8 +96,8 @@ class Believer {
 
   /// Returns all that a reader may see, as text.
   std::string seen() {
-    std::string out = fmt::format("taps {}, of the design {}\n", belief_->counts().all, belief_->counts().initial);
-    for (const TapReading& one : belief_->readings())
+    std::string out = fmt::format("taps {}, of the design {}\n", belief_->taps().count, belief_->taps().initial);
+    for (const TapReading& one : belief_->taps().readings)
       out +=
           fmt::format("{} {} {} {} {}\n", one.tap, one.position.z(), one.on_object, one.outlier_probability, one.moved);
     for (const Quantity& one : belief_->offers()) {
@@ -175,7 +175,7 @@ TEST_P(BeliefContract, IsChangedByNoReader) {
   for (int i = 0; i < 5; ++i) {
     read.seen();
     read.belief().state(0);
-    read.belief().errors();
+    read.belief().errors(ErrorsFor::tap);
     const auto [request, result] = read.tapped(3);
     read.belief().read(request, result);
     read.look();
@@ -198,7 +198,7 @@ TEST_P(BeliefContract, LearnsFromTapsThatWereMadeBeforeItsReadersBegan) {
   late.tap_some(5);
   late.belief().begin(Stage::first_scored_tap);
   late.look();
-  EXPECT_EQ(late.belief().counts().all, 5);
+  EXPECT_EQ(late.belief().taps().count, 5);
   for (const std::string& name : late.belief().available()) {
     if (!is_array(late.belief(), name)) continue;
     const Eigen::VectorXd& values = late.belief().values(name);
@@ -209,19 +209,19 @@ TEST_P(BeliefContract, LearnsFromTapsThatWereMadeBeforeItsReadersBegan) {
 TEST_P(BeliefContract, CountsAFailedTapAndLearnsNothingFromIt) {
   Believer one(GetParam());
   one.tap_some(3);
-  const std::size_t readings = one.belief().readings().size();
+  const std::size_t readings = one.belief().taps().readings.size();
   TapRequest request;
   request.number = 4;
   request.source = Source::initial;
   request.line = one.belief().candidates().line(0);
   const TapResult failed = tap_without_contact(Outcome::aborted, 1.0, "stopped");
   EXPECT_FALSE(one.belief().read(request, failed));
-  const int initial = one.belief().counts().initial;
+  const int initial = one.belief().taps().initial;
   one.belief().add(request, failed);
   one.look();
-  EXPECT_EQ(one.belief().counts().all, 4);
-  EXPECT_EQ(one.belief().counts().initial, initial + 1);
-  EXPECT_EQ(one.belief().readings().size(), readings);
+  EXPECT_EQ(one.belief().taps().count, 4);
+  EXPECT_EQ(one.belief().taps().initial, initial + 1);
+  EXPECT_EQ(one.belief().taps().readings.size(), readings);
 }
 
 TEST_P(BeliefContract, ReadsAContactAsItTakesItIn) {
@@ -232,7 +232,7 @@ TEST_P(BeliefContract, ReadsAContactAsItTakesItIn) {
   one.belief().add(request, result);
   ASSERT_TRUE(read || !result.is_contact());
   if (!read) return;
-  const TapReading& taken_in = one.belief().readings().back();
+  const TapReading& taken_in = one.belief().taps().readings.back();
   EXPECT_EQ(taken_in.tap, 4);
   EXPECT_EQ(taken_in.on_object, read->on_object);
   EXPECT_NEAR((taken_in.position - read->position).norm(), 0.0, 0.01) << "an offset is estimated with the tap itself";
@@ -242,9 +242,9 @@ TEST_P(BeliefContract, HasErrorsOnlyWhereTheTruthIsKnown) {
   Believer one(GetParam());
   one.tap_some(4);
   one.belief().set_truth(nullptr);
-  EXPECT_FALSE(one.belief().errors().overall());
+  EXPECT_FALSE(one.belief().errors(ErrorsFor::tap)->errors.overall());
   one.belief().set_truth(&wave_scene());
-  const std::optional<double> error = one.belief().errors().overall();
+  const std::optional<double> error = one.belief().errors(ErrorsFor::tap)->errors.overall();
   ASSERT_TRUE(error);
   EXPECT_TRUE(std::isfinite(*error));
 }

@@ -228,7 +228,7 @@ TEST_P(Owners, ResidualGpAndItsExpectedReductionsAreFiniteAndWithinThePrior) {
   }
   solids.add(all);
   ResidualGp::Places places;
-  for (const SurfaceTouch& touch : all) places.push_back({touch.end(), ResidualGp::normal(solids.best(), touch.end())});
+  for (const SurfaceTouch& touch : all) places.push_back({touch.end(), solids.best().normal(touch.end())});
   for (const double noise : kNoises) {
     ResidualGp residual_gp(test::make<Kernel>(test::shared_host(), "matern32", kernel()), {0.006, noise});
     residual_gp.fit(solids.best(), all);

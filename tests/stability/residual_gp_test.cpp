@@ -162,7 +162,7 @@ std::vector<SurfaceTouch> touches_of(const Assembly& solids, int count, Random& 
     }
     SurfaceTouch touch{line, hit + 0.006 * (random.uniform() - 0.5), true, false};
     if (out.size() % 3 == 0) {
-      touch.normal = (ResidualGp::normal(solids, touch.end()) + 0.1 * random_direction(random)).normalized();
+      touch.normal = (solids.normal(touch.end()) + 0.1 * random_direction(random)).normalized();
     }
     out.push_back(touch);
   }
@@ -198,7 +198,7 @@ TEST_P(ResidualGpExactly, HasMeanAndVarianceWithContactsFreePointsAndNormals) {
       const Vector3d at = Vector3d(0, 0, 0.06) + 0.06 * random_direction(random);
       // Also at the data, where distances are 0.
       const ResidualGp::Place place = i < 10 ? residual_gp.rows()[static_cast<std::size_t>(i)].place
-                                             : ResidualGp::Place{at, ResidualGp::normal(solids, at)};
+                                             : ResidualGp::Place{at, solids.normal(at)};
       const ResidualGpOracle::Posterior exact{oracle.at(place).mean, without.at(place).variance};
       const double size = residual_gp.signal();
       mean_error = std::max(mean_error, std::abs(static_cast<double>(residual_gp.mean(place) - exact.mean)) / size);
@@ -238,7 +238,7 @@ TEST_P(ResidualGpExactly, IsTheOptimumOverAllFreePoints) {
     residual_gp.fit(solids, touches);
     ResidualGpOracle oracle(GetParam(), kLength, residual_gp.signal(), residual_gp.rows());
     ASSERT_TRUE(oracle.factorise());
-    ASSERT_EQ(residual_gp.violated_free_paths(), 0);
+    ASSERT_EQ(residual_gp.free_paths().violated, 0);
     for (const SurfaceTouch& way : touches) {
       double deepest = 0.0;
       double most = 0.0;
@@ -262,7 +262,7 @@ TEST_P(ResidualGpExactly, IsTheOptimumOverAllFreePoints) {
           stretch.clear();
           continue;
         }
-        stretch.push_back(residual_gp.mean({at, ResidualGp::normal(solids, at)}) - distance);
+        stretch.push_back(residual_gp.mean({at, solids.normal(at)}) - distance);
         if (stretch.size() >= kStretch)
           most = std::max(most, *std::min_element(stretch.end() - kStretch, stretch.end()));
       }
@@ -270,7 +270,7 @@ TEST_P(ResidualGpExactly, IsTheOptimumOverAllFreePoints) {
       ++ways;
       deepest_left = std::max(deepest_left, most);
     }
-    for (const ResidualGp::Row& point : residual_gp.free_points()) {
+    for (const ResidualGp::Row& point : residual_gp.free_paths().points) {
       const bool holds =
           std::any_of(residual_gp.rows().begin(), residual_gp.rows().end(), [&](const ResidualGp::Row& row) {
             return row.free && row.place.at == point.place.at && row.place.normal == point.place.normal;

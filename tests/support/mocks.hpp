@@ -20,15 +20,13 @@ namespace palpate::test {
 class WrittenBelief final : public BeliefView {
  public:
   Candidates lines;
-  TapCounts taps;
+  TapsSoFar tapped;
   std::map<std::string, Eigen::VectorXd, std::less<>> arrays;
   HypothesisSample sample;
-  std::vector<TapReading> read_taps;
   mutable QuantitySet read;
 
   const Candidates& candidates() const override { return lines; }
-  TapCounts counts() const override { return taps; }
-  const std::vector<TapReading>& readings() const override { return read_taps; }
+  const TapsSoFar& taps() const override { return tapped; }
   const Eigen::VectorXd& values(std::string_view quantity) const override {
     read.insert(std::string(quantity));
     return arrays.at(std::string(quantity));

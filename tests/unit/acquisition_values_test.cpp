@@ -11,7 +11,7 @@ namespace {
 /// Five candidates, of which only what the scores here read is known.
 WrittenBelief maps() {
   WrittenBelief out;
-  out.taps.all = 4;
+  out.tapped.count = 4;
   out.lines.starts = Points3::Zero(5, 3);
   out.arrays[quantity::kUncertainty] = Eigen::VectorXd{{1.0, 0.5, 0.2, 0.0, 0.8}};
   out.arrays[quantity::kLabelMean] = Eigen::VectorXd{{0.1, 1.2, -0.3, 0.5, 0.0}};

@@ -17,7 +17,7 @@ namespace {
 
 /// The expected RMSE as displays show it.
 std::optional<double> shown_rmse(Prepared& run) {
-  const std::optional<ShownErrors> shown = run.belief().shown_errors();
+  const std::optional<BeliefErrors> shown = run.belief().errors(ErrorsFor::display);
   return shown ? shown->expected_rmse : std::nullopt;
 }
 

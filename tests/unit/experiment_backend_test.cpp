@@ -27,7 +27,7 @@ TEST(LastTap, ThatTouchedSomethingCountsAsAContact) {
   Prepared prepared("paper/object_i.yaml", {}, scripted({contact_at(0.0), last_contact(0.09, reason)}));
   EXPECT_EQ(failure_of(prepared), "backend/simulator: " + reason);
   EXPECT_EQ(prepared.experiment.counts().object_taps, 1);
-  EXPECT_EQ(prepared.belief().counts().all, 2);
+  EXPECT_EQ(prepared.belief().taps().count, 2);
 }
 
 TEST(LastTap, WithoutAReasonOrAHeightIsTheLastAllTheSame) {
@@ -50,7 +50,7 @@ TEST(ShownBelief, HasTheTapThatWasJustMade) {
   Prepared prepared("paper/object_i.yaml", {"taps=4"}, backend);
   backend->reading = [&](const BeliefView& belief) {
     ++shown;
-    ASSERT_EQ(belief.counts().all, shown);
+    ASSERT_EQ(belief.taps().count, shown);
     const TapRequest& last = backend->requests.back();
     ASSERT_EQ(last.number, shown) << "after the tap, before the next one";
     const Target target = last.line.target();
@@ -74,7 +74,7 @@ TEST(ShownBelief, IsTheRecordedOne) {
 
 TEST(ShownBelief, ThatNobodyReadsBuildsNoModel) {
   const auto backend = scripted();
-  backend->reading = [](const BeliefView& belief) { EXPECT_GT(belief.counts().all, 0); };
+  backend->reading = [](const BeliefView& belief) { EXPECT_GT(belief.taps().count, 0); };
   const Finished run("paper/object_i.yaml", {"acquisition=random"}, backend);
   EXPECT_EQ(run.models().height_gp().process, nullptr);
   EXPECT_EQ(run.models().label_gp().process, nullptr);
@@ -114,7 +114,7 @@ TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {
 /// How many taps the belief had whenever it was shown.
 std::vector<int> shown_in(Prepared& prepared, ScriptedBackend& backend) {
   std::vector<int> shown;
-  backend.reading = [&](const BeliefView& belief) { shown.push_back(belief.counts().all); };
+  backend.reading = [&](const BeliefView& belief) { shown.push_back(belief.taps().count); };
   failure_of(prepared);
   return shown;
 }

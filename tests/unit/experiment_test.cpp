@@ -79,13 +79,11 @@ TEST(Experiment, AScoreThatIsNotANumberEndsTheRunInWords) {
 TEST(Experiment, GivesAnAcquisitionTheTapsSoFarAndWhereTheArmIs) {
   // Taps what lies nearest to the last contact, and takes down what it was given.
   struct Nearest final : Acquisition {
-    mutable TapCounts counts;
-    mutable std::vector<TapReading> readings;
+    mutable TapsSoFar taps;
     QuantitySet reads() const override { return {quantity::kDeskPosition}; }
     void score(const BeliefView& belief, VectorOut out) const override {
-      counts = belief.counts();
-      readings = belief.readings();
-      const Eigen::RowVector2d last = readings.back().position.head<2>();
+      taps = belief.taps();
+      const Eigen::RowVector2d last = taps.readings.back().position.head<2>();
       out = 1.0 / (1.0 + (belief.candidates().starts.leftCols<2>().rowwise() - last).rowwise().norm().array());
     }
     double prior_scale() const override { return 1.0; }
@@ -104,9 +102,9 @@ TEST(Experiment, GivesAnAcquisitionTheTapsSoFarAndWhereTheArmIs) {
     const Target next = run.taps[i].target();
     EXPECT_NEAR(std::hypot(next.x - here.x, next.y - here.y), step, 1e-9) << "tap " << i + 1;
   }
-  EXPECT_EQ(nearest->counts.all, 5);
-  EXPECT_EQ(nearest->counts.initial, 3);
-  const std::vector<TapReading>& readings = nearest->readings;
+  EXPECT_EQ(nearest->taps.count, 5);
+  EXPECT_EQ(nearest->taps.initial, 3);
+  const std::vector<TapReading>& readings = nearest->taps.readings;
   ASSERT_EQ(readings.size(), 4U) << "the one that met nothing is no contact";
   const int numbers[] = {1, 2, 3, 5};
   for (std::size_t i = 0; i < 4; ++i) {

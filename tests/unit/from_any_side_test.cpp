@@ -67,7 +67,7 @@ struct Touching {
   /// Returns the errors against the true scene as it stands now.
   Errors errors() {
     experiment.truth();
-    return experiment.belief().shown_errors()->errors;
+    return experiment.belief().errors(ErrorsFor::display)->errors;
   }
 
   ResolvedConfig config;
@@ -225,16 +225,15 @@ struct TrueSurface {
 };
 
 /// Returns the errors of what is believed against any scene.
-Errors errors_against(const Scene& scene, const SolidsBelief& belief) {
-  SurfaceErrors out(belief.region());
-  out.set_truth(&scene);
-  return out.compare(belief.is_ready() ? &belief.solids() : nullptr, belief.residual_gp());
+Errors errors_against(const Scene& scene, Belief& belief) {
+  belief.set_truth(&scene);
+  return belief.errors(ErrorsFor::display)->errors;
 }
 
 TEST(FromAnySide, TheTruthIsTheSceneAsItStandsAfterWhatWasPushed) {
   // A push as long as this one is not cut short by the rim of the area.
   Touching run({"taps=9", "scene.effects={push: {after: 4, distance: 3 cm, turn: 0 deg}}"});
-  const Region& region = run.belief().region();
+  const Region region(run.experiment.scene().area());
   const TrueSurface before(*run.experiment.truth(), region);
   run.experiment.run(run.journal, 4);
   const TrueSurface after(*run.experiment.truth(), region);
@@ -245,11 +244,11 @@ TEST(FromAnySide, TheTruthIsTheSceneAsItStandsAfterWhatWasPushed) {
   EXPECT_LT(intersection_over_union(after.cubes, before.cubes), 0.8);
   run.experiment.belief().update();
   const Errors errors = run.errors();
-  const Errors of_pushed = errors_against(*run.experiment.truth(), run.belief());
+  const Errors of_pushed = errors_against(*run.experiment.truth(), run.experiment.belief());
   ASSERT_TRUE(errors.surface_distance && errors.volume_iou);
   EXPECT_EQ(errors.surface_distance, of_pushed.surface_distance);
   EXPECT_EQ(errors.volume_iou, of_pushed.volume_iou);
-  EXPECT_NE(errors.surface_distance, errors_against(run.experiment.scene(), run.belief()).surface_distance);
+  EXPECT_NE(errors.surface_distance, errors_against(run.experiment.scene(), run.experiment.belief()).surface_distance);
   run.experiment.run(run.journal);
   int on = 0;
   for (const TapRecord& tap : run.journal.taps) {

@@ -60,11 +60,10 @@ struct Believed {
 /// A belief that has nothing but the readings that a test writes down.
 class WrittenReadings final : public Belief {
  public:
-  std::vector<TapReading> written;
+  TapsSoFar written;
 
-  const std::vector<TapReading>& readings() const override { return written; }
+  const TapsSoFar& taps() const override { return written; }
   const Candidates& candidates() const override { return nothing_.lines; }
-  TapCounts counts() const override { return {}; }
   const Eigen::VectorXd& values(std::string_view quantity) const override { return nothing_.values(quantity); }
   std::optional<double> scalar(std::string_view) const override { return std::nullopt; }
   const HypothesisSample& hypotheses() const override { return nothing_.sample; }
@@ -78,8 +77,7 @@ class WrittenReadings final : public Belief {
   QuantitySet available() const override { return {}; }
   BeliefState state(std::optional<Eigen::Index>) const override { return {}; }
   void set_truth(const Scene*) override {}
-  Errors errors() override { return {}; }
-  std::optional<ShownErrors> shown_errors() override { return std::nullopt; }
+  std::optional<BeliefErrors> errors(ErrorsFor) override { return std::nullopt; }
   palpate::Surface surface(double) override { return {}; }
 
  private:
@@ -144,8 +142,8 @@ TEST(MotionSelector, LearnsWhichMotionComesToNothingHowLongItTakesAndHowFarItErr
   MotionSelector rough = motions_of({{2.0, 0.001}, {2.0, 0.001}});
   WrittenReadings read;
   const auto tap = [&](int motion, double height, bool on_object) {
-    TapReading& reading = read.written.emplace_back();
-    reading.tap = static_cast<int>(read.written.size());
+    TapReading& reading = read.written.readings.emplace_back();
+    reading.tap = static_cast<int>(read.written.readings.size());
     reading.position = {0.1, 0.1, height};
     reading.on_object = on_object;
     rough.take_in(tapped(motion, Outcome::contact, 2.0), read);

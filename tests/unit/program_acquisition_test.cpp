@@ -21,7 +21,7 @@ using testing::StartsWith;
 /// Six candidates in two rows.
 WrittenBelief written() {
   WrittenBelief out;
-  out.taps = {4, 3};
+  out.tapped = {4, 3};
   out.lines.starts.setZero(6, 3);
   out.lines.starts.col(0) << 0.01, 0.02, 0.03, 0.01, 0.02, 0.03;
   out.lines.starts.col(1) << 0.05, 0.05, 0.05, 0.06, 0.06, 0.06;

@@ -102,7 +102,7 @@ int flips(const Finished& run) {
   std::size_t contact = 0;
   for (const TapRecord& tap : run.taps) {
     if (!tap.reading) continue;
-    out += run.belief().readings()[contact++].on_object != tap.reading->on_object ? 1 : 0;
+    out += run.belief().taps().readings[contact++].on_object != tap.reading->on_object ? 1 : 0;
   }
   return out;
 }

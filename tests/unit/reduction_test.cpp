@@ -33,7 +33,7 @@ class Reductions : public testing::Test {
       const double hit = solids.best().first_intersection(line);
       if (hit == kNoHit) continue;
       const Vector3d at = line.origin + hit * line.direction;
-      places.push_back({at, ResidualGp::normal(solids.best(), at)});
+      places.push_back({at, solids.best().normal(at)});
     }
     some = representatives(places, 60).places;
   }

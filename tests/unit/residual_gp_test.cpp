@@ -109,12 +109,12 @@ TEST(ResidualGpAndFreeWays, TheSurfaceIsNotWhereAToolHasPassed) {
   ResidualGp residual_gp(kernel_of(), {0.006, 0.0005});
   residual_gp.fit(solids, touches);
   EXPECT_GT(residual_gp.mean(on_plate(0.0)), 0.003);
-  EXPECT_TRUE(residual_gp.free_points().empty());
+  EXPECT_TRUE(residual_gp.free_paths().points.empty());
   const double variance = residual_gp.variance(on_plate(0.0));
 
   touches.push_back({{{0.0, 0.001, 0.4}, {0, 0, -1}}, 0.39, false, false});  // down along it, 1 mm in front
   residual_gp.fit(solids, touches);
-  EXPECT_FALSE(residual_gp.free_points().empty());
+  EXPECT_FALSE(residual_gp.free_paths().points.empty());
   EXPECT_LT(residual_gp.mean(on_plate(0.0)), 0.0015);
   EXPECT_NEAR(residual_gp.variance(on_plate(0.0)), variance, 1e-18);  // which says nothing of where it is
   for (const double x : {-0.03, 0.03}) EXPECT_NEAR(residual_gp.mean(on_plate(x)), 0.004, 0.0008);
@@ -124,7 +124,7 @@ TEST(ResidualGpAndFreeWays, OneDeepInTheSolidsIsForTheSolidsToExplain) {
   const Assembly solids = plate();
   ResidualGp residual_gp(kernel_of(), {0.006, 0.0005});
   residual_gp.fit(solids, {onto_plate(0.03, 0.002), {{{0.0, -0.05, 0.4}, {0, 0, -1}}, 0.39, false, false}});
-  EXPECT_TRUE(residual_gp.free_points().empty());
+  EXPECT_TRUE(residual_gp.free_paths().points.empty());
 }
 
 /// Down along the plate's front, so far inside.
@@ -135,12 +135,12 @@ TEST(ResidualGpAndFreeWays, MayPushAsFarAsThreeStandardDeviationsOfTheKernelToo)
   const std::vector<SurfaceTouch> touches{onto_plate(-0.09, 0.001), onto_plate(0.09, -0.001), along_plate(0.0, 0.005)};
   ResidualGp plain(kernel_of(), {0.006, 0.0005});
   plain.fit(solids, touches);
-  EXPECT_TRUE(plain.free_points().empty());
+  EXPECT_TRUE(plain.free_paths().points.empty());
   ResidualGp scaled(kernel_of("scale", "{factor: 9, kernel: {type: matern32, length_scale: 4 cm}}"), {0.006, 0.0005});
   scaled.fit(solids, touches);
   EXPECT_DOUBLE_EQ(scaled.signal(), 0.001);
   EXPECT_NEAR(scaled.deviation(), 0.003, 1e-15);
-  EXPECT_FALSE(scaled.free_points().empty());
+  EXPECT_FALSE(scaled.free_paths().points.empty());
   EXPECT_LT(scaled.mean(on_plate(0.0)), -0.004);
 }
 
@@ -166,7 +166,7 @@ TEST(ResidualGpAndFreeWays, WithoutNoiseTheyAskForNoJitter) {
   EXPECT_GT(residual_gp.rows().size(), 30U);
   EXPECT_EQ(residual_gp.report().jitter, 0.0);
   EXPECT_EQ(residual_gp.report().redundant_taps, 0);
-  EXPECT_EQ(residual_gp.violated_free_paths(), 0);
+  EXPECT_EQ(residual_gp.free_paths().violated, 0);
   EXPECT_NEAR(residual_gp.mean(on_plate(0.0)), 0.001, 1e-4);  // no way is known better
 }
 
@@ -328,7 +328,7 @@ TEST(ResidualGpOfHardData, WhereTheKernelIsNotPositiveDefiniteRowsAreSetAsideAnd
   ResidualGp residual_gp(kernel_of_no_covariance(), {0.006, 0.0});
   touches.push_back({{{0.0, 0.05, 0.3}, {0, 0, -1}}, 0.29, false, false});  // which grazes it
   residual_gp.fit(solids, touches);
-  EXPECT_FALSE(residual_gp.free_points().empty());
+  EXPECT_FALSE(residual_gp.free_paths().points.empty());
   std::size_t contacts = 0;
   for (const ResidualGp::Row& row : residual_gp.rows()) contacts += row.free ? 0 : 1;
   EXPECT_GE(static_cast<std::size_t>(residual_gp.report().redundant_taps), 60 - contacts);
@@ -358,7 +358,7 @@ TEST(ResidualGpOfHardData, FreeWaysTakeNothingFromContactsWhereTheKernelIsNotPos
     touches.push_back({{Vector3d(0.05 * out + Vector3d(0, 0, 0.3)), {0, 0, -1}}, 0.29, false, false});
   }
   residual_gp.fit(solids, touches);
-  EXPECT_FALSE(residual_gp.free_points().empty());
+  EXPECT_FALSE(residual_gp.free_paths().points.empty());
   EXPECT_EQ(contacts(), before);
   const ResidualGp::Posterior with = residual_gp.posterior(places);
   EXPECT_EQ(with.variance, without.variance);

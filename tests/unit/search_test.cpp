@@ -149,7 +149,7 @@ TEST(InitialSearch, EndsWithTheFirstHitAndLeavesTheRestToTheAcquisition) {
     places.insert(run.taps[i].candidate);
   }
   EXPECT_EQ(places.size(), 8U);
-  EXPECT_EQ(run.belief().counts().initial, 5);
+  EXPECT_EQ(run.belief().taps().initial, 5);
   EXPECT_EQ(*run.experiment.counts().first_hit_tap, 5);
 }
 

@@ -63,7 +63,7 @@ Believed any_belief(Random& random) {
     touches.push_back({line, hit + 0.004 * (random.uniform() - 0.5), true, false});
     // And a way past it, a little inside.
     const Vector3d at = line.origin + hit * direction;
-    const Vector3d out = ResidualGp::normal(bare.solids, at);
+    const Vector3d out = bare.solids.normal(at);
     const Vector3d along = out.unitOrthogonal();
     if (i % 3 == 0) touches.push_back({{at - 0.003 * random.uniform() * out - 0.3 * along, along}, 0.6, false, false});
   }
@@ -117,9 +117,9 @@ TEST(ClosedMesh, DoesNotLie) {
   std::size_t free = 0;
   for (int i = 0; i < 20; ++i) {
     const Believed belief = any_belief(random);
-    free += belief.residual_gp.free_points().size();
+    free += belief.residual_gp.free_paths().points.size();
     for (const Mesh::Vertex& one : belief.crossings(0.003).vertices) {
-      const Vector3d normal = ResidualGp::normal(belief.solids, one.position);
+      const Vector3d normal = belief.solids.normal(one.position);
       const double value = std::max(
           belief.solids.distance(one.position) - belief.residual_gp.mean({one.position, normal}), -one.position.z());
       // Vertices stay a hundredth of a cube, 3e-5, away from its corners, and f rises by little more than 1.

@@ -245,7 +245,7 @@ TEST_F(SeenHalf, IsKnownToEveryModelBeforeTheFirstTap) {
       (prepared.grid().target(i).y < 0.1 ? near : far) += belief.values(quantity::kUncertainty)(i);
     EXPECT_LT(near, 0.5 * far) << strategy;
     EXPECT_GT(belief.values(quantity::kObjectProbability).maxCoeff(), 0.8) << strategy;
-    EXPECT_TRUE(belief.readings().empty()) << "no tap has been made";
+    EXPECT_TRUE(belief.taps().readings.empty()) << "no tap has been made";
     prepared.run();
     EXPECT_EQ(prepared.taps.size(), 5U) << strategy;
   }

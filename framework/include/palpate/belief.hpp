@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,10 +40,17 @@ struct Candidates {
   }
 };
 
-/// Numbers of taps so far, failed taps included.
-struct TapCounts {
-  int all = 0;
-  int initial = 0;  ///< chosen by the initial design
+/// The taps that a belief has taken in.
+struct TapsSoFar {
+  int count = 0;                       ///< of all taps, failed taps included
+  int initial = 0;                     ///< those of them that the initial design chose
+  std::vector<TapReading> readings{};  ///< in the order of the taps, as they are read now; failed taps have none
+
+  /// Counts a tap.
+  void add(const TapRequest& request) {
+    ++count;
+    if (request.source == Source::initial) ++initial;
+  }
 };
 
 /// The part of a belief that acquisitions and backends read. References stay valid until the next tap.
@@ -51,9 +59,7 @@ class BeliefView {
   virtual ~BeliefView() = default;
 
   virtual const Candidates& candidates() const = 0;
-  virtual TapCounts counts() const = 0;
-  /// Returns the readings of the taps in their order, as they are read now. Failed taps have none.
-  virtual const std::vector<TapReading>& readings() const = 0;
+  virtual const TapsSoFar& taps() const = 0;
   /// Returns M values of a quantity. Throws Error for a quantity that the reader did not declare.
   virtual const Eigen::VectorXd& values(std::string_view quantity) const = 0;
   /// Returns a quantity that is one number; nullopt while it has no value.
@@ -88,11 +94,11 @@ struct ReadPlan {
   /// From when on errors, expected RMSE and surface are read; nullopt: never.
   std::optional<Stage> surface_from = Stage::summary;
 
-  /// Returns what is read in arrays from a stage on.
-  QuantitySet reads(Stage from) const {
+  /// Returns what readers of these stages read in arrays.
+  QuantitySet reads(const std::set<Stage>& begun) const {
     QuantitySet out;
     for (const Reader& one : readers) {
-      if (one.from == from && !one.at_one_candidate) out.insert(one.reads.begin(), one.reads.end());
+      if (begun.count(one.from) != 0 && !one.at_one_candidate) out.insert(one.reads.begin(), one.reads.end());
     }
     return out;
   }
@@ -106,10 +112,14 @@ struct PlannedModel {
 
 using BoolOut = Eigen::Ref<Eigen::Array<bool, Eigen::Dynamic, 1>>;
 
-/// What displays show of a reconstruction.
-struct ShownErrors {
+/// Purpose of errors: the record of a tap, the summary, or displays beside the record.
+enum class ErrorsFor { tap, summary, display };
+
+/// Errors of a reconstruction. Without a known truth, they are absent.
+struct BeliefErrors {
   Errors errors;
-  std::optional<double> expected_rmse;  ///< metres
+  std::vector<ObjectErrors> objects = {};              ///< of each object of the scene, in its order; for the summary
+  std::optional<double> expected_rmse = std::nullopt;  ///< metres; for displays
 };
 
 /// Expectation of a tap along a line by the particles of a belief, for explanations. Lengths in metres.
@@ -193,13 +203,9 @@ class Belief : public BeliefView {
 
   /// Sets the true scene as it stands now; null if it is not known. It stays valid until the next call.
   virtual void set_truth(const Scene* scene) = 0;
-  /// Returns the errors against the truth, as far as begun stages read the arrays for them.
-  virtual Errors errors() = 0;
-  /// Returns errors and expected RMSE for displays, by all models that are built; nullopt if one is missing. The record
-  /// stays as it is.
-  virtual std::optional<ShownErrors> shown_errors() { return ShownErrors{errors(), scalar(quantity::kExpectedRmse)}; }
-  /// Returns the errors of each object of the scene, in its order; empty for a belief that has none.
-  virtual std::vector<ObjectErrors> object_errors() { return {}; }
+  /// Returns the errors against the truth, for the record as far as begun stages read the arrays for them. For
+  /// displays, it uses all models that are built, returns nullopt if one is missing, and leaves the record as it is.
+  virtual std::optional<BeliefErrors> errors(ErrorsFor purpose) = 0;
 
   /// Returns the reconstructed surface; in the stage `summary`. The cells of a mesh are about `resolution` metres wide,
   /// or wider if the mesh would be too large.

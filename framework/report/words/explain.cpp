@@ -262,7 +262,7 @@ class FromAboveExplained final : public Explanation {
     const auto said = [&](int taps) {
       playback_.advance_to(taps);
       experiment_.look();
-      for (const TapReading& one : belief_.readings()) {
+      for (const TapReading& one : belief_.taps().readings) {
         if (one.tap == number_ && one.outlier_probability >= OutlierModel::kRetapThreshold)
           return "may be an outlier: " + doubt_words(one);
       }

@@ -66,7 +66,7 @@ class ApproachExplained final : public Explanation {
 
   Errors errors_now() {
     experiment_.look();
-    return belief_.shown_errors()->errors;
+    return belief_.errors(ErrorsFor::display)->errors;
   }
 
   void explain_choice() {

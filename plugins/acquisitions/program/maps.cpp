@@ -56,7 +56,7 @@ std::string hypotheses(const BeliefView& belief) {
 /// Returns one row per contact: x, y, height, and 1 on an object or 0 on the desk.
 std::string contacts(const BeliefView& belief, double desk) {
   std::vector<TapReading> all;
-  for (const TapReading& one : belief.readings()) {
+  for (const TapReading& one : belief.taps().readings) {
     if (one.is_contact) all.push_back(one);
   }
   RowMajor out(static_cast<Eigen::Index>(all.size()), 4);

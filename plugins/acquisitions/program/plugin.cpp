@@ -188,9 +188,9 @@ class ProgramAcquisition final : public Acquisition {
     std::vector<std::string> arrays;
     for (const program::Map* one : maps_) arrays.push_back(one->npy(belief, context_.scene.desk()));
     const Candidates& candidates = belief.candidates();
-    std::string fields = fmt::format(R"("tap":{})", belief.counts().all + 1);
+    std::string fields = fmt::format(R"("tap":{})", belief.taps().count + 1);
     if (candidates.fixed)
-      fields += fmt::format(R"(,"initial_taps":{},"rows":{},"columns":{})", belief.counts().initial, candidates.rows,
+      fields += fmt::format(R"(,"initial_taps":{},"rows":{},"columns":{})", belief.taps().initial, candidates.rows,
                             candidates.columns);
     exchange(fields, arrays, out);
   }

@@ -103,7 +103,7 @@ class Baxter final : public Backend {
   }
   void show(const BeliefView& belief) override {
     if (!view_) return;
-    view_->contacts(belief.readings());
+    view_->contacts(belief.taps().readings);
     view_->surface(belief.candidates().starts.leftCols<2>(), belief.values(quantity::kHeightMean),
                    belief.values(quantity::kHeightStd));
   }

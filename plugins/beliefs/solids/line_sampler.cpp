@@ -43,7 +43,7 @@ std::optional<Line> along_normal(const Region& region, const Assembly& surface, 
   const double hit = surface.first_intersection(line);
   if (hit >= distance_down_to(0.0, line)) return std::nullopt;
   const Vector3d at = line.origin + hit * line.direction;
-  const Vector3d inwards = -ResidualGp::normal(surface, at);
+  const Vector3d inwards = -surface.normal(at);
   if (inwards.z() > kSteepestUp) return std::nullopt;
   const double towards = (region.centre - at).dot(inwards);
   const double aside = (region.centre - at).squaredNorm() - towards * towards;

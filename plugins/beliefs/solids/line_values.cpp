@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string>
 
 namespace palpate {
 
@@ -16,6 +18,7 @@ Line LineValues::line(const SampledLines& lines, Eigen::Index index) const {
 void LineValues::compute(const SampledLines& lines, const Solids& solids, const ResidualGp& residual_gp,
                          const QuantitySet& reads, Random random) {
   using namespace quantity;
+  reads_ = reads;
   const auto has = [&](const char* name) { return reads.count(name) != 0; };
   const bool deviations = has(kSurfaceStd) || has(kMeasurementStd) || has(kUncertainty);
   find_contacts(lines, solids.best());
@@ -24,6 +27,13 @@ void LineValues::compute(const SampledLines& lines, const Solids& solids, const 
   if (deviations) compute_deviations(residual_gp);
   if (has(kStdReduction)) compute_reductions(solids, residual_gp);
   if (has(kExpectedDiscovery)) compute_discovery(lines, solids, random);
+}
+
+QuantitySet LineValues::available() const {
+  QuantitySet out;
+  std::copy_if(reads_.begin(), reads_.end(), std::inserter(out, out.end()),
+               [&](const std::string& one) { return find(one) != nullptr; });
+  return out;
 }
 
 const Eigen::VectorXd* LineValues::find(std::string_view quantity) const {
@@ -49,7 +59,7 @@ void LineValues::find_contacts(const SampledLines& lines, const Assembly& best) 
     distance_(i) = std::min({hit, lines.lines.line(i).length, distance_down_to(0.0, one)});
     if (hit > distance_(i)) continue;
     const Eigen::Vector3d at = one.origin + hit * one.direction;
-    const Eigen::Vector3d normal = ResidualGp::normal(best, at);
+    const Eigen::Vector3d normal = best.normal(at);
     places_.push_back({at, normal});
     meets_.push_back(i);
     incidence_cosine_(i) = std::min(1.0, std::abs(normal.dot(one.direction)));

@@ -15,7 +15,7 @@
 
 namespace palpate {
 
-/// N values of each quantity; empty before compute(), and if it is not among those that are read.
+/// N values of each quantity that is read.
 class LineValues {
  public:
   /// `desk`: its height, metres.
@@ -25,7 +25,11 @@ class LineValues {
   void compute(const SampledLines& lines, const Solids& solids, const ResidualGp& residual_gp, const QuantitySet& reads,
                Random random);
 
-  /// Returns the array of a quantity; null for a quantity that is none of these.
+  /// Returns the quantities of the last compute(), among them names that have no array.
+  const QuantitySet& reads() const { return reads_; }
+  /// Returns those of them that have arrays.
+  QuantitySet available() const;
+  /// Returns the array of a quantity; null for names that have none, empty unless the last compute() read the quantity.
   const Eigen::VectorXd* find(std::string_view quantity) const;
 
   /// Number of variances of the last compute() that rounding had taken below 0, and factorisations of all of them.
@@ -40,6 +44,7 @@ class LineValues {
   void compute_discovery(const SampledLines& lines, const Solids& solids, Random random);
 
   double desk_;
+  QuantitySet reads_;
   Eigen::VectorXd distance_;          ///< along each line to the most probable assembly, or to the end
   ResidualGp::Places places_;         ///< where lines meet it
   std::vector<Eigen::Index> meets_;   ///< the lines that meet it there

@@ -26,7 +26,7 @@ class SignedSurface {
     std::vector<std::size_t> whose;
     for (std::size_t i = 0; i < at.size(); ++i) {
       if (!(std::abs(distances[i]) <= most_)) continue;
-      places.push_back({at[i], ResidualGp::normal(solids_, at[i])});
+      places.push_back({at[i], solids_.normal(at[i])});
       whose.push_back(i);
     }
     const Eigen::VectorXd means = residual_gp_.means(places);
@@ -61,7 +61,7 @@ class SignedSurface {
       const bool smooth = steepness > 1.0 / kSteepest && steepness < kSteepest;
       out.push_back(at[i].z() < kOnDesk ? Vector3d(-Vector3d::UnitZ())
                     : smooth            ? Vector3d(slope / steepness)
-                                        : ResidualGp::normal(solids_, at[i]));
+                                        : solids_.normal(at[i]));
     }
     return out;
   }

@@ -78,6 +78,17 @@ double Assembly::first_intersection(const Line& line) const {
   return first;
 }
 
+Vector3d Assembly::normal(const Vector3d& point) const {
+  constexpr double kStep = 1e-5;
+  Vector3d out;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Vector3d step = kStep * Vector3d::Unit(i);
+    out(i) = distance(point + step) - distance(point - step);
+  }
+  const double length = out.norm();
+  return length > 0.0 ? Vector3d(out / length) : Vector3d::UnitZ();
+}
+
 double Assembly::distance(const Vector3d& point) const {
   double least = kNoHit;
   for (const Part& part : parts) least = std::min(least, part.primitive.distance(point));

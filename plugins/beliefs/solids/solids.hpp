@@ -41,6 +41,8 @@ struct Assembly {
   double posterior() const { return likelihood + prior; }
   double first_intersection(const Line& line) const;
   double distance(const Eigen::Vector3d& point) const;
+  /// Returns the gradient of the distance, of unit length.
+  Eigen::Vector3d normal(const Eigen::Vector3d& point) const;
 };
 
 class Solids {

@@ -70,8 +70,7 @@ SolidsBelief::SolidsBelief(const SolidsOptions& options, const Context& context)
   constexpr std::size_t kMost = 160;  // rays that are kept: the cost of a touch grows with them
   const std::vector<SurfaceTouch> view =
       side_view(*options.view, context.scene, region_.centre, region_.radius, context.random("space/view"));
-  object_seen_ = shows_object(view);
-  touches_.look(thinned_view(view, kMost));
+  touches_.look(thinned_view(view, kMost), shows_object(view));
 }
 
 std::vector<Quantity> SolidsBelief::offers() const {
@@ -91,32 +90,9 @@ std::vector<PlannedModel> SolidsBelief::plan(const ReadPlan& plan) {
   return {{"particles", "belief solids"}, {"residual GP", "belief solids"}};
 }
 
-void SolidsBelief::begin(Stage stage) {
-  reads_ = reads_ | plan_.reads(stage);
-  is_surface_read_ = is_surface_read_ || stage == plan_.surface_from;
-}
-
-std::optional<TapReading> SolidsBelief::read(const TapRequest& request, const TapResult& result) const {
-  const std::optional<SurfaceTouch> touch = touches_.read(request, result);
-  if (!touch) return std::nullopt;
-  TapReading out;
-  out.tap = request.number;
-  out.position = touch->end() + Eigen::Vector3d(0.0, 0.0, context_.scene.desk());
-  out.is_contact = touch->contact;
-  out.on_object = touch->contact && !touch->desk;
-  return out;
-}
-
-void SolidsBelief::add(const TapRequest& request, const TapResult& result) {
-  ++counts_.all;
-  if (request.source == Source::initial) ++counts_.initial;
-  touches_.add(request, result);
-  readings_ = touches_.readings();
-}
-
 void SolidsBelief::update() {
-  if (updated_for_ == counts_.all) return;
-  updated_for_ = counts_.all;
+  if (updated_for_ == taps().count) return;
+  updated_for_ = taps().count;
   drawn_for_ = -1;
   const std::vector<SurfaceTouch>& touches = touches_.touches();
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
@@ -140,37 +116,31 @@ void SolidsBelief::update() {
 }
 
 void SolidsBelief::draw_candidates(const LineFilter& filter) {
-  if (drawn_for_ == counts_.all) return;
+  if (drawn_for_ == taps().count) return;
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
   // A stream per tap: the lines depend on the touches alone, and a resumed run draws the same.
-  Random random = context_.random("space/approaches", static_cast<std::uint64_t>(counts_.all));
-  const bool is_known = counts_.all > 0 || touches_.seen() > 0;
+  Random random = context_.random("space/approaches", static_cast<std::uint64_t>(taps().count));
+  const bool is_known = taps().count > 0 || touches_.seen() > 0;
   lines_ =
       sample_lines(region_, context_.scene.desk(), static_cast<std::size_t>(context_.run.candidates.value_or(kLines)),
                    is_known ? &solids_.best() : nullptr, random, filter);
-  drawn_for_ = counts_.all;
+  drawn_for_ = taps().count;
   inferred_for_ = -1;
 }
 
 void SolidsBelief::infer() {
-  if (reads_.empty() || (inferred_for_ == counts_.all && inferred_ == reads_)) return;
-  inferred_ = reads_;
-  inferred_for_ = counts_.all;
+  const QuantitySet reads = plan_.reads(begun_);
+  if (reads.empty() || (inferred_for_ == taps().count && values_.reads() == reads)) return;
+  inferred_for_ = taps().count;
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
-  values_.compute(lines_, solids_, residual_gp_, reads_,
-                  context_.random("space/unseen", static_cast<std::uint64_t>(counts_.all)));
-  available_.clear();
-  for (const std::string& one : reads_) {
-    const Eigen::VectorXd* const values = values_.find(one);
-    if (values == nullptr) continue;
-    require_finite(*values, one.c_str(), counts_.all);
-    available_.insert(one);
-  }
+  values_.compute(lines_, solids_, residual_gp_, reads,
+                  context_.random("space/unseen", static_cast<std::uint64_t>(taps().count)));
+  for (const std::string& one : available()) require_finite(*values_.find(one), one.c_str(), taps().count);
 }
 
 bool SolidsBelief::is_ready() const {
-  return object_seen_ ||
-         std::any_of(readings_.begin(), readings_.end(), [](const TapReading& one) { return one.on_object; });
+  return touches_.is_object_seen() || std::any_of(taps().readings.begin(), taps().readings.end(),
+                                                  [](const TapReading& one) { return one.on_object; });
 }
 
 const Eigen::VectorXd& SolidsBelief::values(std::string_view quantity) const {
@@ -181,12 +151,7 @@ const Eigen::VectorXd& SolidsBelief::values(std::string_view quantity) const {
 }
 
 std::optional<double> SolidsBelief::scalar(std::string_view quantity) const {
-  return quantity == quantity::kObjectSeen ? std::optional(object_seen_ ? 1.0 : 0.0) : std::nullopt;
-}
-
-const HypothesisSample& SolidsBelief::hypotheses() const {
-  static const HypothesisSample none;
-  return none;
+  return quantity == quantity::kObjectSeen ? std::optional(touches_.is_object_seen() ? 1.0 : 0.0) : std::nullopt;
 }
 
 BeliefState SolidsBelief::state(std::optional<Eigen::Index> candidate) const {
@@ -198,14 +163,14 @@ BeliefState SolidsBelief::state(std::optional<Eigen::Index> candidate) const {
   count_factors(out, factors);
   out.diagnostics["fit_failed"] = 0;
   out.diagnostics["variance_clamped"] = values_.variances_clamped();
-  out.diagnostics["violated_free_paths"] = residual_gp_.violated_free_paths();
+  out.diagnostics["violated_free_paths"] = residual_gp_.free_paths().violated;
   return out;
 }
 
-Errors SolidsBelief::errors() { return is_surface_read_ ? shown_errors()->errors : Errors(); }
-
-std::optional<ShownErrors> SolidsBelief::shown_errors() {
-  return ShownErrors{errors_.compare(is_ready() ? &solids_ : nullptr, residual_gp_), std::nullopt};
+std::optional<BeliefErrors> SolidsBelief::errors(ErrorsFor purpose) {
+  const bool is_read = plan_.surface_from && begun_.count(*plan_.surface_from) != 0;
+  if (purpose != ErrorsFor::display && !is_read) return BeliefErrors();
+  return BeliefErrors{errors_.compare(is_ready() ? &solids_ : nullptr, residual_gp_)};
 }
 
 Surface SolidsBelief::surface(double resolution) {
@@ -214,7 +179,7 @@ Surface SolidsBelief::surface(double resolution) {
   Cloud points;
   for (const Surface::Vertex& vertex : crossings.vertices) points.push_back(vertex.position);
   const Eigen::VectorXd deviations = surface_std(points, solids_, residual_gp_);
-  require_finite(deviations, "the standard deviation of the surface", counts_.all);
+  require_finite(deviations, "the standard deviation of the surface", taps().count);
   for (std::size_t i = 0; i < points.size(); ++i)
     crossings.vertices[i].standard_deviation = deviations(static_cast<Eigen::Index>(i));
   return close_mesh(crossings, context_.scene.desk());
@@ -233,7 +198,7 @@ LineFacts SolidsBelief::explain(const TapLine& line) const {
   const LineFacts::Particle& best = out.particles.front();
   if (!best.on_object) return out;
   const Eigen::Vector3d at = own.origin + best.distance * own.direction;
-  const Eigen::Vector3d normal = ResidualGp::normal(solids_.best(), at);
+  const Eigen::Vector3d normal = solids_.best().normal(at);
   out.surface_std = std::sqrt(residual_gp_.variance({at, normal}));
   out.prior_std = residual_gp_.signal();
   out.incidence_cosine = std::abs(normal.dot(line.direction));

@@ -15,6 +15,7 @@
 #include <palpate/plugin.hpp>
 
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -37,35 +38,29 @@ class SolidsBelief final : public Belief {
 
   std::vector<Quantity> offers() const override;
   std::vector<PlannedModel> plan(const ReadPlan& plan) override;
-  void begin(Stage stage) override;
-  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override;
-  void add(const TapRequest& request, const TapResult& result) override;
+  void begin(Stage stage) override { begun_.insert(stage); }
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override {
+    return touches_.read(request, result);
+  }
+  void add(const TapRequest& request, const TapResult& result) override { touches_.add(request, result); }
   void update() override;
   void infer() override;
-  QuantitySet available() const override { return available_; }
+  QuantitySet available() const override { return values_.available(); }
   void draw_candidates(const LineFilter& filter) override;
   bool is_ready() const override;
   bool reads_scene() const override { return options_.view.has_value(); }
 
   const Candidates& candidates() const override { return lines_.lines; }
-  TapCounts counts() const override { return counts_; }
-  const std::vector<TapReading>& readings() const override { return readings_; }
+  const TapsSoFar& taps() const override { return touches_.taps(); }
   const Eigen::VectorXd& values(std::string_view quantity) const override;
   std::optional<double> scalar(std::string_view quantity) const override;
-  const HypothesisSample& hypotheses() const override;
 
   BeliefState state(std::optional<Eigen::Index> candidate) const override;
   void set_truth(const Scene* scene) override { errors_.set_truth(scene); }
-  Errors errors() override;
-  std::optional<ShownErrors> shown_errors() override;
+  std::optional<BeliefErrors> errors(ErrorsFor purpose) override;
   /// Without vertices before an object is known.
   Surface surface(double resolution) override;
   LineFacts explain(const TapLine& line) const override;
-
-  const Solids& solids() const { return solids_; }
-  const ResidualGp& residual_gp() const { return residual_gp_; }
-  const TouchLog& touches() const { return touches_; }
-  const Region& region() const { return region_; }
 
  private:
   const Context& context_;
@@ -78,14 +73,9 @@ class SolidsBelief final : public Belief {
   LineValues values_;
   SurfaceErrors errors_;
   ReadPlan plan_;
-  bool is_surface_read_ = false;
-  bool object_seen_ = false;                                   ///< by a camera before the first tap
+  std::set<Stage> begun_;
   std::size_t taken_in_ = 0;                                   ///< of the touches, by the solids
   int updated_for_ = -1, drawn_for_ = -1, inferred_for_ = -1;  ///< taps after which that was done
-  QuantitySet reads_, inferred_;                               ///< of begun stages; for which infer() computed last
-  QuantitySet available_;                                      ///< those of inferred_ that have arrays
-  TapCounts counts_;
-  std::vector<TapReading> readings_;
 };
 
 }  // namespace palpate

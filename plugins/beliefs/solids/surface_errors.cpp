@@ -23,7 +23,7 @@ Cloud surface_points(const Bundle& lines, double side, const Solids& solids, con
     if (hit < distance_down_to(0.0, line)) points.emplace_back(line.origin + hit * line.direction);
   }
   ResidualGp::Places places;
-  for (const Eigen::Vector3d& at : thinned(points, side)) places.push_back({at, ResidualGp::normal(best, at)});
+  for (const Eigen::Vector3d& at : thinned(points, side)) places.push_back({at, best.normal(at)});
   const Eigen::VectorXd means = residual_gp.means(places);
   Cloud out;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -36,7 +36,7 @@ Cloud surface_points(const Bundle& lines, double side, const Solids& solids, con
 
 Eigen::VectorXd surface_std(const Cloud& points, const Solids& solids, const ResidualGp& residual_gp) {
   ResidualGp::Places places;
-  for (const Eigen::Vector3d& at : points) places.push_back({at, ResidualGp::normal(solids.best(), at)});
+  for (const Eigen::Vector3d& at : points) places.push_back({at, solids.best().normal(at)});
   Eigen::VectorXd squares = residual_gp.posterior(places).variance;
   const auto assemblies = static_cast<double>(solids.assemblies().size());
   for (std::size_t i = 0; i < points.size(); ++i)

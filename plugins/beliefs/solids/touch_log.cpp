@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "solids/touch_log.hpp"
 
+#include <utility>
+
 namespace palpate {
 namespace {
 
@@ -9,9 +11,10 @@ constexpr double kFeltLate = 0.03;
 
 }  // namespace
 
-void TouchLog::look(const std::vector<SurfaceTouch>& seen) {
-  touches_ = seen;
-  seen_ = seen.size();
+void TouchLog::look(std::vector<SurfaceTouch> seen, bool shows_object) {
+  touches_ = std::move(seen);
+  seen_ = touches_.size();
+  is_object_seen_ = shows_object;
 }
 
 std::optional<TouchLog::Reported> TouchLog::reported(const TapRequest& request, const TapResult& result) const {
@@ -24,12 +27,13 @@ std::optional<TouchLog::Reported> TouchLog::reported(const TapRequest& request, 
   return Reported{touch, result.force, request.number};
 }
 
-std::optional<SurfaceTouch> TouchLog::read(const TapRequest& request, const TapResult& result) const {
+std::optional<TapReading> TouchLog::read(const TapRequest& request, const TapResult& result) const {
   const std::optional<Reported> one = reported(request, result);
-  return one ? std::optional(overtravel_.read(one->touch, one->force)) : std::nullopt;
+  return one ? std::optional(reading(overtravel_.read(one->touch, one->force), one->tap)) : std::nullopt;
 }
 
 void TouchLog::add(const TapRequest& request, const TapResult& result) {
+  taps_.add(request);
   const std::optional<Reported> one = reported(request, result);
   if (!one) return;
   reported_.push_back(*one);
@@ -37,26 +41,23 @@ void TouchLog::add(const TapRequest& request, const TapResult& result) {
   overtravel_.add(one->touch, one->force);
   has_changed_ = has_changed_ || overtravel_.spread() != before;
   touches_.resize(seen_ + reported_.size());
+  taps_.readings.resize(reported_.size());
   for (std::size_t i = 0; i < reported_.size(); ++i) {
     const SurfaceTouch touch = overtravel_.read(reported_[i].touch, reported_[i].force);
     SurfaceTouch& known = touches_[seen_ + i];
     const bool is_last = i + 1 == reported_.size();
     has_changed_ = has_changed_ || (!is_last && (touch.length != known.length || touch.desk != known.desk));
     known = touch;
+    taps_.readings[i] = reading(touch, reported_[i].tap);
   }
 }
 
-std::vector<TapReading> TouchLog::readings() const {
-  std::vector<TapReading> out;
-  for (std::size_t i = 0; i < reported_.size(); ++i) {
-    const SurfaceTouch& touch = touches_[seen_ + i];
-    TapReading one;
-    one.tap = reported_[i].tap;
-    one.position = touch.end() + Eigen::Vector3d(0.0, 0.0, desk_);
-    one.is_contact = touch.contact;
-    one.on_object = touch.contact && !touch.desk;
-    out.push_back(one);
-  }
+TapReading TouchLog::reading(const SurfaceTouch& touch, int tap) const {
+  TapReading out;
+  out.tap = tap;
+  out.position = touch.end() + Eigen::Vector3d(0.0, 0.0, desk_);
+  out.is_contact = touch.contact;
+  out.on_object = touch.contact && !touch.desk;
   return out;
 }
 

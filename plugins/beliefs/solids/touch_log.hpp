@@ -6,7 +6,7 @@
 #include "solids/overtravel.hpp"
 #include "solids/surface_touch.hpp"
 
-#include <palpate/tap.hpp>
+#include <palpate/belief.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -20,12 +20,12 @@ class TouchLog {
   /// desk is with the desk.
   TouchLog(double desk, double tip, double most) : desk_(desk), overtravel_(tip, most) {}
 
-  /// Takes the rays of a camera, before the first tap.
-  void look(const std::vector<SurfaceTouch>& seen);
+  /// Takes the rays of a camera, before the first tap. `shows_object`: whether one of all its rays ends on an object.
+  void look(std::vector<SurfaceTouch> seen, bool shows_object);
 
   /// Returns how a result is read now; nullopt if it teaches nothing: of a failed tap, and of one that felt nothing of
   /// the desk, and so would have felt nothing of an object.
-  std::optional<SurfaceTouch> read(const TapRequest& request, const TapResult& result) const;
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const;
 
   /// Takes the result of a tap. All contacts so far are read again.
   void add(const TapRequest& request, const TapResult& result);
@@ -33,8 +33,9 @@ class TouchLog {
   /// Touches as they are read now, lengths relative to the desk: first those that were seen.
   const std::vector<SurfaceTouch>& touches() const { return touches_; }
   std::size_t seen() const { return seen_; }
-  /// Returns the readings of the taps among them.
-  std::vector<TapReading> readings() const;
+  const TapsSoFar& taps() const { return taps_; }
+  /// Whether a camera saw an object before the first tap.
+  bool is_object_seen() const { return is_object_seen_; }
 
   /// Whether touches were read again, or their spread changed, since set_unchanged().
   bool has_changed() const { return has_changed_; }
@@ -48,12 +49,15 @@ class TouchLog {
     int tap;
   };
   std::optional<Reported> reported(const TapRequest& request, const TapResult& result) const;
+  TapReading reading(const SurfaceTouch& touch, int tap) const;
 
   double desk_;
   Overtravel overtravel_;
   std::vector<Reported> reported_;
   std::vector<SurfaceTouch> touches_;
   std::size_t seen_ = 0;
+  bool is_object_seen_ = false;
+  TapsSoFar taps_;
   bool has_changed_ = false;
 };
 

@@ -33,8 +33,7 @@ class MyBelief final : public Belief {
   }
 
   const Candidates& candidates() const override { return lines_; }
-  TapCounts counts() const override { return counts_; }
-  const std::vector<TapReading>& readings() const override { return readings_; }
+  const TapsSoFar& taps() const override { return taps_; }
 
   std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override {
     if (!result.is_contact()) return std::nullopt;
@@ -46,9 +45,8 @@ class MyBelief final : public Belief {
   }
 
   void add(const TapRequest& request, const TapResult& result) override {
-    ++counts_.all;
-    if (request.source == Source::initial) ++counts_.initial;
-    if (const auto reading = read(request, result)) readings_.push_back(*reading);
+    taps_.add(request);
+    if (const auto reading = read(request, result)) taps_.readings.push_back(*reading);
   }
 
   void infer() override {
@@ -57,7 +55,7 @@ class MyBelief final : public Belief {
     height_.setConstant(count, scene_.desk());
     probability_.setZero(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      for (const TapReading& one : readings_) {
+      for (const TapReading& one : taps_.readings) {
         const double d = math::hypot(lines_.starts(i, 0) - one.position.x(), lines_.starts(i, 1) - one.position.y());
         const double uncertainty = 1.0 - math::exp(-0.5 * (d / options_.reach) * (d / options_.reach));
         if (uncertainty >= uncertainty_(i)) continue;
@@ -81,9 +79,9 @@ class MyBelief final : public Belief {
   }
 
   void set_truth(const Scene* scene) override { truth_ = scene; }
-  Errors errors() override {
-    if (truth_ == nullptr || height_.size() == 0) return {};
-    return height_errors(lines_, height_, probability_.array() > 0.5, *truth_);
+  std::optional<BeliefErrors> errors(ErrorsFor /*purpose*/) override {
+    if (truth_ == nullptr || height_.size() == 0) return BeliefErrors();
+    return BeliefErrors{height_errors(lines_, height_, probability_.array() > 0.5, *truth_)};
   }
   Surface surface(double /*resolution*/) override { return {height_, {}, {}, 0.0}; }
 
@@ -91,8 +89,7 @@ class MyBelief final : public Belief {
   Options options_;
   const Scene& scene_;
   Candidates lines_;
-  TapCounts counts_;
-  std::vector<TapReading> readings_;
+  TapsSoFar taps_;
   Eigen::VectorXd uncertainty_, std_, height_, probability_;  ///< M values
   const Scene* truth_ = nullptr;
 };

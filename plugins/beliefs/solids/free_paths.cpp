@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "solids/free_paths.hpp"
+
+#include "solids/nonnegative.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+
+namespace palpate {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// A point of a free path.
+struct Passage {
+  std::size_t way;
+  ResidualKernel::Place place;
+  double distance;      ///< to the assembly
+  double inside = 0.0;  ///< the surface, when that was last looked at
+  bool taken = false;
+};
+
+/// Returns the points of free paths near or in the assembly. `reach`: of the residual GP by the contacts, metres.
+std::vector<Passage> passages_of(const ResidualKernel& kernel, const Assembly& solids,
+                                 const std::vector<SurfaceTouch>& touches, double reach) {
+  constexpr double kStep = 0.0015;
+  constexpr double kDeviations = 3.0;
+  const double deepest = std::min(kMaxResidual, kDeviations * kernel.deviation());
+  const double near = std::max(deepest, reach);
+  std::vector<Passage> out;
+  for (std::size_t way = 0; way < touches.size(); ++way) {
+    const std::size_t first = out.size();
+    for (double along = 0.0; along < touches[way].length;) {
+      const Vector3d at = touches[way].line.origin + along * touches[way].line.direction;
+      const double distance = solids.distance(at);
+      if (!(distance >= -deepest)) {  // the assembly is wrong here, not the residual GP
+        out.resize(first);
+        break;
+      }
+      if (distance < near) out.push_back({way, {at, solids.normal(at)}, distance});
+      along += std::max(kStep, distance - near);
+    }
+  }
+  return out;
+}
+
+/// Returns of each stretch of a path that was inside the surface the deepest point; a taken point ends a stretch.
+std::vector<Passage*> deepest(const std::vector<Passage*>& passages, double noise) {
+  std::vector<Passage*> out;
+  const Passage* before = nullptr;
+  for (Passage* const one : passages) {
+    const bool broken = !one->taken && one->inside > noise;
+    if (broken && before != nullptr && before->way == one->way) {
+      if (one->inside > out.back()->inside) out.back() = one;
+    } else if (broken) {
+      out.push_back(one);
+    }
+    before = broken ? one : nullptr;
+  }
+  return out;
+}
+
+}  // namespace
+
+/// |g(x)| <= ||g|| sqrt(k(x, x)) in the kernel's space, ||g||^2 = w' K w, where (K + N) w is what is known: for
+/// certain, but with many rows several times too much. Where values alone are known, g is larger between them than at
+/// them, by a fifth at most in some hundred fits of runs: half leaves room.
+double ResidualData::reach(const ResidualKernel& kernel) const {
+  constexpr double kBetween = 1.5;
+  double square = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ResidualKernel::Row& row = rows[i];
+    const double weight = weights(static_cast<Eigen::Index>(i));
+    square += weight * (row.target - row.noise * row.noise * weight);
+    largest = std::max(largest, std::abs(row.target));
+  }
+  const double certain = kernel.deviation() * std::sqrt(std::max(0.0, square));
+  return std::min(certain, kBetween * (table.slopes ? kMaxResidual : largest));
+}
+
+VectorXd ResidualData::means(const ResidualKernel& kernel, const ResidualKernel::Places& places) const {
+  VectorXd out(static_cast<Eigen::Index>(places.size()));
+  kernel.for_blocks(places, table, [&](Eigen::Index first, Eigen::Index count, const Eigen::Map<MatrixXd>& k) {
+    out.segment(first, count).noalias() = k.topRows(count) * weights;
+  });
+  return out;
+}
+
+/// With A the covariance of the contacts, noise included, as A = L L', and V = L^-1 of that with the free points, S of
+/// Nonnegative is the covariance of the free points when the contacts are known, d by how much they are inside then.
+FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
+                          const std::vector<SurfaceTouch>& touches, double contact_noise, ResidualData& known) {
+  // No path is known better than by a tenth of a millimetre: that keeps the problem far from singular, however many
+  // points hold side by side.
+  constexpr double kLeast = 1e-4;
+  const double noise = std::max(kLeast, contact_noise);
+  std::vector<Passage> passages = passages_of(kernel, solids, touches, known.reach(kernel));
+  FreePaths out;
+  const ResidualData contacts = known;
+  const auto lower = contacts.lower.triangularView<Eigen::Lower>();
+  const Eigen::Index n = contacts.weights.size();
+  MatrixXd between(n, 0);  // V
+  Nonnegative pull;
+  std::vector<Passage*> all, close;
+  for (Passage& one : passages) all.push_back(&one);
+  const auto look_at = [&](const std::vector<Passage*>& some) {
+    ResidualKernel::Places places;
+    for (const Passage* const one : some) places.push_back(one->place);
+    const VectorXd means = known.means(kernel, places);
+    for (std::size_t i = 0; i < some.size(); ++i)
+      some[i]->inside = means(static_cast<Eigen::Index>(i)) - some[i]->distance;
+  };
+  const auto look_at_all = [&] {
+    constexpr double kClose = 0.003;  // what holds elsewhere moves the surface by less, as a rule, if it does outwards
+    look_at(all);
+    close.clear();
+    std::copy_if(all.begin(), all.end(), std::back_inserter(close),
+                 [&](const Passage* one) { return one->inside > -kClose; });
+  };
+  look_at_all();
+  constexpr int kRounds = 16;
+  for (int round = 0;; ++round) {
+    std::vector<Passage*> more = deepest(close, noise);
+    if (more.empty() && round > 0) {
+      look_at_all();
+      more = deepest(close, noise);
+    }
+    if (more.empty()) return out;
+    if (round == kRounds) {
+      look_at_all();
+      more = deepest(close, noise);
+      for (std::size_t i = 0; i < more.size(); ++i) out.violated += i == 0 || more[i]->way != more[i - 1]->way ? 1 : 0;
+      return out;
+    }
+    std::vector<ResidualKernel::Row> rows;
+    for (Passage* const one : more) {
+      one->taken = true;
+      rows.push_back({one->place, Vector3d::Zero(), one->distance, noise, true});
+    }
+    out.points.insert(out.points.end(), rows.begin(), rows.end());
+    const ResidualKernel::Table table = ResidualKernel::table_of(rows);
+    const auto m = static_cast<Eigen::Index>(rows.size());
+    MatrixXd with = kernel.covariances(contacts.table, table);
+    VectorXd inside = with.transpose() * contacts.weights;
+    for (Eigen::Index i = 0; i < m; ++i) inside(i) -= rows[static_cast<std::size_t>(i)].target;
+    lower.solveInPlace(with);
+    between.conservativeResize(n, between.cols() + m);
+    between.rightCols(m) = with;
+    MatrixXd left = kernel.covariances(ResidualKernel::table_of(out.points), table);
+    left.noalias() -= between.transpose() * with;
+    left.diagonal(m - left.rows()).array() += noise * noise;
+    pull.append(left, inside);
+    pull.solve();
+    out.redundant = pull.redundant_taps();
+
+    VectorXd shift = between(Eigen::all, pull.held()) * pull.values();
+    lower.transpose().solveInPlace(shift);
+    known.rows = contacts.rows;
+    for (const int i : pull.held()) known.rows.push_back(out.points[static_cast<std::size_t>(i)]);
+    known.table = ResidualKernel::table_of(known.rows);
+    known.weights.resize(n + pull.values().size());
+    known.weights << contacts.weights + shift, -pull.values();
+    look_at(close);
+  }
+}
+
+}  // namespace palpate

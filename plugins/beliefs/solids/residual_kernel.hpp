@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// The prior covariance of the residual GP, between values and slopes at places in space.
+#pragma once
+
+#include "gp/loops.hpp"
+#include "gp/panels.hpp"
+
+#include <palpate/kernel.hpp>
+#include <palpate/types.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace palpate {
+
+class ResidualKernel {
+ public:
+  /// The kernel is evaluated at points of the desk as far apart as those in space. Throws Error unless the kernel
+  /// depends on the distance alone.
+  explicit ResidualKernel(std::shared_ptr<const Kernel> kernel);
+
+  struct Place {
+    Eigen::Vector3d at, normal;
+  };
+  using Places = std::vector<Place>;
+
+  /// A datum: the value of g or, where `along` is not 0, its slope in that direction.
+  struct Row {
+    Place place;
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();
+    double target = 0.0;
+    double noise = 0.0;  ///< standard deviation
+    bool free = false;   ///< a point of a free path
+  };
+
+  /// Rows side by side: places, normals, and directions of slopes, one in each row.
+  struct Table {
+    Eigen::MatrixX3d at, normal, along;
+    bool slopes = false;
+  };
+  static Table table_of(const std::vector<Row>& rows);
+
+  bool has_gradient() const { return kernel_->has_gradient(); }
+  void set_signal(double signal) { signal_ = signal; }
+  double signal() const { return signal_; }
+  /// Returns the standard deviation before any touch, metres.
+  double deviation() const { return signal_ * std::sqrt(unit_); }
+
+  /// Returns the covariances of g before any touch.
+  Eigen::MatrixXd covariances(const Table& a, const Table& b) const;
+  /// Calls use(first place, count of places, their covariances with the table) for blocks of places.
+  template <class Use>
+  void for_blocks(const Places& places, const Table& table, const Use& use) const;
+
+ private:
+  /// Writes into `out`, whose columns follow each other; `apart` has room for a row a pair, of which the second number
+  /// is 0.
+  void covariances(const Table& a, const Table& b, Points& apart, MatrixOut out) const;
+
+  std::shared_ptr<const Kernel> kernel_;
+  double unit_ = 1.0;  ///< variance of the kernel
+  double signal_ = 0.0;
+};
+
+template <class Use>
+void ResidualKernel::for_blocks(const Places& places, const Table& table, const Use& use) const {
+  const Eigen::Index n = table.at.rows();
+  loops::AlignedArray numbers(static_cast<std::size_t>(n * loops::kBlock));
+  const Eigen::Map<Eigen::MatrixXd> rows(numbers.data(), loops::kBlock, n);
+  Points apart = Points::Zero(n * loops::kBlock, 2);
+  for (std::size_t first = 0; first < places.size(); first += loops::kBlock) {
+    std::vector<Row> some;
+    for (std::size_t i = first; i < first + loops::kBlock; ++i)  // the last ones again, where there are no more
+      some.push_back({places[std::min(i, places.size() - 1)]});
+    covariances(table_of(some), table, apart, rows);
+    const std::size_t count = std::min<std::size_t>(loops::kBlock, places.size() - first);
+    use(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count), rows);
+  }
+}
+
+}  // namespace palpate
