@@ -8,19 +8,19 @@ target_link_libraries(palpate_gp PUBLIC palpate::plugin_api palpate_regular fmt:
                                  PRIVATE palpate_warnings palpate_highway)
 set_target_properties(palpate_gp PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 add_library(palpate_core STATIC
-  config/tree.cpp config/yaml.cpp config/yaml_writer.cpp config/quantity.cpp config/scale.cpp config/override.cpp config/group_files.cpp config/compose.cpp config/map_reader.cpp config/resolve.cpp config/describe.cpp
+  config/tree.cpp config/yaml.cpp config/yaml_writer.cpp config/quantity.cpp config/display_units.cpp config/override.cpp config/group_files.cpp config/compose.cpp config/map_reader.cpp config/resolve.cpp config/describe.cpp
   config/hash.cpp config/expand.cpp config/keys.cpp config/relation.cpp
   host/host.cpp host/loaded_hash.cpp host/plugin_errors.cpp host/listing.cpp
-  scene/scene_options.cpp scene/effect_options.cpp scene/scene.cpp scene/sizes.cpp scene/body.cpp scene/placement.cpp scene/draw.cpp
-  belief/points.cpp belief/view.cpp
+  scene/scene_options.cpp scene/effect_options.cpp scene/scene.cpp scene/size_warnings.cpp scene/body.cpp scene/placement.cpp scene/random_objects.cpp
+  belief/point_cloud.cpp belief/camera_view.cpp
   experiment/experiment_options.cpp record/resolved.cpp
   belief/builtin_plugins.cpp belief/height_map.cpp belief/height_map_options.cpp belief/height_models.cpp belief/contact_log.cpp belief/gp_model.cpp belief/footprint_model.cpp
-  belief/outlier_model.cpp belief/height_model.cpp belief/surface_model.cpp experiment/policy.cpp experiment/search.cpp belief/expected_rmse.cpp belief/metrics.cpp belief/object_errors.cpp
-  experiment/read_plan.cpp experiment/stop_rules.cpp experiment/tap_selector.cpp experiment/motion_selector.cpp experiment/run_monitor.cpp experiment/experiment.cpp
-  record/row.cpp record/json.cpp record/files.cpp record/record_reader.cpp record/held_record.cpp record/run_directory.cpp record/catalogue.cpp record/distinctions.cpp
+  belief/outlier_model.cpp belief/height_model.cpp belief/surface_model.cpp experiment/policy.cpp experiment/search_design.cpp belief/expected_rmse.cpp belief/metrics.cpp belief/object_errors.cpp
+  experiment/check_quantities.cpp experiment/stop_rules.cpp experiment/tap_selector.cpp experiment/motion_selector.cpp experiment/run_monitor.cpp experiment/experiment.cpp
+  record/row.cpp record/json.cpp record/files.cpp record/record_reader.cpp record/record_writer.cpp record/run_directory.cpp record/catalogue.cpp record/distinguishing_settings.cpp
   record/build_info.cpp record/fields.cpp record/expectation.cpp record/mesh_ply.cpp record/summary.cpp
   record/recorded_run.cpp record/run.cpp record/checkpoint.cpp record/run_replay.cpp
-  record/sample.cpp record/gate.cpp)
+  record/quantiles.cpp record/gate.cpp)
 target_include_directories(palpate_core PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 target_include_directories(palpate_core SYSTEM PRIVATE ${XXHASH_INCLUDE_DIR})
 target_link_libraries(palpate_core

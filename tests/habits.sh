@@ -22,11 +22,11 @@ done | awk -v folders="$folders" '
     if (!($2 in rank)) print $1 ": includes " $2 "/, which is no folder of the framework"
     else if (rank[$2] > rank[from]) print $1 ": " from " knows nothing of " $2 ", which stands below it" }' >"$found/arrows"
 # What a tap may depend on has the same bytes on every machine: palpate/math.hpp. Baxter's driver runs on one, and texts
-# of numbers (config/scale.cpp) decide nothing.
+# of numbers (config/display_units.cpp) decide nothing.
 # shellcheck disable=SC2086 # the names are to be split
 git grep -nE '(std|Eigen)::(exp2?|expm1|log|log1p|log2|log10|hypot|sin|cos|tan|a?sinh?|a?cosh?|atan2?|a?tanh|pow|cbrt|erfc?|l?tgamma)\(|Eigen::(AngleAxis|Rotation2D)|(\)|array)\.(exp|log|log1p|pow|sin|cos|tan|atan|tanh|erf)\(\)' -- \
   $core 'framework/include/*.hpp' 'framework/shared/*.[ch]pp' 'plugins/*.[ch]pp' \
-  ':!framework/shared/math' ':!framework/config/scale.cpp' ':!plugins/backends/baxter' |
+  ':!framework/shared/math' ':!framework/config/display_units.cpp' ':!plugins/backends/baxter' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: an elementary function of the platform, palpate/math.hpp has its own|' >"$found/elementary" || true
 
 # Plugins see what their authors see, and each other's folders; the belief `solids` is made of the GPs of core, too.
@@ -41,10 +41,10 @@ git grep -nE 'std::i?fstream|fopen *\(|(^|[ =(!])::open(at)?\(|directory_iterato
   grep -vE '"/dev/(null|full)"' |
   sed 's|^\([^:]*:[0-9]*\):.*|\1: opens a file or lists a folder itself, which is for shared/reading|' >"$found/reading" || true
 
-# People see quantities by config/scale.hpp: no line fixes the decimals of a length or a time itself.
+# People see quantities by config/display_units.hpp: no line fixes the decimals of a length or a time itself.
 git grep -nE '\{:\.[0-9]f\} (cm|mm|m|s)\b|toFixed\(' -- 'framework/cli/*.cpp' 'framework/analysis/*.cpp' \
   'framework/report/*.cpp' 'framework/report/page/web/*.js' |
-  sed 's|^\([^:]*:[0-9]*\):.*|\1: fixes the decimals of a quantity, which is for config/scale.hpp or common.js|' >"$found/quantities" || true
+  sed 's|^\([^:]*:[0-9]*\):.*|\1: fixes the decimals of a quantity, which is for config/display_units.hpp or common.js|' >"$found/quantities" || true
 
 # Retired names, as whole words; a word that has another meaning, too, is listed with its key. Three lines a file are shown.
 # tests/same_taps.csv maps old names to new ones.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Means with their intervals as text (numbers by config/scale.hpp) and as fields of rows.
+// Means with their intervals as text (numbers by config/display_units.hpp) and as fields of rows.
 #pragma once
 
 #include "analysis/column.hpp"
 #include "analysis/statistics.hpp"
-#include "config/layout.hpp"
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
+#include "config/text_layout.hpp"
 #include "reading/reading.hpp"
 
 #include <palpate/options.hpp>

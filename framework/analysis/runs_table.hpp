@@ -3,7 +3,7 @@
 // but no taps: a folder may hold hundreds of runs.
 #pragma once
 
-#include "record/distinctions.hpp"
+#include "record/distinguishing_settings.hpp"
 #include "record/row.hpp"
 #include "sweep/condition.hpp"
 

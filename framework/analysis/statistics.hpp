@@ -2,7 +2,7 @@
 // Means of clustered samples with Student's interval.
 #pragma once
 
-#include "record/sample.hpp"
+#include "record/quantiles.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/table.hpp"
 
-#include "config/layout.hpp"
+#include "config/text_layout.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,9 +3,9 @@
 // whether it is on an object. Later taps may change how earlier ones are read.
 #pragma once
 
+#include "belief/camera_view.hpp"
 #include "belief/height_map_options.hpp"
 #include "gp/offset_model.hpp"
-#include "belief/view.hpp"
 
 #include <palpate/scene.hpp>
 #include <palpate/tap.hpp>

@@ -2,7 +2,7 @@
 // The options of the belief `height_map`.
 #pragma once
 
-#include "belief/view.hpp"
+#include "belief/camera_view.hpp"
 
 #include <palpate/options.hpp>
 

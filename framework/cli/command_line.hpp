@@ -3,7 +3,7 @@
 // the words of the command line into the variables that the declarations name.
 #pragma once
 
-#include "cli/needs.hpp"
+#include "cli/build_targets.hpp"
 #include "cli/program.hpp"
 #include "record/catalogue.hpp"
 

@@ -2,7 +2,7 @@
 #include "cli/display.hpp"
 
 #include "cli/output.hpp"
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 #include "reading/reading.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"

@@ -9,7 +9,7 @@
 #include "config/yaml.hpp"
 #include "record/files.hpp"
 #include "record/run_directory.hpp"
-#include "scene/sizes.hpp"
+#include "scene/size_warnings.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "cli/display.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 #include "record/run_directory.hpp"
 
 namespace palpate::cli {

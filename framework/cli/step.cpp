@@ -3,7 +3,7 @@
 
 #include "cli/display.hpp"
 #include "cli/output.hpp"
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 #include "record/fields.hpp"
 
 #include <palpate/error.hpp>

@@ -17,7 +17,7 @@
 #include "record/files.hpp"
 #include "record/run.hpp"
 #include "report/words/words.hpp"
-#include "scene/sizes.hpp"
+#include "scene/size_warnings.hpp"
 #include "sweep/draft.hpp"
 #include "sweep/plan.hpp"
 

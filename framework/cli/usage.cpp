@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/usage.hpp"
 
-#include "config/layout.hpp"
+#include "config/text_layout.hpp"
 #include "record/build_info.hpp"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "cli/output.hpp"
 #include "cli/sweep.hpp"
 #include "config/catch_error.hpp"
-#include "scene/sizes.hpp"
+#include "scene/size_warnings.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 #include "config/describe.hpp"
 
 #include "config/expand.hpp"
-#include "config/layout.hpp"
 #include "config/quantity.hpp"
+#include "config/text_layout.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -196,7 +196,7 @@ Tree or_drawn(Tree schema) {
   return schema;
 }
 
-/// Returns the schema of a list of groups, or of a random draw of that list: see scene/draw.hpp.
+/// Returns the schema of a list of groups, or of a random draw of that list: see scene/random_objects.hpp.
 Tree list_schema(const FieldDescription& field) {
   Tree item = group_schema(field.fields);
   Tree list = array_schema(item);

@@ -38,7 +38,7 @@ bool is_value(const FixedValue& constant) {
 
 }  // namespace
 
-MapReader::MapReader(const Tree& input, std::string path, ResolveNotes& notes, Around around)
+MapReader::MapReader(const Tree& input, std::string path, ResolveNotes& notes, ParentContext around)
     : input_(input),
       path_(std::move(path)),
       notes_(notes),
@@ -218,7 +218,7 @@ void MapReader::write(const Field& field, Tree value, std::string_view id_text) 
   output_.at(field.name) = std::move(value);
 }
 
-Around MapReader::around(const Field& field, const std::string& name) const {
+ParentContext MapReader::around(const Field& field, const std::string& name) const {
   const std::string item = name.substr(std::string_view(field.name).size());
   return {output_.place, id_name(field) + item + ".", enters(field), complete_};
 }

@@ -16,7 +16,7 @@
 namespace palpate {
 
 /// Properties that a nested map takes over from the map around it.
-struct Around {
+struct ParentContext {
   SourceLocation place;
   std::string id_path;    ///< the path, with former names of fields (Field::was())
   bool enters_id = true;  ///< see Field::not_identifying()
@@ -27,7 +27,7 @@ class MapReader : public Fields {
  public:
   /// If `input` is null, each field has its default or, in a record, its neutral value. If `input` has no place, errors
   /// have the place in `around`. `path` is "" at the top, otherwise it ends with a dot.
-  MapReader(const Tree& input, std::string path, ResolveNotes& notes, Around around);
+  MapReader(const Tree& input, std::string path, ResolveNotes& notes, ParentContext around);
 
   /// Rejects keys that no field has claimed, and returns the resolved map. `elsewhere`: see resolve().
   Tree finish(const std::vector<std::string>& elsewhere = {});
@@ -89,7 +89,7 @@ class MapReader : public Fields {
   void write(const Field& field, std::string text);
 
   /// Returns the properties for the map at `name`, which is the field or one of its items.
-  Around around(const Field& field, const std::string& name) const;
+  ParentContext around(const Field& field, const std::string& name) const;
 
   const Tree& input_;
   std::string path_;

@@ -41,7 +41,7 @@ bool is_row(const Tree& tree, std::size_t values) {
 /// Reads one map of a config and writes its resolved form. Nested maps have their own resolver.
 class Resolver final : public MapReader {
  public:
-  Resolver(const Tree& input, std::string path, const PluginSource& plugins, ResolveNotes& notes, Around around)
+  Resolver(const Tree& input, std::string path, const PluginSource& plugins, ResolveNotes& notes, ParentContext around)
       : MapReader(input, std::move(path), notes, std::move(around)), plugins_(plugins) {}
 
   void real(double& value, const Field& field) override {

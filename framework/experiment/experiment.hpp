@@ -2,9 +2,9 @@
 // The experiment: tap, read, fit, infer, score, choose, tap again.
 #pragma once
 
+#include "experiment/check_quantities.hpp"
 #include "experiment/experiment_options.hpp"
 #include "experiment/motion_selector.hpp"
-#include "experiment/read_plan.hpp"
 #include "experiment/run_monitor.hpp"
 #include "experiment/tap_record.hpp"
 #include "experiment/tap_selector.hpp"

@@ -3,9 +3,9 @@
 // where the scores do not tell candidates apart.
 #pragma once
 
+#include "experiment/check_quantities.hpp"
 #include "experiment/policy.hpp"
-#include "experiment/read_plan.hpp"
-#include "experiment/search.hpp"
+#include "experiment/search_design.hpp"
 #include "experiment/tap_record.hpp"
 
 #include <palpate/acquisition.hpp>
@@ -61,8 +61,8 @@ class TapSelector {
   Area area_;
   CandidateGrid grid_;  ///< of fixed candidates
   std::shared_ptr<Acquisition> acquisition_;
-  std::vector<int> initial_;      ///< candidates of a design that counts its taps
-  std::optional<Search> search_;  ///< the other design
+  std::vector<int> initial_;            ///< candidates of a design that counts its taps
+  std::optional<SearchDesign> search_;  ///< the other design
   Eigen::VectorXd scores_;
   struct Tapped {
     int candidate;

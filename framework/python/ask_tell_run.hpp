@@ -2,9 +2,9 @@
 // A run for Python whose taps the caller makes: ask and tell.
 #pragma once
 
-#include "answers/answer.hpp"
-#include "environment.hpp"
+#include "answers/tap_result_checks.hpp"
 #include "experiment/experiment.hpp"
+#include "module_host.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"
 #include "record/run.hpp"

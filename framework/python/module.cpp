@@ -3,7 +3,7 @@
 // palpate/__init__.py, the documented interface, uses it.
 #include "ask_tell_run.hpp"
 #include "config/quantity.hpp"
-#include "environment.hpp"
+#include "module_host.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"
 #include "record/json.hpp"

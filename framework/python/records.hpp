@@ -3,8 +3,8 @@
 #pragma once
 
 #include "belief/metrics.hpp"
-#include "environment.hpp"
 #include "experiment/experiment.hpp"
+#include "module_host.hpp"
 #include "record/json.hpp"
 #include "record/run_directory.hpp"
 #include "record/run_replay.hpp"

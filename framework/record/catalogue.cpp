@@ -2,7 +2,7 @@
 #include "record/catalogue.hpp"
 
 #include "config/catch_error.hpp"
-#include "record/distinctions.hpp"
+#include "record/distinguishing_settings.hpp"
 #include "record/files.hpp"
 #include "record/record_reader.hpp"
 #include "record/recorded_run.hpp"

@@ -4,7 +4,7 @@
 #include "experiment/unreached.hpp"
 #include "record/files.hpp"
 #include "record/json.hpp"
-#include "record/sample.hpp"
+#include "record/quantiles.hpp"
 
 #include <fmt/format.h>
 #include <boost/algorithm/string/predicate.hpp>

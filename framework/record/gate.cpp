@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "record/gate.hpp"
 
+#include "config/display_units.hpp"
 #include "config/quantity.hpp"
-#include "config/scale.hpp"
 #include "reading/reading.hpp"
 #include "record/fields.hpp"
-#include "record/sample.hpp"
+#include "record/quantiles.hpp"
 
 #include <fmt/format.h>
 

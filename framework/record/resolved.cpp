@@ -4,7 +4,7 @@
 #include "config/hash.hpp"
 #include "config/quantity.hpp"
 #include "config/yaml.hpp"
-#include "scene/draw.hpp"
+#include "scene/random_objects.hpp"
 
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/trim.hpp>

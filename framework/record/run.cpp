@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "record/run.hpp"
 
-#include "answers/answer.hpp"
+#include "answers/tap_result_checks.hpp"
 #include "config/catch_error.hpp"
 #include "config/hash.hpp"
 #include "config/quantity.hpp"
@@ -476,10 +476,10 @@ std::optional<Error> objection_to_build(const RunEnvironment& environment, const
                "add --force to resume it with this build, which the record will note");
 }
 
-Restored restore_files(const RunEnvironment& environment, RunDirectory& held) {
+RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& held) {
   const fs::path& directory = held.path();
   const RunRecord& record = held.before();
-  Restored out;
+  RestoredFiles out;
   const auto restore = [&](const Ending::File& one, const std::string& text) {
     const bool same = text.size() == one.bytes && hash_of(text) == one.hash;
     if (same) held.write(one.name, text);

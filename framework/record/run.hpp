@@ -36,7 +36,7 @@ inline constexpr const char* kCaller = "caller";
 enum class Taps { by_backend, by_caller };
 
 /// Names of files that an ended run had lost.
-struct Restored {
+struct RestoredFiles {
   std::vector<std::string> made;  ///< again, byte for byte
   std::vector<std::string> lost;  ///< left out: this build makes others from the same taps
 };
@@ -47,7 +47,7 @@ struct RunReport {
   bool already_done = false;  ///< nothing was run: the directory held the finished run
   bool interrupted = false;   ///< it can be resumed; there is no summary
   Row summary;                ///< the fields of summary.json
-  Restored restored{};        ///< of a finished run
+  RestoredFiles restored{};   ///< of a finished run
 };
 
 struct StartOptions {
@@ -93,8 +93,8 @@ class Run {
   /// finite, one per candidate) choose it in the place of the strategy. Returns null when the run is over and finished.
   const TapRecord* ask(const Eigen::VectorXd* scores);
   /// Takes the result of that tap. Throws Error of kind `usage` for a value that no arm can have measured (see
-  /// answers/answer.hpp; `hover` and `overrun` of the backend bound the heights): nothing is recorded then. Throws
-  /// Error of kind `run`, and finishes the run, when it cannot continue.
+  /// answers/tap_result_checks.hpp; `hover` and `overrun` of the backend bound the heights): nothing is recorded then.
+  /// Throws Error of kind `run`, and finishes the run, when it cannot continue.
   void tell(TapResult result);
   /// Whether ask() has returned a tap whose result tell() has not taken.
   bool is_pending() const { return tap_.has_value(); }
@@ -159,6 +159,6 @@ std::optional<Error> objection_to_build(const RunEnvironment& environment, const
 
 /// Makes those files again that an ended run in a directory that this process holds has lost: a kill came between its
 /// last line and summary.json, or a power cut took what was never synced. Throws Error.
-Restored restore_files(const RunEnvironment& environment, RunDirectory& held);
+RestoredFiles restore_files(const RunEnvironment& environment, RunDirectory& held);
 
 }  // namespace palpate

@@ -5,7 +5,7 @@
 
 #include "experiment/tap_record.hpp"
 #include "record/files.hpp"
-#include "record/held_record.hpp"
+#include "record/record_writer.hpp"
 #include "record/resolved.hpp"
 #include "record/row.hpp"
 

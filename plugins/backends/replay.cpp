@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Backend that returns recorded taps: those of a former run, or of any table with the same columns. A dense scan of a
 // real object can serve as a benchmark of strategies.
-#include "answers/answer.hpp"
+#include "answers/tap_result_checks.hpp"
 #include "reading/reading.hpp"
 
 #include <palpate/backend.hpp>

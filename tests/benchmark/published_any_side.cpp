@@ -15,9 +15,9 @@
 // comes only from where palpate's may, and the surface is compared where palpate's is: flood-filled from the known
 // points, brought to the value 0 by two steps of Newton's, without the part that no tool could reach.
 #include "experiment/experiment_options.hpp"
+#include "solids/camera_rays.hpp"
 #include "solids/cloud.hpp"
 #include "solids/line_sampler.hpp"
-#include "solids/view.hpp"
 #include "support/runs.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "config/layout.hpp"
+#include "config/text_layout.hpp"
 
 #include "support/testing.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a program may answer, line by line, and what becomes of it.
-#include "answers/answer.hpp"
+#include "answers/tap_result_checks.hpp"
 #include "unit/process_backend.hpp"
 
 #include <cmath>

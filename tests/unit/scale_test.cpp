@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 
 #include "support/testing.hpp"
 

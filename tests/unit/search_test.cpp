@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The initial design `search`: where it looks, when it ends, and that it is no worse for what happens on the way.
-#include "experiment/search.hpp"
+#include "experiment/search_design.hpp"
 
 #include "support/runs.hpp"
 #include "support/testing.hpp"
@@ -19,7 +19,7 @@ const TapResult kRefused = tap_without_contact(Outcome::unreachable, 0.0, "becau
 
 /// The first `count` places of a search that meets nothing.
 std::vector<int> sequence(double smallest, const CandidateGrid& candidates, std::uint64_t seed, int count) {
-  Search search(smallest, candidates, kArea, Random(seed, "initial"));
+  SearchDesign search(smallest, candidates, kArea, Random(seed, "initial"));
   std::vector<int> out;
   for (int i = 0; i < count; ++i) {
     out.push_back(search.next(Allowed::Constant(candidates.size(), true)));
@@ -55,7 +55,7 @@ double mean_first_hit(double length, double width, const CandidateGrid& candidat
   return sum / kBoxes;
 }
 
-TEST(Search, FindsThePapersObjectsSoonerThanTheIssueAsksAndSmallOnesSoonerThanChance) {
+TEST(SearchDesign, FindsThePapersObjectsSoonerThanTheIssueAsksAndSmallOnesSoonerThanChance) {
   const CandidateGrid candidates = grid_by_count(kArea, 47);
   std::vector<std::vector<int>> searches;
   for (std::uint64_t seed = 0; seed < 20; ++seed) searches.push_back(sequence(0.02, candidates, seed, 60));
@@ -70,7 +70,7 @@ TEST(Search, FindsThePapersObjectsSoonerThanTheIssueAsksAndSmallOnesSoonerThanCh
   EXPECT_LE(mean_first_hit(0.12, 0.02, candidates, searched), 0.6 * mean_first_hit(0.12, 0.02, candidates, drawn));
 }
 
-TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
+TEST(SearchDesign, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
   // The discs anew, from the same stream by the rule of the header, and counted one by one.
   const double smallest = 0.04;
   const CandidateGrid candidates = grid_by_spacing({0.23, 0.10}, 0.01);
@@ -83,7 +83,7 @@ TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
     const double y = radius + (area.depth - 2 * radius) * random.uniform();
     discs.push_back({x, y, radius, 1.0});
   }
-  Search search(smallest, candidates, area, Random(9, "initial"));
+  SearchDesign search(smallest, candidates, area, Random(9, "initial"));
   const Allowed all = Allowed::Constant(candidates.size(), true);
   for (int tap = 0; tap < 12; ++tap) {
     std::vector<double> held(static_cast<std::size_t>(all.size()), 0.0);
@@ -105,7 +105,7 @@ TEST(Search, TakesThePlaceWhereMostIsThatNoTapHasStruckOff) {
   }
 }
 
-TEST(Search, GoesIntoTheLargestGapOnceNoDiscIsLeft) {
+TEST(SearchDesign, GoesIntoTheLargestGapOnceNoDiscIsLeft) {
   // Objects of 22 cm and more hold the middle of the area: one tap there, and only what is smaller can be left.
   const CandidateGrid candidates = grid_by_count(kArea, 23);
   const std::vector<int> places = sequence(0.22, candidates, 1, 6);
@@ -125,11 +125,11 @@ TEST(Search, GoesIntoTheLargestGapOnceNoDiscIsLeft) {
   }
 }
 
-TEST(Search, LooksEverywhereOnceAndOnlyWhereItMay) {
+TEST(SearchDesign, LooksEverywhereOnceAndOnlyWhereItMay) {
   const CandidateGrid candidates = grid_by_count(kArea, 6);
   const std::vector<int> places = sequence(0.02, candidates, 4, candidates.size());
   EXPECT_EQ(std::set<int>(places.begin(), places.end()).size(), 36U);
-  Search search(0.02, candidates, kArea, Random(4, "initial"));
+  SearchDesign search(0.02, candidates, kArea, Random(4, "initial"));
   Allowed allowed = Allowed::Constant(36, true);
   allowed(places[0]) = false;
   EXPECT_NE(search.next(allowed), places[0]);

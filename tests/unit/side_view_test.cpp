@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A look from one side, at a cup.
-#include "solids/view.hpp"
+#include "solids/camera_rays.hpp"
 
 #include "experiment/experiment.hpp"
 #include "solids/cloud.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a camera saw before the first tap: its file, what is made of it, and what it is worth.
-#include "belief/view.hpp"
+#include "belief/camera_view.hpp"
 
 #include "support/runs.hpp"
 #include "support/sanitizers.hpp"

@@ -2,8 +2,8 @@
 // The belief: what the taps so far say of the scene, and of the lines along which the next tap may be made.
 #pragma once
 
+#include <palpate/belief_quantities.hpp>
 #include <palpate/errors.hpp>
-#include <palpate/quantity.hpp>
 #include <palpate/record_fields.hpp>
 #include <palpate/scene.hpp>
 #include <palpate/surface.hpp>

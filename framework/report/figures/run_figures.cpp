@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/gnuplot.hpp"
 #include "analysis/mean_output.hpp"
-#include "config/layout.hpp"
+#include "config/text_layout.hpp"
 #include "record/fields.hpp"
 #include "report/curves.hpp"
 #include "report/figures/figure_layout.hpp"

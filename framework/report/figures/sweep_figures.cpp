@@ -4,7 +4,7 @@
 #include "analysis/groups.hpp"
 #include "analysis/mean_output.hpp"
 #include "analysis/statistics.hpp"
-#include "config/layout.hpp"
+#include "config/text_layout.hpp"
 #include "report/figures/figure_layout.hpp"
 #include "report/figures/figures.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/page.hpp"
 
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 #include "record/fields.hpp"
 #include "report/colours.hpp"
 

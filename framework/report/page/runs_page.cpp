@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/page/runs_page.hpp"
 
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 #include "record/build_info.hpp"
 #include "record/catalogue.hpp"
 #include "record/fields.hpp"

@@ -2,7 +2,7 @@
 #include "report/words/explain.hpp"
 
 #include "belief/outlier_model.hpp"
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 #include "gp/candidate_grid.hpp"
 #include "record/fields.hpp"
 #include "report/words/explanation.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Explanation of a tap from any side.
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 #include "record/fields.hpp"
 #include "report/words/explanation.hpp"
 #include "report/words/words.hpp"

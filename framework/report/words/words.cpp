@@ -2,7 +2,7 @@
 #include "report/words/words.hpp"
 
 #include "analysis/mean_output.hpp"
-#include "config/scale.hpp"
+#include "config/display_units.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

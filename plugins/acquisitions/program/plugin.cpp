@@ -119,7 +119,7 @@ struct ProgramOptions : Options {
                             .not_identifying());
     fields.require(folder.empty() || fs::path(folder).is_absolute(), "folder",
                    "is not an absolute path, which a resume in another folder needs; begin it with /");
-    programs::Content content;
+    programs::ProgramFingerprint content;
     if (words) content = programs::content_of(*words, folder);
     if (words && checksum.empty()) checksum = content.checksum;
     programs::list_checksum(checksum, fields);
@@ -298,7 +298,7 @@ class ProgramAcquisition final : public Acquisition {
   /// Copies the program to the run's folder, because the original may change.
   void keep_program() const {
     constexpr std::size_t kMostBytes = 1 << 20;  // larger than any hand-written program
-    const programs::Content content = programs::content_of(words_, options_.folder);
+    const programs::ProgramFingerprint content = programs::content_of(words_, options_.folder);
     if (content.program.empty() || content.program.size() > kMostBytes) return;
     programs::keep_copy(in_record(fs::path(content.file).extension().string()), content.program);
   }

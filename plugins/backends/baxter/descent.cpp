@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Descent of Tapper: rest, speed limit, descent, rise, and acceptance of the contact.
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 #include "baxter/tapper.hpp"
 #include "tapping/motion.hpp"
 

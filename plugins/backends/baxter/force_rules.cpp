@@ -2,7 +2,7 @@
 // Force rules of MotionGuard: the force is renewed, is not too strong, and nothing holds the tool.
 #include "baxter/motion_guard.hpp"
 
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Force sensing of Tapper: force at rest, speed limit, rise, friction, and sign.
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 #include "baxter/tapper.hpp"
 #include "tapping/motion.hpp"
 

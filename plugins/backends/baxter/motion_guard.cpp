@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/motion_guard.hpp"
 
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 
 #include <algorithm>
 #include <cmath>

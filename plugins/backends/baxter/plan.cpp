@@ -2,7 +2,7 @@
 // Checks and planning of Tapper while the arm does not move.
 #include "baxter/tapper.hpp"
 
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 #include "tapping/motion.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/tapper.hpp"
 
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 #include "tapping/motion.hpp"
 
 #include <algorithm>

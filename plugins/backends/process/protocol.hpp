@@ -3,7 +3,7 @@
 // framework/docs/robots.md.
 #pragma once
 
-#include "answers/answer.hpp"
+#include "answers/tap_result_checks.hpp"
 #include "tapping/motion.hpp"
 
 #include <palpate/belief.hpp>

@@ -6,7 +6,7 @@
 #include "solids/residual_gp.hpp"
 #include "solids/solids.hpp"
 
-#include <palpate/quantity.hpp>
+#include <palpate/belief_quantities.hpp>
 #include <palpate/random.hpp>
 
 #include <Eigen/Core>

@@ -3,8 +3,8 @@
 
 #include "gp/finite.hpp"
 #include "regular/count_factors.hpp"
+#include "solids/camera_rays.hpp"
 #include "solids/mesh.hpp"
-#include "solids/view.hpp"
 
 #include <palpate/error.hpp>
 #include <palpate/math.hpp>

@@ -112,7 +112,7 @@ function counted(count, what) {
 /// Returns the least and the greatest of any number of values.
 const extent = (values) => [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
 
-// Pages show positions, heights and their standard deviations in centimetres (config/scale.hpp).
+// Pages show positions, heights and their standard deviations in centimetres (config/display_units.hpp).
 const kCentimetres = 100;
 
 // The colour scales of uncertainties, and of values that say where to tap.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/bag.hpp"
 
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 
 #include <cstdio>
 #include <mutex>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/connect.hpp"
 
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 #include "baxter/ros/connection.hpp"
 #include "baxter/urdf.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "baxter/ros/node.hpp"
 
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 
 #include <atomic>
 #include <chrono>

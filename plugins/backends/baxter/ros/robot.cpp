@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "baxter/messages.hpp"
+#include "baxter/error_texts.hpp"
 #include "baxter/ros/bag.hpp"
 #include "baxter/ros/connection.hpp"
 #include "baxter/ros/heartbeat.hpp"

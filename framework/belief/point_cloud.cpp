@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "belief/points.hpp"
+#include "belief/point_cloud.hpp"
 
 #include "reading/ply.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "scene/sizes.hpp"
+#include "scene/size_warnings.hpp"
 
+#include "config/display_units.hpp"
 #include "config/quantity.hpp"
-#include "config/scale.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

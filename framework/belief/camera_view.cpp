@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "belief/view.hpp"
+#include "belief/camera_view.hpp"
 
 #include "config/catch_error.hpp"
 #include "config/hash.hpp"

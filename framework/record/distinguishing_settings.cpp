@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "record/distinctions.hpp"
+#include "record/distinguishing_settings.hpp"
 
 #include "record/catalogue.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/needs.hpp"
+#include "cli/build_targets.hpp"
 
 #include "cli/output.hpp"
 #include "config/catch_error.hpp"

@@ -25,10 +25,10 @@ namespace palpate {
 /// outlines of all angles and proportions find none of them sooner by more than the noise of 1000 placements.
 ///
 /// Whoever misses in the same places is sent to the same next one: its state is the seed and the places looked at.
-class Search {
+class SearchDesign {
  public:
   /// `smallest`: metres, above 0 and below both sides of the area. `candidates` form a grid and outlive the search.
-  Search(double smallest, const CandidateGrid& candidates, const Area& area, Random random);
+  SearchDesign(double smallest, const CandidateGrid& candidates, const Area& area, Random random);
 
   /// There was a tap that hit nothing. A place that cannot be reached counts, too: the arm need not try the neighbours
   /// at once, and the discs beside it stay.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solids/view.hpp"
+#include "solids/camera_rays.hpp"
 
 #include "solids/cloud.hpp"
 #include "solids/primitive.hpp"

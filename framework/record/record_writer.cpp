@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "record/held_record.hpp"
+#include "record/record_writer.hpp"
 
 #include "record/json.hpp"
 

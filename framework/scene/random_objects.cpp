@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/draw.hpp"
+#include "scene/random_objects.hpp"
 
 #include "config/expand.hpp"
 #include "scene/scene_options.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "answers/answer.hpp"
+#include "answers/tap_result_checks.hpp"
 
 #include "reading/reading.hpp"
 

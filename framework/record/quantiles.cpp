@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "record/sample.hpp"
+#include "record/quantiles.hpp"
 
 #include <algorithm>
 #include <cstddef>

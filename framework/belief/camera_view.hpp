@@ -3,7 +3,7 @@
 // the desk give no data.
 #pragma once
 
-#include "belief/points.hpp"
+#include "belief/point_cloud.hpp"
 
 #include <palpate/options.hpp>
 #include <palpate/scene.hpp>

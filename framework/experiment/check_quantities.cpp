@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "experiment/read_plan.hpp"
+#include "experiment/check_quantities.hpp"
 
 #include <palpate/error.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "experiment/search.hpp"
+#include "experiment/search_design.hpp"
 
 #include <palpate/math.hpp>
 
@@ -48,10 +48,10 @@ double step_of(const Eigen::VectorXd& places) { return places.size() > 1 ? place
 
 }  // namespace
 
-Search::Search(double smallest, const CandidateGrid& candidates, const Area& area, Random random)
+SearchDesign::SearchDesign(double smallest, const CandidateGrid& candidates, const Area& area, Random random)
     : smallest_(smallest), candidates_(candidates), area_(area), random_(random) {}
 
-void Search::draw_discs() {
+void SearchDesign::draw_discs() {
   rises_.assign(static_cast<std::size_t>(candidates_.rows) * static_cast<std::size_t>(candidates_.columns + 1), 0);
   const double ratio = math::log(std::min(area_.width, area_.depth) / smallest_);
   discs_.reserve(kDiscs);
@@ -64,9 +64,9 @@ void Search::draw_discs() {
   }
 }
 
-void Search::look(const Target& place) { looked_.push_back(place); }
+void SearchDesign::look(const Target& place) { looked_.push_back(place); }
 
-void Search::strike_off(const Target& place) {
+void SearchDesign::strike_off(const Target& place) {
   for (Disc& disc : discs_) {
     const double dx = place.x - disc.x;
     const double dy = place.y - disc.y;
@@ -82,7 +82,7 @@ void Search::strike_off(const Target& place) {
   discs_.erase(std::remove_if(discs_.begin(), discs_.end(), is_done), discs_.end());
 }
 
-int Search::next(const Allowed& allowed) {
+int SearchDesign::next(const Allowed& allowed) {
   if (rises_.empty()) draw_discs();
   while (struck_off_ < looked_.size()) strike_off(looked_[struck_off_++]);
   const std::vector<int> weight = weights();
@@ -101,7 +101,7 @@ int Search::next(const Allowed& allowed) {
   return best;
 }
 
-void Search::weigh(const Disc& disc, int weight) {
+void SearchDesign::weigh(const Disc& disc, int weight) {
   // A disc cuts a row of candidates in one piece.
   const double across = step_of(candidates_.xs);
   const double along = step_of(candidates_.ys);
@@ -117,7 +117,7 @@ void Search::weigh(const Disc& disc, int weight) {
   }
 }
 
-std::vector<int> Search::weights() const {
+std::vector<int> SearchDesign::weights() const {
   std::vector<int> out;
   out.reserve(static_cast<std::size_t>(candidates_.size()));
   auto rise = rises_.begin();
@@ -128,7 +128,7 @@ std::vector<int> Search::weights() const {
   return out;
 }
 
-double Search::room(const Target& place) const {
+double SearchDesign::room(const Target& place) const {
   double out = std::min({place.x, area_.width - place.x, place.y, area_.depth - place.y});
   for (const Target& tap : looked_) out = std::min(out, math::hypot(place.x - tap.x, place.y - tap.y));
   return out;
