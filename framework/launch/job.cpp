@@ -69,7 +69,7 @@ JobEnd run_job(const RunEnvironment& environment, const fs::path& directory, con
   const RunStatus now = read_ending(directory);
   const bool failed = now.state == RunStatus::State::failed;
   if (now.state == RunStatus::State::done || (failed && !options.retry_failed)) {
-    Restored restored;
+    RestoredFiles restored;
     const auto trouble = lacks_files(directory, *now.end)
                              ? catch_error([&] { restored = restore_files(environment, *held); })
                              : std::nullopt;

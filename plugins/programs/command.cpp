@@ -100,11 +100,11 @@ std::string find_program(const std::string& program, const std::string& folder) 
                   (folder.empty() ? std::string("the folder in which palpate runs") : "the folder " + folder));
 }
 
-Content content_of(const std::vector<std::string>& words, const std::string& folder) {
+ProgramFingerprint content_of(const std::vector<std::string>& words, const std::string& folder) {
   constexpr std::uintmax_t kMostBytes = 64 << 20;  // larger files count by name
   bool found = false;
   std::string all;
-  Content out;
+  ProgramFingerprint out;
   for (const std::string& word : words) {
     const bool first = &word == &words.front();
     const bool by_path = first && word.find('/') == std::string::npos;

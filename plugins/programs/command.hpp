@@ -25,7 +25,7 @@ void list_checksum(std::string& checksum, Fields& fields);
 std::string find_program(const std::string& program, const std::string& folder = {});
 
 /// Checksum of a command, with the file and content of its program.
-struct Content {
+struct ProgramFingerprint {
   std::string checksum;  ///< 32 hex digits
   std::string file;      ///< the program as named in the command; empty if it is not a readable file
   std::string program;   ///< content of this file
@@ -35,7 +35,7 @@ struct Content {
 /// the program's content, not on its location. The program is the first word, or the first existing file after an
 /// interpreter; there is none after -m and -c. Programs found by PATH, and folders, count by name. Other words also
 /// count by name, because a program may write the files that they name. Relative paths start in `folder`.
-Content content_of(const std::vector<std::string>& words, const std::string& folder = {});
+ProgramFingerprint content_of(const std::vector<std::string>& words, const std::string& folder = {});
 
 /// Returns find_program() of the first word if the content of `command` has this checksum. Otherwise throws Error of
 /// kind `busy` with place "checksum", because a missing or changed program may be restored.
