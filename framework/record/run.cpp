@@ -434,7 +434,7 @@ void Run::end(std::string failure) {
   report.summary = summary_list().row(summary);
   directory_->write_made(kTapsTable, to_csv(directory_->rows()));
   if (result.interrupted) {
-    directory_->end(Ending::How::interrupted, result.stop_reason, {});
+    directory_->end({Ending::How::interrupted, result.stop_reason, {}, {}});
     return;
   }
   if (config_.options.log.surface && failure.empty()) {
@@ -442,8 +442,10 @@ void Run::end(std::string failure) {
     directory_->write_made(name, text);
   }
   directory_->write_objects(object_rows(summary));
-  directory_->end(failure.empty() ? Ending::How::done : Ending::How::failed,
-                  failure.empty() ? result.stop_reason : failure, report.summary);
+  directory_->end({failure.empty() ? Ending::How::done : Ending::How::failed,
+                   failure.empty() ? result.stop_reason : failure,
+                   report.summary,
+                   {}});
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
 }
 
