@@ -48,7 +48,7 @@ Tree manifest_of(const RunEnvironment& environment, const ResolvedConfig& config
 /// trace even if nobody sees its end.
 void set_up(const Experiment& experiment, RunDirectory& directory) {
   Tree models = Tree::map();
-  for (const PlannedModel& one : experiment.models()) {
+  for (const PlannedModel& one : experiment.plan().models) {
     Tree& readers = models.at(one.model);
     readers.kind = Tree::Kind::list;
     readers.items.push_back(Tree::quote(one.reader));
@@ -352,7 +352,7 @@ Belief& Run::look(const QuantitySet& quantities) {
   Belief& own = experiment_->belief();
   own.update();
   if (has_all(own.available())) {
-    experiment_->infer();
+    experiment_->look();
     return own;
   }
   // An exception may leave taps half taken in. So the copy is kept only after success.
@@ -462,7 +462,8 @@ RunReport resume_run(const RunEnvironment& environment, const fs::path& director
 std::vector<PlannedModel> models_of(const RunEnvironment& environment, const ResolvedConfig& config) {
   const bool connects = config.options.backend.type != "simulator";  // as far as anybody knows
   return build_experiment(config, {environment.host, environment.interrupted, connects ? no_backend(false) : nullptr})
-      ->models();
+      ->plan()
+      .models;
 }
 
 fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {

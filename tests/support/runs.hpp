@@ -125,7 +125,7 @@ struct Prepared {
   const CandidateGrid& grid() const { return belief().grid(); }
   /// Has models of these quantities read from now on, beside those of the run, and their arrays computed.
   void read(const QuantitySet& quantities) {
-    ReadPlan plan = experiment.plan();
+    ReadPlan plan = experiment.plan().read;
     plan.readers.push_back(readers(quantities).readers.front());
     belief().plan(plan);
     belief().begin(Stage::first_tap);

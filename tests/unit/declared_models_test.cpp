@@ -42,8 +42,8 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
   const auto readers = [](const Words& words) {
     Words out;
     const Prepared prepared("paper/object_i.yaml", words);
-    for (const PlannedModel& one : prepared.experiment.models()) out.push_back(one.model + ": " + one.reader);
-    EXPECT_FALSE(prepared.models().height_gp() || prepared.models().label_gp());
+    for (const PlannedModel& one : prepared.experiment.plan().models) out.push_back(one.model + ": " + one.reader);
+    EXPECT_FALSE(prepared.models().gps().height || prepared.models().gps().label);
     return out;
   };
   using testing::ElementsAre;
@@ -78,7 +78,7 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
     all.insert(all.end(), {"choice.fallback=none", "initial.design=grid", "initial.count=9"});  // one of them hits
     Prepared prepared("paper/object_i.yaml", all);
     std::set<std::string> named;
-    for (const PlannedModel& one : prepared.experiment.models()) named.insert(one.model);
+    for (const PlannedModel& one : prepared.experiment.plan().models) named.insert(one.model);
     prepared.run();
     const auto recorded = [](const BeliefState& state) {
       std::set<std::string> out;

@@ -197,7 +197,7 @@ TEST(ExpectedRmse, IsSeenAndChangesNoTapAndNoResult) {
       return to_json_line(summary_list().row({run.experiment.result(), run.config, "", {}, {}, {}, {}}));
     };
     EXPECT_EQ(row(alone), row(watched));
-    EXPECT_EQ(alone.experiment.models().size(), watched.experiment.models().size());
+    EXPECT_EQ(alone.experiment.plan().models.size(), watched.experiment.plan().models.size());
   }
 }
 
