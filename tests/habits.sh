@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What reviewers would otherwise have to look for: arrows between folders, retired names, long sentences, headers that
+# What reviewers would otherwise have to look for: arrows between folders, retired names, long sentences, large classes, headers that
 # stand alone, clang-format and clang-tidy. Of the last three only what changed since the commit before is looked at, and what is not committed;
 # clang-tidy takes seconds for a file, so it reads the first ten of them, without its analyzer. With --all everything is
 # looked at, with the analyzer, which takes the better part of an hour. Ends with status 1 and a line a fault.
@@ -190,7 +190,8 @@ words() {
       if ($0 ~ /^ *#/) finish() }
     END { finish(); report(); if (mode == "what") print "" }' "$@"
 }
-# No folder grows beyond its ceiling.
+# No class grows beyond its limits, and no folder beyond its ceiling.
+python3 tests/class_sizes.py >"$found/classes" || true
 sh tests/size.sh 2>&1 >/dev/null | sed 's/^size.sh: //' >"$found/size" || true
 
 pages=$(git ls-files '*.md')

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The results of all taps, and how they are read now: the height of a contact without the offset of arm and motion, and
-// whether it is on an object. Later taps may change how earlier ones are read.
+// The contacts of all taps as they are read now, and the data that models learn from them.
 #pragma once
 
 #include "belief/camera_view.hpp"
+#include "belief/contact_reader.hpp"
 #include "belief/height_map_options.hpp"
-#include "gp/offset_model.hpp"
 
 #include <palpate/scene.hpp>
 #include <palpate/tap.hpp>
 
 #include <Eigen/Core>
 
-#include <optional>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -24,25 +23,15 @@ class ContactLog {
   /// `scene` must outlive the log. Throws Error for a prior view that cannot be read.
   ContactLog(const HeightMapOptions& options, const Scene& scene);
 
-  /// How a result is read.
-  struct Reading {
-    double height = 0.0;  ///< metres, in the frame of the scene
-    bool on = false;      ///< on an object
-  };
-  /// Returns how the contact of the next tap would be read. Changes nothing.
-  Reading read(const TapResult& result, int motion) const;
-  /// Whether the config estimates the offset of arm and motions (`belief.height.offset`).
-  bool has_offset() const { return offset_.has_value(); }
-  /// Returns the variance of that estimate now, which all heights share, square metres; 0 without.
-  double offset_variance() const { return offset_ ? offset_->at(seconds_).variance : 0.0; }
+  /// Returns how contacts are read now.
+  const ContactReader& reader() const { return reader_; }
 
   /// Adds a tap, and reads all contacts again if offsets are estimated. `noise`: standard deviation of a height by the
   /// most precise motion, metres.
   void add(const TapRequest& request, const TapResult& result, double noise);
 
-  /// Whether the label of a contact before the latest has changed since reset_changed_labels().
-  bool has_changed_labels() const { return changed_; }
-  void reset_changed_labels() { changed_ = false; }
+  /// Returns whether the label of a contact before the latest has changed since the last call.
+  bool take_label_changes() { return std::exchange(changed_, false); }
 
   int taps() const { return taps_; }
 
@@ -67,13 +56,10 @@ class ContactLog {
   bool has_uneven_noise() const { return uneven_; }
 
  private:
-  void read_again();
-  void find_object_rows();
+  void find_objects();
 
-  const Scene& scene_;
+  ContactReader reader_;
   int taps_ = 0;
-  double seconds_ = 0.0;  ///< robot time of all taps
-  std::optional<OffsetModel> offset_;
   std::vector<ViewedSquare> prior_;
   int prior_objects_ = 0;
   std::vector<Touch> contacts_, object_contacts_;
@@ -81,9 +67,8 @@ class ContactLog {
   bool changed_ = false;
   bool uneven_ = false;
   // Of each contact.
-  std::vector<int> tap_numbers_, motions_;
-  std::vector<double> raw_heights_, begins_;  ///< above the desk as measured; robot time before the tap
-  std::vector<double> shares_;                ///< variance of the most precise motion over that of its own
+  std::vector<int> tap_numbers_;
+  std::vector<double> shares_;  ///< variance of the most precise motion over that of its own
 };
 
 }  // namespace palpate

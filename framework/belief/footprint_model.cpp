@@ -12,11 +12,9 @@ FootprintModel::FootprintModel(const PluginChoice& choice, const CandidateGrid& 
 
 bool FootprintModel::show(bool hypotheses) {
   const bool more = !shown_ || (hypotheses && !shows_hypotheses_);
+  if (hypotheses && !shows_hypotheses_) probability_.resize(0);
   shown_ = true;
-  if (hypotheses && !shows_hypotheses_) {
-    shows_hypotheses_ = true;
-    probability_.resize(0);
-  }
+  shows_hypotheses_ = shows_hypotheses_ || hypotheses;
   return more;
 }
 
@@ -28,10 +26,6 @@ void FootprintModel::update(const ContactLog& log) {
     require_finite(probability_, "the probability p", log.taps());
     if (shows_hypotheses_) footprint_->sample(candidates_.points, hypotheses_);
   }
-  find_positions(log);
-}
-
-void FootprintModel::find_positions(const ContactLog& log) {
   // In steps far below the shortest push that taps can show, so that few taps rebuild a GP.
   constexpr double kStep = 1e-3;
   positions_.resize(log.size(), 2);

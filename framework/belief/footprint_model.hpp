@@ -45,8 +45,6 @@ class FootprintModel {
   bool has_moved(int row) const;
 
  private:
-  void find_positions(const ContactLog& log);
-
   PluginChoice choice_;
   const CandidateGrid& candidates_;
   const Context& context_;

@@ -10,32 +10,27 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace palpate {
 
-GpModel::GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const GpSettings& settings,
-                 const EngineSettings& posterior, const CandidateGrid& candidates, const Context& context)
-    : data_(data),
-      kernel_choice_(kernel),
-      fitting_choice_(fitting),
-      posterior_(posterior),
-      candidates_(candidates),
-      context_(context),
-      outputs_{settings} {
+GpModel::GpModel(GpDescription description, const CandidateGrid& candidates, const Context& context)
+    : description_(std::move(description)), candidates_(candidates), context_(context) {
   create_plugins();
   const std::string refusal = fitting_->objection(*kernel_);
-  if (!refusal.empty()) throw Error(fitting.options->place.text(), refusal);
-  const std::string why = objection(posterior_, *kernel_, candidates_);
+  if (!refusal.empty()) throw Error(description_.fitting.options->place.text(), refusal);
+  const std::string why = objection(description_.engine, *kernel_, candidates_);
   if (!why.empty()) {
-    const char* const engine = posterior_.engine == EngineSettings::Kind::grid ? "grid" : "lowrank";
-    throw Error("engine.type", fmt::format("{} cannot be used with the kernel {}: {}", engine, kernel.type, why),
+    const char* const engine = description_.engine.engine == EngineSettings::Kind::grid ? "grid" : "lowrank";
+    throw Error("engine.type",
+                fmt::format("{} cannot be used with the kernel {}: {}", engine, description_.kernel.type, why),
                 "engine: {type: dense} serves every kernel");
   }
 }
 
 void GpModel::create_plugins() {
-  kernel_ = context_.create<Kernel>(kernel_choice_);
-  fitting_ = context_.create<Fitting>(fitting_choice_);
+  kernel_ = context_.create<Kernel>(description_.kernel);
+  fitting_ = context_.create<Fitting>(description_.fitting);
 }
 
 bool GpModel::is_fitted_within(int taps) const {
@@ -47,7 +42,7 @@ bool GpModel::is_fitted_within(int taps) const {
 
 bool GpModel::show(int output) {
   if (!process_) {
-    process_ = std::make_unique<GaussianProcess>(kernel_, outputs_, candidates_, posterior_);
+    process_ = std::make_unique<GaussianProcess>(kernel_, description_.outputs, candidates_, description_.engine);
   } else if (process_->shown() > output) {
     return false;
   }
@@ -61,9 +56,9 @@ void GpModel::add_data(const ContactLog& log, PhaseClock* clock) {
   while (process_->size() < size(log)) {
     const Touch& datum = log.datum(row(log, process_->size()));
     const double label = datum.on ? 1.0 : 0.0;
-    const std::array<double, 2> values{data_.labels ? label : datum.height, label};
-    process_->add(datum.place,
-                  Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(outputs_.size())));
+    const std::array<double, 2> values{description_.labels ? label : datum.height, label};
+    process_->add(datum.place, Eigen::Map<const Eigen::VectorXd>(
+                                   values.data(), static_cast<Eigen::Index>(description_.outputs.size())));
     const int taps = process_->size() - prior_size(log);
     if (taps > 0 && fitting_->due(taps)) fit(taps, clock);
     stale_ = true;
@@ -72,7 +67,7 @@ void GpModel::add_data(const ContactLog& log, PhaseClock* clock) {
 
 void GpModel::fit(int taps, PhaseClock* clock) {
   const PhaseClock::Scope scope(clock, Phase::fit);
-  Random random = context_.random(data_.stream, static_cast<std::uint64_t>(taps));
+  Random random = context_.random(description_.stream, static_cast<std::uint64_t>(taps));
   fit_ = process_->fit(*fitting_, random);
   fit_at_ = process_->size();
   if (fit_.failed) ++failed_fits_;
@@ -86,17 +81,14 @@ void GpModel::set_heights(const ContactLog& log) {
 }
 
 void GpModel::set_positions(const ContactLog& log, const Points& positions) {
-  if (!process_) return;
-  Points own(size(log), 2);
-  for (int i = 0; i < size(log); ++i) own.row(i) = positions.row(row(log, i));
-  if (process_->set_positions(own)) stale_ = true;
+  if (process_ &&
+      process_->set_positions(description_.only_objects ? Points(positions(log.object_rows(), Eigen::all)) : positions))
+    stale_ = true;
 }
 
 void GpModel::set_trust(const ContactLog& log, const Eigen::VectorXd& trust) {
-  if (!process_) return;
-  Eigen::VectorXd own(size(log));
-  for (int i = 0; i < size(log); ++i) own(i) = trust(row(log, i));
-  if (process_->set_trust(own)) stale_ = true;
+  if (process_ && process_->set_trust(description_.only_objects ? Eigen::VectorXd(trust(log.object_rows())) : trust))
+    stale_ = true;
 }
 
 void GpModel::reset() {

@@ -16,27 +16,29 @@
 
 namespace palpate {
 
+/// A GP as the config describes it.
+struct GpDescription {
+  const char* stream;  ///< names the random numbers of its fits
+  PluginChoice kernel, fitting;
+  std::vector<GpSettings> outputs;
+  EngineSettings engine;
+  bool labels = false;        ///< output 0 has the labels, not the heights
+  bool only_objects = false;  ///< it learns from data on an object
+};
+
 class GpModel {
  public:
-  /// What a model learns.
-  struct Data {
-    const char* stream;         ///< names the random numbers of its fits
-    bool labels = false;        ///< output 0 has the labels, not the heights
-    bool only_objects = false;  ///< from data on an object
-  };
-
   /// Creates the plugins. `candidates` and `context` must outlive the model. Throws Error if the fitting or the engine
   /// cannot work with the kernel.
-  GpModel(const Data& data, const PluginChoice& kernel, const PluginChoice& fitting, const GpSettings& settings,
-          const EngineSettings& posterior, const CandidateGrid& candidates, const Context& context);
+  GpModel(GpDescription description, const CandidateGrid& candidates, const Context& context);
 
   /// Adds a second output, the labels. Only before show().
-  void add_labels(const GpSettings& settings) { outputs_.push_back(settings); }
+  void add_labels(const GpSettings& settings) { description_.outputs.push_back(settings); }
 
   /// Whether a fit is due after any of the first `taps` contacts.
   bool is_fitted_within(int taps) const;
 
-  const EngineSettings& engine() const { return posterior_; }
+  const EngineSettings& engine() const { return description_.engine; }
 
   /// Builds the posterior, with the maps of an output from 0. Returns whether anything was missing.
   bool show(int output);
@@ -47,7 +49,7 @@ class GpModel {
   const FitSummary* last_fit() const { return fit_at_ > 0 && fit_at_ == process_->size() ? &fit_ : nullptr; }
   int failed_fits() const { return failed_fits_; }
   /// Standard deviation of the noise of output 0, now.
-  double noise() const { return process_ ? process_->settings().noise : outputs_.front().noise; }
+  double noise() const { return process_ ? process_->settings().noise : description_.outputs.front().noise; }
 
   // Updates; each does nothing before show(), and notes whether maps have become stale.
   /// Takes in the data since, one by one, each with its fit: so a model that is built late has the states of one that
@@ -69,23 +71,22 @@ class GpModel {
  private:
   void create_plugins();
   int size(const ContactLog& log) const {
-    return data_.only_objects ? static_cast<int>(log.object_rows().size()) : log.size();
+    return description_.only_objects ? static_cast<int>(log.object_rows().size()) : log.size();
   }
-  int prior_size(const ContactLog& log) const { return data_.only_objects ? log.prior_objects() : log.prior_size(); }
+  int prior_size(const ContactLog& log) const {
+    return description_.only_objects ? log.prior_objects() : log.prior_size();
+  }
   /// The row in the log of a datum of this model.
   int row(const ContactLog& log, int datum) const {
-    return data_.only_objects ? log.object_rows()[static_cast<std::size_t>(datum)] : datum;
+    return description_.only_objects ? log.object_rows()[static_cast<std::size_t>(datum)] : datum;
   }
   void fit(int taps, PhaseClock* clock);
 
-  Data data_;
-  PluginChoice kernel_choice_, fitting_choice_;
-  EngineSettings posterior_;
+  GpDescription description_;
   const CandidateGrid& candidates_;
   const Context& context_;
   std::shared_ptr<Kernel> kernel_;
   std::shared_ptr<Fitting> fitting_;
-  std::vector<GpSettings> outputs_;
   std::unique_ptr<GaussianProcess> process_;
   bool stale_ = false;
   FitSummary fit_;

@@ -139,55 +139,26 @@ void HeightMap::begin(Stage stage) {
   models_.build(more);
 }
 
-std::optional<TapReading> HeightMap::read(const TapRequest& request, const TapResult& result) const {
-  if (!result.is_contact()) return std::nullopt;
-  const ContactLog::Reading reading = models_.log().read(result, request.motion);
-  TapReading out;
-  out.tap = request.number;
-  out.position = {request.line.start.x(), request.line.start.y(), reading.height};
-  out.on_object = reading.on;
-  out.is_corrected = models_.log().has_offset();
-  return out;
-}
-
 void HeightMap::add(const TapRequest& request, const TapResult& result) {
   models_.add(request, result);
   taps_.add(request);
-  read_again();
+  models_.read_again(taps_.readings);
 }
 
 void HeightMap::update() {
   models_.update();
-  read_again();
+  models_.read_again(taps_.readings);
 }
-
-void HeightMap::infer() { models_.infer(); }
 
 QuantitySet HeightMap::available() const {
   using namespace quantity;
   QuantitySet out;
   if (begun_.heights) out = out | QuantitySet{kUncertainty, kMeasurementStd};
   if (begun_.labels) out.insert(kLabelMean);
-  if (models_.is_two_part() ? begun_.surface_map : begun_.heights) out = out | QuantitySet{kHeightMean, kHeightStd};
+  if (models_.surface() ? begun_.surface_map : begun_.heights) out = out | QuantitySet{kHeightMean, kHeightStd};
   if (models_.footprint() != nullptr ? begun_.footprint : begun_.labels) out.insert(kObjectProbability);
   if (begun_.hypotheses) out.insert(kHypotheses);
   return out;
-}
-
-void HeightMap::read_again() {
-  const ContactLog& log = models_.log();
-  taps_.readings.resize(log.contacts().size());
-  for (std::size_t i = 0; i < taps_.readings.size(); ++i) {
-    const Touch& contact = log.contacts()[i];
-    TapReading& out = taps_.readings[i];
-    out.tap = log.tap_numbers()[i];
-    out.position = {contact.place.x, contact.place.y, context_.scene.desk() + contact.height};
-    out.on_object = contact.on;
-    out.is_corrected = log.has_offset();
-    out.moved = models_.has_moved(i);
-    out.outlier_probability = models_.outlier_probability(i);
-    out.wrong_label_probability = models_.wrong_label_probability(i);
-  }
 }
 
 const Eigen::VectorXd& HeightMap::values(std::string_view quantity) const {
@@ -217,20 +188,7 @@ std::optional<double> HeightMap::scalar(std::string_view quantity) const {
 
 std::optional<double> HeightMap::expected_rmse_of(const SurfaceMaps& maps) const {
   if (maps.height == nullptr || (maps.two_part && maps.probability == nullptr)) return std::nullopt;
-  return expected_rmse(maps, models_.height_variance(), models_.surface_gp().process, models_.log().object_contacts());
-}
-
-std::optional<BeliefErrors> HeightMap::errors_for_displays() {
-  const ModelSet all = truth() != nullptr ? models_.models_of({quantity::kHeightMean, quantity::kObjectProbability})
-                                          : models_.models_of({quantity::kExpectedRmse});
-  const bool has_all = (!all.heights || models_.height_gp()) && (!all.labels || models_.label_gp()) &&
-                       (!all.surface || models_.surface_gp()) && (!all.footprint || models_.footprint()->is_shown());
-  if (!has_all) return std::nullopt;
-  models_.build(all);
-  models_.update();
-  models_.infer();
-  const SurfaceMaps shown = maps(all);
-  return BeliefErrors{truth() != nullptr ? errors_of(shown, *truth_) : Errors(), {}, expected_rmse_of(shown)};
+  return expected_rmse(maps, models_.height_variance(), models_.gps().surface.process, models_.log().object_contacts());
 }
 
 const HypothesisSample& HeightMap::hypotheses() const {
@@ -238,17 +196,11 @@ const HypothesisSample& HeightMap::hypotheses() const {
   return models_.footprint() != nullptr ? models_.footprint()->hypotheses() : none;
 }
 
-Prediction HeightMap::predict(Eigen::Index candidate, bool probability) const {
-  if (!models_.is_inferred())
-    throw std::logic_error("a height is predicted by a belief that is older than the last tap");
-  return models_.predict(candidate, probability);
-}
-
 SurfaceMaps HeightMap::maps(const ModelSet& models) const {
-  const bool height = models_.is_two_part() ? models.surface_map : models.heights;
+  const bool height = models_.surface() ? models.surface_map : models.heights;
   const bool probability = models_.footprint() != nullptr ? models.footprint : models.labels;
   return {height ? &models_.height_mean() : nullptr, probability ? &models_.probability() : nullptr,
-          models_.is_two_part(), context_.scene.desk()};
+          models_.surface().has_value(), context_.scene.desk()};
 }
 
 BeliefState HeightMap::state(std::optional<Eigen::Index> candidate) const {
@@ -311,10 +263,11 @@ void HeightMap::add_gp_states(BeliefState& out, bool summary) const {
     }
     count_factors(out, factors);
   };
-  add("height_gp", models_.height_gp(), summary || begun_.heights);
-  add("label_gp", models_.label_gp(), summary || begun_.labels);
-  const bool has_surface = models_.is_two_part() && (summary ? bool(models_.surface_gp()) : begun_.surface_map);
-  if (has_surface) add("surface_gp", models_.surface_gp(), true);
+  const HeightModels::Gps gps = models_.gps();
+  add("height_gp", gps.height, summary || begun_.heights);
+  add("label_gp", gps.label, summary || begun_.labels);
+  const bool has_surface = models_.surface() && (summary ? bool(gps.surface) : begun_.surface_map);
+  if (has_surface) add("surface_gp", gps.surface, true);
 }
 
 void HeightMap::add_calibration(BeliefState& out) const {
@@ -343,10 +296,23 @@ const Truth* HeightMap::truth() {
 }
 
 std::optional<BeliefErrors> HeightMap::errors(ErrorsFor purpose) {
-  if (purpose == ErrorsFor::display) return errors_for_displays();
-  if (truth() == nullptr) return BeliefErrors();
-  BeliefErrors out{errors_of(maps(), *truth_)};
-  if (purpose == ErrorsFor::summary) out.objects = object_errors(maps(), *truth_, grid_);
+  ModelSet models = begun_;
+  if (purpose == ErrorsFor::display) {
+    models = truth() != nullptr ? models_.models_of({quantity::kHeightMean, quantity::kObjectProbability})
+                                : models_.models_of({quantity::kExpectedRmse});
+    const HeightModels::Gps gps = models_.gps();
+    const bool has_all = (!models.heights || gps.height) && (!models.labels || gps.label) &&
+                         (!models.surface || gps.surface) && (!models.footprint || models_.footprint()->is_shown());
+    if (!has_all) return std::nullopt;
+    models_.build(models);
+    models_.update();
+    models_.infer();
+  }
+  const SurfaceMaps all = maps(models);
+  BeliefErrors out;
+  if (truth() != nullptr) out.errors = errors_of(all, *truth_);
+  if (purpose == ErrorsFor::summary && truth_) out.objects = object_errors(all, *truth_, grid_);
+  if (purpose == ErrorsFor::display) out.expected_rmse = expected_rmse_of(all);
   return out;
 }
 

@@ -23,10 +23,12 @@ class HeightMap final : public Belief {
   std::vector<Quantity> offers() const override;
   std::vector<PlannedModel> plan(const ReadPlan& plan) override;
   void begin(Stage stage) override;
-  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override;
+  std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const override {
+    return models_.log().reader().read(request, result);
+  }
   void add(const TapRequest& request, const TapResult& result) override;
   void update() override;
-  void infer() override;
+  void infer() override { models_.infer(); }
   QuantitySet available() const override;
 
   const Candidates& candidates() const override { return lines_; }
@@ -34,7 +36,9 @@ class HeightMap final : public Belief {
   const Eigen::VectorXd& values(std::string_view quantity) const override;
   std::optional<double> scalar(std::string_view quantity) const override;
   const HypothesisSample& hypotheses() const override;
-  Prediction predict(Eigen::Index candidate, bool probability) const override;
+  Prediction predict(Eigen::Index candidate, bool probability) const override {
+    return models_.predict(candidate, probability);
+  }
 
   BeliefState state(std::optional<Eigen::Index> candidate) const override;
   void set_truth(const Scene* scene) override;
@@ -42,16 +46,13 @@ class HeightMap final : public Belief {
   Surface surface(double /*resolution*/) override { return {reconstruction(maps()), {}, {}, 0.0}; }
 
   const HeightModels& models() const { return models_; }
-  const CandidateGrid& grid() const { return grid_; }
 
  private:
   /// Returns the arrays of the surface that `models` have.
   SurfaceMaps maps(const ModelSet& models) const;
   SurfaceMaps maps() const { return maps(begun_); }
   std::optional<double> expected_rmse_of(const SurfaceMaps& maps) const;
-  std::optional<BeliefErrors> errors_for_displays();
   const Truth* truth();
-  void read_again();
   void add_gp_states(BeliefState& out, bool summary) const;
   void add_values(BeliefState& out, Eigen::Index candidate) const;
   void add_calibration(BeliefState& out) const;

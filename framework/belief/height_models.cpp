@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace palpate {
@@ -31,27 +32,24 @@ bool same(const PluginChoice& a, const PluginChoice& b) {
   return a.type == b.type && a.options->canonical() == b.options->canonical();
 }
 
-GpModel make_height_gp(const HeightOptions& height, const EngineSettings& posterior, const CandidateGrid& candidates,
-                       const Context& context, bool only_objects) {
+GpDescription height_gp_of(const HeightOptions& height, const EngineSettings& engine, const Context& context,
+                           bool only_objects) {
   GpSettings settings{height.signal, height.noise, 0.0};
   if (only_objects) settings.mean_ratio = height.outlier_probability ? kLevelWithOutliers : kFreeLevel;
-  const GpModel::Data data{only_objects ? "fitting/surface" : "fitting/height", false, only_objects};
-  return {data,
-          height.kernel.value_or(context.run.kernel),
-          height.fitting.value_or(context.run.fitting),
-          settings,
-          posterior,
-          candidates,
-          context};
+  const PluginChoice kernel = height.kernel.value_or(context.run.kernel);
+  const PluginChoice fitting = height.fitting.value_or(context.run.fitting);
+  const char* const stream = only_objects ? "fitting/surface" : "fitting/height";
+  return {stream, kernel, fitting, {settings}, engine, false, only_objects};
 }
 
 }  // namespace
 
 HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid& candidates, const Context& context)
-    : clock_(context.clock),
+    : context_(context),
       log_(options, context.scene),
-      heights_(make_height_gp(options.height, posterior_settings(options.engine, context.run, log_.prior_size()),
-                              candidates, context, false),
+      heights_({height_gp_of(options.height, posterior_settings(options.engine, context.run, log_.prior_size()),
+                             context, false),
+                candidates, context},
                options.surface == HeightMapOptions::Surface::single, context.scene.desk()),
       label_map_(options.label.clip) {
   const EngineSettings& engine = heights_.gp().engine();
@@ -60,8 +58,8 @@ HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid&
   GpSettings settings{label.signal, label.noise, label.prior_mean};
   if (label.hyperparameters != LabelOptions::Hyperparameters::shared) {
     const PluginChoice kernel = label.kernel.value_or(context.run.kernel);
-    labels_.emplace(GpModel::Data{"fitting/weight", true}, kernel, label.fitting.value_or(context.run.fitting),
-                    settings, engine, candidates, context);
+    const PluginChoice fitting = label.fitting.value_or(context.run.fitting);
+    labels_.emplace(GpDescription{"fitting/weight", kernel, fitting, {settings}, engine, true}, candidates, context);
     // Models that are equal and stay so are two outputs of one process.
     const auto taps = static_cast<int>(context.run.taps);
     if (same(height.kernel.value_or(context.run.kernel), kernel) &&
@@ -77,8 +75,8 @@ HeightModels::HeightModels(const HeightMapOptions& options, const CandidateGrid&
   footprint_.emplace(options.footprint, candidates, context);
   if (footprint_->is_label_gp()) footprint_.reset();
   if (options.surface == HeightMapOptions::Surface::two_part)
-    surface_.emplace(make_height_gp(height, engine, candidates, context, true), height.outlier_probability, candidates,
-                     context.scene.desk());
+    surface_.emplace(GpModel(height_gp_of(height, engine, context, true), candidates, context),
+                     height.outlier_probability, candidates, context.scene.desk());
 }
 
 void HeightModels::add(const TapRequest& request, const TapResult& result) {
@@ -86,14 +84,22 @@ void HeightModels::add(const TapRequest& request, const TapResult& result) {
   if (result.is_contact()) is_updated_ = is_inferred_ = false;
 }
 
-double HeightModels::outlier_probability(std::size_t contact) const {
-  const auto index = static_cast<Eigen::Index>(contact);
-  return outliers() != nullptr && index < outliers()->probabilities().size() ? outliers()->probabilities()(index) : 0.0;
-}
-
-double HeightModels::wrong_label_probability(std::size_t contact) const {
-  const double all = outlier_probability(contact);
-  return all > 0.0 ? std::min(all, outliers()->by_label()(static_cast<Eigen::Index>(contact))) : 0.0;
+void HeightModels::read_again(std::vector<TapReading>& out) const {
+  out.resize(log_.contacts().size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Touch& contact = log_.contacts()[i];
+    TapReading& one = out[i];
+    one.tap = log_.tap_numbers()[i];
+    one.position = {contact.place.x, contact.place.y, context_.scene.desk() + contact.height};
+    one.on_object = contact.on;
+    one.is_corrected = log_.reader().has_offset();
+    one.moved = footprint_ && footprint_->has_moved(log_.prior_size() + static_cast<int>(i));
+    const auto index = static_cast<Eigen::Index>(i);
+    const bool is_judged = outliers() != nullptr && index < outliers()->probabilities().size();
+    one.outlier_probability = is_judged ? outliers()->probabilities()(index) : 0.0;
+    one.wrong_label_probability =
+        one.outlier_probability > 0.0 ? std::min(one.outlier_probability, outliers()->by_label()(index)) : 0.0;
+  }
 }
 
 int HeightModels::failed_fits() const {
@@ -106,17 +112,17 @@ ModelSet HeightModels::models_of(const QuantitySet& quantities, bool at_one_cand
   const auto has = [&](const char* name) { return quantities.count(name) != 0; };
   const bool rmse = has(kExpectedRmse);
   const bool height = has(kHeightMean) || has(kHeightStd) || rmse;
-  const bool probability = has(kObjectProbability) || (rmse && is_two_part());
+  const bool probability = has(kObjectProbability) || (rmse && surface_);
   ModelSet out;
   out.footprint = footprint_ && (probability || has(kHypotheses) || has(kUndiscoveredProbability));
   out.hypotheses = footprint_ && has(kHypotheses);
   out.labels = has(kLabelMean) || (probability && !footprint_);
-  if (is_two_part()) {
+  if (surface_) {
     // The surface without outliers needs no map for the height at one candidate.
     out.surface_map = height && !(at_one_candidate && surface_->has_outliers());
     out.surface = height || has(kOutliers);
   }
-  out.heights = has(kUncertainty) || has(kMeasurementStd) || (height && !is_two_part()) || (out.labels && is_joined());
+  out.heights = has(kUncertainty) || has(kMeasurementStd) || (height && !surface_) || (out.labels && is_joined());
   return out;
 }
 
@@ -130,7 +136,7 @@ std::vector<std::string> HeightModels::names_of(const ModelSet& models) const {
 }
 
 void HeightModels::build(const ModelSet& models) {
-  const PhaseClock::Scope infer(clock_, Phase::infer);
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
   bool more = false;
   if (models.heights) more = heights_.gp().show(0) || more;
   if (models.labels) more = (labels_ ? *labels_ : heights_.gp()).show(label_output()) || more;
@@ -141,7 +147,7 @@ void HeightModels::build(const ModelSet& models) {
 
 void HeightModels::update() {
   if (is_updated_) return;
-  const PhaseClock::Scope infer(clock_, Phase::infer);
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
   add_data();
   find_outliers();
   is_updated_ = true;
@@ -157,16 +163,15 @@ void HeightModels::for_each_gp(const Visit& visit) {
 
 /// Has all models take in the contacts since, as they are read now.
 void HeightModels::add_data() {
-  if (log_.has_changed_labels()) {
-    log_.reset_changed_labels();
+  if (log_.take_label_changes()) {
     // A GP of heights alone stays: only their values change.
     if (is_joined()) heights_.gp().reset();
     if (labels_) labels_->reset();
     if (surface_) surface_->reset();
     if (footprint_) footprint_->reset();
   }
-  for_each_gp([&](GpModel& gp) { gp.add_data(log_, clock_); });
-  if (log_.has_offset()) {
+  for_each_gp([&](GpModel& gp) { gp.add_data(log_, context_.clock); });
+  if (log_.reader().has_offset()) {
     heights_.gp().set_heights(log_);
     if (surface_) surface_->gp().set_heights(log_);
   }
@@ -193,10 +198,11 @@ void HeightModels::find_outliers() {
 
 void HeightModels::infer() {
   if (is_inferred_) return;
-  const PhaseClock::Scope infer(clock_, Phase::infer);
+  const PhaseClock::Scope infer(context_.clock, Phase::infer);
   if (heights_.gp().is_stale()) {
     heights_.update_maps(log_.taps());
-    if (is_joined() && label_gp()) label_map_.update(heights_.gp().process(), label_output(), log_.taps());
+    if (is_joined() && label_model().shows(label_output()))
+      label_map_.update(heights_.gp().process(), label_output(), log_.taps());
     heights_.gp().set_stale(false);
   }
   if (labels_ && labels_->is_stale()) {
@@ -208,12 +214,15 @@ void HeightModels::infer() {
   is_inferred_ = true;
 }
 
-HeightModels::Output HeightModels::output(const GpModel& model, int output) {
-  if (!model.shows(output)) return {};
-  return {&model.process(), output, model.last_fit()};
+HeightModels::Gps HeightModels::gps() const {
+  const auto output = [](const GpModel& model, int index) {
+    return model.shows(index) ? Output{&model.process(), index, model.last_fit()} : Output();
+  };
+  return {output(heights_.gp(), 0), output(label_model(), label_output()), output(surface_model(), 0)};
 }
 
 Prediction HeightModels::predict(Eigen::Index candidate, bool probability) const {
+  if (!is_inferred()) throw std::logic_error("a height is predicted by a belief that is older than the last tap");
   Prediction out = surface_ && surface_->has_outliers()
                        ? surface_->predict(static_cast<int>(candidate), log_)
                        : Prediction{height_mean()(candidate), std::sqrt(height_variance()(candidate))};

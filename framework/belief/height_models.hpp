@@ -80,22 +80,17 @@ class HeightModels {
     explicit operator bool() const { return process != nullptr; }
   };
   /// The GPs; null before they are built. The surface GP is the height GP with `surface: single`.
-  Output height_gp() const { return output(heights_.gp(), 0); }
-  Output label_gp() const { return output(label_model(), label_output()); }
-  Output surface_gp() const { return output(surface_model(), 0); }
-  bool is_two_part() const { return surface_.has_value(); }
+  struct Gps {
+    Output height, label, surface;
+  };
+  Gps gps() const;
+  /// Nullopt with `surface: single`.
   const std::optional<SurfaceModel>& surface() const { return surface_; }
   /// Null if the footprint is the label GP.
   const FootprintModel* footprint() const { return footprint_ ? &*footprint_ : nullptr; }
 
-  /// Returns the probability that a contact, counted from 0, is an outlier; 0 without an outlier model.
-  double outlier_probability(std::size_t contact) const;
-  /// Returns the part of it due to the contact's label.
-  double wrong_label_probability(std::size_t contact) const;
-  /// Returns whether objects were pushed since a contact, so that it does not hold at its position.
-  bool has_moved(std::size_t contact) const {
-    return footprint_ && footprint_->has_moved(log_.prior_size() + static_cast<int>(contact));
-  }
+  /// Sets `out` to the contacts as the log and the built models read them now.
+  void read_again(std::vector<TapReading>& out) const;
   /// Number of fits that found nothing better and kept the old hyperparameters.
   int failed_fits() const;
   /// Standard deviation of the noise of a height, metres.
@@ -107,14 +102,13 @@ class HeightModels {
   int label_output() const { return labels_ ? 0 : 1; }
   const GpModel& surface_model() const { return surface_ ? surface_->gp() : heights_.gp(); }
   const OutlierModel* outliers() const { return surface_ ? surface_->outliers() : nullptr; }
-  static Output output(const GpModel& model, int output);
   /// Calls visit(gp) for each GP, built or not.
   template <class Visit>
   void for_each_gp(const Visit& visit);
   void add_data();
   void find_outliers();
 
-  PhaseClock* clock_;  ///< may be null
+  const Context& context_;
   ContactLog log_;
   HeightModel heights_;
   std::optional<GpModel> labels_;  ///< none: output 1 of heights_

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "belief/surface_model.hpp"
 
-#include "gp/finite.hpp"
 #include "belief/height_model.hpp"
+#include "gp/finite.hpp"
 
 #include <cmath>
 #include <utility>
@@ -46,7 +46,7 @@ void SurfaceModel::update_maps(const ContactLog& log) {
     read_surface(gp_.process(), desk_, log.taps(), mean_);
     gp_.process().read_variance(0, variance_);
   }
-  variance_.array() += log.offset_variance();
+  variance_.array() += log.reader().offset_variance();
   require_finite(mean_, "the height", log.taps());
   require_finite(variance_, "the variance of the height", log.taps());
   gp_.set_stale(false);
@@ -63,7 +63,7 @@ Prediction SurfaceModel::predict(int candidate, const ContactLog& log) const {
     gp_.process().read_variance(0, map);
     height.variance = map(candidate);
   }
-  return {height.mean + desk_, std::sqrt(height.variance + log.offset_variance()), {}};
+  return {height.mean + desk_, std::sqrt(height.variance + log.reader().offset_variance()), {}};
 }
 
 }  // namespace palpate

@@ -288,9 +288,9 @@ Experiment::Experiment(const ExperimentOptions& options, const ExperimentSetup& 
       monitor_(*scene_, backend_->scene_is_truth()) {
   if (auto motions = setup.factory.motions(options_.backend, *scene_))
     motions_.emplace(std::move(motions), scene_->desk());
-  plan_ = make_plan(setup.readers);
-  require_offered(plan_, *belief_, options_.belief.type);
-  models_ = belief_->plan(plan_);
+  plan_.read = make_plan(setup.readers);
+  require_offered(plan_.read, *belief_, options_.belief.type);
+  plan_.models = belief_->plan(plan_.read);
   belief_->update();
 }
 

@@ -32,6 +32,12 @@ struct ExperimentSetup {
   ReadPlan readers = {{}, std::nullopt};
 };
 
+/// The readers of a run, and its models, each with the readers because of which it is built.
+struct RunPlan {
+  ReadPlan read;
+  std::vector<PlannedModel> models;
+};
+
 /// One run of one config: the loop. It owns scene, backend and belief, and writes nothing. The loop has two halves, for
 /// taps that are made elsewhere: begin() chooses, end() takes the result.
 class Experiment final {
@@ -68,9 +74,6 @@ class Experiment final {
   /// Has the readers of the first tap read, and computes their arrays as of now: for those who only look.
   void look();
 
-  /// Brings the models of all begun stages up to date, in arrays too, and draws the lines of the next tap.
-  void infer();
-
   /// Ends the run before its budget, for this reason.
   void stop(const std::string& reason) { monitor_.stop(reason); }
 
@@ -83,16 +86,13 @@ class Experiment final {
   Eigen::VectorXd scores();
   /// Returns what is known of a tap that choose_next() chose. The backend describes it; no model is built.
   Preview preview(const TapRecord& tap) const;
-  /// Returns the models of the run, each with the readers because of which it is built.
-  const std::vector<PlannedModel>& models() const { return models_; }
-  /// Returns the readers of the run.
-  const ReadPlan& plan() const { return plan_; }
+  /// Returns the readers of the run, and its models.
+  const RunPlan& plan() const { return plan_; }
 
   Belief& belief() { return *belief_; }
   const Belief& belief() const { return *belief_; }
   /// Returns the true scene as it stands now; null if it is not known.
   const Scene* truth() { return monitor_.truth(*belief_); }
-  const ExperimentOptions& options() const { return options_; }
   const Scene& scene() const { return *scene_; }
   const Backend& backend() const { return *backend_; }
   PhaseClock& clock() { return clock_; }
@@ -105,6 +105,8 @@ class Experiment final {
   void draw_candidates();
   /// Shows the belief to the backend, after the first tap.
   void show();
+  /// Brings the models of all begun stages up to date, in arrays too, and draws the lines of the next tap.
+  void infer();
   /// Fills in all of a request that follows from the taps before.
   void complete(TapRequest& request) const;
   /// Begins the stages of the next tap, and brings the models up to date.
@@ -122,8 +124,7 @@ class Experiment final {
   std::shared_ptr<Backend> backend_;
   TapSelector selector_;
   std::optional<MotionSelector> motions_;  ///< if the backend has several
-  ReadPlan plan_;
-  std::vector<PlannedModel> models_;
+  RunPlan plan_;
   RunMonitor monitor_;
   std::optional<TapLine> previous_;  ///< of the tap before
   std::string unreached_;            ///< of the drawn lines: see TapRecord

@@ -17,8 +17,6 @@ constexpr double kBeside = 0.03;  // metres
 
 }  // namespace
 
-OffsetModel::OffsetModel(double offset, double drift, double noise) : offset_(offset), drift_(drift), noise_(noise) {}
-
 void OffsetModel::add(const Target& place, double seconds, double excess, int motion) {
   const auto known = std::find(motions_.begin(), motions_.end(), motion);
   const Eigen::Index own = known - motions_.begin();
@@ -52,8 +50,8 @@ void OffsetModel::search_from_below(std::vector<bool>& left) const {
   // The process of covariance() as a regression: what all share, the drift, and what is each motion's alone.
   const auto motions = static_cast<Eigen::Index>(motions_.size());
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(2 + motions);
-  Eigen::VectorXd prior = Eigen::VectorXd::Constant(2 + motions, (1.0 - kShared) * offset_ * offset_);
-  prior.head<2>() << kShared * offset_ * offset_, drift_ * drift_;
+  Eigen::VectorXd prior = Eigen::VectorXd::Constant(2 + motions, (1.0 - kShared) * prior_.offset * prior_.offset);
+  prior.head<2>() << kShared * prior_.offset * prior_.offset, prior_.drift * prior_.drift;
   Eigen::MatrixXd covariance = prior.asDiagonal();
   for (;;) {
     double lowest = kAboveDeskSigmas;
@@ -65,7 +63,7 @@ void OffsetModel::search_from_below(std::vector<bool>& left) const {
       const Eigen::Index own = 2 + touched_[i].own;
       const double variance = covariance(0, 0) + t * t * covariance(1, 1) + covariance(own, own) +
                               2.0 * (t * covariance(0, 1) + covariance(0, own) + t * covariance(1, own));
-      const double wide = std::sqrt(std::max(variance, 0.0) + noise_ * noise_);
+      const double wide = std::sqrt(std::max(variance, 0.0) + prior_.noise * prior_.noise);
       const double above = (touched_[i].excess - mean(0) - t * mean(1) - mean(own)) / wide;
       if (above >= lowest) continue;
       lowest = above;
@@ -114,7 +112,7 @@ void OffsetModel::judge_all() {
   problem.heights = Eigen::Map<const Eigen::VectorXd>(excess.data(), n);
   problem.prior = Eigen::VectorXd::Constant(n, kOther);
   problem.signals = {1.0};
-  problem.noises = {noise_};
+  problem.noises = {prior_.noise};
   problem.outlier_deviation = kOthers;
   // A few tenths of a millimetre are all there is to learn: the likeliest sets say it.
   constexpr OutlierSearchLimits kLimits{8, 1e-3, 1e-6};

@@ -29,10 +29,16 @@
 
 namespace palpate {
 
+/// Prior of the offset, in standard deviations.
+struct OffsetPrior {
+  double offset;  ///< metres
+  double drift;   ///< metres per second
+  double noise;   ///< of a contact with the desk, metres
+};
+
 class OffsetModel {
  public:
-  /// Prior standard deviations, metres and metres a second, and that of the noise of a contact with the desk, metres.
-  OffsetModel(double offset, double drift, double noise);
+  explicit OffsetModel(const OffsetPrior& prior) : prior_(prior) {}
 
   /// The next contact, `seconds` into the run, `excess` metres above where the desk is; `motion`: by which it was made.
   void add(const Target& place, double seconds, double excess, int motion = 0);
@@ -47,7 +53,7 @@ class OffsetModel {
     double variance = 0.0;  ///< of it, square metres
   };
   Estimate at(double seconds, int motion = 0) const;
-  double noise() const { return noise_; }
+  double noise() const { return prior_.noise; }
 
  private:
   struct When {
@@ -69,12 +75,10 @@ class OffsetModel {
   void judge_all();
   double covariance(const When& a, const When& b) const {
     const double share = a.motion == b.motion ? 1.0 : kShared;
-    return share * offset_ * offset_ + drift_ * drift_ * a.seconds * b.seconds;
+    return share * prior_.offset * prior_.offset + prior_.drift * prior_.drift * a.seconds * b.seconds;
   }
 
-  double offset_;
-  double drift_;
-  double noise_;
+  OffsetPrior prior_;
   std::vector<int> motions_;      ///< that contacts were made by
   std::vector<Touched> touched_;  ///< all contacts
   std::vector<bool> above_;       ///< of these

@@ -48,7 +48,7 @@ Tree manifest_of(const RunEnvironment& environment, const ResolvedConfig& config
 /// trace even if nobody sees its end.
 void set_up(const Experiment& experiment, RunDirectory& directory) {
   Tree models = Tree::map();
-  for (const PlannedModel& one : experiment.models()) {
+  for (const PlannedModel& one : experiment.plan().models) {
     Tree& readers = models.at(one.model);
     readers.kind = Tree::Kind::list;
     readers.items.push_back(Tree::quote(one.reader));
@@ -352,7 +352,7 @@ Belief& Run::look(const QuantitySet& quantities) {
   Belief& own = experiment_->belief();
   own.update();
   if (has_all(own.available())) {
-    experiment_->infer();
+    experiment_->look();
     return own;
   }
   // An exception may leave taps half taken in. So the copy is kept only after success.
@@ -434,7 +434,7 @@ void Run::end(std::string failure) {
   report.summary = summary_list().row(summary);
   directory_->write_made(kTapsTable, to_csv(directory_->rows()));
   if (result.interrupted) {
-    directory_->end(Ending::How::interrupted, result.stop_reason, {});
+    directory_->end({Ending::How::interrupted, result.stop_reason, {}, {}});
     return;
   }
   if (config_.options.log.surface && failure.empty()) {
@@ -442,8 +442,10 @@ void Run::end(std::string failure) {
     directory_->write_made(name, text);
   }
   directory_->write_objects(object_rows(summary));
-  directory_->end(failure.empty() ? Ending::How::done : Ending::How::failed,
-                  failure.empty() ? result.stop_reason : failure, report.summary);
+  directory_->end({failure.empty() ? Ending::How::done : Ending::How::failed,
+                   failure.empty() ? result.stop_reason : failure,
+                   report.summary,
+                   {}});
   if (!failure.empty()) throw Error("", failure, {}, Error::Kind::run);
 }
 
@@ -460,7 +462,8 @@ RunReport resume_run(const RunEnvironment& environment, const fs::path& director
 std::vector<PlannedModel> models_of(const RunEnvironment& environment, const ResolvedConfig& config) {
   const bool connects = config.options.backend.type != "simulator";  // as far as anybody knows
   return build_experiment(config, {environment.host, environment.interrupted, connects ? no_backend(false) : nullptr})
-      ->models();
+      ->plan()
+      .models;
 }
 
 fs::path directory_of(const ResolvedConfig& config, const fs::path& runs) {

@@ -112,8 +112,6 @@ RunDirectory::RunDirectory(const fs::path& directory) : path_(directory), record
   if (const fs::path maps = path_ / "maps"; !fs::is_symlink(maps)) remove_temporaries(maps);
 }
 
-void RunDirectory::sync() { sync_ = true; }
-
 void RunDirectory::write_config(const std::string& text) const {
   record_.check_in_place();
   write_file(path_ / "config.yaml", text, true);
@@ -178,11 +176,8 @@ void RunDirectory::write_made(const std::string& name, const std::string& text) 
   made_.push_back({name, text.size(), hash_of(text)});
 }
 
-void RunDirectory::end(Ending::How how, const std::string& reason, const Row& summary) {
-  end({how, reason, summary, std::exchange(made_, {})});
-}
-
-void RunDirectory::end(const Ending& ending) {
+void RunDirectory::end(Ending ending) {
+  for (Ending::File& one : std::exchange(made_, {})) ending.files.push_back(std::move(one));
   record_.add_end(ending, sync_);
   if (!ending.summary.fields.empty()) write(kSummaryFile, to_json(ending.summary));
 }
@@ -199,7 +194,7 @@ void RunDirectory::fail(const std::string& reason) {
   row.add("id", id);
   row.add("status", "failed");
   row.add("stop_reason", reason);
-  end(Ending::How::failed, reason, row);
+  end({Ending::How::failed, reason, row, {}});
 }
 
 }  // namespace palpate

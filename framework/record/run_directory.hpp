@@ -81,7 +81,7 @@ class RunDirectory final {
   const RunRecord& before() { return record_.before(); }
 
   /// From here on all that is written is forced to disk. Throws Error.
-  void sync();
+  void sync() { sync_ = true; }
 
   /// Takes everything out of the record of a run that failed before it could begin.
   void clear() { record_.clear(); }
@@ -122,14 +122,12 @@ class RunDirectory final {
     record_.check_in_place();
     write_file(path_ / name, text, sync_);
   }
-  /// A file that is made from the record: end() notes how many bytes it has and their hash.
+  /// A file that is made from the record: end() records how many bytes it has and their hash.
   void write_made(const std::string& name, const std::string& text);
 
-  /// Says how the run, or this attempt, ended, with its summary unless it was interrupted; then writes that into
-  /// summary.json.
-  void end(Ending::How how, const std::string& reason, const Row& summary);
-  /// The same, with the files that `ending` names.
-  void end(const Ending& ending);
+  /// Records how the run, or this attempt, ended, with its summary unless it was interrupted, and the files of
+  /// write_made(); then writes the summary into summary.json.
+  void end(Ending ending);
 
   /// Ends a run that failed before it could begin, or whose process died, and whose record may be damaged.
   void fail(const std::string& reason);

@@ -197,13 +197,14 @@ TEST_P(ResidualGpExactly, HasMeanAndVarianceWithContactsFreePointsAndNormals) {
     for (int i = 0; i < 30; ++i) {
       const Vector3d at = Vector3d(0, 0, 0.06) + 0.06 * random_direction(random);
       // Also at the data, where distances are 0.
-      const ResidualGp::Place place = i < 10 ? residual_gp.rows()[static_cast<std::size_t>(i)].place
-                                             : ResidualGp::Place{at, solids.normal(at)};
+      const ResidualGp::Place place =
+          i < 10 ? residual_gp.rows()[static_cast<std::size_t>(i)].place : ResidualGp::Place{at, solids.normal(at)};
       const ResidualGpOracle::Posterior exact{oracle.at(place).mean, without.at(place).variance};
       const double size = residual_gp.signal();
       mean_error = std::max(mean_error, std::abs(static_cast<double>(residual_gp.mean(place) - exact.mean)) / size);
       variance_error = std::max(
-          variance_error, std::abs(static_cast<double>(residual_gp.variance(place) - exact.variance)) / (size * size));
+          variance_error,
+          std::abs(static_cast<double>(residual_gp.posterior({place}).variance(0) - exact.variance)) / (size * size));
     }
     // A Cholesky solution is that of a matrix n roundings off (Higham 2002, theorem 10.4), times the condition number:
     // the largest eigenvalue is n times the signal squared at most, the least no less than the noise squared.

@@ -122,10 +122,10 @@ struct Prepared {
   HeightMap& belief() { return static_cast<HeightMap&>(experiment.belief()); }
   const HeightMap& belief() const { return static_cast<const HeightMap&>(experiment.belief()); }
   const HeightModels& models() const { return belief().models(); }
-  const CandidateGrid& grid() const { return belief().grid(); }
+  CandidateGrid grid() const { return grid_of(belief().candidates()); }
   /// Has models of these quantities read from now on, beside those of the run, and their arrays computed.
   void read(const QuantitySet& quantities) {
-    ReadPlan plan = experiment.plan();
+    ReadPlan plan = experiment.plan().read;
     plan.readers.push_back(readers(quantities).readers.front());
     belief().plan(plan);
     belief().begin(Stage::first_tap);

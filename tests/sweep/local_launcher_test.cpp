@@ -66,7 +66,7 @@ TEST_F(TwoJobs, AreDoneByTheirRecordsThoughAnotherNodesFilesAreNotSeenYet) {
   for (std::size_t index : {0, 1}) {
     RunDirectory held(job(index));
     held.begin(Tree::map({}));
-    held.end(Ending::How::done, "tap budget", {});
+    held.end({Ending::How::done, "tap budget", {}, {}});
     std::filesystem::remove(job(index) / kSummaryFile);
   }
   SweepProgress last;

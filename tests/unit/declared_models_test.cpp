@@ -20,20 +20,21 @@ TEST(Experiment, UncertaintyBuildsNoWeightProcessBeforeTheLastTap) {
   int weight_seen = 0;
   int height_seen = 0;
   prepared.journal.recording = [&](const TapRecord&) {
-    weight_seen += models.label_gp() ? 1 : 0;
-    height_seen += models.height_gp() ? 1 : 0;
+    weight_seen += models.gps().label ? 1 : 0;
+    height_seen += models.gps().height ? 1 : 0;
   };
   prepared.run();
   EXPECT_EQ(weight_seen, 0);
   EXPECT_EQ(height_seen, 14) << "of 17 taps, the 14 chosen by score need the height GP";
   prepared.experiment.result();
-  EXPECT_NE(models.label_gp().process, nullptr) << "the truth-based metrics want the outline, once, after the last tap";
+  EXPECT_NE(models.gps().label.process, nullptr)
+      << "the truth-based metrics want the outline, once, after the last tap";
 }
 
 TEST(Experiment, RandomSearchBuildsNoModelAtAllBeforeTheLastTap) {
   const Finished run("paper/object_i.yaml", {"acquisition=random"});
-  EXPECT_EQ(run.models().height_gp().process, nullptr);
-  EXPECT_EQ(run.models().label_gp().process, nullptr);
+  EXPECT_EQ(run.models().gps().height.process, nullptr);
+  EXPECT_EQ(run.models().gps().label.process, nullptr);
   EXPECT_FALSE(number_of(run.taps.back().state, "max_standard_deviation"));
   EXPECT_FALSE(run.taps.back().errors.rmse.has_value());
 }
@@ -42,8 +43,8 @@ TEST(Experiment, NamesEveryModelWithWhoReadsItBeforeAnyIsBuilt) {
   const auto readers = [](const Words& words) {
     Words out;
     const Prepared prepared("paper/object_i.yaml", words);
-    for (const PlannedModel& one : prepared.experiment.models()) out.push_back(one.model + ": " + one.reader);
-    EXPECT_FALSE(prepared.models().height_gp() || prepared.models().label_gp());
+    for (const PlannedModel& one : prepared.experiment.plan().models) out.push_back(one.model + ": " + one.reader);
+    EXPECT_FALSE(prepared.models().gps().height || prepared.models().gps().label);
     return out;
   };
   using testing::ElementsAre;
@@ -78,7 +79,7 @@ TEST(Experiment, RecordsTheModelsThatItNamesAndNoOthers) {
     all.insert(all.end(), {"choice.fallback=none", "initial.design=grid", "initial.count=9"});  // one of them hits
     Prepared prepared("paper/object_i.yaml", all);
     std::set<std::string> named;
-    for (const PlannedModel& one : prepared.experiment.models()) named.insert(one.model);
+    for (const PlannedModel& one : prepared.experiment.plan().models) named.insert(one.model);
     prepared.run();
     const auto recorded = [](const BeliefState& state) {
       std::set<std::string> out;
@@ -158,9 +159,9 @@ TEST(Experiment, APreviewTellsWhatTheModelsExpectAndBuildsNone) {
   std::vector<bool> built;
   double mean = 0.0;
   prepared.journal.permitting = [&](const TapRecord& tap) {
-    built.push_back(static_cast<bool>(models.height_gp()));
+    built.push_back(static_cast<bool>(models.gps().height));
     previews.push_back(prepared.experiment.preview(tap));
-    EXPECT_EQ(static_cast<bool>(models.height_gp()), built.back());
+    EXPECT_EQ(static_cast<bool>(models.gps().height), built.back());
     if (built.back()) mean = models.height_mean()(tap.candidate);
     return true;
   };

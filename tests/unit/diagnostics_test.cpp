@@ -26,9 +26,9 @@ TEST(Diagnostics, CountAProcessOfHeightsAndLabelsOnce) {
                scripted(answers));
   run.read({quantity::kLabelMean, quantity::kHeightMean});
   const RunResult result = run.experiment.result();
-  const GaussianProcess* const process = run.models().height_gp().process;
+  const GaussianProcess* const process = run.models().gps().height.process;
   ASSERT_NE(process, nullptr);
-  ASSERT_EQ(run.models().label_gp().process, process);
+  ASSERT_EQ(run.models().gps().label.process, process);
   const int raised = process->diagnostics().factors.raised;
   ASSERT_GT(raised, 0);
   EXPECT_EQ(result.state.diagnostics.at("jitter"), raised);

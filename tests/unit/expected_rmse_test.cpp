@@ -25,10 +25,10 @@ std::optional<double> shown_rmse(Prepared& run) {
 double rmse_by_the_truth(const Prepared& run) {
   const HeightModels& models = run.models();
   const Scene& scene = run.experiment.scene();
-  const Points& points = run.grid().points;
+  const Points points = run.grid().points;
   double sum = 0.0;
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    const bool on = !models.is_two_part() || models.probability()(i) >= 0.5;
+    const bool on = !models.surface().has_value() || models.probability()(i) >= 0.5;
     const double reconstructed = on ? models.height_mean()(i) : scene.desk();
     const double off = reconstructed - scene.height(points(i, 0), points(i, 1));
     sum += off * off;
@@ -84,7 +84,7 @@ TEST(ExpectedRmse, IsShownByTheModelsOfTheRunWhereNoTruthIsKnown) {
   Prepared run("paper/object_i.yaml", {"acquisition=uncertainty", "taps=5"}, scripted({contact_at(0.05)}));
   run.run();
   EXPECT_GT(shown_rmse(run).value_or(0.0), 0.0);
-  EXPECT_FALSE(run.models().label_gp()) << "displays build no model";
+  EXPECT_FALSE(run.models().gps().label) << "displays build no model";
 }
 
 TEST(ExpectedRmse, OfTheDefaultIsNearTheTrueOneOverManySeedsAndFalls) {
@@ -115,7 +115,7 @@ TEST(ExpectedRmse, OfOneProcessForObjectAndDeskIsNearTheTrueOneOverManySeedsAndF
 double rmse_by_the_formula(const Prepared& run, double length_scale) {
   const HeightMapOptions options = height_map_options(run.config.options, shared_host());
   const HeightModels& models = run.models();
-  const bool two_part = models.is_two_part();
+  const bool two_part = models.surface().has_value();
   const std::vector<Touch>& hits = models.log().object_contacts();
   const std::vector<Touch>& data = two_part ? hits : models.log().contacts();
   const auto n = static_cast<Eigen::Index>(data.size());
@@ -197,7 +197,7 @@ TEST(ExpectedRmse, IsSeenAndChangesNoTapAndNoResult) {
       return to_json_line(summary_list().row({run.experiment.result(), run.config, "", {}, {}, {}, {}}));
     };
     EXPECT_EQ(row(alone), row(watched));
-    EXPECT_EQ(alone.experiment.models().size(), watched.experiment.models().size());
+    EXPECT_EQ(alone.experiment.plan().models.size(), watched.experiment.plan().models.size());
   }
 }
 
@@ -217,7 +217,7 @@ TEST(ExpectedRmse, NeedsNoTruthAndNoModelThatTheRunHasNot) {
                  scripted({contact_at(0.1), contact_at(0.1)}));
   EXPECT_FALSE(shown_rmse(blind));
   EXPECT_FALSE(number_of(blind.experiment.result().state, "expected_rmse_m"));
-  EXPECT_FALSE(blind.models().surface_gp()) << "no model was started for it";
+  EXPECT_FALSE(blind.models().gps().surface) << "no model was started for it";
 
   Finished unfound("default.yaml", {"taps=3"}, scripted());
   EXPECT_FALSE(number_of(unfound.experiment.result().state, "expected_rmse_m")) << "there is nothing yet to go by";

@@ -76,8 +76,8 @@ TEST(ShownBelief, ThatNobodyReadsBuildsNoModel) {
   const auto backend = scripted();
   backend->reading = [](const BeliefView& belief) { EXPECT_GT(belief.taps().count, 0); };
   const Finished run("paper/object_i.yaml", {"acquisition=random"}, backend);
-  EXPECT_EQ(run.models().height_gp().process, nullptr);
-  EXPECT_EQ(run.models().label_gp().process, nullptr);
+  EXPECT_EQ(run.models().gps().height.process, nullptr);
+  EXPECT_EQ(run.models().gps().label.process, nullptr);
 }
 
 TEST(ShownBelief, ThatIsReadChangesNoTapAndNoNumber) {

@@ -57,7 +57,7 @@ TEST(Experiment, FailedTapsAreRecordedButReachNoModel) {
   EXPECT_EQ(result.desk_taps, 1);
   EXPECT_EQ(result.failed_taps, 4);
   run.read({quantity::kHeightMean});
-  EXPECT_EQ(run.models().height_gp().process->size(), 2);
+  EXPECT_EQ(run.models().gps().height.process->size(), 2);
   std::set<int> places;
   for (const TapRecord& tap : run.taps) places.insert(tap.candidate);
   EXPECT_EQ(places.size(), 6U) << "a place that failed is not tried again, even where repeats are allowed";
@@ -94,7 +94,7 @@ TEST(Experiment, GivesAnAcquisitionTheTapsSoFarAndWhereTheArmIs) {
   const auto backend = scripted({contact_at(0.05), contact_at(0.0), contact_at(0.0), missed, contact_at(0.05)});
   const Finished run("paper/object_i.yaml", {"taps=6"}, backend, plugins);
   ASSERT_EQ(run.taps.size(), 6U);
-  const Points& places = run.grid().points;
+  const Points places = run.grid().points;
   const double step = (places.row(1) - places.row(0)).norm();
   const std::size_t last_contacts[] = {2, 2, 4};  // before taps 4, 5 and 6, from 0
   for (std::size_t i = 3; i < 6; ++i) {

@@ -73,8 +73,8 @@ TEST_F(Fit, IsHandedHeightsAndLabelsTogetherWhenTheyShare) {
       EXPECT_EQ(call.targets[1](tap), record.reading->on_object ? 1.0 : 0.0);
     }
   }
-  const auto& height = *shared->models().height_gp().process;
-  const HeightModels::Output label = shared->models().label_gp();
+  const auto& height = *shared->models().gps().height.process;
+  const HeightModels::Output label = shared->models().gps().label;
   const GpSettings& weight = label.process->settings(label.output);
   EXPECT_EQ(&height, label.process) << "two outputs of one process";
   EXPECT_EQ(height.settings().signal, 0.25);
@@ -100,8 +100,8 @@ TEST_F(Fit, IsHandedOneQuantityAtATimeWhenEachHasItsOwn) {
   EXPECT_GT(of_surface, 0);
   EXPECT_EQ(fitting_->calls.size(), static_cast<std::size_t>(3 + 3 + of_surface));
   const HeightModels& models = own->models();
-  EXPECT_NE(&models.height_gp().process->kernel(), &models.label_gp().process->kernel());
-  EXPECT_NE(&models.height_gp().process->kernel(), &models.surface_gp().process->kernel());
+  EXPECT_NE(&models.gps().height.process->kernel(), &models.gps().label.process->kernel());
+  EXPECT_NE(&models.gps().height.process->kernel(), &models.gps().surface.process->kernel());
 }
 
 TEST_F(Fit, OfTheSurfaceIsItsOwnEvenWhereLabelsShareWithHeights) {

@@ -171,7 +171,7 @@ TEST(Forecast, IsMadeOnlyWhereItIsAskedFor) {
     EXPECT_EQ(state.find("expected_rmse_m"), nullptr);
     EXPECT_EQ(state.find("surface_gp.signal"), nullptr);
   }
-  for (const PlannedModel& one : run.experiment.models()) EXPECT_NE(one.reader, "stop.expected_rmse");
+  for (const PlannedModel& one : run.experiment.plan().models) EXPECT_NE(one.reader, "stop.expected_rmse");
 }
 
 TEST(Forecast, IsFiniteForEverySurfaceAndFootprint) {

@@ -63,7 +63,6 @@ struct Touching {
     return more;
   }
 
-  const SolidsBelief& belief() const { return static_cast<const SolidsBelief&>(experiment.belief()); }
   /// Returns the errors against the true scene as it stands now.
   Errors errors() {
     experiment.truth();
@@ -169,7 +168,7 @@ TEST(FromAnySide, ALineIsExplainedByTheNumbersThatAcquisitionsRead) {
 TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissing) {
   Touching run({"taps=3"}, [](const TapRequest&) { return met_nothing(); });
   run.experiment.run(run.journal);
-  EXPECT_FALSE(run.belief().is_ready());
+  EXPECT_FALSE(run.experiment.belief().is_ready());
   const Errors errors = run.experiment.result().errors;
   constexpr double kRounding = 1e-12;  // of a mean of thousands of equal numbers
   for (const std::optional<double>& one : {errors.surface_distance, errors.rms_surface_distance, errors.rmse_object})
@@ -186,9 +185,9 @@ TEST(FromAnySide, BeforeAnObjectIsKnownThereIsNoSurfaceAndAllOfTheTrueOneIsMissi
 TEST(FromAnySide, AnObjectAtTheEndOfALongAreaIsLookedForAndCompared) {
   Touching run({"taps=25", "candidates.count=1000", "scene.area={width: 60 cm, depth: 20 cm}",
                 "scene.objects=[{type: block, length: 6 cm, width: 6 cm, height: 8 cm, at: [8 cm, 10 cm]}]"});
-  run.experiment.infer();
+  run.experiment.look();
   int aimed = 0;
-  const Candidates& lines = run.belief().candidates();
+  const Candidates& lines = run.experiment.belief().candidates();
   for (Eigen::Index i = 0; i < lines.size(); ++i)
     aimed += run.experiment.scene().first_intersection(lines.line(i).line()) < kNoHit ? 1 : 0;
   EXPECT_GT(aimed, 0) << "of lines anywhere through the region";

@@ -41,7 +41,7 @@ struct Believed {
     belief.update();
     belief.infer();
   }
-  int nearest(double x, double y) const { return belief.grid().nearest(x, y, scene->area()); }
+  int nearest(double x, double y) const { return grid_of(belief.candidates()).nearest(x, y, scene->area()); }
   TapRecord choose(const MotionSelector& motions, int candidate) const {
     TapRecord out;
     out.candidate = candidate;
@@ -110,7 +110,7 @@ TEST(MotionSelector, GoesQuicklyWhereItAsksWhetherAndPreciselyWhereItAsksHowHigh
   const Eigen::VectorXd& v = one.belief.models().height_variance();
   int edge = 0;
   int inside = one.nearest(0.115, 0.115);
-  for (int i = 0; i < one.belief.grid().size(); ++i) {
+  for (int i = 0; i < one.belief.candidates().size(); ++i) {
     if (std::abs(p(i) - 0.5) < std::abs(p(edge) - 0.5)) edge = i;
     if (p(i) > 0.9 && v(i) > v(inside)) inside = i;
   }

@@ -19,7 +19,7 @@ constexpr double kNoise = 0.002;
 
 /// Some contacts with a bare desk, everywhere, of which heights are off by `offset` and `drift`.
 struct Desk {
-  OffsetModel offset_model{kOffset, kDrift, kNoise};
+  OffsetModel offset_model{OffsetPrior{kOffset, kDrift, kNoise}};
   std::vector<double> seconds, excess;
 
   Desk(int contacts, double offset, double drift, std::uint64_t seed) {
@@ -51,7 +51,7 @@ TEST(OffsetModel, IsTheRegressionByTheBookWhereEveryContactIsOneWithTheDesk) {
 }
 
 TEST(OffsetModel, KnowsNothingButItsPriorBeforeTheFirstContact) {
-  const OffsetModel::Estimate estimate = OffsetModel(kOffset, kDrift, kNoise).at(60.0);
+  const OffsetModel::Estimate estimate = OffsetModel({kOffset, kDrift, kNoise}).at(60.0);
   EXPECT_EQ(estimate.value, 0.0);
   EXPECT_NEAR(std::sqrt(estimate.variance), std::hypot(kOffset, kDrift * 60.0), 1e-12);
 }
@@ -65,7 +65,7 @@ TEST(OffsetModel, IsNotMovedByAJerkJustAboveTheDesk) {
 
 TEST(OffsetModel, TakesTheRimOfALowThingForNoDeskAndTheFootOfAWallForOne) {
   for (const bool rim : {true, false}) {
-    OffsetModel offset_model(kOffset, kDrift, kNoise);
+    OffsetModel offset_model({kOffset, kDrift, kNoise});
     offset_model.add({0.10, 0.10}, 0.0, rim ? 0.02 : 0.08);
     for (int i = 1; i < 12; ++i) offset_model.add({0.11 + 0.001 * i, 0.1}, 5.0 * i, 0.005);
     EXPECT_NEAR(offset_model.at(60.0).value, rim ? 0.0 : 0.005, 0.0005) << rim;
@@ -73,7 +73,7 @@ TEST(OffsetModel, TakesTheRimOfALowThingForNoDeskAndTheFootOfAWallForOne) {
 }
 
 TEST(OffsetModel, KnowsWhatLiesAboveTheLowestOnceTwoThatAreLowAgree) {
-  OffsetModel offset_model(kOffset, kDrift, kNoise);
+  OffsetModel offset_model({kOffset, kDrift, kNoise});
   const auto add = [&](int i, double excess) { offset_model.add({0.02 * i, 0.1}, 7.0 * i, excess); };
   for (int i = 0; i < 6; ++i) add(i, 0.013 + 0.0002 * i);
   EXPECT_FALSE(offset_model.above(0)) << "an arm may be off by that";
@@ -132,7 +132,7 @@ TEST(OffsetModel, SearchesFromBelowAsByTheBook) {
   int checked = 0;
   for (int trial = 0; trial < 300; ++trial) {
     constexpr int kContacts = 12;
-    OffsetModel offset_model(kOffset, kDrift, kNoise);
+    OffsetModel offset_model({kOffset, kDrift, kNoise});
     Eigen::VectorXd times(kContacts), excess(kContacts);
     std::vector<int> motions;
     for (int i = 0; i < kContacts; ++i) {

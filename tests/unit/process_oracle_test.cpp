@@ -39,7 +39,7 @@ class Comparison final : public Observer {
               const Real dy = (Real(a.y) - b.y) / length_scale;
               return Real(exp(-(dx * dx + dy * dy) / 2));
             },
-            Real(1e-4 * 1e-4), belief.grid().points, 2) {}
+            Real(1e-4 * 1e-4), grid_of(belief.candidates()).points, 2) {}
 
   Worst worst;
 
@@ -61,7 +61,7 @@ class Comparison final : public Observer {
     worst.mean = std::max(
         {worst.mean, apart(oracle_.mean(0), models.height_mean()), apart(oracle_.mean(1), models.label_map().mean())});
     Eigen::VectorXd of_weights(variance.size());
-    models.label_gp().process->read_variance(0, of_weights);
+    models.gps().label.process->read_variance(0, of_weights);
     worst.variance = std::max({worst.variance, apart(variance, models.height_variance()), apart(variance, of_weights)});
     // An upper bound of the condition number: trace (n + noise) over the smallest eigenvalue, which is at least the
     // noise variance; the smallest pivot squared bounds it closer where that is larger, up to the factor n.

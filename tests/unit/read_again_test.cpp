@@ -87,8 +87,8 @@ TEST(ReadAgain, TheModelsAreThoseOfLabelsThatWereReadSoAtOnce) {
     late.build(kAll);
     EXPECT_EQ(soon.models.probability(), late.models.probability());
     EXPECT_EQ(soon.models.label_map().weight(), late.models.label_map().weight());
-    for (std::size_t i = 0; i < taps_of_a_plate().size(); ++i)
-      EXPECT_EQ(soon.models.outlier_probability(i), late.models.outlier_probability(i));
+    if (const auto& surface = soon.models.surface(); surface && surface->outliers() != nullptr)
+      EXPECT_EQ(surface->outliers()->probabilities(), late.models.surface()->outliers()->probabilities());
     if (words.size() < 3) {  // of a fit the heights, whose process is not made anew, remember what they were then
       EXPECT_LT((soon.models.height_mean() - late.models.height_mean()).cwiseAbs().maxCoeff(), 1e-12);
       EXPECT_LT((soon.models.height_variance() - late.models.height_variance()).cwiseAbs().maxCoeff(), 1e-12);
@@ -147,7 +147,7 @@ TEST(Outliers, KeepTheirProbabilitiesAfterAHundredContactsOnAnObjectAndLaterCont
   const OutlierModel& outliers = *one.models.surface()->outliers();
   EXPECT_GT(early(kEarly), 0.9);
   EXPECT_EQ(outliers.probabilities().head(100), early);
-  EXPECT_EQ(one.models.outlier_probability(kLate), 0.0);
+  EXPECT_EQ(outliers.probabilities()(kLate), 0.0);
   EXPECT_EQ((outliers.probabilities().array() >= OutlierModel::kRetapThreshold).count(), 1) << "the early one alone";
 }
 

@@ -60,7 +60,7 @@ void carry_on(const fs::path& directory, bool announces, int taps) {
   Row summary;
   summary.add("status", "done");
   summary.add("taps", std::int64_t{taps});
-  run.end(Ending::How::done, "tap budget", summary);
+  run.end({Ending::How::done, "tap budget", summary, {}});
 }
 
 class Record : public InFolder {

@@ -63,7 +63,10 @@ class Reductions : public testing::Test {
   }
   /// The covariance of what is off, contacts first, as reduction.hpp has it.
   MatrixXd covariance(const ResidualGp::Places& at) const {
-    MatrixXd out = residual_gp.prior_covariance(at);
+    std::vector<ResidualGp::Row> rows(at.size());
+    std::transform(at.begin(), at.end(), rows.begin(),
+                   [](const ResidualGp::Place& one) { return ResidualGp::Row{one}; });
+    MatrixXd out = residual_gp.covariance(rows);
     for (const Assembly& one : solids.assemblies()) {
       for (Eigen::Index i = 0; i < out.rows(); ++i) {
         for (Eigen::Index j = 0; j < out.cols(); ++j) {

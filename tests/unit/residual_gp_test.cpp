@@ -75,7 +75,7 @@ TEST(ResidualGpOfMany, SaysOfEachWhatItSaysOfOne) {
     const auto k = static_cast<Eigen::Index>(i);
     EXPECT_NEAR(means(k), residual_gp.mean(places[i]), 1e-15);
     EXPECT_NEAR(all.mean(k), means(k), 1e-15);
-    EXPECT_NEAR(all.variance(k), residual_gp.variance(places[i]), 1e-17);
+    EXPECT_NEAR(all.variance(k), residual_gp.posterior({places[i]}).variance(0), 1e-17);
   }
   EXPECT_EQ(all.clamped, 0);
   EXPECT_EQ(residual_gp.means({}).size(), 0);
@@ -89,7 +89,8 @@ TEST(ResidualGpOfAPlate, KeepsWhatIsLearntOfOneSideOfAWallFromTheOther) {
   residual_gp.fit(plate, {{{{0, 0.2, 0.1}, {0, -1, 0}}, 0.195, true, false}});  // 3 mm in front of it
   EXPECT_NEAR(residual_gp.mean({{0, 0.002, 0.1}, {0, 1, 0}}), 0.003, 2e-4);
   EXPECT_NEAR(residual_gp.mean({{0, -0.002, 0.1}, {0, -1, 0}}), 0.0, 1e-12);
-  EXPECT_NEAR(residual_gp.variance({{0, -0.002, 0.1}, {0, -1, 0}}), residual_gp.signal() * residual_gp.signal(), 1e-12);
+  EXPECT_NEAR(residual_gp.posterior({{{0, -0.002, 0.1}, {0, -1, 0}}}).variance(0),
+              residual_gp.signal() * residual_gp.signal(), 1e-12);
 }
 
 TEST(ResidualGpBeforeAnyTouch, IsItsPrior) {
@@ -99,7 +100,7 @@ TEST(ResidualGpBeforeAnyTouch, IsItsPrior) {
   residual_gp.fit(solids, {});
   for (const ResidualGp::Place& place : all_over_the_ball(20)) {
     EXPECT_EQ(residual_gp.mean(place), 0.0);
-    EXPECT_EQ(residual_gp.variance(place), 4 * 0.006 * 0.006);
+    EXPECT_EQ(residual_gp.posterior({place}).variance(0), 4 * 0.006 * 0.006);
   }
 }
 
@@ -110,13 +111,14 @@ TEST(ResidualGpAndFreeWays, TheSurfaceIsNotWhereAToolHasPassed) {
   residual_gp.fit(solids, touches);
   EXPECT_GT(residual_gp.mean(on_plate(0.0)), 0.003);
   EXPECT_TRUE(residual_gp.free_paths().points.empty());
-  const double variance = residual_gp.variance(on_plate(0.0));
+  const double variance = residual_gp.posterior({on_plate(0.0)}).variance(0);
 
   touches.push_back({{{0.0, 0.001, 0.4}, {0, 0, -1}}, 0.39, false, false});  // down along it, 1 mm in front
   residual_gp.fit(solids, touches);
   EXPECT_FALSE(residual_gp.free_paths().points.empty());
   EXPECT_LT(residual_gp.mean(on_plate(0.0)), 0.0015);
-  EXPECT_NEAR(residual_gp.variance(on_plate(0.0)), variance, 1e-18);  // which says nothing of where it is
+  EXPECT_NEAR(residual_gp.posterior({on_plate(0.0)}).variance(0), variance,
+              1e-18);  // which says nothing of where it is
   for (const double x : {-0.03, 0.03}) EXPECT_NEAR(residual_gp.mean(on_plate(x)), 0.004, 0.0008);
 }
 
@@ -189,7 +191,8 @@ TEST(ResidualGpAndNormals, TheSurfaceIsTurnedAsTheToolFelt) {
     ResidualGp without(kernel_of(type), {0.006, 1e-5, 1e-4});
     touch.normal.reset();
     without.fit(solids, {touch});
-    EXPECT_LT(residual_gp.variance(on_plate(0.01)), 0.8 * without.variance(on_plate(0.01)));
+    EXPECT_LT(residual_gp.posterior({on_plate(0.01)}).variance(0),
+              0.8 * without.posterior({on_plate(0.01)}).variance(0));
     touch.normal = Vector3d(std::sin(angle), std::cos(angle), 0.0);
   }
 }
@@ -302,7 +305,7 @@ TEST(ResidualGpOfHardData, AFreeWayThroughAContactLeavesTheSurfaceBetween) {
     ResidualGp strict(kernel_of(), {0.006, noise});
     strict.fit(solids, touches);
     EXPECT_TRUE(std::isfinite(strict.mean(on_plate(0.0))));
-    EXPECT_GE(strict.variance(on_plate(0.0)), 0.0);
+    EXPECT_GE(strict.posterior({on_plate(0.0)}).variance(0), 0.0);
   }
 }
 

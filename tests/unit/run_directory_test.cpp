@@ -89,7 +89,7 @@ void expect_nothing_is_written(RunDirectory& run, const std::string& words) {
   EXPECT_THAT(words_of([&] { run.set_up(true, Tree::map()); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.note_learnt("a", "b"); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.write_objects({Row()}); }), StartsWith(words));
-  EXPECT_THAT(words_of([&] { run.end(Ending::How::done, "", Row()); }), StartsWith(words));
+  EXPECT_THAT(words_of([&] { run.end({Ending::How::done, "", {}, {}}); }), StartsWith(words));
   EXPECT_THAT(words_of([&] { run.write_made("taps.csv", ""); }), StartsWith(words));
 }
 
@@ -216,7 +216,7 @@ TEST_F(RunFolder, TellsItsStateFromItsRecordAlone) {
     EXPECT_EQ(run.recover().size(), 3U);
     Row summary;
     summary.add("taps", 3);
-    run.end(Ending::How::done, "tap budget", summary);
+    run.end({Ending::How::done, "tap budget", summary, {}});
   }
   EXPECT_EQ(read_status(directory).state, RunStatus::State::done);
   EXPECT_FALSE(lacks_files(directory, *read_ending(directory).end));

@@ -34,7 +34,7 @@ struct Alone {
     models.infer();
   }
   Eigen::VectorXd reconstructed() const {
-    return reconstruction({&models.height_mean(), &models.probability(), models.is_two_part(), scene->desk()});
+    return reconstruction({&models.height_mean(), &models.probability(), models.surface().has_value(), scene->desk()});
   }
 
   ResolvedConfig config;
@@ -66,8 +66,8 @@ TEST(TwoPart, IsADeskWhileNothingWasHit) {
   one.touch(3, 0.0);
   one.touch(50, 0.0);
   EXPECT_TRUE((one.reconstructed().array() == 0.0).all());
-  EXPECT_EQ(one.models.surface_gp().process->size(), 0);
-  EXPECT_EQ(one.models.label_gp().process->size(), 2);
+  EXPECT_EQ(one.models.gps().surface.process->size(), 0);
+  EXPECT_EQ(one.models.gps().label.process->size(), 2);
 }
 
 TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
@@ -89,7 +89,7 @@ TEST(TwoPart, TakesHeightsFromTapsOnAnObjectAloneWithAFreeLevel) {
   EXPECT_LT(apart(one.models.height_mean(), book.mean()), 1e-10);
   EXPECT_LT(apart(one.models.height_variance(), book.variance()), 1e-5);
   one.build({quantity::kUncertainty});
-  EXPECT_EQ(one.models.height_gp().process->size(), 6) << "u comes from all taps";
+  EXPECT_EQ(one.models.gps().height.process->size(), 6) << "u comes from all taps";
 }
 
 TEST(TwoPart, ChoosesTheVeryTapsOfASinglePart) {
@@ -129,7 +129,7 @@ TEST(TwoPart, IsInTheRecordOfATapOnceSomebodyAsksForIt) {
   prepared.run();
   const TapRecord& tap = prepared.taps.back();
   ASSERT_TRUE(number_of(tap.state, "surface_gp.signal") && tap.errors.rmse && tap.errors.rmse_height);
-  EXPECT_EQ(prepared.models().surface_gp().process->settings().mean_ratio, 1000.0);
+  EXPECT_EQ(prepared.models().gps().surface.process->settings().mean_ratio, 1000.0);
   prepared.belief().update();
   prepared.belief().infer();
   const std::string maps = maps_csv(prepared.belief(), prepared.belief().state(0));

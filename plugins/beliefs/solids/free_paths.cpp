@@ -126,14 +126,12 @@ FreePaths hold_free_paths(const ResidualKernel& kernel, const Assembly& solids,
   constexpr int kRounds = 16;
   for (int round = 0;; ++round) {
     std::vector<Passage*> more = deepest(close, noise);
-    if (more.empty() && round > 0) {
+    if (round == kRounds || (more.empty() && round > 0)) {
       look_at_all();
       more = deepest(close, noise);
     }
     if (more.empty()) return out;
     if (round == kRounds) {
-      look_at_all();
-      more = deepest(close, noise);
       for (std::size_t i = 0; i < more.size(); ++i) out.violated += i == 0 || more[i]->way != more[i - 1]->way ? 1 : 0;
       return out;
     }

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <string>
 
 namespace palpate {
 
@@ -20,31 +18,18 @@ void LineValues::compute(const SampledLines& lines, const Solids& solids, const 
   using namespace quantity;
   reads_ = reads;
   const auto has = [&](const char* name) { return reads.count(name) != 0; };
-  const bool deviations = has(kSurfaceStd) || has(kMeasurementStd) || has(kUncertainty);
   find_contacts(lines, solids.best());
-  for (Eigen::VectorXd* const old : {&surface_std_, &uncertainty_, &std_reduction_, &expected_discovery_})
-    old->resize(0);
-  if (deviations) compute_deviations(residual_gp);
-  if (has(kStdReduction)) compute_reductions(solids, residual_gp);
-  if (has(kExpectedDiscovery)) compute_discovery(lines, solids, random);
-}
-
-QuantitySet LineValues::available() const {
-  QuantitySet out;
-  std::copy_if(reads_.begin(), reads_.end(), std::inserter(out, out.end()),
-               [&](const std::string& one) { return find(one) != nullptr; });
-  return out;
-}
-
-const Eigen::VectorXd* LineValues::find(std::string_view quantity) const {
-  using namespace quantity;
-  if (quantity == kExpectedDistance) return &distance_;
-  if (quantity == kIncidenceCosine) return &incidence_cosine_;
-  if (quantity == kSurfaceStd || quantity == kMeasurementStd) return &surface_std_;
-  if (quantity == kUncertainty) return &uncertainty_;
-  if (quantity == kStdReduction) return &std_reduction_;
-  if (quantity == kExpectedDiscovery) return &expected_discovery_;
-  return nullptr;
+  arrays_.clear();
+  if (has(kExpectedDistance)) arrays_[kExpectedDistance] = distance_;
+  if (has(kIncidenceCosine)) arrays_[kIncidenceCosine] = incidence_cosine_;
+  if (has(kSurfaceStd) || has(kMeasurementStd) || has(kUncertainty)) {
+    const Eigen::VectorXd surface_std = deviations(residual_gp);
+    if (has(kSurfaceStd)) arrays_[kSurfaceStd] = surface_std;
+    if (has(kMeasurementStd)) arrays_[kMeasurementStd] = surface_std;
+    if (has(kUncertainty)) arrays_[kUncertainty] = uncertainty(surface_std);
+  }
+  if (has(kStdReduction)) arrays_[kStdReduction] = reductions(solids, residual_gp);
+  if (has(kExpectedDiscovery)) arrays_[kExpectedDiscovery] = discovery(lines, solids, random);
 }
 
 void LineValues::find_contacts(const SampledLines& lines, const Assembly& best) {
@@ -66,38 +51,43 @@ void LineValues::find_contacts(const SampledLines& lines, const Assembly& best) 
   }
 }
 
-void LineValues::compute_deviations(const ResidualGp& residual_gp) {
+Eigen::VectorXd LineValues::deviations(const ResidualGp& residual_gp) {
   const ResidualGp::Posterior posterior = residual_gp.posterior(places_);
-  surface_std_ = Eigen::VectorXd::Zero(distance_.size());
-  surface_std_(meets_) = posterior.variance.cwiseSqrt();
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(distance_.size());
+  out(meets_) = posterior.variance.cwiseSqrt();
   clamped_ = posterior.clamped;
-  // The most is 1, whatever the unit of the deviations; lines at a slope tell less of the surface.
-  constexpr double kAlong = 0.999;
-  const double most = surface_std_.maxCoeff();
-  const double scale = most > 0.0 ? 1.0 / most : 0.0;
-  const Eigen::ArrayXd share = (scale * surface_std_.array()).square();
-  uncertainty_ = (incidence_cosine_.array() > kAlong).select(share, 0.0);
+  return out;
 }
 
-void LineValues::compute_reductions(const Solids& solids, const ResidualGp& residual_gp) {
+Eigen::VectorXd LineValues::uncertainty(const Eigen::VectorXd& deviations) const {
+  // The most is 1, whatever the unit of the deviations; lines at a slope tell less of the surface.
+  constexpr double kAlong = 0.999;
+  const double most = deviations.maxCoeff();
+  const double scale = most > 0.0 ? 1.0 / most : 0.0;
+  const Eigen::ArrayXd share = (scale * deviations.array()).square();
+  return (incidence_cosine_.array() > kAlong).select(share, 0.0);
+}
+
+Eigen::VectorXd LineValues::reductions(const Solids& solids, const ResidualGp& residual_gp) {
   constexpr std::size_t kMost = 300;
   constexpr double kSquarely = 0.5;
   const Representatives some = representatives(places_, kMost);
   factors_.redundant_taps = 0;  // as it is now
-  const Eigen::VectorXd reductions = expected_reductions(solids, residual_gp, some.places, &factors_);
-  std_reduction_ = Eigen::VectorXd::Zero(distance_.size());
+  const Eigen::VectorXd expected = expected_reductions(solids, residual_gp, some.places, &factors_);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(distance_.size());
   for (std::size_t i = 0; i < meets_.size(); ++i) {
     if (incidence_cosine_(meets_[i]) > kSquarely)
-      std_reduction_(meets_[i]) = reductions(static_cast<Eigen::Index>(some.stands_for[i]));
+      out(meets_[i]) = expected(static_cast<Eigen::Index>(some.stands_for[i]));
   }
+  return out;
 }
 
-void LineValues::compute_discovery(const SampledLines& lines, const Solids& solids, Random random) {
+Eigen::VectorXd LineValues::discovery(const SampledLines& lines, const Solids& solids, Random random) const {
   constexpr int kDraws = 1000;
   constexpr double kMinEarlier = 0.003;  // earlier than what is believed
   constexpr double kFarthest = 0.03;     // that a line counts
   const Eigen::Index count = distance_.size();
-  expected_discovery_ = Eigen::VectorXd::Zero(count);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(count);
   const std::vector<Primitive> primitives = solids.undiscovered(solids.best(), kDraws, random);
   double anywhere = 0.0;
   Eigen::ArrayX3d origin(count, 3), direction(count, 3);
@@ -127,8 +117,9 @@ void LineValues::compute_discovery(const SampledLines& lines, const Solids& soli
     }
     // The mean over the lines from all sides.
     moves /= anywhere * kDraws;
-    for (const Eigen::Index i : meets) expected_discovery_(i) += moves;
+    for (const Eigen::Index i : meets) out(i) += moves;
   }
+  return out;
 }
 
 }  // namespace palpate

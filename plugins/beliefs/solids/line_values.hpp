@@ -11,6 +11,9 @@
 
 #include <Eigen/Core>
 
+#include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace palpate {
@@ -27,10 +30,8 @@ class LineValues {
 
   /// Returns the quantities of the last compute(), among them names that have no array.
   const QuantitySet& reads() const { return reads_; }
-  /// Returns those of them that have arrays.
-  QuantitySet available() const;
-  /// Returns the array of a quantity; null for names that have none, empty unless the last compute() read the quantity.
-  const Eigen::VectorXd* find(std::string_view quantity) const;
+  /// Returns the arrays of those of them that have one.
+  const std::map<std::string, Eigen::VectorXd, std::less<>>& arrays() const { return arrays_; }
 
   /// Number of variances of the last compute() that rounding had taken below 0, and factorisations of all of them.
   int variances_clamped() const { return clamped_; }
@@ -39,19 +40,19 @@ class LineValues {
  private:
   Line line(const SampledLines& lines, Eigen::Index index) const;
   void find_contacts(const SampledLines& lines, const Assembly& best);
-  void compute_deviations(const ResidualGp& residual_gp);
-  void compute_reductions(const Solids& solids, const ResidualGp& residual_gp);
-  void compute_discovery(const SampledLines& lines, const Solids& solids, Random random);
+  Eigen::VectorXd deviations(const ResidualGp& residual_gp);
+  /// Returns (deviation / largest)^2 of lines along the normal, else 0.
+  Eigen::VectorXd uncertainty(const Eigen::VectorXd& deviations) const;
+  Eigen::VectorXd reductions(const Solids& solids, const ResidualGp& residual_gp);
+  Eigen::VectorXd discovery(const SampledLines& lines, const Solids& solids, Random random) const;
 
   double desk_;
   QuantitySet reads_;
+  std::map<std::string, Eigen::VectorXd, std::less<>> arrays_;
   Eigen::VectorXd distance_;          ///< along each line to the most probable assembly, or to the end
   ResidualGp::Places places_;         ///< where lines meet it
   std::vector<Eigen::Index> meets_;   ///< the lines that meet it there
   Eigen::VectorXd incidence_cosine_;  ///< 0 without an object
-  Eigen::VectorXd surface_std_;       ///< likewise
-  Eigen::VectorXd uncertainty_;       ///< (surface_std / largest)^2 of lines along the normal, else 0
-  Eigen::VectorXd std_reduction_, expected_discovery_;
   int clamped_ = 0;
   FactorReport factors_;
 };

@@ -8,9 +8,8 @@ namespace palpate {
 namespace {
 
 // Prior deviations. A lag of 0.35 s at 2.4 cm/s is 8 mm; what is as soft as 1500 N/m gives way by 0.7 mm a newton.
-constexpr double kOffset = 0.006;       // metres
-constexpr double kCompliance = 0.0005;  // metres a newton
-constexpr double kNoise = 0.0012;       // metres along the way
+// Offset in metres, compliance in metres per newton in place of the drift, noise in metres along the path.
+constexpr OffsetPrior kPrior{0.006, 0.0005, 0.0012};
 // The floor of a vessel is a few millimetres above the desk, and not taken for it: the noise is that of a pose, no
 // more. Of flatter ways what the desk's height errs by is too much along the way.
 constexpr double kSteep = 0.6;
@@ -18,7 +17,7 @@ constexpr double kMeasurable = 1e-6;  // metres: less is rounding
 
 }  // namespace
 
-Overtravel::Overtravel(double tip, double most) : tip_(tip), most_(most), offset_model_(kOffset, kCompliance, kNoise) {}
+Overtravel::Overtravel(double tip, double most) : tip_(tip), most_(most), offset_model_(kPrior) {}
 
 /// Of a round tip, which is higher than its foremost point would be where the tool comes at a slope.
 double Overtravel::lowest_point(const SurfaceTouch& touch) const {

@@ -19,16 +19,16 @@ using Eigen::VectorXd;
 VectorXd expected_reductions(const Solids& solids, const ResidualGp& residual_gp, const ResidualGp::Places& places,
                              FactorReport* report) {
   if (places.empty()) return {};
-  ResidualGp::Places all;  // contacts first
+  std::vector<ResidualGp::Row> all;  // contacts first
   for (const ResidualGp::Row& row : residual_gp.rows()) {
-    if (!row.free && row.along.isZero(0.0)) all.push_back(row.place);
+    if (!row.free && row.along.isZero(0.0)) all.push_back({row.place});
   }
   const auto n = static_cast<Index>(all.size());
   const auto count = static_cast<Index>(places.size());
-  all.insert(all.end(), places.begin(), places.end());
-  MatrixXd covariance = residual_gp.prior_covariance(all);
+  for (const ResidualGp::Place& place : places) all.push_back({place});
+  MatrixXd covariance = residual_gp.covariance(all);
   MatrixXd apart(n + count, static_cast<Index>(solids.assemblies().size()));
-  for (Index i = 0; i < apart.rows(); ++i) apart.row(i) = solids.offsets(all[static_cast<std::size_t>(i)].at);
+  for (Index i = 0; i < apart.rows(); ++i) apart.row(i) = solids.offsets(all[static_cast<std::size_t>(i)].place.at);
   covariance.noalias() += apart * apart.transpose() / static_cast<double>(apart.cols());
   const double noise = residual_gp.noise() * residual_gp.noise();
   MatrixXd left = covariance.bottomRightCorner(count, count);

@@ -34,11 +34,6 @@ std::vector<int> factorise(Factor& factor, const MatrixXd& covariance, const std
 
 }  // namespace
 
-MatrixXd ResidualGp::covariance(const std::vector<Row>& rows) const {
-  const ResidualKernel::Table table = ResidualKernel::table_of(rows);
-  return kernel_.covariances(table, table);
-}
-
 std::vector<ResidualGp::Row> ResidualGp::contacts_of(const Assembly& solids,
                                                      const std::vector<SurfaceTouch>& touches) const {
   std::vector<Row> out;
@@ -141,21 +136,8 @@ ResidualGp::Posterior ResidualGp::posterior(const Places& places) const {
   return out;
 }
 
-MatrixXd ResidualGp::prior_covariance(const Places& places) const {
-  std::vector<Row> rows;
-  for (const Place& place : places) rows.push_back({place});
-  return covariance(rows);
-}
-
 double ResidualGp::mean(const Place& place) const {
   return kernel_.covariances(known_.table, ResidualKernel::table_of({{place}})).col(0).dot(known_.weights);
-}
-
-double ResidualGp::variance(const Place& place) const {
-  const Eigen::Index n = known_.lower.rows();
-  VectorXd k = kernel_.covariances(known_.table, ResidualKernel::table_of({{place}})).col(0).head(n);
-  known_.lower.triangularView<Eigen::Lower>().solveInPlace(k);
-  return std::max(0.0, deviation() * deviation() - k.squaredNorm());
 }
 
 }  // namespace palpate

@@ -63,7 +63,6 @@ class ResidualGp {
 
   /// By how much the surface lies outside the assembly's, near such a place of it, metres.
   double mean(const Place& place) const;
-  double variance(const Place& place) const;
   /// What contacts are off as a rule, and the standard deviation before any touch: that times the kernel's.
   double signal() const { return kernel_.signal(); }
   double deviation() const { return kernel_.deviation(); }
@@ -80,8 +79,10 @@ class ResidualGp {
   Posterior posterior(const Places& places) const;
 
   /// The covariance of g between all of these before any touch, with the signal of the last fit, noise left out.
-  Eigen::MatrixXd covariance(const std::vector<Row>& rows) const;
-  Eigen::MatrixXd prior_covariance(const Places& places) const;
+  Eigen::MatrixXd covariance(const std::vector<Row>& rows) const {
+    const ResidualKernel::Table table = ResidualKernel::table_of(rows);
+    return kernel_.covariances(table, table);
+  }
   /// Of a contact, metres.
   double noise() const { return settings_.noise; }
 

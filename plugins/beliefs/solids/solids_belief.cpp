@@ -103,13 +103,12 @@ void SolidsBelief::update() {
     solids_.look(first(touches_.seen()));
     taken_in_ = touches_.seen();
   }
-  if (touches_.has_changed()) {
+  if (touches_.take_changes()) {
     // A touch errs by the distance of the solids to the objects, and by the error of its report.
     const double error = touches_.overtravel().spread();
     const double spread = error > Overtravel::kLeastSpread ? error : 0.0;
     solids_.read_again(first(taken_in_), math::hypot(options_.model_discrepancy, spread), kMostCost);
     residual_gp_.set_noise(std::max(options_.residual.noise, spread));
-    touches_.set_unchanged();
   }
   for (; taken_in_ < touches.size(); ++taken_in_) solids_.add({touches[taken_in_]});
   residual_gp_.fit(solids_.best(), touches);
@@ -135,7 +134,7 @@ void SolidsBelief::infer() {
   const PhaseClock::Scope infer(context_.clock, Phase::infer);
   values_.compute(lines_, solids_, residual_gp_, reads,
                   context_.random("space/unseen", static_cast<std::uint64_t>(taps().count)));
-  for (const std::string& one : available()) require_finite(*values_.find(one), one.c_str(), taps().count);
+  for (const auto& [name, values] : values_.arrays()) require_finite(values, name.c_str(), taps().count);
 }
 
 bool SolidsBelief::is_ready() const {
@@ -143,11 +142,17 @@ bool SolidsBelief::is_ready() const {
                                                   [](const TapReading& one) { return one.on_object; });
 }
 
+QuantitySet SolidsBelief::available() const {
+  QuantitySet out;
+  for (const auto& [name, values] : values_.arrays()) out.insert(name);
+  return out;
+}
+
 const Eigen::VectorXd& SolidsBelief::values(std::string_view quantity) const {
-  const Eigen::VectorXd* const out = values_.find(quantity);
-  if (out == nullptr || out->size() != lines_.lines.size())
+  const auto found = values_.arrays().find(quantity);
+  if (found == values_.arrays().end() || found->second.size() != lines_.lines.size())
     throw std::logic_error(std::string(quantity) + " is read, but no begun reader has it");
-  return *out;
+  return found->second;
 }
 
 std::optional<double> SolidsBelief::scalar(std::string_view quantity) const {
@@ -199,7 +204,7 @@ LineFacts SolidsBelief::explain(const TapLine& line) const {
   if (!best.on_object) return out;
   const Eigen::Vector3d at = own.origin + best.distance * own.direction;
   const Eigen::Vector3d normal = solids_.best().normal(at);
-  out.surface_std = std::sqrt(residual_gp_.variance({at, normal}));
+  out.surface_std = std::sqrt(residual_gp_.posterior({{at, normal}}).variance(0));
   out.prior_std = residual_gp_.signal();
   out.incidence_cosine = std::abs(normal.dot(line.direction));
   return out;

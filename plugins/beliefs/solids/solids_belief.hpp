@@ -45,7 +45,7 @@ class SolidsBelief final : public Belief {
   void add(const TapRequest& request, const TapResult& result) override { touches_.add(request, result); }
   void update() override;
   void infer() override;
-  QuantitySet available() const override { return values_.available(); }
+  QuantitySet available() const override;
   void draw_candidates(const LineFilter& filter) override;
   bool is_ready() const override;
   bool reads_scene() const override { return options_.view.has_value(); }

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -37,9 +38,8 @@ class TouchLog {
   /// Whether a camera saw an object before the first tap.
   bool is_object_seen() const { return is_object_seen_; }
 
-  /// Whether touches were read again, or their spread changed, since set_unchanged().
-  bool has_changed() const { return has_changed_; }
-  void set_unchanged() { has_changed_ = false; }
+  /// Returns whether touches were read again, or their spread changed, since the last call.
+  bool take_changes() { return std::exchange(has_changed_, false); }
   const Overtravel& overtravel() const { return overtravel_; }
 
  private:
