@@ -61,7 +61,7 @@ void LineValues::compute_deviations(const ResidualGp& residual_gp) {
   surface_std_ = Eigen::VectorXd::Zero(distance_.size());
   surface_std_(meets_) = posterior.variance.cwiseSqrt();
   clamped_ = posterior.clamped;
-  // The most is 1, whatever the unit of the deviations; lines at a slope tell less of the surface.
+  // Scaled to a maximum of 1. Lines oblique to the surface reveal less of it and count as 0.
   constexpr double kAlong = 0.999;
   const double most = surface_std_.maxCoeff();
   const double scale = most > 0.0 ? 1.0 / most : 0.0;
@@ -73,7 +73,7 @@ void LineValues::compute_reductions(const Solids& solids, const ResidualGp& resi
   constexpr std::size_t kMost = 300;
   constexpr double kSquarely = 0.5;
   const Representatives some = representatives(places_, kMost);
-  factors_.redundant_taps = 0;  // as it is now
+  factors_.redundant_taps = 0;  // only the latest count matters
   const Eigen::VectorXd reductions = expected_reductions(solids, residual_gp, some.places, &factors_);
   std_reduction_ = Eigen::VectorXd::Zero(distance_.size());
   for (std::size_t i = 0; i < meets_.size(); ++i) {
@@ -84,8 +84,8 @@ void LineValues::compute_reductions(const Solids& solids, const ResidualGp& resi
 
 void LineValues::compute_discovery(const SampledLines& lines, const Solids& solids, Random random) {
   constexpr int kDraws = 1000;
-  constexpr double kMinEarlier = 0.003;  // earlier than what is believed
-  constexpr double kFarthest = 0.03;     // that a line counts
+  constexpr double kMinEarlier = 0.003;  // metres: smaller advances of the contact do not count
+  constexpr double kFarthest = 0.03;     // metres: larger advances count as this one
   const Eigen::Index count = distance_.size();
   expected_discovery_ = Eigen::VectorXd::Zero(count);
   const std::vector<Primitive> primitives = solids.undiscovered(solids.best(), kDraws, random);
@@ -100,7 +100,7 @@ void LineValues::compute_discovery(const SampledLines& lines, const Solids& soli
   std::vector<Eigen::Index> meets;
   Eigen::ArrayXd along(count), aside(count);
   for (const Primitive& primitive : primitives) {
-    // Most lines pass by the ball around the primitive, or end before it.
+    // Most lines miss the sphere around the primitive, or end before it.
     const double radius = primitive.half.norm();
     const auto apart = [&](Eigen::Index k) { return primitive.centre(k) - origin.col(k); };
     along = apart(0) * direction.col(0) + apart(1) * direction.col(1) + apart(2) * direction.col(2);
@@ -115,7 +115,7 @@ void LineValues::compute_discovery(const SampledLines& lines, const Solids& soli
       meets.push_back(i);
       if (lines.anywhere[static_cast<std::size_t>(i)]) moves += std::min(kFarthest, earlier);
     }
-    // The mean over the lines from all sides.
+    // Mean over the random lines.
     moves /= anywhere * kDraws;
     for (const Eigen::Index i : meets) expected_discovery_(i) += moves;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The quantities of lines by the solids and the residual GP that are believed.
+// Values of candidate lines under the current solids and residual GP.
 #pragma once
 
 #include "solids/line_sampler.hpp"
@@ -15,20 +15,20 @@
 
 namespace palpate {
 
-/// N values of each quantity; empty before compute(), and if it is not among those that are read.
+/// N values per quantity. A quantity is empty before compute(), and if `reads` does not contain it.
 class LineValues {
  public:
   /// `desk`: its height, metres.
   explicit LineValues(double desk) : desk_(desk) {}
 
-  /// Computes the quantities of `lines` that are in `reads`. `random`: of expected_discovery.
+  /// Computes the quantities of `lines` that are in `reads`. `random` is used for expected_discovery.
   void compute(const SampledLines& lines, const Solids& solids, const ResidualGp& residual_gp, const QuantitySet& reads,
                Random random);
 
-  /// Returns the array of a quantity; null for a quantity that is none of these.
+  /// Returns the values of a quantity; null if this class does not compute it.
   const Eigen::VectorXd* find(std::string_view quantity) const;
 
-  /// Number of variances of the last compute() that rounding had taken below 0, and factorisations of all of them.
+  /// Number of variances that rounding made negative in the last compute(), and a report of all its factorisations.
   int variances_clamped() const { return clamped_; }
   const FactorReport& factors() const { return factors_; }
 
@@ -41,11 +41,11 @@ class LineValues {
 
   double desk_;
   Eigen::VectorXd distance_;          ///< along each line to the most probable assembly, or to the end
-  ResidualGp::Places places_;         ///< where lines meet it
-  std::vector<Eigen::Index> meets_;   ///< the lines that meet it there
-  Eigen::VectorXd incidence_cosine_;  ///< 0 without an object
-  Eigen::VectorXd surface_std_;       ///< likewise
-  Eigen::VectorXd uncertainty_;       ///< (surface_std / largest)^2 of lines along the normal, else 0
+  ResidualGp::Places places_;         ///< where lines meet that assembly
+  std::vector<Eigen::Index> meets_;   ///< indices of the lines that meet it
+  Eigen::VectorXd incidence_cosine_;  ///< 0 for lines that meet no object
+  Eigen::VectorXd surface_std_;       ///< 0 for lines that meet no object
+  Eigen::VectorXd uncertainty_;       ///< (surface_std / largest surface_std)^2 for lines along the normal, else 0
   Eigen::VectorXd std_reduction_, expected_discovery_;
   int clamped_ = 0;
   FactorReport factors_;

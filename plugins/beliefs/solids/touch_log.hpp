@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The touches so far, as they are read now: how far the tool came before it met the surface, and whether that was the
-// desk. Later contacts with the desk show how deep contacts are reported, and change how earlier ones are read.
+// The touches so far, as currently read: how far the tool moved before it met the surface, and whether that was the
+// desk. Later contacts with the desk improve the estimate of the overtravel, and so change the readings of earlier
+// ones.
 #pragma once
 
 #include "solids/overtravel.hpp"
@@ -16,27 +17,27 @@ namespace palpate {
 
 class TouchLog {
  public:
-  /// `desk`: its height, metres; `tip`: radius of the tool's round tip, metres; no contact higher than `most` above the
-  /// desk is with the desk.
+  /// `desk`: its height, metres; `tip`: radius of the tool's round tip, metres. Contacts more than `most` above the
+  /// desk are never with the desk.
   TouchLog(double desk, double tip, double most) : desk_(desk), overtravel_(tip, most) {}
 
-  /// Takes the rays of a camera, before the first tap.
+  /// Adds the rays of a camera, before the first tap.
   void look(const std::vector<SurfaceTouch>& seen);
 
-  /// Returns how a result is read now; nullopt if it teaches nothing: of a failed tap, and of one that felt nothing of
-  /// the desk, and so would have felt nothing of an object.
+  /// Returns the current reading of a result; nullopt if it has no information. That is so for a failed tap, and for a
+  /// tap that passed the desk without a contact, because it would not have felt an object either.
   std::optional<SurfaceTouch> read(const TapRequest& request, const TapResult& result) const;
 
-  /// Takes the result of a tap. All contacts so far are read again.
+  /// Adds the result of a tap, and reads all contacts again.
   void add(const TapRequest& request, const TapResult& result);
 
-  /// Touches as they are read now, lengths relative to the desk: first those that were seen.
+  /// Returns the current readings of all touches, lengths relative to the desk. The touches of the view come first.
   const std::vector<SurfaceTouch>& touches() const { return touches_; }
   std::size_t seen() const { return seen_; }
-  /// Returns the readings of the taps among them.
+  /// Returns the readings of the taps; the view is left out.
   std::vector<TapReading> readings() const;
 
-  /// Whether touches were read again, or their spread changed, since set_unchanged().
+  /// Returns whether readings or their spread have changed since set_unchanged().
   bool has_changed() const { return has_changed_; }
   void set_unchanged() { has_changed_ = false; }
   const Overtravel& overtravel() const { return overtravel_; }
