@@ -10,22 +10,23 @@
 namespace palpate {
 namespace {
 
-// Of 200 cubes of 3 cm, 60 taps of an arm that errs find 92 % with a quarter of them, 96 % with these and with twice as
-// many; the paper's objects are found at tap 1.8 with any of these.
+// With 60 taps of an inexact arm, 92 % of 200 cubes of 3 cm are found with a quarter of these discs, and 96 % with
+// these or twice as many. The paper's objects are found at tap 1.8 on average with any of these numbers.
 constexpr int kDiscs = 16000;
 constexpr int kWhole = 1000;
-// Of an arm of Baxter's class: where its tip is, metres, and how often it does not feel a contact. On a perfect arm the
-// same cubes are found as soon: a box is no disc, and the margin covers its corners.
+// Errors of an arm of Baxter's class: standard deviation of its tip's position, metres, and probability to miss a
+// contact. A perfect arm finds the same cubes as soon with them, because a box is not a disc and the margin covers its
+// corners.
 constexpr double kBlur = 0.002;
 constexpr double kMissed = 0.02;
 constexpr double kFar = 5.0 * kBlur;
 
-/// How probable it is to look so far inside an edge (metres, below 0 outside) and to find nothing.
+/// Returns the probability that a tap this far inside an edge (metres, below 0 outside) finds nothing.
 double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * math::erfc(-inside / (kBlur * std::sqrt(2.0))); }
 
 double between(double least, double most, Random& random) { return least + (most - least) * random.uniform(); }
 
-// Without SSE4.1 std::ceil and std::floor are calls.
+// Without SSE4.1, std::ceil and std::floor are function calls.
 int rounded_up(double t) {
   const int whole = static_cast<int>(t);
   return whole + (whole < t ? 1 : 0);
@@ -35,8 +36,8 @@ int rounded_down(double t) {
   return whole - (whole > t ? 1 : 0);
 }
 
-/// The first and the last of `count` places, `step` apart from `start` on, in [low, high]; the last is before the first
-/// where there is none.
+/// Indices of the first and the last of `count` positions start, start + step, ... in [low, high]; if there are none,
+/// the last is before the first.
 struct Span {
   Span(double low, double high, double start, double step, int count)
       : first(std::max(0, rounded_up((low - start) / step))),
@@ -102,7 +103,7 @@ int Search::next(const Allowed& allowed) {
 }
 
 void Search::weigh(const Disc& disc, int weight) {
-  // A disc cuts a row of candidates in one piece.
+  // A disc covers one contiguous interval of each row of candidates.
   const double across = step_of(candidates_.xs);
   const double along = step_of(candidates_.ys);
   const Span rows(disc.y - disc.radius, disc.y + disc.radius, candidates_.ys(0), along, candidates_.rows);
