@@ -104,7 +104,7 @@ struct Part {
   }
 };
 
-/// Returns even and odd part under symmetry, else the whole.
+/// Returns the even and the odd part under symmetry, else the whole.
 std::vector<Part> parts_of(const AxisCovariances& covariances) {
   if (!covariances.is_mirrored()) return {{covariances, covariances.size(), 0.0}};
   const Eigen::Index half = (covariances.size() + 1) / 2;

@@ -30,7 +30,7 @@ struct FactoredTaps {
 /// The engine that computes the maps of a GP.
 struct EngineState {
   const char* name;
-  std::string reason;  ///< for its choice, one line
+  std::string reason;  ///< reason of its choice, one line
   /// Bound of the error beyond the rounding of `dense`, of means in prior standard deviations and of variances in prior
   /// variances. With p the largest kernel variance of a candidate, e_i the largest error of a covariance of tap i, e
   /// the largest of these, c_i the rows of L^-1, s the noise and alpha = L^-T L^-1 targets, it is the larger of

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// Signals of the surface, as shares of the configured signal: a surface may vary that much, or be nearly flat.
+/// Signals of the surface, as shares of the configured signal, because a surface may be nearly flat.
 constexpr double kSignals[] = {1.0, 0.3, 0.1};
 /// Noises of a tap, as shares of the configured noise, which is that of an inexact arm.
 constexpr double kNoises[] = {1.0, 1.0 / 6.0};
