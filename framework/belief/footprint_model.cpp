@@ -32,7 +32,7 @@ void FootprintModel::update(const ContactLog& log) {
 }
 
 void FootprintModel::find_positions(const ContactLog& log) {
-  // In steps far below the shortest push that taps can show, so that few taps rebuild a GP.
+  // Rounded to steps far below the shortest detectable push, so that few taps rebuild a GP.
   constexpr double kStep = 1e-3;
   positions_.resize(log.size(), 2);
   for (int i = 0; i < log.size(); ++i) {
