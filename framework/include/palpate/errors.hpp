@@ -6,10 +6,10 @@
 
 namespace palpate {
 
-/// Absent values: no such cell or point, or the models are not built.
+/// Errors are absent if there are no such cells or points, or if the models are not built.
 struct Errors {
   std::optional<double> rmse = std::nullopt;           ///< metres, of the reconstructed heights, desk included
-  std::optional<double> rmse_object = std::nullopt;    ///< metres, of the same over the true objects
+  std::optional<double> rmse_object = std::nullopt;    ///< metres, of the reconstructed heights over the true objects
   std::optional<double> rmse_height = std::nullopt;    ///< metres, of the mean height over the true objects
   std::optional<double> footprint_iou = std::nullopt;  ///< 1 if both footprints are empty
   // Of closed surfaces.

@@ -55,7 +55,7 @@ struct PluginChoice {
   std::shared_ptr<const Tree> options;  ///< options, checked and complete
 };
 
-/// Absent value: of an optional field, or of a list without items.
+/// Absent value of an optional field, or of a list without items.
 struct NoValue {};
 
 /// A value in code: a real number in SI units, or the name of a choice.

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// Resolution of a surface that is stored, metres: a mesh has no holes in walls of 3 mm or more.
+/// Resolution of a stored surface, metres: walls of 3 mm or more have no holes in the mesh.
 inline constexpr double kFineResolution = 0.002;
 
 /// Lengths in metres, in the frame of the scene.

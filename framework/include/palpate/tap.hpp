@@ -36,25 +36,25 @@ inline TapLine line_from_above(const Target& target, double top = 0.0, double le
 /// equal or not positive, or the scores of a calling program.
 enum class Source { initial, acquisition, fallback, caller };
 
-/// What the models expect at the end of a line: mean and standard deviation of the height, metres. With
-/// `surface: two_part` it is the height that an object would have there.
+/// Prediction of the models at the end of a line: mean and standard deviation of the height, metres. With `surface:
+/// two_part` it is the height that an object would have there.
 struct Prediction {
   double height = 0.0;
   double standard_deviation = 0.0;
   std::optional<double> probability = std::nullopt;  ///< of an object, for a backend that reads it
 };
 
-/// One tap as it is requested. It holds all that a simulated result may depend on besides options and seed, so that a
-/// resumed run continues exactly as the unbroken run.
+/// Request for one tap. It contains everything that a simulated result may depend on besides options and seed, so that
+/// a resumed run continues exactly like an uninterrupted one.
 struct TapRequest {
   int number = 1;  ///< of the tap within the run, from 1
   TapLine line;
   Source source = Source::initial;
   int motion = 0;                       ///< index of the backend's motion, see motions.hpp
   double height_noise = 0.0;            ///< standard deviation that this motion adds to the height, metres
-  std::optional<TapLine> previous;      ///< line of the tap before; nullopt for the first tap
+  std::optional<TapLine> previous;      ///< line of the previous tap; nullopt for the first tap
   std::optional<Prediction> predicted;  ///< only for a backend that reads predictions
-  double elapsed = 0.0;                 ///< robot time of all taps before, seconds
+  double elapsed = 0.0;                 ///< robot time of all previous taps, seconds
 };
 
 /// Outcome of one tap. The models learn from `contact` and, on lines that are not from above, from `no_contact`; other
@@ -109,15 +109,15 @@ inline TapResult tap_without_contact(Outcome outcome, double seconds, std::strin
   return out;
 }
 
-/// A result as the belief reads it now; later taps may change all but `tap`.
+/// Current reading of a result by the belief; later taps may change everything but `tap`.
 struct TapReading {
   int tap = 1;
   Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< of the contact, or of the end of a line without one; metres
   bool is_contact = true;
-  bool on_object = false;            ///< a contact with an object, not with the desk
-  bool is_corrected = false;         ///< the position is corrected for the offset of the arm
-  bool moved = false;                ///< an object was pushed since, so that the reading does not hold at its position
-  double outlier_probability = 0.0;  ///< of the height or the label
+  bool on_object = false;     ///< a contact with an object, not with the desk
+  bool is_corrected = false;  ///< the position is corrected for the offset of the arm
+  bool moved = false;         ///< an object was pushed later, so that the reading no longer holds at its position
+  double outlier_probability = 0.0;      ///< of the height or the label
   double wrong_label_probability = 0.0;  ///< the part of it due to the label
 };
 
