@@ -142,7 +142,8 @@ class Sampler {
   /// Returns the probability that an object of at least `length` metres exists apart from all known primitives.
   double undiscovered_probability(double length) const;
 
-  /// Return the mean number of improbable labels (LabelModel::contradicts) per particle, and of primitives.
+  /// Return the mean number of improbable labels (LabelModel::contradicts) per particle, and the mean number of
+  /// primitives.
   double mean_label_errors() const;
   double mean_primitives() const;
   /// Fraction of particles with a push, their mean number of taps before it, and the mean translation of their

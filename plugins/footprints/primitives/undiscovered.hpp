@@ -27,7 +27,7 @@ class Undiscovered {
    public:
     /// Returns the expected number of undiscovered primitives at the position.
     double rate() const { return rate_; }
-    /// Returns a random one of them. The rate must be above 0.
+    /// Returns a random primitive at the position. The rate must be above 0.
     const Primitive& draw(Random& random) const;
 
    private:
@@ -45,7 +45,7 @@ class Undiscovered {
   ///
   /// One process serves exact and noisy hypotheses. With position noise, `labels` is the model of noisy ones. The
   /// expected number of primitives is then 0.012 smaller on average (at most 0.026 in 40 scenes of 40 taps). The odds
-  /// of noisy against exact positions should include the factor exp(this difference), and omit it.
+  /// of noisy against exact positions should include the factor exp(this difference), but omit it.
   void add(const Touch& touch, const LabelModel& labels);
 
   /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from those
