@@ -129,7 +129,7 @@ Path Planner::line(const Joints& from, const Joints& to) const {
     const double share = static_cast<double>(i) / count;
     const Pose between{(1.0 - share) * start.position + share * end.position,
                        start.rotation.slerp(share, end.rotation)};
-    // The mean of both ends is the seed, so that the path ends in `to` and not in another posture with the same tip.
+    // The seed is interpolated between both ends, so that the path does not end in another posture with the same tip.
     const Joints joints = i == count ? to : solve(between, (1.0 - share) * from + share * to, nullptr);
     if ((joints - last).cwiseAbs().maxCoeff() > kJump) {
       throw NoPath{"the joints would jump on the way at " + place_text(between) +

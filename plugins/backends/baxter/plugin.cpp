@@ -56,7 +56,8 @@ class RunLog {
   std::string waiting_;
 };
 
-/// Returns the lock of the left arm at ROS_MASTER_URI. Without the variable no lock is taken; connect() then throws.
+/// Returns the lock of the left arm at ROS_MASTER_URI. Without this variable it takes no lock, and connect() throws
+/// later.
 ArmLock lock_of_arm() {
   const char* master = std::getenv("ROS_MASTER_URI");
   if (master == nullptr || *master == '\0') return {};

@@ -32,7 +32,7 @@ using Why = NetworkError::Why;
 constexpr const char* kCaller = "/palpate";
 /// Bytes of an answer; the description of a whole network has about 10'000
 constexpr std::size_t kLongest = 4'000'000;
-constexpr std::size_t kDeepest = 64;  ///< nested elements; that description has 17
+constexpr std::size_t kDeepest = 64;  ///< nested elements; the description of a whole network has 17
 
 NetworkError not_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
 
