@@ -10,7 +10,7 @@
 
 namespace palpate::tapping {
 
-/// TapResult without its line: one height in the place of the touched point.
+/// Result of a tap without its line: a height replaces the touched point of TapResult.
 struct HeightResult {
   Outcome outcome = Outcome::unknown;
   double height = 0.0;   ///< of the contact, metres; only for `contact`
