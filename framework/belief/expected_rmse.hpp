@@ -6,14 +6,13 @@
 //     p v + (1 - p) m^2    if it is reconstructed at m (p >= 1/2): an error of the height, or of the outline,
 //     p (v + m^2)          if it is reconstructed as desk,
 // and v with `surface: single`, which has one GP for object and desk. The expected RMSE is the root of the mean of
-// these over the candidates. By Jensen's inequality it is at least the mean RMSE.
+// these squared errors over the candidates. By Jensen's inequality it is at least the mean RMSE.
 //
-// v scales with `belief.height.signal`, which most configs set by convention and not from the object.
-// Let K be the covariance of n heights r, in signals and without their constant level. Then r^T K^-1 r / (n - 1) is the
-// most likely ratio of the true variance to the configured one (Rasmussen and Williams 2006, section 5.4.1). Few taps
-// determine it poorly, and a single one not at all. So the prior, with the weight of one tap, is that the heights of an
-// object vary as much as the object is high.
-// With h^2, the mean squared height of the object taps in signals, v is multiplied by
+// v scales with `belief.height.signal`, which most configs set by convention and not from the object. Let K be the
+// covariance of n heights r, in signals and without their constant level. Then r^T K^-1 r / (n - 1) is the most likely
+// ratio of the true variance to the configured one (Rasmussen and Williams 2006, section 5.4.1). Few taps determine it
+// poorly, and a single one not at all. So the prior, with the weight of one tap, is that the heights of an object vary
+// by as much as the height itself. With h^2, the mean squared height of the object taps in signals, v is multiplied by
 //     (h^2 + r^T K^-1 r) / n,
 // or with n + 1 instead of n if no level is removed.
 #pragma once

@@ -44,7 +44,7 @@ Eigen::VectorXd reconstruction(const SurfaceMaps& maps);
 /// Returns the errors of the available arrays. With `two_part`, errors of the surface need the probability.
 Errors errors_of(const SurfaceMaps& maps, const Truth& truth);
 
-/// Calibration of the height model: over the cells on an object that were not tapped, with noise.
+/// Calibration of the height model, noise included, over the untapped cells on an object.
 struct Calibration {
   /// Mean negative log predictive density, natural logarithm of 1/m; absent if the variance of a cell is 0.
   std::optional<double> nlpd;

@@ -122,7 +122,7 @@ class ObjectsSeen {
     }
   }
 
-  /// Returns the object with the nearest rim cell; of equally near ones the first of the grid.
+  /// Returns the object with the nearest rim cell; the first in the grid if several are equally near.
   int nearest_object(int cell, const std::vector<int>& rim) const {
     double least = std::numeric_limits<double>::infinity();
     int out = Scene::kNoObject;

@@ -19,8 +19,8 @@ double tempered(double probability) {
 }  // namespace
 
 bool OutlierModel::update(const ContactLog& log, const GpModel& objects, const Footprint* footprint) {
-  // The cost grows with the cube of the contacts on an object. With so many, the surface is so well known that an
-  // outlier hardly matters: later contacts are trusted, and earlier ones keep their probabilities.
+  // The cost grows with the cube of the contacts on an object. With more than kMostContacts, the surface is so well
+  // determined that an outlier hardly matters: later contacts are trusted, and earlier ones keep their probabilities.
   constexpr std::size_t kMostContacts = 100;
   const auto contacts = static_cast<Eigen::Index>(log.contacts().size());
   if (log.object_contacts().size() > kMostContacts) {

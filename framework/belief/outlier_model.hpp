@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Probabilities that contacts are outliers: their label is wrong, which the footprint infers, or the height of an
-// object contact is.
+// Probabilities that contacts are outliers. Either the label of a contact is wrong, which the footprint infers, or the
+// height of an object contact is wrong.
 #pragma once
 
 #include "belief/contact_log.hpp"
@@ -33,8 +33,7 @@ class OutlierModel {
   /// Returns the probabilities of wrong labels alone, without the heights.
   const Eigen::VectorXd& by_label() const { return by_label_; }
 
-  /// Returns the surface without outliers. It has no map while is_surface() is false: then the surface is that of the
-  /// GP.
+  /// Returns the surface without outliers. It has no map while is_surface() is false; the GP then has the surface.
   RobustSurface& surface() { return surface_; }
   const RobustSurface& surface() const { return surface_; }
   bool is_surface(const GpModel& objects) const {

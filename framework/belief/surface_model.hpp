@@ -49,7 +49,7 @@ class SurfaceModel {
   int variances_clamped() const { return is_without_outliers() ? outliers_->surface().variances_clamped() : 0; }
 
  private:
-  /// Returns whether the surface is that of the outlier model, else that of the GP.
+  /// Returns whether the outlier model provides the surface; otherwise the GP does.
   bool is_without_outliers() const { return outliers() != nullptr && outliers_->is_surface(gp_); }
 
   GpModel gp_;

@@ -18,7 +18,7 @@ namespace palpate {
 struct InitialOptions : Options {
   enum class Design { random, sobol, grid, search };
   Design design = Design::random;
-  std::int64_t count = 3;  ///< of all designs except the search
+  std::int64_t count = 3;  ///< number of taps; not used by the search
   double smallest = 0.02;  ///< smallest object that the search finds, metres
   bool searches() const { return design == Design::search; }
   void list(Fields& fields) override;

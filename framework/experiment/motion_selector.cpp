@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-/// Number of taps that the motion's own expectations count as, and its expected share of contacts.
+/// Weight of a motion's own expectations, in taps, and the expected share of contacts.
 constexpr double kPriorTaps = 5.0;
 constexpr double kPriorContacts = 0.95;
 /// Metres: contacts farther from the desk's height are not with the desk.

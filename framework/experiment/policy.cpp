@@ -64,7 +64,7 @@ std::vector<int> draw_lattice(std::size_t count, const CandidateGrid& candidates
 
 /// Visits the allowed candidates for which worth(score, candidate) holds, in no particular order. A block is skipped if
 /// its highest score at its first index is not worth a visit. In each group of four thousand candidates the block with
-/// the highest score comes first, because a visit there may make all others not worth one.
+/// the highest score comes first, because a visit there may make visits to the others unnecessary.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Worth& worth, const Visit& visit) {
   constexpr Eigen::Index kBlock = loops::kScores;
@@ -156,7 +156,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
           out.candidate = std::min(out.candidate, i);
         });
   }
-  // The second best is the runner-up, unless it was chosen itself: then the best is.
+  // The runner-up is the second best candidate, or the best one if the second best was chosen.
   const One& other = out.candidate == best.candidate ? second : best;
   out.score = scores(out.candidate);
   out.runner_up = other.candidate;

@@ -28,11 +28,11 @@ struct Pick {
   int ties = 0;        ///< candidates within the tie bound of the best, the chosen one included
   int runner_up = -1;  ///< the best of the others; -1 if there is no other
   double runner_up_score = 0.0;
-  /// Set when the scores do not tell candidates apart: "every score is equal" or "no score is positive".
+  /// Set if the scores do not distinguish candidates: "every score is equal" or "no score is positive".
   std::optional<std::string> flat;
 };
 
-/// Flags per candidate, whether it may be tapped.
+/// One flag per candidate: whether it may be tapped.
 using Allowed = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
 /// Returns the highest score among the `allowed` candidates. Scores within tolerance x (|best| + scale) of the best are

@@ -42,7 +42,7 @@ class RunMonitor {
   std::unique_ptr<const Scene> pushed_;  ///< the scene, if objects were pushed
   int truth_taps_ = -1;                  ///< number of taps when the truth was last given to the belief
   RunResult result_;
-  std::vector<bool> first_labels_;      ///< per tap: on an object, as read at that time
+  std::vector<bool> first_labels_;      ///< per tap: whether it was read as on an object at that time
   std::vector<ObjectTouches> touches_;  ///< per object
 };
 

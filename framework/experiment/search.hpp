@@ -14,10 +14,11 @@
 namespace palpate {
 
 /// A greedy search. It draws 16000 discs, each a hypothesis of the hidden object. The next tap goes where the discs
-/// have the largest total weight. After a tap without a contact, the weight of a disc that contains it is multiplied by
-/// the probability that the tap missed the object: it may have landed outside the edge, or have felt nothing. So an arm
-/// with errors of millimetres does not rule out objects that it passed closely. If positions have equal weight, for
-/// example without discs, the tap goes to the one farthest from all taps and from the edge of the area.
+/// have the largest total weight. After each tap that finds nothing, the weight of every disc near it is multiplied
+/// by the probability that the tap missed such an object. The tap may have landed outside the edge, or the arm may have
+/// felt nothing. So an arm with errors of millimetres does not rule out objects that it passed closely. If positions
+/// have equal weight, for example without discs, the tap goes to the middle of the largest gap, farthest from all taps
+/// and from the edge of the area.
 ///
 /// Diameters lie between the smallest object and the area's shorter side, uniformly in their logarithm. With only the
 /// smallest, the search would scan the area in narrow rows and find large objects late. Large discs send the first taps
@@ -34,7 +35,8 @@ class Search {
   /// neighbours at once, and the discs beside it stay.
   void look(const Target& place);
 
-  /// Returns the next candidate to tap, one of the `allowed`; of equal ones the first. At least one must be allowed.
+  /// Returns the next candidate to tap, one of the `allowed`; the first of equally good ones. At least one must be
+  /// allowed.
   int next(const Allowed& allowed);
 
  private:

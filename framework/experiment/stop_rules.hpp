@@ -33,7 +33,7 @@ void add_readers(const StopOptions& options, ReadPlan& plan);
 /// Returns the rule that ends the run before the models are updated; nullopt if none does.
 std::optional<std::string> stop_before_inference(const StopOptions& options, const RunResult& counts);
 
-/// Returns the rule on the belief that ends the run after the initial design; nullopt if none does.
+/// Returns the rule that reads the belief and ends the run after the initial design; nullopt if none does.
 std::optional<std::string> stop_after_inference(const StopOptions& options, const BeliefView& belief);
 
 }  // namespace palpate

@@ -41,7 +41,7 @@ struct TapRecord {
   std::string unreached{};
 
   BeliefState state;                                         ///< before the tap
-  Errors errors;                                             ///< of that state
+  Errors errors;                                             ///< errors of the belief in that state
   std::optional<bool> true_on_object;                        ///< nullopt if the truth is not known
   std::optional<double> shown_expected_rmse = std::nullopt;  ///< metres, as displayed before the tap
 
@@ -73,13 +73,13 @@ inline bool is_refused(const TapResult& result) {
   return result.reason == kHeightRefused || result.reason == kAlongRefused || result.reason == kNumberRefused;
 }
 
-/// A contact whose label differs from that at its tap.
+/// A contact whose label has changed since its tap.
 struct Relabelled {
   int tap = 0;
   bool on_object = false;  ///< current label
 };
 
-/// Contacts on the cells of one object, whatever their labels.
+/// Contacts on the cells of one object, with any label.
 struct ObjectTouches {
   int taps = 0;
   std::optional<int> first_tap;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Choice of the next tap: by the initial design or the search, then by the acquisition's scores, with rules for ties
-// and a fallback for scores that do not distinguish candidates.
+// Choice of the next tap. The initial design or the search chooses first, then the acquisition's scores, with rules for
+// ties. A fallback chooses if the scores do not distinguish candidates.
 #pragma once
 
 #include "experiment/policy.hpp"
@@ -54,7 +54,7 @@ class TapSelector {
   bool choose_initial(const Belief& belief, TapRecord& tap);
   /// Returns an allowed candidate with a suspected outlier that was tapped only once.
   std::optional<int> second_look(const Belief& belief) const;
-  /// Allows the candidates without a tap, and those whose contacts are all suspected outliers or have moved.
+  /// Allows candidates without a tap, and candidates whose contacts are all suspected outliers or have moved.
   void allow(const Belief& belief);
 
   const ExperimentOptions& options_;

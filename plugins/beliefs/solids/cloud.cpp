@@ -31,7 +31,7 @@ std::array<std::int64_t, 3> cube_of(const Vector3d& point, double side) {
   return out;
 }
 
-constexpr double kFar = 0.1;  ///< metres: larger distances count as this one, also those to an empty cloud
+constexpr double kFar = 0.1;  ///< metres: larger distances, and distances to an empty cloud, count as this one
 
 }  // namespace
 

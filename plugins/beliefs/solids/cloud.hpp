@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-/// Parallel lines through a ball, in directions spread over all those in which a tool may come: down, level, or up by
-/// at most 30 degrees. The errors of a surface are measured where these lines first meet it.
+/// Bundles of parallel lines through a ball. Their directions are spread over all in which a tool may move: down,
+/// level, or up by at most 30 degrees. The errors of a surface are measured where these lines first meet it.
 struct Bundle {
   Bundle(const Eigen::Vector3d& centre, double radius, int directions, double pitch);
 

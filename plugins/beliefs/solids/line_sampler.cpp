@@ -68,7 +68,7 @@ void append(const Candidates& from, const Eigen::Array<bool, Eigen::Dynamic, 1>&
 }  // namespace
 
 Region::Region(const Area& area) {
-  constexpr double kShare = 0.46;  // of the longer side: objects lie anywhere along it
+  constexpr double kShare = 0.46;  // share of the longer side, along which objects may be anywhere
   constexpr double kHeight = 0.65;
   radius = kShare * std::max(area.width, area.depth);
   centre = {area.width / 2, area.depth / 2, kHeight * radius};

@@ -84,8 +84,8 @@ void LineValues::compute_reductions(const Solids& solids, const ResidualGp& resi
 
 void LineValues::compute_discovery(const SampledLines& lines, const Solids& solids, Random random) {
   constexpr int kDraws = 1000;
-  constexpr double kMinEarlier = 0.003;  // metres: smaller advances of the contact do not count
-  constexpr double kFarthest = 0.03;     // metres: larger advances count as this one
+  constexpr double kMinEarlier = 0.003;  // metres: a primitive counts if it makes the contact earlier by more than this
+  constexpr double kFarthest = 0.03;     // metres: larger differences count as this one
   const Eigen::Index count = distance_.size();
   expected_discovery_ = Eigen::VectorXd::Zero(count);
   const std::vector<Primitive> primitives = solids.undiscovered(solids.best(), kDraws, random);

@@ -28,7 +28,8 @@ class LineValues {
   /// Returns the values of a quantity; null if this class does not compute it.
   const Eigen::VectorXd* find(std::string_view quantity) const;
 
-  /// Number of variances that rounding made negative in the last compute(), and a report of all its factorisations.
+  /// Return the number of variances that rounding made negative in the last compute(), and the report of its
+  /// factorisations.
   int variances_clamped() const { return clamped_; }
   const FactorReport& factors() const { return factors_; }
 

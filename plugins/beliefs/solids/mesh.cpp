@@ -155,7 +155,7 @@ struct Rings {
       for (std::size_t k = 0; k < 4; ++k) leaves += in(node(k)) && !in(node(k + 1)) ? 1 : 0;
       for (std::size_t k = 0; k < 4; ++k) {
         if (!in(node(k)) || in(node(k + 1))) continue;
-        // The ring goes around the outer nodes: on a face with two diagonal inner nodes, these are connected.
+        // The ring goes around the outer nodes: if the inner nodes of a face are diagonal, they are connected.
         std::size_t back = k + 1;
         while (!in(node(back + 1))) ++back;
         const std::size_t leave = edge_between(node(k), node(k + 1));

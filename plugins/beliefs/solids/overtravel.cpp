@@ -40,8 +40,8 @@ void Overtravel::add(const SurfaceTouch& told, double force) {
   const double height = lowest_point(told);
   const double steep = -told.line.direction.z();
   if (steep < kSteep || height > margin()) return;
-  // Each contact has a position of its own. OffsetModel drops low contacts beside higher ones as rims, which suits taps
-  // from above but would drop the desk beside every wall.
+  // Each contact has a position of its own. OffsetModel drops low contacts near higher ones as rims. This suits taps
+  // from above, but here it would drop the desk near every wall.
   constexpr double kApart = 1.0;
   offset_model_.add({kApart * static_cast<double>(lows_.size()), 0.0}, force, height / steep);
   lows_.push_back({height, steep, force});

@@ -7,8 +7,8 @@
 // as its offset and drift, with force in the place of time. The estimate is at least 0, because a tool cannot stop
 // before the surface. If contacts with the desk are reported on the desk, nothing is changed.
 //
-// The spread, the standard deviation from one contact to the next, is estimated only from contacts reported below the
-// desk; those above may be with low parts of an object.
+// The spread is the standard deviation from one contact to the next. Only contacts reported below the desk determine
+// it, because contacts above may be with low parts of an object.
 //
 // The model does not cover how much more an object yields than the desk, nor sideways errors of the tool: contacts with
 // the desk do not show them.

@@ -213,8 +213,8 @@ double Primitive::aside(const Line& line, double most) const {
   };
   least = kNoHit;
   for (const Turned& direction : directions) attempt(direction);
-  // Between two of these directions, the value is less by at most sin 15 degrees of the extent (for thin solids), plus
-  // 1 - cos 15 degrees of the distance between line and centre.
+  // Between two of these directions, the value may be smaller. The difference is at most sin 15 degrees times the
+  // extent (for thin solids), plus (1 - cos 15 degrees) times the distance between line and centre.
   if (least - 0.3 * half.norm() > most) return most;
   for (const Turned& step : steps) {
     const Turned middle = best;

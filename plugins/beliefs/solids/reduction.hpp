@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Expected reduction of the uncertainty of a surface by one tap.
 //
-// The offset of the true surface outside the surface of the most probable assembly is modelled as normal. Its mean is
-// that of the residual GP, its covariance
+// The offset of the true surface outside the surface of the most probable assembly is modelled as a GP. Its mean is the
+// mean of the residual GP; its covariance is
 //
 //     k(x, x') + (1 / K) sum over assemblies of d_j(x) d_j(x')
 //
-// where k is the residual GP's prior, and d_j(x) is how far the surface of assembly j lies outside near x, clipped to 2
-// cm. So a touch informs about other positions as far as the residual GP is smooth, and as far as the assemblies agree.
-// Given all contacts, and one more with the same noise at a position y,
+// where k is the residual GP's prior, and d_j(x) is the offset of the surface of assembly j near x, clipped to 2 cm. So
+// a touch informs about other positions as far as the residual GP is smooth, and as far as the assemblies agree. With
+// an additional contact at a position y, with the same noise, the variance is
 //
 //     Var(x | y) = Var(x) - Cov(x, y)^2 / (Var(y) + noise^2),
 //
-// whatever the tap finds. The reduction is the mean over the surface of sd(x) - sd(x | y). This is active learning by
-// Cohn's criterion (Cohn 1996), with standard deviations instead of variances.
+// for any result of the tap. The reduction is the mean over the surface of sd(x) - sd(x | y). This is active learning
+// by Cohn's criterion (Cohn 1996), with standard deviations instead of variances.
 #pragma once
 
 #include "solids/residual_gp.hpp"
@@ -26,9 +26,10 @@
 
 namespace palpate {
 
-/// Returns, for each place near the surface of the most probable assembly, how much a touch there lowers the mean
-/// standard deviation over all places, metres: from 0 to the mean itself. The work grows with the square of the number
-/// of places. Adds jitter, a variance in square metres, and redundant rows to `report`. Never throws.
+/// Returns the reduction by a touch at each of the places, which must be near the surface of the most probable
+/// assembly. It is the decrease of the mean standard deviation over all places, metres, between 0 and this mean. The
+/// work grows with the square of the number of places. Adds jitter, a variance in square metres, and redundant rows to
+/// `report`. Never throws.
 Eigen::VectorXd expected_reductions(const Solids& solids, const ResidualGp& residual_gp,
                                     const ResidualGp::Places& places, FactorReport* report = nullptr);
 

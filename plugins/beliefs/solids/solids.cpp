@@ -401,7 +401,7 @@ bool Solids::change(Primitive& primitive) {
   if (kind < 0.3) return fit_to_contact(primitive);
   if (kind < 0.4) {
     primitive.centre += size * normal3(random_);
-  } else if (kind < 0.6) {  // one face
+  } else if (kind < 0.6) {  // moves one face
     const double by = size * normal(random_);
     Vector3d grown = Vector3d::Zero();
     grown(axis) = by / 2;
@@ -409,7 +409,7 @@ bool Solids::change(Primitive& primitive) {
     primitive.centre += primitive.turn * (random_.uniform() < 0.5 ? Vector3d(-grown) : grown);
     if (primitive.form == Primitive::Form::cylinder && axis < 2 && random_.uniform() < 0.8)
       primitive.half(1 - axis) = primitive.half(axis);
-  } else if (kind < 0.7) {  // both faces, or all
+  } else if (kind < 0.7) {  // scales one axis, or both horizontal axes
     const double factor = math::exp(10.0 * size * normal(random_));
     if (random_.uniform() < 0.5 || primitive.form != Primitive::Form::box) {
       primitive.half.head<2>() *= factor;

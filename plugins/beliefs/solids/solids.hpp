@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Belief about whole objects: some assemblies of simple solids, about equally probable, moved by Markov chain Monte
-// Carlo after every touch. They predict where untried lines meet something, and are the mean that the GP of
-// residual_gp.hpp corrects.
+// Carlo after every touch. They predict where untried lines meet something. The GP of residual_gp.hpp corrects the
+// surface of the most probable one.
 #pragma once
 
 #include "solids/primitive.hpp"
@@ -49,7 +49,7 @@ class Solids {
 
   /// Adds touches that were made at the same time: one or a few.
   void add(const std::vector<SurfaceTouch>& touches);
-  /// Replaces the touches by their current readings, and sets `misfit` and `most`.
+  /// Replaces all touches by their current readings, and sets `misfit` and `most`.
   void read_again(const std::vector<SurfaceTouch>& touches, double misfit, double most);
   /// Adds a camera view before all touches: many touches at once, then several rounds of moves. The rounds begin with a
   /// flattened likelihood (a small power of it) and cool down, so that no mode survives only because it was found
@@ -62,8 +62,8 @@ class Solids {
   std::vector<Primitive> undiscovered(const Assembly& one, int draws, Random& random) const;
   /// Returns the most probable assembly.
   const Assembly& best() const;
-  /// Returns how far the surface of each assembly lies outside that of the best one near a point, metres. Values are
-  /// clipped to 2 cm, because a primitive that other assemblies lack may be elsewhere or absent there.
+  /// Returns for each assembly how far its surface lies outside the surface of the best one near a point, metres.
+  /// Values are clipped to 2 cm, because a primitive that other assemblies lack may be elsewhere or absent there.
   Eigen::VectorXd offsets(const Eigen::Vector3d& at) const;
 
  private:

@@ -31,7 +31,7 @@ class SurfaceErrors {
  public:
   explicit SurfaceErrors(const Region& region);
 
-  /// Sets the true scene in its current state; null if unknown. The scene must outlive its use until the next call.
+  /// Sets the true scene in its current state; null if unknown. The scene must live until the next call.
   void set_truth(const Scene* scene);
 
   /// Returns the errors of a surface. Null means that no surface is estimated yet, so all of the true one is missing.

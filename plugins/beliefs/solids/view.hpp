@@ -24,8 +24,8 @@ std::vector<SurfaceTouch> side_view(const SideViewOptions& options, const Scene&
 /// Returns whether a ray ends on an object.
 bool shows_object(const std::vector<SurfaceTouch>& view);
 
-/// Returns at most `most` rays of a view: rays that end on an object, one per cube of 6 mm or larger; rays that are
-/// neighbours of these in the image; and an even selection of all others.
+/// Returns at most `most` rays of a view. Most of them end on an object, at most one per cube of 6 mm or larger. Others
+/// are neighbours of such rays in the image, and the rest are selected evenly.
 std::vector<SurfaceTouch> thinned_view(const std::vector<SurfaceTouch>& view, std::size_t most);
 
 }  // namespace palpate

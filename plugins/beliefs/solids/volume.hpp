@@ -18,7 +18,7 @@ class Cubes {
   /// Covers the part of the ball above the desk. Lengths are relative to the desk.
   Cubes(const Eigen::Vector3d& centre, double radius, double side);
 
-  /// Flags per cube, whether its centre lies in a solid; column by column, each from below.
+  /// One flag per cube: whether its centre lies in a solid. Cubes are ordered by columns, each from bottom to top.
   using Held = std::vector<bool>;
 
   /// Returns the cubes in an object of the scene: in its material, not in its hollow.
@@ -33,7 +33,7 @@ class Cubes {
   int across_, up_;
 };
 
-/// Returns the number of cubes in both, divided by that of cubes in either; 1 if both are empty.
+/// Returns the number of cubes in both sets, divided by the number of cubes in at least one; 1 if both are empty.
 double intersection_over_union(const Cubes::Held& one, const Cubes::Held& other);
 
 }  // namespace palpate
