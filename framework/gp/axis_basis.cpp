@@ -39,7 +39,7 @@ class AxisCovariances {
       const Eigen::VectorXd here = column(i);
       if ((here - there).cwiseAbs().maxCoeff() > 64.0 * kEpsilon * here.cwiseAbs().maxCoeff()) return false;
     }
-    // All positions have to be symmetric, also those between the compared columns.
+    // All positions have to be symmetric, including positions between the compared columns.
     const Eigen::VectorXd middle = positions_ + positions_.reverse();
     return (middle.array() - middle(0)).abs().maxCoeff() <= 16.0 * kEpsilon * positions_.cwiseAbs().maxCoeff();
   }

@@ -42,8 +42,8 @@ class Engine {
   /// Returns whether absorb() reads the row of L^-1.
   virtual bool needs_inverse() const = 0;
 
-  /// Resets the maps to the prior, with `means` maps of means. `prior` is the kernel variance at the candidates, one
-  /// value if it is the same at all.
+  /// Resets the maps to the prior, with `means` maps of means. `prior` is the kernel variance at the candidates, or one
+  /// value if all are equal.
   void restart(int means, const VectorView& prior) {
     clear();
     maps_.restart(means, prior);
@@ -52,8 +52,8 @@ class Engine {
   /// Adds a row to the maps.
   virtual void absorb(const FactorRow& row) = 0;
 
-  /// Returns, per row, the largest error of a covariance between its tap and a candidate, in the unit of the kernel.
-  /// The error is that of the engine's approximation, beyond the rounding of the kernel. Empty for an engine without
+  /// Returns, per row, the largest error of a covariance between its tap and a candidate, in the unit of the kernel. It
+  /// is the error of the engine's approximation, without the rounding of the kernel. Empty for an engine without
   /// approximation.
   virtual VectorView covariance_errors() const { return Eigen::VectorXd(); }
 

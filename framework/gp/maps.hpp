@@ -46,7 +46,7 @@ class Tiling {
   std::size_t strip_size() const { return strip_size_; }
   std::size_t size() const { return strip_size_ * static_cast<std::size_t>(strips_); }
 
-  /// Returns the distance from the cells of a tile to those of its mirror image; 0 without mirror images.
+  /// Returns the offset from a tile's cells to the cells of its mirror image; 0 without mirror images.
   std::ptrdiff_t mirror() const { return mirror_; }
 
   /// Calls visit(MapBlock) for the blocks of a strip.
@@ -90,7 +90,7 @@ class Maps {
  public:
   Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers);
 
-  /// Sets `means` maps of means to 0 and the variance to the prior, one value if it is the same at all candidates.
+  /// Sets `means` maps of means to 0 and the variance to the prior, which is one value if all candidates have the same.
   void restart(int means, const VectorView& prior);
 
   /// Returns the arguments of a loop that updates a strip by a row with these coefficients, one per mean.

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kOther = 0.05;   // probability that a low contact is not with the bare desk
 constexpr double kOthers = 0.01;  // metres: standard deviation of the height of such a contact
-// A low contact that is near an object contact of at most this height may be at the rim of the object. Walls end at the
-// desk and are excluded by that height.
+// A low contact near an object contact may be at the rim of the object if the object contact is at most this high.
+// Beside higher contacts, a wall reaches down to the desk.
 constexpr double kRim = 0.04;     // metres of height
 constexpr double kBeside = 0.03;  // metres
 
@@ -31,7 +31,7 @@ void OffsetModel::add(const Target& place, double seconds, double excess, int mo
 
 void OffsetModel::find_desk() {
   const std::size_t contacts = touched_.size();
-  std::vector<bool> left(contacts, true);  // contacts of the search; without those that are low alone
+  std::vector<bool> left(contacts, true);  // contacts of the search; single low contacts are excluded
   above_ = left;
   search_from_below(above_);
   std::vector<bool> found = above_;

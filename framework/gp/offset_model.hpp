@@ -5,13 +5,13 @@
 // Linear regression with a normal prior over both is a Gaussian process over time, of covariance o^2 + d^2 t t'
 // (Rasmussen and Williams 2006, section 2.1.2).
 //
-// The label of a contact, desk or object, is unknown, but nothing lies below the desk: y = offset + drift + z + noise,
-// with z = 0 on the desk and z >= 0 elsewhere. So the lowest contacts bound the error from above and are taken for the
-// desk first. A forward search (Atkinson and Riani 2000) then adds the contact with the lowest residual, in standard
-// deviations of its prediction, until the next one lies clearly above the desk. That standard deviation covers the
-// noise, the drift between the times, and differences between motions. A contact with something above the desk, taken
-// for the desk at first, is corrected once the desk itself is touched. A single low contact may be an outlier and is
-// not trusted as a bound; two that agree are.
+// The label of a contact, desk or object, is unknown, but nothing is below the desk. A height relative to the desk is y
+// = offset + drift + z + noise, with z = 0 on the desk and z >= 0 elsewhere. So the lowest contacts bound the error
+// from above and are taken for the desk first. A forward search (Atkinson and Riani 2000) then repeatedly adds the
+// contact with the lowest residual, in standard deviations of its prediction. It ends when the next contact is clearly
+// above the desk. The standard deviation of a prediction covers the noise, the drift between the times, and differences
+// between motions. A contact with something above the desk, taken for the desk at first, is corrected once the desk
+// itself is touched. A single low contact may be an outlier and is not trusted as a bound; two that agree are.
 //
 // A contact may be low without touching the bare desk, for example on the rim of a dome or after a jerk of the force.
 // Contacts near a rim are left out; the others are tested for outliers like taps on a surface

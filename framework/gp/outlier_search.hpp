@@ -36,7 +36,7 @@ struct InlierGp {
   FactorReport report;
 };
 
-/// A set of outliers: that of its parent and one more tap.
+/// A set of outliers: the set of its parent and one more tap.
 struct OutlierSet {
   int parent = -1;  ///< index of the parent; -1 for the empty set
   int tap = -1;

@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// Laws, checked by the contract tests: the score is a pure function of the belief (the same belief gives the same
-/// bytes, without clock or state), is finite, and fills every candidate. It reads exactly the quantities of reads().
+/// Laws, checked by the contract tests: the score is a pure function of the belief; the same belief gives the same
+/// bytes, without clock or state. It is finite for every candidate. It reads exactly the quantities of reads().
 class Acquisition {
  public:
   static constexpr const char* kKind = "acquisition";

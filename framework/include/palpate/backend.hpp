@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// Laws; the contract tests check those that need no robot. A failed tap is an outcome, never an invented height. The
+/// Laws; the contract tests check all that need no robot. A failed tap is an outcome, never an invented height. The
 /// destructor leaves a robot in a safe state. Only tap() moves the robot. A repeatable backend gives the same result
 /// for the same request, independent of earlier requests.
 class Backend {
@@ -37,8 +37,8 @@ class Backend {
   /// rejected.
   virtual bool taps_any_line() const { return false; }
 
-  /// Computes for each line that is not from above whether a tap along it is possible, as far as that is known before
-  /// the tap: the arm must reach it, and the shaft must stay clear of the desk.
+  /// Computes for each line that is not from above whether a tap along it is possible, as far as known before the tap.
+  /// The arm must reach the line, and the shaft must stay clear of the desk.
   virtual void reaches(const Candidates& /*lines*/, BoolOut out) const { out.setConstant(true); }
 
   /// Describes what tap() would do with `request`, for a person who must approve every tap (`palpate run --step`). The

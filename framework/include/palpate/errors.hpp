@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// Errors are absent if there are no such cells or points, or if the models are not built.
+/// An error is absent if it has no cells or points, or if its models are not built.
 struct Errors {
   std::optional<double> rmse = std::nullopt;           ///< metres, of the reconstructed heights, desk included
   std::optional<double> rmse_object = std::nullopt;    ///< metres, of the reconstructed heights over the true objects
@@ -14,7 +14,7 @@ struct Errors {
   std::optional<double> footprint_iou = std::nullopt;  ///< 1 if both footprints are empty
   // Of closed surfaces.
   std::optional<double> surface_distance = std::nullopt;      ///< metres, mean symmetric distance
-  std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the same distances
+  std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the symmetric distances
   std::optional<double> f_score = std::nullopt;               ///< at 5 mm
   std::optional<double> coverage = std::nullopt;              ///< of the 95 % intervals of the surface
   std::optional<double> volume_iou = std::nullopt;            ///< absent if nothing is solid
@@ -28,8 +28,8 @@ struct ObjectErrors {
   int cells = 0;        ///< candidates that are on the object and not on a higher one
   bool merged = false;  ///< with another object
   bool split = false;
-  /// Intersection over union of the object's cells with the predicted cells that are its own, or that are on no object
-  /// and nearer to one of its cells than to another object's. Absent if the object has no cell.
+  /// Intersection over union of the object's cells with its predicted cells. These are its own predicted cells, and the
+  /// predicted cells off all objects whose nearest object cell belongs to it. Absent if the object has no cell.
   std::optional<double> iou;
   std::optional<double> rmse_height;  ///< metres, of the mean height over the object's cells
 };

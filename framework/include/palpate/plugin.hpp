@@ -44,7 +44,7 @@ class PluginFactory {
   }
 };
 
-/// Settings of the run that a belief needs, beside its own options.
+/// Settings of the run that a belief needs in addition to its own options.
 struct RunSettings {
   PluginChoice kernel{"kernel", {}, nullptr};         ///< for a GP that sets no kernel itself
   PluginChoice fitting{"fitting", "fixed", nullptr};  ///< for a GP that sets no fitting itself

@@ -32,8 +32,8 @@ inline TapLine line_from_above(const Target& target, double top = 0.0, double le
   return {{target.x, target.y, top}, {0.0, 0.0, -1.0}, length, true};
 }
 
-/// Origin of the choice of a tap: the initial design, the acquisition's scores, the fallback where these scores are all
-/// equal or not positive, or the scores of a calling program.
+/// Origin of the choice of a tap: the initial design, the acquisition's scores, the fallback if these scores are all
+/// equal or none is positive, or the scores of a calling program.
 enum class Source { initial, acquisition, fallback, caller };
 
 /// Prediction of the models at the end of a line: mean and standard deviation of the height, metres. With `surface:
@@ -78,10 +78,10 @@ struct TapResult {
   double force = 0.0;                                     ///< at contact, newtons; only for `contact`
   std::optional<double> peak_force = std::nullopt;  ///< largest force of the tap, newtons, also of a failed tap; the
                                                     ///< true force from a simulator, else the measured one
-  double seconds = 0.0;                             ///< robot time of the tap, whatever its outcome
+  double seconds = 0.0;                             ///< robot time of the tap, for any outcome
   std::string reason{};                             ///< why the tap failed or the run ends, one line; else empty
-  /// Whether no other tap can be made until somebody has checked the robot. The tap is recorded, then the run fails
-  /// with `reason`; `palpate resume --retry-failed` continues after it.
+  /// Whether a person must check the robot before another tap. The tap is recorded, then the run fails with `reason`;
+  /// `palpate resume --retry-failed` continues after it.
   bool ends_run = false;
 
   bool is_contact() const { return outcome == Outcome::contact; }
