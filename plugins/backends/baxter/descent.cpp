@@ -56,7 +56,7 @@ class EvenDescent {
   bool done_ = false;
 };
 
-/// Periods with a constant speed of descent: all up to now, and those up to the last detection.
+/// Periods with a constant speed of descent: all up to now, and all up to the last detection.
 struct EvenPeriods {
   std::vector<ReactionTime::Period> now;
   std::vector<double> lags;  ///< m by which the tip trails its set-point in each period

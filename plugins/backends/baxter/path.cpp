@@ -119,7 +119,7 @@ Path Planner::line(const Joints& from, const Joints& to) const {
   const double turn = start.rotation.angularDistance(end.rotation);
   const double posture = (to - from).cwiseAbs().maxCoeff();
   const int count = std::max({steps(length, kLineStep), steps(turn, kTurnStep), steps(posture, kTurnStep)});
-  // A rotation on the spot takes as long as a translation by the same angle with a lever of 20 cm.
+  // A rotation on the spot takes as long as a translation by the angle times a lever of 20 cm.
   const double step = std::max({length, 0.2 * turn, 0.2 * posture}) / count;
   Path out;
   out.add(from, 0.0);

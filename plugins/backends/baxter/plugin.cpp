@@ -18,7 +18,7 @@
 namespace palpate::baxter {
 namespace {
 
-/// Log of the driver beside the run's record, one line per event, in the file `baxter.txt`.
+/// Log of the driver in the folder of the run's record: file `baxter.txt`, one line per event.
 class RunLog {
  public:
   /// An empty `directory` disables the log. The folder exists from the first tap on.

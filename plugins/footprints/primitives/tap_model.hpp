@@ -66,9 +66,9 @@ class LabelModel {
 };
 
 /// Probability of the heights of object taps, relative to independent uniform heights. The top of a primitive is level,
-/// sloped or arbitrary. On a level or sloped top, a height depends on that of the nearest earlier tap in the same
+/// sloped or arbitrary. On a level or sloped top, a height depends on the height of the nearest earlier tap in the same
 /// primitive: a Gaussian process with one neighbour (Vecchia 1988). The first tap of a primitive has an arbitrary
-/// height, or that of the nearest earlier tap outside.
+/// height, or continues the height of the nearest earlier tap outside.
 class HeightModel {
  public:
   /// Adds an object tap.

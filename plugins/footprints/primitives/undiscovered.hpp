@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Undiscovered primitives: those without an object tap inside.
+// Undiscovered primitives: primitives without an object tap inside.
 //
 // The prior is a Poisson process, so primitives are independent. Hypotheses contain the primitives with an object tap.
 // The others form another Poisson process: none has an object tap inside, and each desk tap reduces the probability of
@@ -48,8 +48,8 @@ class Undiscovered {
   /// of noisy against exact positions should include the factor exp(this difference), but omit it.
   void add(const Touch& touch, const LabelModel& labels);
 
-  /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from those
-  /// of the last call.
+  /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from the
+  /// positions of the last call.
   bool prepare(const PointsView& positions);
   /// Returns the prepared positions.
   const Grid& grid() const { return *grid_; }
