@@ -22,8 +22,8 @@ class FootprintModel {
   /// Returns whether the footprint is the clipped label GP; then no function below is called.
   bool is_label_gp() const { return footprint_->is_weight(); }
 
-  /// Keeps the probability, and optionally hypotheses, from the next update() on. Returns whether one of them was not
-  /// kept before.
+  /// Keeps the probability, and optionally hypotheses, from the next update() on. Returns whether the probability or
+  /// the hypotheses were not kept before.
   bool show(bool hypotheses);
   const std::string& name() const { return choice_.type; }
   bool is_shown() const { return shown_; }

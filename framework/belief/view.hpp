@@ -30,7 +30,7 @@ struct PriorOptions : Options {
   double noise = 0.003;  ///< standard deviation of a height, metres
   double bias = 0.005;   ///< standard deviation of the offset of all heights, metres
   std::optional<ViewPose> pose;
-  std::string checksum;  ///< of the content of the file, which makes it part of a run's id
+  std::string checksum;  ///< checksum of the content of the file, which makes it part of a run's id
 
   /// Reads the file for its checksum. A file that cannot be read is an error, unless the checksum is given, so that
   /// records can be read without the file.
@@ -39,7 +39,7 @@ struct PriorOptions : Options {
 
 /// Data of one square of the desk that the camera saw clearly. The models use them like a contact.
 struct ViewedSquare {
-  Touch touch;             ///< at the mean position of its points
+  Touch touch;             ///< touch at the mean position of the square's points
   double deviation = 0.0;  ///< standard deviation of the height, metres: noise, unevenness and remaining bias
 };
 

@@ -130,7 +130,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
       return score > other.score || (score == other.score && candidate < other.candidate);
     }
   };
-  One best;  // of equal scores, the first
+  One best;  // the first if scores are equal
   One second;
   for_allowed(
       scores, allowed,

@@ -14,11 +14,11 @@
 namespace palpate {
 
 /// A greedy search. It draws 16000 discs, each a hypothesis of the hidden object. The next tap goes where the discs
-/// have the largest total weight. After each tap that finds nothing, the weight of every disc near it is multiplied
-/// by the probability that the tap missed such an object. The tap may have landed outside the edge, or the arm may have
-/// felt nothing. So an arm with errors of millimetres does not rule out objects that it passed closely. If positions
-/// have equal weight, for example without discs, the tap goes to the middle of the largest gap, farthest from all taps
-/// and from the edge of the area.
+/// have the largest total weight. After each tap that finds nothing, the weight of every disc near it is multiplied by
+/// the probability that the tap missed such an object. The tap may have landed outside the edge, or the arm may have
+/// felt nothing. So a tap of an arm with errors of millimetres does not rule out objects that it missed narrowly. If
+/// positions have equal weight, for example without discs, the tap goes to the middle of the largest gap, farthest from
+/// all taps and from the edge of the area.
 ///
 /// Diameters lie between the smallest object and the area's shorter side, uniformly in their logarithm. With only the
 /// smallest, the search would scan the area in narrow rows and find large objects late. Large discs send the first taps

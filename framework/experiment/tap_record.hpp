@@ -35,12 +35,12 @@ struct TapRecord {
   std::optional<int> ties;
   std::optional<Target> runner_up;
   std::optional<double> runner_up_score;
-  std::optional<double> expected_seconds;  ///< with several motions
+  std::optional<double> expected_seconds;  ///< expected duration; only with several motions
   /// Drawn lines that the backend rejected, in order: one hexadecimal digit per four lines, with the highest bit for
   /// the first line. Digits after the last rejected line are left out.
   std::string unreached{};
 
-  BeliefState state;                                         ///< before the tap
+  BeliefState state;                                         ///< state before the tap
   Errors errors;                                             ///< errors of the belief in that state
   std::optional<bool> true_on_object;                        ///< nullopt if the truth is not known
   std::optional<double> shown_expected_rmse = std::nullopt;  ///< metres, as displayed before the tap

@@ -77,7 +77,7 @@ void TapSelector::allow(const Belief& belief) {
 
 bool TapSelector::choose_initial(const Belief& belief, TapRecord& tap) {
   tap.request.source = Source::initial;
-  tap.candidate = 0;  // for drawn lines
+  tap.candidate = 0;  // index for drawn lines
   if (belief.candidates().fixed) {
     const std::optional<int> again = second_look(belief);
     tap.candidate = again ? *again : search_ ? search_->next(allowed_) : initial_[taps_.size()];

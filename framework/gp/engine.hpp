@@ -25,7 +25,7 @@ namespace palpate {
 
 /// One row of the factor, for the tap in the last row of `positions`.
 struct FactorRow {
-  PointsView positions;  ///< of all n rows so far, this row included
+  PointsView positions;  ///< positions of all n rows so far, this row included
   VectorView factor;     ///< l, n - 1 values
   double pivot;
   VectorView inverse;          ///< c, n values; empty unless needs_inverse()
@@ -92,7 +92,7 @@ struct EngineSettings {
   /// Largest error of `automatic` beyond the rounding of `dense`, of means in prior standard deviations and of
   /// variances in prior variances.
   double accuracy = 1e-9;
-  double tolerance = 1e-15;  ///< of `lowrank`; see make_lowrank()
+  double tolerance = 1e-15;  ///< tolerance of `lowrank`; see make_lowrank()
   int taps = 64;             ///< expected number of taps, for memory and the choice by `automatic`
   std::shared_ptr<Workers> workers = std::make_shared<Workers>(1);
 };

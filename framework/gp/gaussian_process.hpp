@@ -18,7 +18,7 @@ namespace palpate {
 /// targets.
 struct GpSettings {
   double signal = 1.0;
-  double noise = 0.0;  ///< of one tap, independent between taps, also at one position
+  double noise = 0.0;  ///< noise of one tap, independent between taps, also at one position
   double mean = 0.0;   ///< prior mean, constant
   /// Standard deviation, in signals, of an unknown constant that is added to the mean. 0: the mean is known.
   double mean_ratio = 0.0;
@@ -67,7 +67,7 @@ class GaussianProcess {
   bool set_trust(const VectorView& trust) { return replace(trust_.head(size_), trust); }
   /// Sets the values of output 0 of all taps. Returns whether a value changed; then all is computed again.
   bool set_targets(const VectorView& values) { return replace(targets_.col(0).head(size_), values); }
-  /// Sets the positions of all taps, one row per tap. Returns whether one changed; then all is computed again.
+  /// Sets the positions of all taps, one row per tap. Returns whether a position changed; then all is computed again.
   bool set_positions(const PointsView& positions);
 
   /// Keeps a map of the mean of the outputs 0 to `outputs` - 1; at first of output 0 alone. Restarts the maps if they
@@ -132,7 +132,7 @@ class GaussianProcess {
 
   int size_ = 0;
   Points positions_;         ///< the first size_ rows, in the order of the taps
-  Eigen::MatrixXd targets_;  ///< as given, one column per output
+  Eigen::MatrixXd targets_;  ///< targets as given, one column per output
   Eigen::VectorXd trust_;
 
   Factor factor_;

@@ -74,7 +74,7 @@ class Tiling {
   void tile(int columns);
 
   int candidates_ = 0;
-  int columns_ = 0;        ///< of the grid; kBlock without a grid
+  int columns_ = 0;        ///< columns of the grid; kBlock without a grid
   int tiled_columns_ = 0;  ///< columns that are not mirror images
   int rows_ = 0;
   int padded_ = 0;  ///< tiled columns with padding

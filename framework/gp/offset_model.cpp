@@ -41,7 +41,7 @@ void OffsetModel::find_desk() {
       if (left[i] && !found[i]) lows.push_back(i);
     }
     if (lows.size() > 1) above_ = found;
-    if (lows.size() != 1) return;  // with none, no two contacts agree, and the first search remains
+    if (lows.size() != 1) return;  // without a low contact, no two agree, and the first search remains
     left[lows.front()] = false;
     found = left;
     search_from_below(found);

@@ -46,7 +46,7 @@ class OffsetModel {
 
   struct Estimate {
     double value = 0.0;     ///< error to be subtracted from a height, metres
-    double variance = 0.0;  ///< of that value, square metres
+    double variance = 0.0;  ///< variance of that error, square metres
   };
   Estimate at(double seconds, int motion = 0) const;
   double noise() const { return noise_; }

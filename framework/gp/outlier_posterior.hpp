@@ -29,7 +29,7 @@ namespace palpate {
 
 /// Prior and heights of n taps. Heights and standard deviations have one unit.
 struct OutlierProblem {
-  Eigen::MatrixXd covariance;        ///< of the taps, n x n, at a signal of 1, without noise
+  Eigen::MatrixXd covariance;        ///< covariance of the taps, n x n, at a signal of 1, without noise
   Eigen::MatrixXd broad_covariance;  ///< covariance of the broad signal; empty for none
   Eigen::VectorXd heights;           ///< y, minus the prior mean
   Eigen::VectorXd prior;             ///< pi, in [0, 1]
@@ -49,7 +49,7 @@ struct OutlierSearchLimits {
 };
 
 struct OutlierPosterior {
-  Eigen::VectorXd probability;  ///< n: of an outlier
+  Eigen::VectorXd probability;  ///< n: probability of an outlier
   Eigen::VectorXd a;            ///< 1 + 2 n: the constant, then k, then l
   Eigen::MatrixXd b;            ///< (1 + 2 n) x (1 + 2 n), symmetric
   double s2 = 0.0;              ///< mean of the squared signals, the broad signal included

@@ -99,7 +99,7 @@ class PosteriorMaps {
   Eigen::VectorXd prior_;  ///< kernel variance at each candidate; one value if all are equal
   int rows_ = kNoRows;     ///< rows of the factor in the maps
   static constexpr int kNoRows = -1;
-  double noise_ = 0.0;  ///< of the latest update(), like the next
+  double noise_ = 0.0;  ///< noise of the latest update(), also for `unknown_`
   std::optional<UnknownMean> unknown_;
   Eigen::MatrixXd weights_;     ///< L^-T L^-1 B of the rows, one row per tap; only for engines that need L^-1
   double inverse_norms_ = 0.0;  ///< sum over the rows of the squared 1-norm of the row of L^-1

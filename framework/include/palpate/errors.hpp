@@ -15,8 +15,8 @@ struct Errors {
   // Of closed surfaces.
   std::optional<double> surface_distance = std::nullopt;      ///< metres, mean symmetric distance
   std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the symmetric distances
-  std::optional<double> f_score = std::nullopt;               ///< at 5 mm
-  std::optional<double> coverage = std::nullopt;              ///< of the 95 % intervals of the surface
+  std::optional<double> f_score = std::nullopt;               ///< F-score at 5 mm
+  std::optional<double> coverage = std::nullopt;              ///< coverage of the 95 % intervals of the surface
   std::optional<double> volume_iou = std::nullopt;            ///< absent if nothing is solid
 
   /// Returns the root mean square error of the whole reconstruction, metres.
@@ -26,7 +26,7 @@ struct Errors {
 /// Reconstruction of one object of the scene.
 struct ObjectErrors {
   int cells = 0;        ///< candidates that are on the object and not on a higher one
-  bool merged = false;  ///< with another object
+  bool merged = false;  ///< whether one component holds this and another object
   bool split = false;
   /// Intersection over union of the object's cells with its predicted cells. These are its own predicted cells, and the
   /// predicted cells off all objects whose nearest object cell belongs to it. Absent if the object has no cell.

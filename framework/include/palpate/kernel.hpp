@@ -12,7 +12,7 @@ namespace palpate {
 
 /// A named hyperparameter of a kernel with its present value. All are positive, so that fits work on their logarithms.
 struct KernelParameter {
-  std::string name;  ///< its option, with dots if kernels are nested: "kernels.0.length_scale"
+  std::string name;  ///< name of its option, with dots if kernels are nested: "kernels.0.length_scale"
   double value;      ///< SI, positive
   /// `metre` for a distance over the area; fits scale their expectations by the size of the area.
   Unit unit = Unit::none;

@@ -46,8 +46,8 @@ class PluginFactory {
 
 /// Settings of the run that a belief needs in addition to its own options.
 struct RunSettings {
-  PluginChoice kernel{"kernel", {}, nullptr};         ///< for a GP that sets no kernel itself
-  PluginChoice fitting{"fitting", "fixed", nullptr};  ///< for a GP that sets no fitting itself
+  PluginChoice kernel{"kernel", {}, nullptr};         ///< kernel for a GP that sets none itself
+  PluginChoice fitting{"fitting", "fixed", nullptr};  ///< fitting for a GP that sets none itself
   /// Number of candidates, per side for a grid, or side length of a grid cell, metres. Without both, the belief has its
   /// own default.
   std::optional<std::int64_t> candidates;
@@ -67,7 +67,7 @@ struct Context {
   std::string directory = {};
   Instructions instructions = instructions_in_use();  ///< set for the loops of palpate/math.hpp
   PhaseClock* clock = nullptr;                        ///< clock of the run, for fits and inference; may be null
-  RunSettings run = {};                               ///< for beliefs
+  RunSettings run = {};                               ///< settings for beliefs
   bool from_above = true;                             ///< whether the belief taps straight down only, for backends
 
   /// Returns the run's random stream for one purpose, for example "acquisition/random" at tap `number`.

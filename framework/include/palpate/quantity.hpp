@@ -42,12 +42,12 @@ inline constexpr const char* kDeskPosition = "desk_position";  ///< the candidat
 // Offered by the belief `solids`: M values.
 inline constexpr const char* kExpectedDistance = "expected_distance";  ///< to the contact along the line, metres
 inline constexpr const char* kSurfaceStd = "surface_std";  ///< of the surface along its normal at the contact, metres
-inline constexpr const char* kIncidenceCosine = "incidence_cosine";      ///< between line and normal, in [0, 1]
+inline constexpr const char* kIncidenceCosine = "incidence_cosine";      ///< cosine between line and normal, in [0, 1]
 inline constexpr const char* kExpectedDiscovery = "expected_discovery";  ///< see SolidsBelief
 inline constexpr const char* kStdReduction = "std_reduction";            ///< see SolidsBelief
 
 // Offered as single numbers.
-inline constexpr const char* kExpectedRmse = "expected_rmse";  ///< of the reconstruction, metres
+inline constexpr const char* kExpectedRmse = "expected_rmse";  ///< expected RMSE of the reconstruction, metres
 /// Probability of an object that no tap has touched.
 inline constexpr const char* kUndiscoveredProbability = "undiscovered_probability";
 inline constexpr const char* kObjectSeen = "object_seen";  ///< 1 if a camera saw an object before the first tap

@@ -19,7 +19,7 @@ struct Surface {
 
   struct Vertex {
     Eigen::Vector3d position, normal;  ///< the normal outwards, a unit vector
-    double standard_deviation = 0.0;   ///< of the position along the normal
+    double standard_deviation = 0.0;   ///< standard deviation of the position along the normal
   };
   /// The mesh: triangles of vertices, counter-clockwise seen from outside.
   std::vector<Vertex> vertices;

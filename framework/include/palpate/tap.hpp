@@ -41,13 +41,13 @@ enum class Source { initial, acquisition, fallback, caller };
 struct Prediction {
   double height = 0.0;
   double standard_deviation = 0.0;
-  std::optional<double> probability = std::nullopt;  ///< of an object, for a backend that reads it
+  std::optional<double> probability = std::nullopt;  ///< probability of an object, for a backend that reads it
 };
 
 /// Request for one tap. It contains everything that a simulated result may depend on besides options and seed, so that
 /// a resumed run continues exactly like an uninterrupted one.
 struct TapRequest {
-  int number = 1;  ///< of the tap within the run, from 1
+  int number = 1;  ///< number of the tap within the run, from 1
   TapLine line;
   Source source = Source::initial;
   int motion = 0;                       ///< index of the backend's motion, see motions.hpp
@@ -75,7 +75,7 @@ struct TapResult {
   /// absent on lines from above, and after `no_contact`, which then means the whole length.
   std::optional<double> distance = std::nullopt;
   std::optional<Eigen::Vector3d> contact = std::nullopt;  ///< the touched point, metres; only for `contact`
-  double force = 0.0;                                     ///< at contact, newtons; only for `contact`
+  double force = 0.0;                                     ///< force at contact, newtons; only for `contact`
   std::optional<double> peak_force = std::nullopt;  ///< largest force of the tap, newtons, also of a failed tap; the
                                                     ///< true force from a simulator, else the measured one
   double seconds = 0.0;                             ///< robot time of the tap, for any outcome
@@ -112,12 +112,12 @@ inline TapResult tap_without_contact(Outcome outcome, double seconds, std::strin
 /// Current reading of a result by the belief; later taps may change everything but `tap`.
 struct TapReading {
   int tap = 1;
-  Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< of the contact, or of the end of a line without one; metres
+  Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< position of the contact, or of the end of a line without one; metres
   bool is_contact = true;
   bool on_object = false;     ///< a contact with an object, not with the desk
   bool is_corrected = false;  ///< the position is corrected for the offset of the arm
   bool moved = false;         ///< an object was pushed later, so that the reading no longer holds at its position
-  double outlier_probability = 0.0;      ///< of the height or the label
+  double outlier_probability = 0.0;      ///< probability that the height or the label is wrong
   double wrong_label_probability = 0.0;  ///< the part of it due to the label
 };
 

@@ -30,7 +30,7 @@ struct Target {
 /// A straight line without ends: the points origin + x * direction for every real x.
 struct Line {
   Eigen::Vector3d origin;     ///< metres
-  Eigen::Vector3d direction;  ///< of unit length
+  Eigen::Vector3d direction;  ///< unit vector
 };
 
 /// Returns the distance along a descending line to a height, metres; infinity for a line that is level or goes up.

@@ -91,7 +91,7 @@ class Planner {
   /// Inverse kinematics at each height starts from the previous solution. `way` is a phrase for the error.
   Path vertical(const Joints& from, Pose tip, double rise, const char* way) const;
 
-  Eigen::Isometry3d frame_;  ///< of the scene's frame in `base`
+  Eigen::Isometry3d frame_;  ///< pose of the scene's frame in `base`
   const Arm& arm_;
   Inverse inverse_;
 };

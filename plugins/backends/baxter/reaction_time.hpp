@@ -29,7 +29,7 @@ class ReactionTime {
   /// Time and height of the tip in one period of a descent.
   struct Period {
     double time;    ///< s
-    double height;  ///< of the tip, m
+    double height;  ///< height of the tip, m
   };
 
   /// Largest expected force of a contact, N. The firmware stops the arm at 16 N, and noise delays the detection.

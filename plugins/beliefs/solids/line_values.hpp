@@ -41,7 +41,7 @@ class LineValues {
   void compute_discovery(const SampledLines& lines, const Solids& solids, Random random);
 
   double desk_;
-  Eigen::VectorXd distance_;          ///< along each line to the most probable assembly, or to the end
+  Eigen::VectorXd distance_;          ///< distance along each line to the most probable assembly, or to the end
   ResidualGp::Places places_;         ///< where lines meet that assembly
   std::vector<Eigen::Index> meets_;   ///< indices of the lines that meet it
   Eigen::VectorXd incidence_cosine_;  ///< 0 for lines that meet no object

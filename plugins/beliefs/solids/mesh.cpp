@@ -43,8 +43,8 @@ class SignedSurface {
   /// tetrahedron.
   std::vector<Vector3d> normals(const std::vector<Vector3d>& at) const {
     constexpr double kStep = 1e-5;
-    // A distance has gradient 1, and the residual GP has less. A steeper f jumps there, as the assembly's normal does,
-    // and its difference is not a gradient.
+    // A distance has gradient 1, and the residual GP has less. A steeper difference is not a gradient: f jumps there,
+    // as the assembly's normal does.
     constexpr double kSteepest = 3.0;
     static const std::array<Vector3d, 4> corners{Vector3d(1, -1, -1), Vector3d(-1, -1, 1), Vector3d(-1, 1, -1),
                                                  Vector3d(1, 1, 1)};
@@ -167,7 +167,7 @@ struct Rings {
   }
 };
 
-/// Returns the distance from each node to the assembly; may be infinity where that is more than `most`.
+/// Returns the distance from each node to the assembly; may be infinity for distances above `most`.
 std::vector<double> distances_at(const Crossings& grid, const Assembly& solids, double most) {
   const std::array<int, 3> strides = grid.strides();
   std::vector<double> out(static_cast<std::size_t>(strides[2]) * static_cast<std::size_t>(grid.nodes[2]), kNoHit);

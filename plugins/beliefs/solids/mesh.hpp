@@ -25,7 +25,7 @@ namespace palpate {
 struct Crossings {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< position of the first node
   double side = 0.0;                                 ///< side of a cube
-  std::array<int, 3> nodes{};                        ///< along x, y and z; 0 without an object
+  std::array<int, 3> nodes{};                        ///< number of nodes along x, y and z; 0 without an object
   std::vector<std::uint8_t> inside;                  ///< 1 or 0 for each node, x fastest; 0 at the boundary
   /// One vertex per edge between an inner and an outer node, ordered by the first node of the edge, then by its axis.
   std::vector<Surface::Vertex> vertices;
@@ -48,8 +48,8 @@ struct Crossings {
 /// standard deviations, from all assemblies.
 Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, double side);
 
-/// Returns the closed mesh, with heights raised by `desk`, the desk's height in the scene, metres. A ring that could
-/// share a diagonal with one in the next cube gets an additional vertex in its middle; these vertices come last.
+/// Returns the closed mesh, with heights raised by `desk`, the desk's height in the scene, metres. A ring gets an
+/// additional vertex in its middle if it could share a diagonal with a ring of the next cube. These vertices come last.
 Surface close_mesh(const Crossings& crossings, double desk);
 
 }  // namespace palpate

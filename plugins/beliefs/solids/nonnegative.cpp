@@ -81,9 +81,7 @@ void Nonnegative::settle() {
 void Nonnegative::solve() {
   if (d_.size() == 0) return;
   const double rounding = 1e-13 * d_.cwiseAbs().maxCoeff();
-  const auto cost = [&] {
-    return -0.5 * values_.dot(VectorXd(d_(held_)));
-  };  // valid at an optimum of the held unknowns
+  const auto cost = [&] { return -0.5 * values_.dot(VectorXd(d_(held_))); };  // only at an optimum
   std::vector<bool> refused(is_.size());
   while (true) {
     const VectorXd pull = d_ - s_(Eigen::all, held_) * values_;

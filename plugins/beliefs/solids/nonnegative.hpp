@@ -25,8 +25,8 @@ class Nonnegative {
   /// Returns the positive unknowns in the order in which they became positive, and their values.
   const std::vector<int>& held() const { return held_; }
   const Eigen::VectorXd& values() const { return values_; }
-  /// Returns how many unknowns stay 0 because S, restricted to them and the positive ones, is not positive definite in
-  /// double precision.
+  /// Returns the number of excluded unknowns. They stay 0, because with them the held part of S is not positive
+  /// definite in double precision.
   int redundant_taps() const { return set_aside_; }
 
  private:
@@ -45,7 +45,7 @@ class Nonnegative {
   std::vector<Is> is_;
   std::vector<int> held_;
   Eigen::VectorXd values_;
-  Factor factor_;  ///< of the rows and columns of S of the held unknowns
+  Factor factor_;  ///< factor of the part of S with the held rows and columns
   int set_aside_ = 0;
 };
 

@@ -10,8 +10,8 @@
 // The spread is the standard deviation from one contact to the next. Only contacts reported below the desk determine
 // it, because contacts above may be with low parts of an object.
 //
-// The model does not cover how much more an object yields than the desk, nor sideways errors of the tool: contacts with
-// the desk do not show them.
+// The model covers neither the additional yielding of an object compared with the desk nor sideways errors of the tool,
+// because contacts with the desk do not show them.
 #pragma once
 
 #include "gp/offset_model.hpp"
@@ -41,7 +41,7 @@ class Overtravel {
 
  private:
   struct Low {
-    double height;  ///< of the tip's lowest point, as reported
+    double height;  ///< height of the tip's lowest point, as reported
     double steep;   ///< vertical component of the direction, downwards
     double force;
   };

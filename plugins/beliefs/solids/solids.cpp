@@ -31,8 +31,8 @@ Vector3d normal3(Random& random) {
 double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
 
 /// Returns how much the free path of a tool, which came from far outside, contradicts a primitive. It is the smaller of
-/// two shifts, metres: of the surface back, or of the path sideways, until the tool no longer meets the primitive
-/// early. 0 without a contradiction.
+/// two shifts, metres, after which the tool no longer meets the primitive too early: a shift of the surface backwards,
+/// or of the path sideways. 0 without a contradiction.
 double depth_of(const Primitive& primitive, const SurfaceTouch& touch) {
   const Vector3d to = primitive.centre - touch.line.origin;
   if ((to - to.dot(touch.line.direction) * touch.line.direction).squaredNorm() > primitive.half.squaredNorm())
@@ -274,7 +274,7 @@ double Solids::likelihood_with(const Assembly& one, std::size_t which, const Pri
       out += math::log(product), product = 1.0;
     }
     if (-0.5 * (kTails + 1.0) * out < least || product > most) {
-      // The touch that rejected this proposal is evaluated first for the next one.
+      // The touch that rejected this proposal is evaluated first for the next proposal.
       std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(k),
                   order_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
       return -kNoHit;
@@ -289,7 +289,7 @@ void Solids::move(Assembly& one) {
   order_.resize(touches_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::reverse(order_.begin(), order_.end());
-  // The number of moves falls as 1/n after the 40th touch, so later touches cost no more time than that one.
+  // The number of moves falls as 1/n after the 40th touch, so later touches cost no more time than the 40th.
   constexpr double kFullSweeps = 40.0;
   const auto single = static_cast<double>(touches_.size() - seen_);
   const int moves = static_cast<int>(settings_.moves * std::min(1.0, kFullSweeps / std::max(1.0, single)));

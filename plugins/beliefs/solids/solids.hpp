@@ -95,7 +95,7 @@ class Solids {
   double power_ = 1.0;       ///< current power
   std::vector<Assembly> all_;
   Assembly::Part scratch_;
-  std::vector<std::size_t> order_;  ///< of the touches; the last to reject a proposal is evaluated first
+  std::vector<std::size_t> order_;  ///< order of the touches; the last to reject a proposal is evaluated first
 };
 
 }  // namespace palpate

@@ -34,8 +34,8 @@ class SurfaceErrors {
   /// Sets the true scene in its current state; null if unknown. The scene must live until the next call.
   void set_truth(const Scene* scene);
 
-  /// Returns the errors of a surface. Null means that no surface is estimated yet, so all of the true one is missing.
-  /// All errors are absent if the truth is unknown, or if no line meets it.
+  /// Returns the errors of a surface. Null means that no surface is estimated yet, so the whole true surface is
+  /// missing. All errors are absent if the truth is unknown, or if no line meets it.
   Errors compare(const Solids* solids, const ResidualGp& residual_gp);
 
  private:

@@ -44,7 +44,7 @@ class TouchLog {
 
  private:
   struct Reported {
-    SurfaceTouch touch;  ///< as the arm reported it
+    SurfaceTouch touch;  ///< touch as the arm reported it
     double force;
     int tap;
   };

@@ -36,7 +36,7 @@ Cubes::Held Cubes::of(const Scene& scene) const {
 namespace {
 
 struct Nearest {
-  double distance = kNoHit;   ///< to the assembly
+  double distance = kNoHit;   ///< distance to the assembly
   double clear = kNoHit;      ///< lower bound of the distance to any surface
   std::size_t primitive = 0;  ///< the primitive with this distance
 };

@@ -97,7 +97,7 @@ class Undiscovered {
   std::int64_t apart(std::size_t draw) const { return known_ - static_cast<std::int64_t>(overlaps_[draw]); }
 
   std::vector<Draw> draws_;
-  FormTable forms_;              ///< of the draws
+  FormTable forms_;              ///< forms of the draws
   std::vector<float> overlaps_;  ///< number of known hypotheses that each draw overlaps
   std::int64_t known_ = 1;       ///< number of these hypotheses
   double unit_;                  ///< expected number of primitives per unit of weight

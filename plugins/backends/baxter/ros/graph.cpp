@@ -79,7 +79,7 @@ std::string http_body(TcpConnection& wire, Deadline deadline) {
 /// per nested value, and searches a member's name anywhere. So the name must come first in its member.
 bool is_well_formed(std::string_view xml) {
   std::vector<std::string_view> open;
-  bool in_member = false;  // in a member, before its name
+  bool in_member = false;  // whether the position is in a member, before its name
   for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
     const std::size_t end = xml.find_first_of("<>", ++at);
     if (end == std::string_view::npos || end == at || xml[end] == '<' || xml[at] == '!') return false;

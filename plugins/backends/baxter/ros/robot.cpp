@@ -376,7 +376,7 @@ class RosRobot final : public RosConnection {
   Master master_;
   std::mutex mutex_;
   Snapshot latest_;      ///< guarded by mutex_; `now` and `own_gap` are not used
-  Heartbeat heartbeat_;  ///< of the spinner thread; guarded by mutex_
+  Heartbeat heartbeat_;  ///< heartbeat of the spinner thread; guarded by mutex_
   std::atomic<bool> stop_{false};
   std::thread spinner_;
 };
