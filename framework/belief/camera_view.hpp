@@ -30,21 +30,21 @@ struct PriorOptions : Options {
   double noise = 0.003;  ///< standard deviation of a height, metres
   double bias = 0.005;   ///< standard deviation of the offset of all heights, metres
   std::optional<ViewPose> pose;
-  std::string checksum;  ///< of the content of the file, which makes it part of a run's id
+  std::string checksum;  ///< checksum of the content of the file, which makes it part of a run's id
 
   /// Reads the file for its checksum. A file that cannot be read is an error, unless the checksum is given, so that
   /// records can be read without the file.
   void list(Fields& fields) override;
 };
 
-/// Data of a square of the desk that the camera saw clearly, like a contact.
+/// Data of one square of the desk that the camera saw clearly. The models use them like a contact.
 struct ViewedSquare {
-  Touch touch;             ///< at the mean position of its points
+  Touch touch;             ///< touch at the mean position of the square's points
   double deviation = 0.0;  ///< standard deviation of the height, metres: noise, unevenness and remaining bias
 };
 
 /// Number of squares along the longer side of the area. Each square costs as much computing time as a tap, and
-/// neighbours have nearly the same information.
+/// neighbouring squares carry nearly the same information.
 inline constexpr int kSquaresAcross = 14;
 
 /// Transforms points into the frame of the area, metres.
@@ -52,8 +52,8 @@ PointCloud in_area_frame(const PointCloud& points, const PriorOptions& options);
 
 /// Computes the data of each square from points in the frame of the area. An offset is estimated from the squares of
 /// the desk, whose height is known; `bias` is its prior standard deviation. A square is on an object if it is clearly
-/// above the desk and satisfies `scene.on_object()`, and on the desk if it is not above the desk. Other squares, such
-/// as those at an edge, are left out. Sorted by rows, in ascending y. Throws Error if no point is in the area.
+/// above the desk and satisfies `scene.on_object()`, and on the desk if it is not above the desk. Other squares, for
+/// example at an edge, are left out. Sorted by rows, in ascending y. Throws Error if no point is in the area.
 std::vector<ViewedSquare> viewed_squares(const PointCloud& points, const PriorOptions& options, const Scene& scene);
 
 /// Reads the file of `options` and computes the data of its squares; none without options. Throws Error with the place

@@ -14,7 +14,7 @@ double expected_square(const Eigen::VectorXd& probability, const Eigen::VectorXd
 
 double variance_ratio(const GaussianProcess& heights, double square) {
   const GpSettings& settings = heights.settings();
-  const int level = settings.mean_ratio > 0.0 ? 1 : 0;  // taken out of the heights, it costs one of them
+  const int level = settings.mean_ratio > 0.0 ? 1 : 0;  // removing the level costs one degree of freedom
   const GpDiagnostics diagnostics = heights.diagnostics();
   return (square / (settings.signal * settings.signal) + diagnostics.misfit) /
          (1 + heights.size() - diagnostics.factors.redundant_taps - level);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The RMSE of the reconstructed scene that the belief expects, without the truth: for `stop.expected_rmse`.
+// Expected RMSE of the reconstruction under the belief, without the truth: for `stop.expected_rmse`.
 //
-// A cell is on an object with probability p. If it is, its height above the desk is believed to be m, with variance v;
-// if not, it is 0. So the square of its error is expected to be
-//     p v + (1 - p) m^2    where it is reconstructed at m (p >= 1/2): either the height is wrong, or the outline,
-//     p (v + m^2)          where it is reconstructed as desk,
-// and v with `surface: single`, which has one process for object and desk. The expected rmse is the root of the mean
-// of these over the candidates, and by Jensen's inequality not below the mean of the rmse.
+// A cell is on an object with probability p. On an object, its height above the desk has mean m and variance v;
+// otherwise the height is 0. The expected squared error is
+//     p v + (1 - p) m^2    if it is reconstructed at m (p >= 1/2): an error of the height, or of the outline,
+//     p (v + m^2)          if it is reconstructed as desk,
+// and v with `surface: single`, which has one GP for object and desk. The expected RMSE is the root of the mean of
+// these squared errors over the candidates. By Jensen's inequality it is at least the mean RMSE.
 //
-// v is in the unit of `belief.height.signal`, which in most configs is a convention and not a property of the object.
-// With K the covariance of n heights r in signals, their level taken out, r^T K^-1 r / (n - 1) is the likeliest ratio
-// of the true variance to that of the config (Rasmussen and Williams 2006, section 5.4.1). Few taps say little of it, a
-// single one nothing: as a start, the relief of an object counts as being as large as its height, with the weight of
-// one tap. With the mean square height h^2 in signals of the taps on an object, v is multiplied by
+// v scales with `belief.height.signal`, which most configs set by convention and not from the object. Let K be the
+// covariance of n heights r, in signals and without their constant level. Then r^T K^-1 r / (n - 1) is the most likely
+// ratio of the true variance to the configured one (Rasmussen and Williams 2006, section 5.4.1). Few taps determine it
+// poorly, and a single one not at all. So the prior, with the weight of one tap, is that the heights of an object vary
+// by as much as the height itself. With h^2, the mean squared height of the object taps in signals, v is multiplied by
 //     (h^2 + r^T K^-1 r) / n,
-// and by n + 1 in place of n where no level is taken out.
+// or with n + 1 instead of n if no level is removed.
 #pragma once
 
 #include "belief/metrics.hpp"
@@ -29,18 +29,18 @@
 
 namespace palpate {
 
-/// Returns the mean over all cells of the expected square error, square metres: for cells that are on an object with
-/// `probability`, and then at a height above the desk with `mean` and `variance`.
+/// Returns the mean over all cells of the expected squared error, square metres. A cell is on an object with
+/// `probability`, and its height above the desk is then distributed with `mean` and `variance`.
 double expected_square(const Eigen::VectorXd& probability, const Eigen::VectorXd& mean,
                        const Eigen::VectorXd& variance);
 
-/// Returns the factor by which the variances of `heights` fit its taps, if those on an object have the mean square
-/// `square` (square metres) above the desk.
+/// Returns the factor by which the variances of `heights` must be multiplied to fit its taps. `square`: mean squared
+/// height of the object taps above the desk, square metres.
 double variance_ratio(const GaussianProcess& heights, double square);
 
-/// Returns the expected RMSE over the candidates, metres; nullopt before the first object contact, and where it is not
-/// finite. `variance`: of maps.height, square metres; `heights`: the GP behind both, null before it is built;
-/// `object_contacts`: all that it has learnt from.
+/// Returns the expected RMSE over the candidates, metres; nullopt before the first object contact, or if it is not
+/// finite. `variance`: of maps.height, square metres; `heights`: the GP of both maps, null before it is built;
+/// `object_contacts`: all data of that GP on objects.
 std::optional<double> expected_rmse(const SurfaceMaps& maps, const Eigen::VectorXd& variance,
                                     const GaussianProcess* heights, const std::vector<Touch>& object_contacts);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The footprint of the belief: which candidates are on an object. Its plugin sees the data of the log when a reader
-// first needs it.
+// The footprint of the belief: which candidates are on an object. Its plugin receives the data of the log when a reader
+// first needs the footprint.
 #pragma once
 
 #include "belief/contact_log.hpp"
@@ -16,32 +16,32 @@ namespace palpate {
 
 class FootprintModel {
  public:
-  /// `candidates` and `context` must outlive it.
+  /// `candidates` and `context` must outlive the model.
   FootprintModel(const PluginChoice& choice, const CandidateGrid& candidates, const Context& context);
 
-  /// Whether the footprint is the label GP, clipped: then nothing below is called.
+  /// Returns whether the footprint is the clipped label GP; then no function below is called.
   bool is_label_gp() const { return footprint_->is_weight(); }
 
-  /// Keeps the probability, and hypotheses if these are wanted, from the next update() on. Returns whether anything was
-  /// missing.
+  /// Keeps the probability, and optionally hypotheses, from the next update() on. Returns whether the probability or
+  /// the hypotheses were not kept before.
   bool show(bool hypotheses);
   const std::string& name() const { return choice_.type; }
   bool is_shown() const { return shown_; }
   const Footprint& plugin() const { return *footprint_; }
 
-  /// Takes in the data since; brings probability, hypotheses and positions up to date. Throws Error for a probability
+  /// Adds the new data of the log, and updates probability, hypotheses and positions. Throws Error for a probability
   /// that is not finite.
   void update(const ContactLog& log);
-  /// Forgets all data, as labels have changed.
+  /// Removes all data, because labels have changed.
   void reset();
 
-  /// M values; empty before the first update().
+  /// Returns M values; empty before the first update().
   const Eigen::VectorXd& probability() const { return probability_; }
   const HypothesisSample& hypotheses() const { return hypotheses_; }
 
-  /// The positions of all data now, a row each: objects may have been pushed since.
+  /// Returns the current positions of all data, one row each. Pushes of objects may have changed them.
   const Points& positions() const { return positions_now_; }
-  /// Whether a datum has moved since its tap; false for data that update() has not seen.
+  /// Returns whether a data point has moved since its tap; false for data that update() has not added yet.
   bool has_moved(int row) const;
 
  private:
@@ -51,10 +51,10 @@ class FootprintModel {
   std::shared_ptr<Footprint> footprint_;
   bool shown_ = false;
   bool shows_hypotheses_ = false;
-  int taken_ = 0;  ///< number of data that the plugin has
+  int taken_ = 0;  ///< number of data in the plugin
   Eigen::VectorXd probability_;
   HypothesisSample hypotheses_;
-  Points positions_, positions_now_;  ///< as made, and now
+  Points positions_, positions_now_;  ///< original and current positions
 };
 
 }  // namespace palpate

@@ -4,7 +4,7 @@
 namespace palpate {
 namespace {
 
-// Squares and ratios of squares of what is within these bounds are far from the ends of double precision.
+// Within these bounds, squares and their ratios are far from the limits of double.
 constexpr double kLeastSignal = 1e-12;
 constexpr double kMostSignal = 1e12;
 

@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// What a process has of its own: the heights' in metres, the labels' without unit.
+/// Options of one GP: heights are in metres, labels have no unit.
 struct ProcessOptions : Options {
   double signal = 1.0;
   double noise = 1e-4;
@@ -25,7 +25,7 @@ struct ProcessOptions : Options {
 /// Prior standard deviations of the offset that is estimated from the desk: see offset_model.hpp.
 struct OffsetOptions : Options {
   double offset = 0.006;        ///< metres
-  double drift = 0.001 / 60.0;  ///< metres a second
+  double drift = 0.001 / 60.0;  ///< metres per second
   double noise = 0.002;         ///< metres
   void list(Fields& fields) override;
 };
@@ -44,7 +44,7 @@ struct LabelOptions : ProcessOptions {
   void list(Fields& fields) override;
 };
 
-/// How the posterior over the candidates is computed.
+/// Computation of the posterior over the candidates.
 struct EngineOptions : Options {
   enum class Type { automatic, dense, grid, lowrank };
   Type type = Type::automatic;
@@ -61,7 +61,7 @@ struct HeightMapOptions : Options {
   PluginChoice footprint{"footprint", "gp_regression", nullptr};
   Surface surface = Surface::single;
   EngineOptions engine;
-  std::optional<PriorOptions> prior;  ///< absent: nothing was seen before the first tap
+  std::optional<PriorOptions> prior;  ///< absent: no camera view before the first tap
   void list(Fields& fields) override;
 };
 

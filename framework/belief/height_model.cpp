@@ -10,7 +10,7 @@ void HeightModel::update_maps(int taps) {
   const GaussianProcess& process = gp_.process();
   process.read_relative_variance(uncertainty_);
   process.read_variance(0, variance_);
-  require_finite(variance_, "the variance of the height GP", taps);  // and with it the uncertainty
+  require_finite(variance_, "the variance of the height GP", taps);  // the uncertainty is then finite, too
   if (has_mean_) read_surface(process, desk_, taps, mean_);
 }
 

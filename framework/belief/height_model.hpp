@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The GP of the heights of all contacts, and its maps over the candidates; the map of the labels.
+// The GP of the heights of all contacts with its maps over the candidates, and the map of the labels.
 #pragma once
 
 #include "belief/gp_model.hpp"
@@ -19,13 +19,13 @@ class HeightModel {
   GpModel& gp() { return gp_; }
   const GpModel& gp() const { return gp_; }
 
-  /// Brings the maps up to date with the GP, after `taps` taps. Throws Error for values that are not finite.
+  /// Updates the maps to the data of the GP, after `taps` taps. Throws Error for values that are not finite.
   void update_maps(int taps);
 
-  /// Variance relative to the prior, noise excluded, in [0, 1], and the variance itself, square metres.
+  /// Returns the variance relative to the prior, without noise, in [0, 1], and the variance itself, square metres.
   const Eigen::VectorXd& uncertainty() const { return uncertainty_; }
   const Eigen::VectorXd& variance() const { return variance_; }
-  /// Metres, in the frame of the scene.
+  /// Returns the mean, metres, in the frame of the scene.
   const Eigen::VectorXd& mean() const { return mean_; }
 
  private:
@@ -35,7 +35,7 @@ class HeightModel {
   Eigen::VectorXd uncertainty_, variance_, mean_;
 };
 
-/// The map of a GP of labels, which is output 1 of the height GP if both have the same hyperparameters.
+/// The map of the label GP, which is output 1 of the height GP if both have the same hyperparameters.
 class LabelMap {
  public:
   /// `clip`: whether weight() is clipped.
@@ -44,11 +44,11 @@ class LabelMap {
   /// Reads the map of an output, after `taps` taps. Throws Error for values that are not finite.
   void update(const GaussianProcess& process, int output, int taps);
 
-  /// The mean of the labels.
+  /// Returns the mean of the labels.
   const Eigen::VectorXd& mean() const { return mean_; }
-  /// The mean clipped to [0, 1]: the probability of `footprint: gp_regression`.
+  /// Returns the mean clipped to [0, 1]: the probability of `footprint: gp_regression`.
   const Eigen::VectorXd& clipped() const { return clipped_; }
-  /// The weight of the paper's acquisition: one of the two.
+  /// Returns the weight of the paper's acquisition: the clipped mean with `clip`, else the mean.
   const Eigen::VectorXd& weight() const { return clip_ ? clipped_ : mean_; }
 
  private:

@@ -16,7 +16,7 @@ constexpr double kLogTwoPi = 1.83787706640934548356;
 /// 97.5 % quantile of the standard normal distribution.
 constexpr double kNormal975 = 1.95996398454005423552;
 
-/// The squares of what a map is off by, in one pass over all cells and over those on an object.
+/// Sums of squared errors of a map, over all cells and over the cells on an object, from one pass.
 struct Misses {
   struct Sum {
     double squares = 0.0;
@@ -87,7 +87,7 @@ Errors errors_of(const SurfaceMaps& maps, const Truth& truth) {
   if (maps.height != nullptr) {
     const Misses of_height(*maps.height, truth);
     out.rmse_height = of_height.on_object.rms();
-    if (!maps.two_part) {  // the reconstruction is the height mean
+    if (!maps.two_part) {  // the mean height is the reconstruction
       out.rmse = of_height.all.rms();
       out.rmse_object = out.rmse_height;
     } else if (maps.probability != nullptr) {
@@ -109,7 +109,7 @@ Calibration calibration(const Eigen::VectorXd& mean, const Eigen::VectorXd& vari
     const double spread = variance(i) + noise * noise;
     if (!truth.on(i) || tapped[static_cast<std::size_t>(i)]) continue;
     const double error = truth.height(i) - mean(i);
-    log_density += -0.5 * (kLogTwoPi + math::log(spread) + error * error / spread);  // not finite when spread is 0
+    log_density += -0.5 * (kLogTwoPi + math::log(spread) + error * error / spread);  // not finite if spread is 0
     inside += std::abs(error) <= kNormal975 * std::sqrt(spread) ? 1 : 0;
     ++cells;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How good a reconstruction is, over the candidate cells, where the truth is known.
+// Errors of a reconstruction over the candidate cells, compared with the true scene.
 #pragma once
 
 #include "gp/candidate_grid.hpp"
@@ -12,23 +12,24 @@
 
 namespace palpate {
 
-/// The scene as seen at the candidates.
+/// The true scene at the candidates.
 struct Truth {
   Eigen::VectorXd height;                    ///< metres
-  Eigen::Array<bool, Eigen::Dynamic, 1> on;  ///< the cell's centre is on an object
-  Eigen::ArrayXi object = {};                ///< which, as Scene::object() numbers them; kNoObject where `on` is not
-  int objects = 0;                           ///< of the scene
+  Eigen::Array<bool, Eigen::Dynamic, 1> on;  ///< whether the cell's centre is on an object
+  Eigen::ArrayXi object = {};                ///< index as in Scene::object(); kNoObject if not `on`
+  int objects = 0;                           ///< number of objects in the scene
 };
 
 Truth truth_at(const CandidateGrid& candidates, const Scene& scene);
 
-/// Root mean square of (map - truth.height), over all cells or over those on an object. None if there are none.
+/// Returns the root mean square of (map - truth.height) over all cells, or over the cells on an object; nullopt without
+/// such cells.
 std::optional<double> rmse(const Eigen::VectorXd& map, const Truth& truth, bool only_on_object);
 
-/// Intersection over union of the cells where `probability` >= 1/2 with those on an object.
+/// Returns the intersection over union of the cells with `probability` >= 1/2 and the cells on an object.
 double footprint_iou(const Eigen::VectorXd& probability, const Truth& truth);
 
-/// The arrays that a reconstruction is made of; null without their model.
+/// The arrays of a reconstruction; null if their model is not built.
 struct SurfaceMaps {
   const Eigen::VectorXd* height = nullptr;  ///< mean, metres
   const Eigen::VectorXd* probability = nullptr;
@@ -36,21 +37,21 @@ struct SurfaceMaps {
   double desk = 0.0;
 };
 
-/// Returns the reconstructed surface, metres: the mean height; with `two_part` only where the probability is at least
-/// 1/2, else the desk.
+/// Returns the reconstructed surface, metres: the mean height. With `two_part` this holds only where the probability is
+/// at least 1/2; elsewhere the surface is the desk.
 Eigen::VectorXd reconstruction(const SurfaceMaps& maps);
 
-/// Returns the errors of the arrays that are there. A surface of two parts has none without the probability.
+/// Returns the errors of the available arrays. With `two_part`, errors of the surface need the probability.
 Errors errors_of(const SurfaceMaps& maps, const Truth& truth);
 
-/// Does the height model know what it does not know? Over the cells on an object that were not tapped, noise included.
+/// Calibration of the height model, noise included, over the untapped cells on an object.
 struct Calibration {
-  /// Mean negative log predictive density, natural logarithm of 1/m; absent where a cell is certain to the last digit.
+  /// Mean negative log predictive density, natural logarithm of 1/m; absent if the variance of a cell is 0.
   std::optional<double> nlpd;
   std::optional<double> coverage_95;  ///< share of cells within the central 95 % interval
 };
-/// `variance`: of the heights, square metres; `noise`: standard deviation of a tap, metres; `tapped`: whether a
-/// candidate was tapped.
+/// Returns the calibration of heights. `variance`: of the heights, square metres; `noise`: standard deviation of a tap,
+/// metres; `tapped`: flags of the tapped candidates.
 Calibration calibration(const Eigen::VectorXd& mean, const Eigen::VectorXd& variance, double noise, const Truth& truth,
                         const std::vector<bool>& tapped);
 

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-/// The cells of a grid and who is beside whom.
+/// The cells of a grid and their neighbours.
 class Grid {
  public:
   explicit Grid(const CandidateGrid& candidates) : columns_(candidates.columns), rows_(candidates.rows) {}
@@ -32,7 +32,7 @@ class Grid {
   int columns_, rows_;
 };
 
-/// The component of each cell, from 0; -1 where `in` does not hold.
+/// Index of the component of each cell, from 0; -1 for cells without one.
 struct Components {
   std::vector<int> of;
   int count = 0;
@@ -60,7 +60,7 @@ Components components(const Grid& grid, const In& in) {
   return out;
 }
 
-/// Whether `part` cells are a fifth of `whole`.
+/// Returns whether `part` cells are at least a fifth of `whole`.
 bool has_a_fifth(int part, int whole) { return part > 0 && 5 * part >= whole; }
 
 class ObjectsSeen {
@@ -99,7 +99,7 @@ class ObjectsSeen {
   }
 
   void measure_outlines() {
-    // Of an object the cell that is nearest to one outside is one with a neighbour outside.
+    // The nearest cell of an object to an outside cell always has a neighbour outside the object.
     std::vector<int> rim;
     for (int cell = 0; cell < grid_.size(); ++cell) {
       if (truth_.object(cell) < 0) continue;
@@ -122,7 +122,7 @@ class ObjectsSeen {
     }
   }
 
-  /// Of equally near ones the first of the grid.
+  /// Returns the object with the nearest rim cell; the first in the grid if several are equally near.
   int nearest_object(int cell, const std::vector<int>& rim) const {
     double least = std::numeric_limits<double>::infinity();
     int out = Scene::kNoObject;

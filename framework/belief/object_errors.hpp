@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// How well each of several objects is known, over the candidate cells, where the truth is known.
+// Errors of each of several objects over the candidate cells, compared with the true scene.
 //
-// A cell is of the object that is highest there, if it is of any; it is predicted where the footprint's probability is
-// at least 1/2. Predicted cells form components, each of cells that share a side. A component holds an object if it has
-// at least a fifth of the object's cells.
+// A cell belongs to the highest object at its centre, if any. It is predicted if the footprint's probability is at
+// least 1/2. Predicted cells form components of cells that share a side. A component holds an object if it contains at
+// least a fifth of the object's cells.
 //
-// Two objects are merged if one component holds both, though their own cells do not touch, not even at a corner: there
-// is a gap to be seen. An object is split if two components or more hold it, though its own cells are one component.
+// Two objects are merged if one component holds both although their own cells do not touch, not even at a corner, so
+// that a gap is visible. An object is split if several components hold it although its own cells are one component.
 #pragma once
 
 #include "belief/metrics.hpp"
@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-/// One for each object of the scene.
+/// Returns the errors of each object of the scene.
 std::vector<ObjectErrors> object_errors(const SurfaceMaps& maps, const Truth& truth, const CandidateGrid& candidates);
 
 }  // namespace palpate

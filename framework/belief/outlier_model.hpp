@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which contacts are outliers: their label may be wrong, which the footprint finds, or the height of a contact on an
-// object.
+// Probabilities that contacts are outliers. Either the label of a contact is wrong, which the footprint infers, or the
+// height of an object contact is wrong.
 #pragma once
 
 #include "belief/contact_log.hpp"
@@ -15,25 +15,25 @@ namespace palpate {
 
 class OutlierModel {
  public:
-  /// From this probability on, the place of a contact may be tapped again.
+  /// Least outlier probability at which the position of a contact may be tapped again.
   static constexpr double kRetapThreshold = 0.1;
 
-  /// `prior`: probability that a contact is an outlier, in (0, 1). `candidates` must outlive it.
+  /// `prior`: probability that a contact is an outlier, in (0, 1). `candidates` must outlive the model.
   OutlierModel(double prior, const CandidateGrid& candidates) : prior_(prior), surface_(candidates) {}
 
-  /// Computes the probabilities again; returns false if they were kept, as so many contacts are known. `objects`: the
-  /// GP of the heights on objects, built and with all data. `footprint`: knows the probabilities of wrong labels; null:
-  /// all labels are right.
+  /// Computes the probabilities again. Returns false if there are too many contacts, and the probabilities of earlier
+  /// ones are kept. `objects`: the built GP of the heights on objects, with all data. `footprint` has the probabilities
+  /// of wrong labels; null: all labels are right.
   bool update(const ContactLog& log, const GpModel& objects, const Footprint* footprint);
-  /// Forgets the surface, as labels have changed.
+  /// Removes the surface, because labels have changed.
   void reset() { surface_.reset(); }
 
-  /// Of each contact at the latest update(); empty before.
+  /// Returns the probability of each contact at the latest update(); empty before.
   const Eigen::VectorXd& probabilities() const { return probabilities_; }
-  /// The same by its label alone, without its height.
+  /// Returns the probabilities of wrong labels alone, without the heights.
   const Eigen::VectorXd& by_label() const { return by_label_; }
 
-  /// The surface without outliers. It has no map while is_surface() is false: then the surface is that of the GP.
+  /// Returns the surface without outliers. It has no map while is_surface() is false; the GP then has the surface.
   RobustSurface& surface() { return surface_; }
   const RobustSurface& surface() const { return surface_; }
   bool is_surface(const GpModel& objects) const {
@@ -43,7 +43,7 @@ class OutlierModel {
  private:
   double prior_;
   RobustSurface surface_;
-  Eigen::VectorXd probabilities_, by_label_;  ///< of each contact
+  Eigen::VectorXd probabilities_, by_label_;  ///< one value per contact
 };
 
 }  // namespace palpate

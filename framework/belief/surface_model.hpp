@@ -16,39 +16,40 @@ namespace palpate {
 
 class SurfaceModel {
  public:
-  /// `outlier_probability`: prior, of a contact; none: there are no outliers. `desk`: its height, metres.
+  /// `outlier_probability`: prior of a contact; nullopt: there are no outliers. `desk`: its height, metres.
   SurfaceModel(GpModel gp, const std::optional<double>& outlier_probability, const CandidateGrid& candidates,
                double desk);
 
   GpModel& gp() { return gp_; }
   const GpModel& gp() const { return gp_; }
 
-  /// Builds the GP, and keeps maps from the next update_maps() on if they are wanted. Returns whether anything was
-  /// missing.
+  /// Builds the GP, and optionally keeps maps from the next update_maps() on. Returns whether the GP or the maps did
+  /// not exist before.
   bool show(bool maps);
-  /// Forgets all data, as labels have changed.
+  /// Removes all data, because labels have changed.
   void reset();
 
-  /// Whether the config has an outlier model; and that model, null without or before show().
+  /// Returns whether the config has an outlier model. outliers() returns that model, null if there is none or before
+  /// show().
   bool has_outliers() const { return outliers_.has_value(); }
   const OutlierModel* outliers() const { return outliers_ && gp_.is_built() ? &*outliers_ : nullptr; }
-  /// Computes outliers again, of the data that the GP has; outliers() must not be null. `footprint`: of wrong labels,
-  /// may be null.
+  /// Computes the outliers again from the data of the GP. outliers() must not be null. `footprint` has the
+  /// probabilities of wrong labels; may be null.
   void find_outliers(const ContactLog& log, const Footprint* footprint);
 
-  /// Brings the maps up to date. Throws Error for values that are not finite.
+  /// Updates the maps. Throws Error for values that are not finite.
   void update_maps(const ContactLog& log);
-  /// M values; metres in the frame of the scene, and square metres. Empty before the first update_maps().
+  /// Return M values: metres in the frame of the scene, and square metres. Empty before the first update_maps().
   const Eigen::VectorXd& mean() const { return mean_; }
   const Eigen::VectorXd& variance() const { return variance_; }
-  /// Returns mean and standard deviation at a candidate without any map, equal to those of the maps to the last bit.
-  /// Only after show().
+  /// Returns mean and standard deviation at a candidate without a map, bitwise equal to those of the maps. Requires
+  /// show().
   Prediction predict(int candidate, const ContactLog& log) const;
-  /// Number of variances of the map that rounding has taken below 0.
+  /// Returns the number of variances of the map that rounding made negative.
   int variances_clamped() const { return is_without_outliers() ? outliers_->surface().variances_clamped() : 0; }
 
  private:
-  /// Whether the surface is that of the outlier model, else that of the GP.
+  /// Returns whether the outlier model provides the surface; otherwise the GP does.
   bool is_without_outliers() const { return outliers() != nullptr && outliers_->is_surface(gp_); }
 
   GpModel gp_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The check of what the readers of a run read.
+// Checks of the quantities that the readers of a run read.
 #pragma once
 
 #include <palpate/belief.hpp>
@@ -11,7 +11,7 @@ namespace palpate {
 /// Removes the quantities that `belief` does not offer from an optional reader.
 void leave_out_unoffered(ReadPlan::Reader& reader, const Belief& belief);
 
-/// Throws Error for a reader of a quantity that `belief`, by its `name`, does not offer.
+/// Throws Error if a reader reads a quantity that `belief`, named `name`, does not offer.
 void require_offered(const ReadPlan& plan, const Belief& belief, const std::string& name);
 
 }  // namespace palpate

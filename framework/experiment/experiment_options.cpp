@@ -183,7 +183,7 @@ std::vector<Field> keys_beside_options() {
 const ConfigKeys& config_keys() {
   static const ConfigKeys keys([](Fields& fields) {
     ExperimentOptions().list(fields);
-    // Composing opens no plugin, so it knows the groups and the heirs of the belief of core alone.
+    // Composing loads no plugin, so only the groups and inherited keys of the built-in belief are known here.
     HeightMapOptions height_map;
     fields.section(height_map, Field("belief", "").of_strategy());
     std::string no_option;

@@ -18,13 +18,13 @@ namespace palpate {
 struct InitialOptions : Options {
   enum class Design { random, sobol, grid, search };
   Design design = Design::random;
-  std::int64_t count = 3;  ///< of all designs but the search
-  double smallest = 0.02;  ///< of the search
+  std::int64_t count = 3;  ///< number of taps; not used by the search
+  double smallest = 0.02;  ///< smallest object that the search finds, metres
   bool searches() const { return design == Design::search; }
   void list(Fields& fields) override;
 };
 
-/// Absent: the default of the belief. At most one is given.
+/// An absent option has the default of the belief. At most one option is given.
 struct CandidateOptions : Options {
   std::optional<std::int64_t> count;
   std::optional<double> spacing;
@@ -47,7 +47,7 @@ struct LogOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// How a tap is chosen among the scores.
+/// Choice of a tap from the scores.
 struct ChoiceOptions : Options {
   enum class Fallback { uncertainty, none };
   enum class Repeat { forbid, allow };
@@ -77,17 +77,17 @@ struct ExperimentOptions : Options {
   void list(Fields& fields) override;
 };
 
-/// Returns what a belief needs of the options beside its own.
+/// Returns the options that a belief needs in addition to its own.
 RunSettings run_settings(const ExperimentOptions& options);
 
-/// Returns an option of the belief by its dotted path, as the resolved config has it: the text of a value, "{}" of a
-/// group; "" if it is absent.
+/// Returns an option of the belief by its dotted path, as in the resolved config: the text of a value, "{}" for a
+/// group, "" if absent.
 std::string belief_option(const ExperimentOptions& options, const char* path);
 
-/// The keys that a config has beside these options, for those who read them: what each is for.
+/// Returns the keys of a config that are not among these options, with their descriptions.
 std::vector<Field> keys_beside_options();
 
-/// What the lists of all these say to those who compose configs.
+/// Properties of all config keys that composing a config needs.
 class ConfigKeys;
 const ConfigKeys& config_keys();
 

@@ -13,10 +13,10 @@
 namespace palpate {
 namespace {
 
-/// Number of taps that the motion's own expectations count as, and the expected share of contacts.
+/// Weight of a motion's own expectations, in taps, and the expected share of contacts.
 constexpr double kPriorTaps = 5.0;
 constexpr double kPriorContacts = 0.95;
-/// Metres: a contact farther from the desk's height was not with the bare desk.
+/// Metres: contacts farther from the desk's height are not with the desk.
 constexpr double kMostOffDesk = 0.02;
 
 }  // namespace

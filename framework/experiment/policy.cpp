@@ -27,20 +27,20 @@ std::vector<int> draw_random(int count, int candidates, Random& random) {
   return order;
 }
 
-/// Adds the candidate nearest to (x, y) unless it was taken before.
+/// Adds the candidate nearest to (x, y) unless the design already has it.
 void take(std::vector<int>& design, const CandidateGrid& candidates, double x, double y, const Area& area) {
   const int index = candidates.nearest(x, y, area);
   if (std::find(design.begin(), design.end(), index) == design.end()) design.push_back(index);
 }
 
 std::vector<int> draw_sobol(std::size_t count, const CandidateGrid& candidates, const Area& area, Random& random) {
-  // A digital shift (Owen 2003): one random pattern of bits an axis, added without carry to every point. Unlike a
-  // shift modulo 1 it keeps the even spread over halves, quarters, ... and still depends on the seed.
+  // A digital shift (Owen 2003) XORs one random bit pattern per axis with every point. Unlike a shift modulo 1, it
+  // keeps the even spread over halves, quarters, ..., and it still depends on the seed.
   const std::array<std::uint64_t, 2> shift{random.bits(), random.bits()};
   boost::random::sobol sequence(2);
   const auto coordinate = [](std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1.0p-53; };
   std::vector<int> design;
-  std::array<std::uint64_t, 2> point{0, 0};  // Boost's sequence leaves out the origin, with which it begins
+  std::array<std::uint64_t, 2> point{0, 0};  // Boost's sequence omits the origin, its first point
   for (std::size_t i = 0; design.size() < count && i < 64 * static_cast<std::size_t>(candidates.size()); ++i) {
     take(design, candidates, coordinate(point[0] ^ shift[0]) * area.width, coordinate(point[1] ^ shift[1]) * area.depth,
          area);
@@ -62,9 +62,9 @@ std::vector<int> draw_lattice(std::size_t count, const CandidateGrid& candidates
   return design;
 }
 
-/// Visits the allowed candidates that are worth it, each by worth(score, candidate), in no particular order: by blocks,
-/// of which one is left out where its highest score at its first place would not be worth it. Of each four thousand
-/// candidates the highest block comes first, as what is visited there may leave no other worth a look.
+/// Visits the allowed candidates for which worth(score, candidate) holds, in no particular order. A block is skipped if
+/// its highest score at its first index is not worth a visit. In each group of four thousand candidates the block with
+/// the highest score comes first, because a visit there may make visits to the others unnecessary.
 template <class Worth, class Visit>
 void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Worth& worth, const Visit& visit) {
   constexpr Eigen::Index kBlock = loops::kScores;
@@ -94,7 +94,7 @@ void for_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Wo
   look(blocks * kBlock, scores.size());
 }
 
-/// Whether the score of an allowed candidate is so.
+/// Returns whether is(score) holds for an allowed candidate.
 template <class Is>
 bool any_allowed(const Eigen::VectorXd& scores, const Allowed& allowed, const Is& is) {
   for (Eigen::Index i = 0; i < scores.size(); ++i) {
@@ -110,11 +110,12 @@ std::vector<int> initial_design(const InitialOptions& options, const CandidateGr
   const auto count = static_cast<std::size_t>(options.count);
   Random random(seed, "initial");
   using Design = InitialOptions::Design;
-  if (options.design == Design::search) return {};  // one at a time: see SearchDesign
+  if (options.design == Design::search) return {};  // chosen one at a time: see Search
   if (options.design == Design::random) return draw_random(static_cast<int>(count), candidates.size(), random);
   std::vector<int> design = options.design == Design::sobol ? draw_sobol(count, candidates, area, random)
                                                             : draw_lattice(count, candidates, area);
-  // A design nearly as fine as the candidates themselves meets some of them twice: the free ones follow in order.
+  // A design nearly as fine as the candidates hits some of them twice. The free candidates then fill it in order of
+  // index.
   for (int i = 0; design.size() < count; ++i) {
     if (std::find(design.begin(), design.end(), i) == design.end()) design.push_back(i);
   }
@@ -129,7 +130,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
       return score > other.score || (score == other.score && candidate < other.candidate);
     }
   };
-  One best;  // of equals the first
+  One best;  // the first if scores are equal
   One second;
   for_allowed(
       scores, allowed,
@@ -155,7 +156,7 @@ Pick pick_best(const Eigen::VectorXd& scores, const Allowed& allowed, double sca
           out.candidate = std::min(out.candidate, i);
         });
   }
-  // The second best stays the runner-up, unless it is the one that is chosen: then the best is.
+  // The runner-up is the second best candidate, or the best one if the second best was chosen.
   const One& other = out.candidate == best.candidate ? second : best;
   out.score = scores(out.candidate);
   out.runner_up = other.candidate;

@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// Returns whether a line truly ends on an object.
+/// Returns whether a line ends on an object of the scene.
 bool ends_on_object(const Scene& scene, const TapLine& line) {
   if (line.from_above) {
     const Target target = line.target();
@@ -37,7 +37,7 @@ const Scene* RunMonitor::truth(Belief& belief) {
 }
 
 void RunMonitor::take_in(const TapRecord& tap, Belief& belief) {
-  // Objects stand as they were tapped: a push of this tap moves them after it.
+  // Uses the scene before this tap, because a push by it moves the objects only afterwards.
   if (const Scene* const scene = truth(belief); scene != nullptr && tap.is_contact()) note_object(tap, *scene);
   first_labels_.push_back(tap.reading && tap.reading->on_object);
   ++result_.taps;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Counts of a run, and the truth along its taps. It decides nothing.
+// Counts of a run, and the truth at its taps. It makes no decisions.
 #pragma once
 
 #include "experiment/tap_record.hpp"
@@ -15,23 +15,23 @@ namespace palpate {
 
 class RunMonitor {
  public:
-  /// `is_truth`: the config's scene is what is tapped. `scene` must outlive it.
+  /// `is_truth`: whether the taps are made on the config's scene. `scene` must outlive the monitor.
   RunMonitor(const Scene& scene, bool is_truth);
 
-  /// Takes in a tap, which `belief` has: contacts count as they are read now.
+  /// Counts a tap that `belief` already contains. Contacts count by their current readings.
   void take_in(const TapRecord& tap, Belief& belief);
   void stop(const std::string& reason) { result_.stop_reason = reason; }
 
-  /// Returns the counts so far; state and errors are left out.
+  /// Returns the counts so far, without state and errors.
   const RunResult& counts() const { return result_; }
 
-  /// Sets in `tap` the state of the belief before it, and the truth along its line.
+  /// Stores in `tap` the state of the belief before it, and the true label of its line.
   void describe(TapRecord& tap, Belief& belief);
 
-  /// Returns the scene as it stands now; null if it is not known.
+  /// Returns the scene in its current state; null if unknown.
   const Scene* truth(Belief& belief);
 
-  /// Returns the result as of now. The stage `summary` has begun.
+  /// Returns the current result. Requires that the stage `summary` has begun.
   RunResult result(Belief& belief);
 
  private:
@@ -40,13 +40,13 @@ class RunMonitor {
   const Scene& scene_;
   bool is_truth_;
   std::unique_ptr<const Scene> pushed_;  ///< the scene, if objects were pushed
-  int truth_taps_ = -1;                  ///< taps after which the belief has the truth
+  int truth_taps_ = -1;                  ///< number of taps when the truth was last given to the belief
   RunResult result_;
-  std::vector<bool> first_labels_;      ///< of each tap: on an object, as it was read then
-  std::vector<ObjectTouches> touches_;  ///< of each object
+  std::vector<bool> first_labels_;      ///< per tap: whether it was read as on an object at that time
+  std::vector<ObjectTouches> touches_;  ///< per object
 };
 
-/// Throws Error, so that the run fails, for an error that is not a finite number after `taps` taps.
+/// Throws Error, so that the run fails, if an error after `taps` taps is not a finite number.
 void require_finite(const Errors& errors, int taps);
 
 }  // namespace palpate

@@ -10,22 +10,23 @@
 namespace palpate {
 namespace {
 
-// Of 200 cubes of 3 cm, 60 taps of an arm that errs find 92 % with a quarter of them, 96 % with these and with twice as
-// many; the paper's objects are found at tap 1.8 with any of these.
+// In a test with 200 cubes of 3 cm, an inexact arm found 96 % within 60 taps, also with twice as many discs, but only
+// 92 % with a quarter of them. The paper's objects are found at tap 1.8 on average with any of these numbers.
 constexpr int kDiscs = 16000;
 constexpr int kWhole = 1000;
-// Of an arm of Baxter's class: where its tip is, metres, and how often it does not feel a contact. On a perfect arm the
-// same cubes are found as soon: a box is no disc, and the margin covers its corners.
+// Errors of an arm of Baxter's class: standard deviation of its tip's position, metres, and probability to miss a
+// contact. With these errors, a perfect arm finds the same cubes as soon as without, because the margin covers corners
+// of boxes, which discs lack.
 constexpr double kBlur = 0.002;
 constexpr double kMissed = 0.02;
 constexpr double kFar = 5.0 * kBlur;
 
-/// How probable it is to look so far inside an edge (metres, below 0 outside) and to find nothing.
+/// Returns the probability that a tap this far inside an edge (metres, below 0 outside) finds nothing.
 double passed_by(double inside) { return 1.0 - (1.0 - kMissed) * 0.5 * math::erfc(-inside / (kBlur * std::sqrt(2.0))); }
 
 double between(double least, double most, Random& random) { return least + (most - least) * random.uniform(); }
 
-// Without SSE4.1 std::ceil and std::floor are calls.
+// Without SSE4.1, std::ceil and std::floor are function calls.
 int rounded_up(double t) {
   const int whole = static_cast<int>(t);
   return whole + (whole < t ? 1 : 0);
@@ -35,8 +36,8 @@ int rounded_down(double t) {
   return whole - (whole > t ? 1 : 0);
 }
 
-/// The first and the last of `count` places, `step` apart from `start` on, in [low, high]; the last is before the first
-/// where there is none.
+/// Indices of the first and the last of `count` positions start, start + step, ... in [low, high]; if there are none,
+/// the last is before the first.
 struct Span {
   Span(double low, double high, double start, double step, int count)
       : first(std::max(0, rounded_up((low - start) / step))),
@@ -101,8 +102,13 @@ int SearchDesign::next(const Allowed& allowed) {
   return best;
 }
 
+<<<<<<< HEAD:framework/experiment/search_design.cpp
 void SearchDesign::weigh(const Disc& disc, int weight) {
   // A disc cuts a row of candidates in one piece.
+=======
+void Search::weigh(const Disc& disc, int weight) {
+  // A disc covers one contiguous interval of each row of candidates.
+>>>>>>> 0d5bcdc24915db9ae1929e1b4106b0430ec29481:framework/experiment/search.cpp
   const double across = step_of(candidates_.xs);
   const double along = step_of(candidates_.ys);
   const Span rows(disc.y - disc.radius, disc.y + disc.radius, candidates_.ys(0), along, candidates_.rows);

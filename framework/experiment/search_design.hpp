@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where to look for an object of which nothing is known but how small it may be: the initial design `search`.
+// The initial design `search`: finds an object of which only the smallest size is known.
 #pragma once
 
 #include "experiment/policy.hpp"
@@ -13,54 +13,61 @@
 
 namespace palpate {
 
-/// A greedy search. Some thousand discs, each a place where the object could be hidden, are drawn; the next tap goes
-/// where most of them are, and those that hold it drop out, but for how probable it is that the tap missed the object
-/// beside its edge, or did not feel it: an arm that is off by millimetres may not strike off what it passed by. Of
-/// places that as much speaks for, as of all once no disc is left, it takes the middle of the largest gap: the one
-/// farthest from all taps and from the edge of the area.
+/// A greedy search. It draws 16000 discs, each a hypothesis of the hidden object. The next tap goes where the discs
+/// have the largest total weight. After each tap that finds nothing, the weight of every disc near it is multiplied by
+/// the probability that the tap missed such an object. The tap may have landed outside the edge, or the arm may have
+/// felt nothing. So a tap of an arm with errors of millimetres does not rule out objects that it missed narrowly. If
+/// positions have equal weight, for example without discs, the tap goes to the middle of the largest gap, farthest from
+/// all taps and from the edge of the area.
 ///
-/// Diameters run from the smallest object to the area's shorter side, uniformly in their logarithms: of the smallest
-/// alone, the search would comb the area in narrow rows and meet a large object late; the large discs send the first
-/// taps to the middle, where there is most of every object that must fit into the area. Discs do for boxes and rods:
-/// outlines of all angles and proportions find none of them sooner by more than the noise of 1000 placements.
+/// Diameters lie between the smallest object and the area's shorter side, uniformly in their logarithm. With only the
+/// smallest, the search would scan the area in narrow rows and find large objects late. Large discs send the first taps
+/// to the middle, which most large objects cover. Discs also suffice for boxes and rods: rectangles of all angles and
+/// proportions find none of them sooner, up to the noise of 1000 placements.
 ///
+<<<<<<< HEAD:framework/experiment/search_design.hpp
 /// Whoever misses in the same places is sent to the same next one: its state is the seed and the places looked at.
 class SearchDesign {
+=======
+/// The next position depends only on the seed and on the positions tapped so far.
+class Search {
+>>>>>>> 0d5bcdc24915db9ae1929e1b4106b0430ec29481:framework/experiment/search.hpp
  public:
   /// `smallest`: metres, above 0 and below both sides of the area. `candidates` form a grid and outlive the search.
   SearchDesign(double smallest, const CandidateGrid& candidates, const Area& area, Random random);
 
-  /// There was a tap that hit nothing. A place that cannot be reached counts, too: the arm need not try the neighbours
-  /// at once, and the discs beside it stay.
+  /// Adds a tap without a contact on an object. An unreachable position counts, too: then the arm does not try its
+  /// neighbours at once, and the discs beside it stay.
   void look(const Target& place);
 
-  /// The candidate to tap next, one of the `allowed`; of equals the first. At least one must be allowed.
+  /// Returns the next candidate to tap, one of the `allowed`; the first of equally good ones. At least one must be
+  /// allowed.
   int next(const Allowed& allowed);
 
  private:
   struct Disc {
     double x, y, radius;
-    int weight;  ///< probability that it was passed by as often as was looked there, in thousandths
+    int weight;  ///< probability that all taps so far missed it, in thousandths
   };
 
-  /// When the first place is asked for: of a search that nobody asks only its options count.
+  /// Draws the discs at the first call of next(), so an unused search costs nothing.
   void draw_discs();
   void strike_off(const Target& place);
-  /// Adds to what the candidates in a disc weigh.
+  /// Adds `weight` to the candidates in a disc.
   void weigh(const Disc& disc, int weight);
-  /// What the discs that hold each candidate weigh.
+  /// Returns the total weight of the discs that contain each candidate.
   std::vector<int> weights() const;
-  /// Radius of the largest disc around a place that lies on the area and has no tap in it.
+  /// Returns the radius of the largest disc around a position that lies in the area and contains no tap.
   double room(const Target& place) const;
 
   double smallest_;
   const CandidateGrid& candidates_;
   Area area_;
   Random random_;
-  std::vector<Disc> discs_;  ///< those of some weight
-  std::vector<int> rises_;   ///< of weights(), from one candidate of a row to the next; first and last of a row apart
+  std::vector<Disc> discs_;  ///< discs with a positive weight
+  std::vector<int> rises_;   ///< differences of weights() along each row, with 0 before and after the row
   std::vector<Target> looked_;
-  std::size_t struck_off_ = 0;  ///< of these: only when the next place is asked for, after a hit nobody asks
+  std::size_t struck_off_ = 0;  ///< number of looked_ already applied to the discs; applied only by next()
 };
 
 }  // namespace palpate

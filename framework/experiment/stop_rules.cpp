@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-/// A rule that reads the belief: a line here is all that it takes, beside its option.
+/// A rule that reads the belief. A new rule needs an option and a row in kRules.
 struct Rule {
   const char* name;
   std::optional<double> StopOptions::*bound;

@@ -25,47 +25,47 @@ constexpr const char* kOfCaller = "of the caller's scores: ";
 struct TapRecord {
   TapRequest request;
   TapResult result;
-  /// The result as the belief read it when the tap was made; nullopt for a failed tap.
+  /// Reading of the result by the belief at the time of the tap; nullopt for a failed tap.
   std::optional<TapReading> reading;
 
   // The choice.
   int candidate = 0;
-  std::string why{};  ///< of a fallback
+  std::string why{};  ///< reason of a fallback
   std::optional<double> score;
   std::optional<int> ties;
   std::optional<Target> runner_up;
   std::optional<double> runner_up_score;
-  std::optional<double> expected_seconds;  ///< with several motions
-  /// Drawn lines that the backend rejected, in their order: a hexadecimal digit per four lines, its highest bit for the
-  /// first; digits after the last rejected line are left out.
+  std::optional<double> expected_seconds;  ///< expected duration; only with several motions
+  /// Drawn lines that the backend rejected, in order: one hexadecimal digit per four lines, with the highest bit for
+  /// the first line. Digits after the last rejected line are left out.
   std::string unreached{};
 
-  BeliefState state;                                         ///< before the tap
-  Errors errors;                                             ///< of that state
+  BeliefState state;                                         ///< state before the tap
+  Errors errors;                                             ///< errors of the belief in that state
   std::optional<bool> true_on_object;                        ///< nullopt if the truth is not known
-  std::optional<double> shown_expected_rmse = std::nullopt;  ///< metres, as displays showed it before the tap
+  std::optional<double> shown_expected_rmse = std::nullopt;  ///< metres, as displayed before the tap
 
   int number() const { return request.number; }
   Target target() const { return request.line.target(); }
   bool is_contact() const { return result.is_contact(); }
-  /// Whether the whole line was free, which tells as much as a contact.
+  /// Returns whether the whole line was free, which is as informative as a contact.
   bool is_free_line() const { return !request.line.from_above && result.outcome == Outcome::no_contact; }
-  /// Whether the scores of a calling program chose the tap, not the strategy.
+  /// Returns whether the scores of a calling program chose the tap instead of the strategy.
   bool is_of_caller() const {
     return request.source == Source::caller || (request.source == Source::fallback && why.rfind(kOfCaller, 0) == 0);
   }
 };
 
-/// A choice in the place of the strategy's: the scores of a caller, one per candidate, or a recorded choice.
+/// Replacement for the strategy's choice: the scores of a caller, one per candidate, or a recorded choice.
 struct TapOverride {
   Eigen::VectorXd scores;           ///< finite; empty if there is a `choice`
-  std::optional<TapRecord> choice;  ///< line, source, why, and all about the score
+  std::optional<TapRecord> choice;  ///< line, source, why and all fields of the score
 };
 
-/// The stop reason of a run that its user interrupted: it has no summary, and can be resumed.
+/// Stop reason of a run that its user interrupted. Such a run has no summary and can be resumed.
 constexpr const char* kStoppedByUser = "interrupted";
 
-/// Reasons of taps that fail because the backend's answer cannot be.
+/// Reasons of taps that fail because the backend returned an impossible result.
 constexpr const char* kHeightRefused = "the backend reported a height that is not a finite number";
 constexpr const char* kAlongRefused = "the backend reported an end point that is not on the path of the tool";
 constexpr const char* kNumberRefused = "the backend reported a force or a time that is not a finite number";
@@ -73,13 +73,13 @@ inline bool is_refused(const TapResult& result) {
   return result.reason == kHeightRefused || result.reason == kAlongRefused || result.reason == kNumberRefused;
 }
 
-/// A contact whose label differs from that at its tap.
+/// A contact whose label has changed since its tap.
 struct Relabelled {
   int tap = 0;
-  bool on_object = false;  ///< now
+  bool on_object = false;  ///< current label
 };
 
-/// Contacts on the cells of one object, whatever their labels.
+/// Contacts on the cells of one object, with any label.
 struct ObjectTouches {
   int taps = 0;
   std::optional<int> first_tap;
@@ -92,24 +92,24 @@ struct ObjectResult : ObjectErrors, ObjectTouches {};
 struct RunResult {
   std::string stop_reason;
   bool interrupted = false;
-  bool from_above = true;  ///< whether all candidates are straight down
+  bool from_above = true;  ///< whether all candidate lines point straight down
   int taps = 0;
   int object_taps = 0;
   int desk_taps = 0;
-  int no_contact_taps = 0;  ///< on lines that are not from above
+  int no_contact_taps = 0;  ///< only for lines that are not from above
   int failed_taps = 0;
   std::optional<int> first_hit_tap;
   std::vector<Relabelled> relabelled;
-  std::optional<std::vector<ObjectResult>> objects;  ///< of the scene, in its order; nullopt if the truth is not known
+  std::optional<std::vector<ObjectResult>> objects;  ///< in the order of the scene; nullopt if the truth is not known
   double robot_seconds = 0.0;
   BeliefState state;
   Errors errors;
 };
 
-/// What is known of a tap before it is made, for people.
+/// Prediction for a tap before it is made, for display.
 struct Preview {
-  std::optional<Prediction> expected;  ///< the height, if its models are built
-  std::vector<std::string> motion;     ///< lines of the backend
+  std::optional<Prediction> expected;  ///< predicted height, if the height models are fitted
+  std::vector<std::string> motion;     ///< lines of text from the backend
 };
 
 class Experiment;
@@ -118,14 +118,14 @@ class Experiment;
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// Whether the tap may be made; nothing has moved and nothing is announced. If not, the run ends, interrupted, as if
-  /// the tap had never been chosen.
+  /// Returns whether the tap may be made. At this time nothing has moved and no tap was announced. If not, the run is
+  /// interrupted, as if the tap had never been chosen.
   virtual bool permits(const TapRecord& /*tap*/, const Experiment& /*experiment*/) { return true; }
-  /// Whether the errors of the state before a tap are shown, whether or not a reader of the run needs them.
+  /// Returns whether the observer shows the errors before each tap, even if no reader of the run needs them.
   virtual bool wants_errors() const { return false; }
-  /// The tap is chosen; nothing has moved.
+  /// Called when the tap is chosen and nothing has moved yet.
   virtual void announce(const TapRecord& /*tap*/) {}
-  /// The tap is over. `seconds`: since the last tap, by phase.
+  /// Called after the tap. `seconds`: time since the previous tap, by phase.
   virtual void record(const TapRecord& /*tap*/, const std::array<double, kPhases>& /*seconds*/) {}
 };
 

@@ -77,7 +77,7 @@ void TapSelector::allow(const Belief& belief) {
 
 bool TapSelector::choose_initial(const Belief& belief, TapRecord& tap) {
   tap.request.source = Source::initial;
-  tap.candidate = 0;  // of drawn lines
+  tap.candidate = 0;  // index for drawn lines
   if (belief.candidates().fixed) {
     const std::optional<int> again = second_look(belief);
     tap.candidate = again ? *again : search_ ? search_->next(allowed_) : initial_[taps_.size()];
@@ -113,7 +113,7 @@ bool TapSelector::choose(Belief& belief, TapRecord& tap, const TapOverride* over
   const auto pick = [&](const Eigen::VectorXd& of, double scale) {
     return pick_best(of, allowed_, scale, options_.choice.tie_tolerance);
   };
-  // The size of a caller's scores before the first tap is not known.
+  // The scale of a caller's scores before the first tap is not known.
   Pick picked = override != nullptr ? pick(override->scores, 0.0) : pick(scores(belief), acquisition_->prior_scale());
   if (picked.flat && options_.choice.fallback == ChoiceOptions::Fallback::uncertainty) {
     tap.request.source = Source::fallback;
@@ -152,7 +152,7 @@ int TapSelector::find(const Candidates& candidates, const TapLine& line) const {
 void TapSelector::take_in(const TapRecord& tap, const Belief& belief) {
   const int candidate = belief.candidates().fixed ? find(belief.candidates(), tap.request.line) : 0;
   taps_.push_back({candidate, tap.is_contact()});
-  // A tap that was broken off says nothing of what is there.
+  // An aborted tap has no information about the scene.
   const Outcome outcome = tap.result.outcome;
   const bool has_looked =
       outcome == Outcome::contact || outcome == Outcome::no_contact || outcome == Outcome::unreachable;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The choice of the next tap: the initial design or the search, then the acquisition's scores, ties, and the fallback
-// where the scores do not tell candidates apart.
+// Choice of the next tap. The initial design or the search chooses first, then the acquisition's scores, with rules for
+// ties. A fallback chooses if the scores do not distinguish candidates.
 #pragma once
 
 #include "experiment/check_quantities.hpp"
@@ -20,46 +20,46 @@ namespace palpate {
 
 class TapSelector {
  public:
-  /// `options` must outlive it. Throws Error for an acquisition that cannot be made.
+  /// `options` must outlive the selector. Throws Error for an invalid acquisition.
   TapSelector(const ExperimentOptions& options, const Belief& belief, const Context& context);
 
-  /// Adds the acquisition and the fallback to the readers.
+  /// Adds the quantities that the acquisition and the fallback read.
   void add_readers(ReadPlan& plan) const;
 
-  /// Whether the initial design chooses the next tap. A search ends with a contact on an object that is probably no
-  /// outlier, or after all candidates; it taps a doubtful contact once more before it goes on.
+  /// Returns whether the initial design chooses the next tap. A search ends with an object contact that is probably not
+  /// an outlier, or after all candidates. It taps a suspected outlier again before it continues.
   bool is_starting(const Belief& belief) const;
-  /// Returns who would choose the next tap, but for a fallback.
+  /// Returns the source that would choose the next tap, unless a fallback becomes necessary.
   Source next_source(const Belief& belief, const TapOverride* override) const {
     if (override != nullptr)
       return override->choice && !override->choice->is_of_caller() ? Source::acquisition : Source::caller;
     return is_starting(belief) ? Source::initial : Source::acquisition;
   }
 
-  /// Chooses a candidate, and notes in `tap` line, source and all about the score. The belief is up to date for
-  /// next_source(); a fallback begins its stage. Returns false if no candidate is left. `override` (may be null) stands
-  /// in for the acquisition.
+  /// Chooses a candidate, and stores its line, source and score in `tap`. The belief must be up to date for
+  /// next_source(); a fallback begins its own stage. Returns false if no candidate is left. `override` (may be null)
+  /// replaces the acquisition.
   bool choose(Belief& belief, TapRecord& tap, const TapOverride* override);
 
-  /// Returns the acquisition's scores, M values. Throws Error for a score that is not finite.
+  /// Returns the acquisition's scores, M values. Throws Error if a score is not finite.
   const Eigen::VectorXd& scores(const BeliefView& belief);
 
-  /// Takes in a tap, which `belief` has.
+  /// Adds a tap that `belief` already contains.
   void take_in(const TapRecord& tap, const Belief& belief);
 
  private:
-  /// Returns the candidate of a recorded line; 0 if there is none.
+  /// Returns the candidate of a recorded line; 0 if not found.
   int find(const Candidates& candidates, const TapLine& line) const;
   static void begin_fallback(Belief& belief);
   bool choose_initial(const Belief& belief, TapRecord& tap);
-  /// Returns a candidate, among those allowed, with a contact that may be an outlier and was tapped once.
+  /// Returns an allowed candidate with a suspected outlier that was tapped only once.
   std::optional<int> second_look(const Belief& belief) const;
-  /// Allows the candidates without a tap, and those whose contacts may all be outliers or have moved.
+  /// Allows candidates without a tap, and candidates whose contacts are all suspected outliers or have moved.
   void allow(const Belief& belief);
 
   const ExperimentOptions& options_;
   Area area_;
-  CandidateGrid grid_;  ///< of fixed candidates
+  CandidateGrid grid_;  ///< only for fixed candidates
   std::shared_ptr<Acquisition> acquisition_;
   std::vector<int> initial_;            ///< candidates of a design that counts its taps
   std::optional<SearchDesign> search_;  ///< the other design

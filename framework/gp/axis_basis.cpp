@@ -39,7 +39,7 @@ class AxisCovariances {
       const Eigen::VectorXd here = column(i);
       if ((here - there).cwiseAbs().maxCoeff() > 64.0 * kEpsilon * here.cwiseAbs().maxCoeff()) return false;
     }
-    // All positions have to be symmetric, also those between the compared columns.
+    // All positions have to be symmetric, including positions between the compared columns.
     const Eigen::VectorXd middle = positions_ + positions_.reverse();
     return (middle.array() - middle(0)).abs().maxCoeff() <= 16.0 * kEpsilon * positions_.cwiseAbs().maxCoeff();
   }
@@ -104,7 +104,7 @@ struct Part {
   }
 };
 
-/// Returns even and odd part under symmetry, else the whole.
+/// Returns the even and the odd part under symmetry, else the whole.
 std::vector<Part> parts_of(const AxisCovariances& covariances) {
   if (!covariances.is_mirrored()) return {{covariances, covariances.size(), 0.0}};
   const Eigen::Index half = (covariances.size() + 1) / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// CandidateGrid for the next tap: the centres of a grid of cells over the area.
+// Candidates of the next tap: the centres of a grid of cells over the area.
 #pragma once
 
 #include <palpate/belief.hpp>

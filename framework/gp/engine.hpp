@@ -25,7 +25,7 @@ namespace palpate {
 
 /// One row of the factor, for the tap in the last row of `positions`.
 struct FactorRow {
-  PointsView positions;  ///< of all n rows so far, this row included
+  PointsView positions;  ///< positions of all n rows so far, this row included
   VectorView factor;     ///< l, n - 1 values
   double pivot;
   VectorView inverse;          ///< c, n values; empty unless needs_inverse()
@@ -42,8 +42,8 @@ class Engine {
   /// Returns whether absorb() reads the row of L^-1.
   virtual bool needs_inverse() const = 0;
 
-  /// Resets the maps to the prior, with `means` maps of means. `prior` is the kernel variance at the candidates, one
-  /// value if it is the same at all.
+  /// Resets the maps to the prior, with `means` maps of means. `prior` is the kernel variance at the candidates, or one
+  /// value if all are equal.
   void restart(int means, const VectorView& prior) {
     clear();
     maps_.restart(means, prior);
@@ -52,8 +52,8 @@ class Engine {
   /// Adds a row to the maps.
   virtual void absorb(const FactorRow& row) = 0;
 
-  /// Returns, per row, the largest error of a covariance between its tap and a candidate, in the unit of the kernel.
-  /// The error is that of the engine's approximation, beyond the rounding of the kernel. Empty for an engine without
+  /// Returns, per row, the largest error of a covariance between its tap and a candidate, in the unit of the kernel. It
+  /// is the error of the engine's approximation, without the rounding of the kernel. Empty for an engine without
   /// approximation.
   virtual VectorView covariance_errors() const { return Eigen::VectorXd(); }
 
@@ -92,7 +92,7 @@ struct EngineSettings {
   /// Largest error of `automatic` beyond the rounding of `dense`, of means in prior standard deviations and of
   /// variances in prior variances.
   double accuracy = 1e-9;
-  double tolerance = 1e-15;  ///< of `lowrank`; see make_lowrank()
+  double tolerance = 1e-15;  ///< tolerance of `lowrank`; see make_lowrank()
   int taps = 64;             ///< expected number of taps, for memory and the choice by `automatic`
   std::shared_ptr<Workers> workers = std::make_shared<Workers>(1);
 };

@@ -7,7 +7,7 @@ namespace {
 /// Largest number of reserved values, 1 GiB. Reserved memory costs nothing until it is used.
 constexpr double kMostReserved = 1.0 * (1 << 27);
 
-/// Blocks per call of the kernel, because the overhead of a call is that of ten candidates.
+/// Blocks per call of the kernel, because the overhead of a call equals the time of ten candidates.
 constexpr int kBlocksPerCall = 4;
 constexpr Eigen::Index kCandidatesPerCall = Eigen::Index{kBlocksPerCall} * loops::kBlock;
 

@@ -16,8 +16,8 @@ constexpr std::ptrdiff_t kTile = std::ptrdiff_t{kRows} * loops::kPanelLines * kL
 struct Axis {
   const Eigen::VectorXd& positions;
   AxisBasis basis;
-  Eigen::VectorXd covariance;   ///< of the newest tap with the positions; after take() its residual
-  Eigen::VectorXd coordinates;  ///< of the covariance in the basis
+  Eigen::VectorXd covariance;   ///< covariance of the newest tap with the positions; after take() its residual
+  Eigen::VectorXd coordinates;  ///< coordinates of the covariance in the basis
   double largest = 0.0;         ///< largest covariance
   double residual = 0.0;        ///< largest covariance outside the span of the basis
 
@@ -162,7 +162,7 @@ class Lowrank final : public Engine {
 
   Axis x_;
   Axis y_;
-  Eigen::VectorXd errors_;  ///< of covariances, one per tap, with reserved memory
+  Eigen::VectorXd errors_;  ///< errors of covariances, one per tap, with reserved memory
   int reserved_ = 0;
   loops::Panels in_x_;                  ///< P_x, one row per tap
   loops::Panels in_y_;                  ///< P_y

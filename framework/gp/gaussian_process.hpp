@@ -14,10 +14,11 @@
 
 namespace palpate {
 
-/// Parameters of a GP beside those of its kernel. Standard deviations and mean are in the unit of the targets.
+/// Parameters of a GP, in addition to the parameters of its kernel. Standard deviations and mean are in the unit of the
+/// targets.
 struct GpSettings {
   double signal = 1.0;
-  double noise = 0.0;  ///< of one tap, independent between taps, also at one position
+  double noise = 0.0;  ///< noise of one tap, independent between taps, also at one position
   double mean = 0.0;   ///< prior mean, constant
   /// Standard deviation, in signals, of an unknown constant that is added to the mean. 0: the mean is known.
   double mean_ratio = 0.0;
@@ -37,15 +38,14 @@ struct GpDiagnostics {
 
 /// Regression with a Gaussian process (Rasmussen and Williams 2006, algorithm 2.1) over a fixed set of candidates. A GP
 /// has one or several outputs: quantities that are measured at the same positions, with the same kernel and ratio of
-/// noise to signal. The outputs share one factorisation, and one variance but for its unit.
+/// noise to signal. The outputs share one factorisation, and their variances differ only by the unit.
 ///
-/// Internally, targets are standardised, (value - mean) / signal, and the covariance is that of the kernel plus
-/// (noise / signal)^2 on the diagonal. Results have the unit of the targets again. A tap costs one update of the maps.
-/// If the jitter or the hyperparameters change, all is computed again: n updates of the maps, and O(n^3) for the
-/// factor.
+/// Internally, targets are standardised, (value - mean) / signal, and the covariance is the kernel's, plus (noise /
+/// signal)^2 on the diagonal. Results have the unit of the targets again. A tap costs one update of the maps. If the
+/// jitter or the hyperparameters change, all is computed again: n updates of the maps, and O(n^3) for the factor.
 ///
-/// An unknown constant in the mean is integrated out (the same, section 2.7). Its posterior needs L^-1 1, which grows
-/// like L^-1 targets, and the map V^T L^-1 1.
+/// An unknown constant in the mean is integrated out (the same book, section 2.7). Its posterior needs L^-1 1, which
+/// grows like L^-1 targets, and the map V^T L^-1 1.
 ///
 /// A tap that makes the matrix singular in double precision, such as a duplicate without noise, raises the jitter. The
 /// jitter is a variance on the whole diagonal and part of the model from then on. If no jitter helps, because the
@@ -67,7 +67,7 @@ class GaussianProcess {
   bool set_trust(const VectorView& trust) { return replace(trust_.head(size_), trust); }
   /// Sets the values of output 0 of all taps. Returns whether a value changed; then all is computed again.
   bool set_targets(const VectorView& values) { return replace(targets_.col(0).head(size_), values); }
-  /// Sets the positions of all taps, one row per tap. Returns whether one changed; then all is computed again.
+  /// Sets the positions of all taps, one row per tap. Returns whether a position changed; then all is computed again.
   bool set_positions(const PointsView& positions);
 
   /// Keeps a map of the mean of the outputs 0 to `outputs` - 1; at first of output 0 alone. Restarts the maps if they
@@ -132,11 +132,11 @@ class GaussianProcess {
 
   int size_ = 0;
   Points positions_;         ///< the first size_ rows, in the order of the taps
-  Eigen::MatrixXd targets_;  ///< as given, one column per output
+  Eigen::MatrixXd targets_;  ///< targets as given, one column per output
   Eigen::VectorXd trust_;
 
   Factor factor_;
-  Points factored_;                 ///< positions of the factor's rows: those of all taps but the redundant ones
+  Points factored_;                 ///< positions of the factor's rows: all taps except the redundant ones
   Eigen::MatrixXd solved_;          ///< L^-1 B; see FactoredTaps
   Eigen::VectorXd covariance_;      ///< scratch: of the new tap with the earlier ones
   FactorReport report_;             ///< jitter in squares of the signal; redundant taps are not counted here

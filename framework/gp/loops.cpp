@@ -144,7 +144,7 @@ struct Mirrored {
   }
 };
 
-/// Computes all tiles, panel by panel, because A of a strip is smaller than B of all panels.
+/// Computes all tiles panel by panel, because a strip's part of A is smaller than all panels of B.
 template <class Tiles, class Sink>
 HWY_INLINE void strips(const Tiles& tiles, const Sink& sink) {
   const Product& product = tiles.product;

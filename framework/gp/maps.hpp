@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Memory of the maps over the candidates, in the layout of the loops (loops.hpp), and its order against the candidates.
+// Memory of the maps over the candidates in the layout of the loops (loops.hpp), and the mapping from cells to
+// candidates.
 #pragma once
 
 #include "gp/candidate_grid.hpp"
@@ -32,7 +33,7 @@ struct MapBlock {
 /// is a sequence of tiles, one tile per panel of the columns.
 class Tiling {
  public:
-  /// CandidateGrid at any positions: strips of one tile with kBlock consecutive candidates.
+  /// Candidates at any positions: strips of one tile with kBlock consecutive candidates.
   static Tiling blocks(int candidates);
   /// A product grid: strips of loops::kStripRows rows, with the tiles of loops::Product.
   static Tiling grid(const CandidateGrid& candidates);
@@ -41,11 +42,11 @@ class Tiling {
   static Tiling mirrored_grid(const CandidateGrid& candidates);
 
   int strips() const { return strips_; }
-  /// Number of cells in a strip and in a map, padding included.
+  /// Returns the number of cells in a strip, or in a map, padding included.
   std::size_t strip_size() const { return strip_size_; }
   std::size_t size() const { return strip_size_ * static_cast<std::size_t>(strips_); }
 
-  /// Distance from the cells of a tile to those of its mirror image; 0 without mirror images.
+  /// Returns the offset from a tile's cells to the cells of its mirror image; 0 without mirror images.
   std::ptrdiff_t mirror() const { return mirror_; }
 
   /// Calls visit(MapBlock) for the blocks of a strip.
@@ -73,7 +74,7 @@ class Tiling {
   void tile(int columns);
 
   int candidates_ = 0;
-  int columns_ = 0;        ///< of the grid; kBlock without a grid
+  int columns_ = 0;        ///< columns of the grid; kBlock without a grid
   int tiled_columns_ = 0;  ///< columns that are not mirror images
   int rows_ = 0;
   int padded_ = 0;  ///< tiled columns with padding
@@ -89,7 +90,7 @@ class Maps {
  public:
   Maps(const Tiling& tiling, const std::shared_ptr<Workers>& workers);
 
-  /// Sets `means` maps of means to 0 and the variance to the prior, one value if it is the same at all candidates.
+  /// Sets `means` maps of means to 0 and the variance to the prior, which is one value if all candidates have the same.
   void restart(int means, const VectorView& prior);
 
   /// Returns the arguments of a loop that updates a strip by a row with these coefficients, one per mean.

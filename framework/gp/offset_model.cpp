@@ -9,9 +9,10 @@
 namespace palpate {
 namespace {
 
-constexpr double kOther = 0.05;   // probability that a low contact is none with the bare desk
-constexpr double kOthers = 0.01;  // metres, deviation of the height of what is no contact with the bare desk
-// A rim of an object is where something that low was touched that near; a wall goes down to the desk.
+constexpr double kOther = 0.05;   // probability that a low contact is not with the bare desk
+constexpr double kOthers = 0.01;  // metres: standard deviation of the height of such a contact
+// A low contact near an object contact may be at the rim of the object if the object contact is at most this high.
+// Beside higher contacts, a wall reaches down to the desk.
 constexpr double kRim = 0.04;     // metres of height
 constexpr double kBeside = 0.03;  // metres
 
@@ -28,7 +29,7 @@ void OffsetModel::add(const Target& place, double seconds, double excess, int mo
 
 void OffsetModel::find_desk() {
   const std::size_t contacts = touched_.size();
-  std::vector<bool> left(contacts, true);  // but for those that are low all alone
+  std::vector<bool> left(contacts, true);  // contacts of the search; single low contacts are excluded
   above_ = left;
   search_from_below(above_);
   std::vector<bool> found = above_;
@@ -38,16 +39,16 @@ void OffsetModel::find_desk() {
       if (left[i] && !found[i]) lows.push_back(i);
     }
     if (lows.size() > 1) above_ = found;
-    if (lows.size() != 1) return;  // of none: there are no two that agree, and the first search stands
+    if (lows.size() != 1) return;  // without a low contact, no two agree, and the first search remains
     left[lows.front()] = false;
     found = left;
     search_from_below(found);
   }
 }
 
-/// Of the contacts that are `left` those remain so that lie clearly above the others.
+/// Removes from `left` the contacts with the desk. Contacts that lie clearly above the others remain.
 void OffsetModel::search_from_below(std::vector<bool>& left) const {
-  // The process of covariance() as a regression: what all share, the drift, and what is each motion's alone.
+  // The GP of covariance() as a linear regression: the common offset, the drift, and the offset of each motion.
   const auto motions = static_cast<Eigen::Index>(motions_.size());
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(2 + motions);
   Eigen::VectorXd prior = Eigen::VectorXd::Constant(2 + motions, (1.0 - kShared) * prior_.offset * prior_.offset);
@@ -98,7 +99,7 @@ void OffsetModel::judge_all() {
     judged_.push_back(low.when);
     excess.push_back(low.excess);
   }
-  // The latest tell of the drift, and of the offset as well as all.
+  // The latest contacts determine the drift, and suffice for the offset.
   constexpr std::ptrdiff_t kMost = 60;
   if (static_cast<std::ptrdiff_t>(judged_.size()) > kMost) {
     judged_.erase(judged_.begin(), judged_.end() - kMost);
@@ -114,7 +115,7 @@ void OffsetModel::judge_all() {
   problem.signals = {1.0};
   problem.noises = {prior_.noise};
   problem.outlier_deviation = kOthers;
-  // A few tenths of a millimetre are all there is to learn: the likeliest sets say it.
+  // Only a few tenths of a millimetre can be gained, so the most probable sets suffice.
   constexpr OutlierSearchLimits kLimits{8, 1e-3, 1e-6};
   if (n > 0) posterior_ = infer_outliers(problem, kLimits);
 }
@@ -123,7 +124,7 @@ OffsetModel::Estimate OffsetModel::at(double seconds, int motion) const {
   const When now{seconds, motion};
   Estimate out{0.0, covariance(now, now)};
   if (judged_.empty()) return out;
-  const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;  // of a posterior without its broad signal
+  const auto size = static_cast<Eigen::Index>(judged_.size()) + 1;  // of the posterior without its broad signal
   Eigen::VectorXd z(size);
   z(0) = 1.0;
   for (Eigen::Index i = 1; i < size; ++i) z(i) = covariance(now, judged_[static_cast<std::size_t>(i - 1)]);

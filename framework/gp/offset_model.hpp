@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
-// What motion and arm add to all heights alike, learnt from the desk: its height is known, so what taps on it show
-// beyond is an offset, and a drift over the arm's time.
+// Error that motion and arm add to all heights, estimated from contacts with the desk, whose height is known. It
+// consists of a constant offset and a drift in time.
 //
 // Linear regression with a normal prior over both is a Gaussian process over time, of covariance o^2 + d^2 t t'
 // (Rasmussen and Williams 2006, section 2.1.2).
 //
-// Which contacts are with the desk, nobody says, but nothing is lower than the desk: y = offset + drift + z + noise,
-// z >= 0, and z = 0 on it. So the lowest bound from above what is added to all, and are taken for the desk first: a
-// forward search (Atkinson and Riani 2000) takes in one contact after the other, always the one that lies lowest by
-// what those before it tell, in deviations of its own prediction, and ends where the next lies clearly above. The
-// deviation is that of the regression: noise, what may have drifted between the times, what motions may differ by. What
-// was taken for the desk as long as there was nothing lower is known so for what it is, once the desk is touched. A
-// contact that is low all alone may be one that lies, and bounds nothing; two that agree do.
+// The label of a contact, desk or object, is unknown, but nothing is below the desk. A height relative to the desk is y
+// = offset + drift + z + noise, with z = 0 on the desk and z >= 0 elsewhere. So the lowest contacts bound the error
+// from above and are taken for the desk first. A forward search (Atkinson and Riani 2000) then repeatedly adds the
+// contact with the lowest residual, in standard deviations of its prediction. It ends when the next contact is clearly
+// above the desk. The standard deviation of a prediction covers the noise, the drift between the times, and differences
+// between motions. A contact with something above the desk, taken for the desk at first, is corrected once the desk
+// itself is touched. A single low contact may be an outlier and is not trusted as a bound; two that agree are.
 //
-// Not every contact that is so low is one with the bare desk: the rim of a dome or a jerk of the force is as low: those
-// at a rim are left out, the others judged as the taps of a surface are (gp/outlier_posterior.hpp).
+// A contact may be low without touching the bare desk, for example on the rim of a dome or after a jerk of the force.
+// Contacts near a rim are left out; the others are tested for outliers like taps on a surface
+// (gp/outlier_posterior.hpp).
 //
-// Each motion adds a little of its own to what all add: a fifth of the prior variance of the offset is each's alone.
+// Each motion has an additional offset of its own, with a fifth of the offset's prior variance.
 //
-// What an object's own softness adds beyond the desk's is not in it: nothing that is touched tells.
+// The model does not cover the additional softness of an object compared with the desk, because no contact reveals it.
 #pragma once
 
 #include "gp/outlier_posterior.hpp"
@@ -40,17 +41,17 @@ class OffsetModel {
  public:
   explicit OffsetModel(const OffsetPrior& prior) : prior_(prior) {}
 
-  /// The next contact, `seconds` into the run, `excess` metres above where the desk is; `motion`: by which it was made.
+  /// Adds the next contact: `seconds` into the run, `excess` metres above the desk's height, made by `motion`.
   void add(const Target& place, double seconds, double excess, int motion = 0);
 
-  /// Whether a contact, counted from 0, lies clearly above the desk, by all that were added.
+  /// Returns whether a contact, counted from 0, lies clearly above the desk, given all contacts so far.
   bool above(std::size_t contact) const { return above_[contact]; }
-  /// What is so many deviations of its prediction above it does.
+  /// Number of standard deviations above its prediction from which a contact counts as above the desk.
   static constexpr double kAboveDeskSigmas = 2.4;
 
   struct Estimate {
-    double value = 0.0;     ///< to be taken off a height, metres
-    double variance = 0.0;  ///< of it, square metres
+    double value = 0.0;     ///< error to be subtracted from a height, metres
+    double variance = 0.0;  ///< variance of that error, square metres
   };
   Estimate at(double seconds, int motion = 0) const;
   double noise() const { return prior_.noise; }
@@ -63,7 +64,7 @@ class OffsetModel {
   struct Touched {
     Target place;
     When when;
-    Eigen::Index own;  ///< place of its motion among motions_
+    Eigen::Index own;  ///< index of its motion in motions_
     double excess;
   };
 
@@ -81,8 +82,8 @@ class OffsetModel {
   OffsetPrior prior_;
   std::vector<int> motions_;      ///< that contacts were made by
   std::vector<Touched> touched_;  ///< all contacts
-  std::vector<bool> above_;       ///< of these
-  std::vector<When> judged_;      ///< when those of them were made that are judged
+  std::vector<bool> above_;       ///< flag per contact
+  std::vector<When> judged_;      ///< times and motions of the contacts that are tested for outliers
   OutlierPosterior posterior_;
 };
 

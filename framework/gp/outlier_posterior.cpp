@@ -18,12 +18,12 @@ class OuterProducts {
  public:
   explicit OuterProducts(Eigen::Index size) : sum_(Eigen::MatrixXd::Zero(size, size)), batch_(size, kBatch) {}
 
-  /// Column for the next vector, which commit() adds.
+  /// Returns the column for the next vector; commit() adds it.
   auto next() { return batch_.col(count_); }
   void commit() {
     if (++count_ == kBatch) flush();
   }
-  /// Lower half of the sum.
+  /// Returns the lower half of the sum.
   Eigen::MatrixXd& sum() {
     flush();
     return sum_;

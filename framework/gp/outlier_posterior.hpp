@@ -16,7 +16,7 @@
 // The posterior of the surface is the mixture over all sets, signals and noises. With z(x) = (1, k(x), l(x)), where k
 // and l are the covariances of x with the taps at unit signal and l belongs to the broad signal, mean and variance are
 //     m(x) = z^T a,   v(x) = s2 k(x, x) + z^T B z,
-// whose coefficients are averages over the mixture. So the maps cost as much as those of a single set.
+// whose coefficients are averages over the mixture. So the maps cost no more than the maps of a single set.
 #pragma once
 
 #include "regular/regular_factor.hpp"
@@ -29,13 +29,13 @@ namespace palpate {
 
 /// Prior and heights of n taps. Heights and standard deviations have one unit.
 struct OutlierProblem {
-  Eigen::MatrixXd covariance;        ///< of the taps, n x n, at a signal of 1, without noise
-  Eigen::MatrixXd broad_covariance;  ///< the same of the broad signal; empty for none
+  Eigen::MatrixXd covariance;        ///< covariance of the taps, n x n, at a signal of 1, without noise
+  Eigen::MatrixXd broad_covariance;  ///< covariance of the broad signal; empty for none
   Eigen::VectorXd heights;           ///< y, minus the prior mean
   Eigen::VectorXd prior;             ///< pi, in [0, 1]
   std::vector<double> signals;       ///< standard deviations of the surface, equally probable
   std::vector<double> noises;        ///< standard deviations of a tap's noise, equally probable, above 0
-  Eigen::VectorXd extra_variance;    ///< n: variance of each tap beside the noise; empty for none
+  Eigen::VectorXd extra_variance;    ///< n: variance of each tap in addition to the noise; empty for none
   double broad_signal = 0.0;         ///< standard deviation of the broad signal
   double mean_deviation = 0.0;       ///< standard deviation of a constant that is added to f; 0 for none
   double outlier_deviation = 1.0;    ///< standard deviation of an outlier, which is normal about the prior mean
@@ -45,11 +45,11 @@ struct OutlierProblem {
 struct OutlierSearchLimits {
   int expansions = 32;         ///< largest number of sets that are extended by one more tap
   double min_summed = 1e-4;    ///< smallest weight, relative to the largest, of a set that is summed
-  double min_expanded = 1e-8;  ///< the same of a set that is extended; an improbable set may lead to a probable one
+  double min_expanded = 1e-8;  ///< smallest relative weight of an extended set, which may lead to a probable one
 };
 
 struct OutlierPosterior {
-  Eigen::VectorXd probability;  ///< n: of an outlier
+  Eigen::VectorXd probability;  ///< n: probability of an outlier
   Eigen::VectorXd a;            ///< 1 + 2 n: the constant, then k, then l
   Eigen::MatrixXd b;            ///< (1 + 2 n) x (1 + 2 n), symmetric
   double s2 = 0.0;              ///< mean of the squared signals, the broad signal included

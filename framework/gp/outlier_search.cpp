@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// Smallest distance of a prior from 0 and 1. A prior of 0 or 1 would decide a tap whatever its height.
+/// Smallest distance of a prior from 0 and 1. A prior of 0 or 1 would decide about a tap without regard to its height.
 constexpr double kLeastPrior = 1e-9;
 
 constexpr std::size_t kBits = 64;

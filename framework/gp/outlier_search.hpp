@@ -27,16 +27,16 @@ struct InlierGp {
   Constant constant(double ones, double heights) const;
 
   double signal;
-  double mean_deviation;           ///< of the constant; 0 for none
+  double mean_deviation;           ///< standard deviation of the constant; 0 for none
   Eigen::MatrixXd inverse;         ///< A = K^-1; rows that no jitter makes independent are 0
   Eigen::VectorXd solved_heights;  ///< A y
   Eigen::VectorXd solved_ones;     ///< A 1
-  double log_evidence;      ///< of all heights without the constant, up to a number common to all signals and noises
-  Eigen::ArrayXd log_odds;  ///< of an outlier against an inlier, without the evidence of the other taps
+  double log_evidence;             ///< evidence of all heights without the constant, up to a common number
+  Eigen::ArrayXd log_odds;         ///< odds of an outlier against an inlier, without the evidence of the other taps
   FactorReport report;
 };
 
-/// A set of outliers: that of its parent and one more tap.
+/// A set of outliers: the set of its parent and one more tap.
 struct OutlierSet {
   int parent = -1;  ///< index of the parent; -1 for the empty set
   int tap = -1;
@@ -73,7 +73,7 @@ class OutlierSearch {
   Eigen::MatrixXd::ConstColXpr part(int remainder, int which) const {
     return remainders_.col(Eigen::Index{kParts} * remainder + which);
   }
-  auto diagonal(int remainder) const { return part(remainder, 3); }  ///< of A'
+  auto diagonal(int remainder) const { return part(remainder, 3); }  ///< diagonal of A'
 
   const OutlierSet& set_at(int index) const { return sets_[static_cast<std::size_t>(index)]; }
   void compute_remainder(const OutlierSet& set, int to);
@@ -84,7 +84,7 @@ class OutlierSearch {
   bool contains(const std::uint64_t* bits) const;
 
   const InlierGp& gp_;
-  std::size_t words_;  ///< of the bits of a set, one bit per tap
+  std::size_t words_;  ///< number of words for the bits of a set, one bit per tap
   double log_min_summed_, log_min_expanded_;
   std::vector<OutlierSet> sets_;
   std::vector<std::uint64_t> bits_;

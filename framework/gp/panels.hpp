@@ -44,10 +44,10 @@ class Panels {
 
   int panels() const { return panels_; }
   int rows() const { return rows_; }
-  /// Number of columns with padding.
+  /// Returns the number of columns with padding.
   int padded() const { return padded_; }
   int width(int panel) const { return std::min(width_, padded_ - panel * width_); }
-  /// Distance between panels, in numbers.
+  /// Returns the distance between panels, in numbers.
   std::size_t stride() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(capacity_); }
   const double* panel(int panel) const { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }
   double* panel(int panel) { return numbers_.data() + static_cast<std::size_t>(panel) * stride(); }

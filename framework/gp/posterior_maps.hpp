@@ -30,7 +30,7 @@ struct FactoredTaps {
 /// The engine that computes the maps of a GP.
 struct EngineState {
   const char* name;
-  std::string reason;  ///< for its choice, one line
+  std::string reason;  ///< reason of its choice, one line
   /// Bound of the error beyond the rounding of `dense`, of means in prior standard deviations and of variances in prior
   /// variances. With p the largest kernel variance of a candidate, e_i the largest error of a covariance of tap i, e
   /// the largest of these, c_i the rows of L^-1, s the noise and alpha = L^-T L^-1 targets, it is the larger of
@@ -99,7 +99,7 @@ class PosteriorMaps {
   Eigen::VectorXd prior_;  ///< kernel variance at each candidate; one value if all are equal
   int rows_ = kNoRows;     ///< rows of the factor in the maps
   static constexpr int kNoRows = -1;
-  double noise_ = 0.0;  ///< of the latest update(), like the next
+  double noise_ = 0.0;  ///< noise of the latest update(), also for `unknown_`
   std::optional<UnknownMean> unknown_;
   Eigen::MatrixXd weights_;     ///< L^-T L^-1 B of the rows, one row per tap; only for engines that need L^-1
   double inverse_norms_ = 0.0;  ///< sum over the rows of the squared 1-norm of the row of L^-1

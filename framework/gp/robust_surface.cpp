@@ -9,11 +9,11 @@
 namespace palpate {
 namespace {
 
-/// Signals of the surface, as shares of the configured signal: a surface may vary that much, or be nearly flat.
+/// Signals of the surface, as shares of the configured signal, because a surface may be nearly flat.
 constexpr double kSignals[] = {1.0, 0.3, 0.1};
-/// Noises of a tap, as shares of the configured noise, which is that of an inexact arm.
+/// Noises of a tap, as shares of the configured noise, which describes an inexact arm.
 constexpr double kNoises[] = {1.0, 1.0 / 6.0};
-/// The broad signal, as a share of the configured signal, and the ratio of its length scale to that of the kernel.
+/// The broad signal, as a share of the configured signal, and the ratio of its length scale to the kernel's.
 constexpr double kBroadSignal = 0.5;
 constexpr double kBroadScale = 2.5;
 /// Noise, as a share of the signal, below which true heights may contradict a GP; see update().

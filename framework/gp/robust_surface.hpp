@@ -14,13 +14,13 @@ class RobustSurface {
   explicit RobustSurface(const CandidateGrid& candidates) : candidates_(candidates) {}
 
   /// Computes the outlier probabilities of all taps of `gp`. `prior`: probability of an outlier per tap, before the
-  /// heights are compared. `extra_variance`: variance per tap beside the noise; empty for none. Without noise no tap
-  /// can be an outlier, and the surface is that of the GP.
+  /// heights are compared. `extra_variance`: variance per tap in addition to the noise; empty for none. Without noise
+  /// no tap can be an outlier, and the surface is the posterior of the GP.
   ///
   /// Heights of inliers may contradict a GP whose noise is below 3 % of its signal, because its kernel is too smooth
-  /// for the object. Most taps would then seem to be outliers. So the evidence is compared with that of larger noises.
-  /// If the evidence for a larger noise is strong, outliers are the taps that even this noise does not explain. The
-  /// surface is then that of the GP, which follows the heights as closely as its own noise allows.
+  /// for the object. Most taps would then seem to be outliers. So the evidence is compared with the evidence of larger
+  /// noises. If the evidence for a larger noise is strong, outliers are the taps that even this noise does not explain.
+  /// The surface is then the posterior of the GP, which follows the heights as closely as its own noise allows.
   void update(const GaussianProcess& gp, const VectorView& prior, const Eigen::VectorXd& extra_variance = {});
 
   /// Forgets the taps. Call it before update() with another GP.
@@ -39,7 +39,7 @@ class RobustSurface {
   /// Number of variances of the latest map that rounding has moved below 0; they read as 0.
   int variances_clamped() const { return clamped_; }
 
-  // `gp` is that of the latest update(). Results have the unit of its targets and its square, without noise.
+  // `gp` must be the GP of the latest update(). Results have the unit of its targets and its square, without noise.
   /// Maps over the candidates. Both resize `out`.
   void read_mean(const GaussianProcess& gp, Eigen::VectorXd& out);
   void read_variance(const GaussianProcess& gp, Eigen::VectorXd& out);

@@ -12,8 +12,8 @@
 namespace palpate {
 
 /// The calling thread and `threads` - 1 helpers. Each free thread takes the next part. So a job with independent parts
-/// has the same result on any number of threads. After a job, a helper polls for the next job for some time, because
-/// jobs often follow at once, and then sleeps. The caller never waits for a helper that has not started.
+/// has the same result on any number of threads. After a job, a helper polls for the next job for some time and then
+/// sleeps, because jobs often follow each other immediately. The caller never waits for a helper that has not started.
 class Workers {
  public:
   explicit Workers(int threads);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plugin kind `backend`: whatever can be tapped, a simulator, a record or a robot.
+// Plugin kind `backend`: makes the taps, in a simulator, from a record, or with a robot.
 #pragma once
 
 #include <palpate/belief.hpp>
@@ -11,59 +11,62 @@
 
 namespace palpate {
 
-/// Laws, of which the contract tests check those that need no robot: a failed tap is an outcome, never a made-up
-/// height; the destructor leaves a robot in a safe state; no method moves anything but tap(); a repeatable backend
-/// answers the same request alike, whatever it was asked before.
+/// Laws; the contract tests check all that need no robot. A failed tap is an outcome, never an invented height. The
+/// destructor leaves a robot in a safe state. Only tap() moves the robot. A repeatable backend gives the same result
+/// for the same request, independent of earlier requests.
 class Backend {
  public:
   static constexpr const char* kKind = "backend";
 
-  /// Whether there is but one of what the backend moves, as of a robot's arm. A backend that says true, by a constant
-  /// of this name in its own class, has the jobs of a sweep run one after another, however many workers there are.
+  /// Whether only one run at a time can use the backend's hardware, such as a robot's arm. A backend with this constant
+  /// set to true in its own class makes a sweep run its jobs one after another, with any number of workers.
   static constexpr bool kOneAtATime = false;
 
   virtual ~Backend() = default;
 
-  /// Taps the world and returns when the tool is clear again. A tap that failed says so in its outcome, and if it must
-  /// be the last, in TapResult::ends_run. An Error ends the run, too, but the tap is then lost to the record: it is for
-  /// trouble in which nothing was tapped.
+  /// Makes a tap and returns when the tool is clear again. The outcome reports a failed tap; TapResult::ends_run is set
+  /// if no further tap may follow. An Error also ends the run, but the record then lacks the tap: throw it only if
+  /// nothing was tapped.
   virtual TapResult tap(const TapRequest& request) = 0;
 
-  /// Whether a tap can be made again at no risk. If not, each tap is announced in the log and synced before it moves.
+  /// Returns whether a tap can be repeated without risk. If not, each tap is written to the log and synced before it
+  /// moves.
   virtual bool repeatable() const = 0;
 
-  /// Whether the backend taps along lines that are not from above. If not, beliefs with such lines are rejected.
+  /// Returns whether the backend taps along lines that are not from above. If not, beliefs with such lines are
+  /// rejected.
   virtual bool taps_any_line() const { return false; }
 
-  /// Returns for each line that is not from above whether a tap can be made along it, as far as that is known before
-  /// the tap: whether arm and shaft reach it and stay clear of the desk.
+  /// Computes for each line that is not from above whether a tap along it is possible, as far as known before the tap.
+  /// The arm must reach the line, and the shaft must stay clear of the desk.
   virtual void reaches(const Candidates& /*lines*/, BoolOut out) const { out.setConstant(true); }
 
-  /// What tap() would do with `request`, for a person who is asked before every tap (`palpate run --step`): a few lines
-  /// without line ends, as where the tool comes from, how deep and fast it goes, which forces end it. Empty: nothing is
-  /// known beside the place. Never called unless a person is asked; called or not, the taps are the same.
+  /// Describes what tap() would do with `request`, for a person who must approve every tap (`palpate run --step`). The
+  /// lines, without line ends, contain for example the approach, depth, speed and force limits. Empty: only the
+  /// position is known. Called only for such a run; it must not change the taps.
   virtual std::vector<std::string> describe(const TapRequest& /*request*/) { return {}; }
 
-  /// Something that taps have shown of the robot, one line each.
+  /// A property of the robot that taps have revealed, one line each.
   struct Learnt {
-    std::string name;  ///< of the option that left it open
+    std::string name;  ///< option whose value the config left open
     std::string value;
   };
-  /// What the taps of this process have shown of what the config left open, noted in the manifest when the run ends.
+  /// Returns what the taps of this process revealed about options that the config left open. The manifest stores it
+  /// when the run ends.
   virtual std::vector<Learnt> learnt() const { return {}; }
 
-  /// Returns the quantities of TapRequest::predicted on which taps depend, the same from birth to death: none,
+  /// Returns the quantities of TapRequest::predicted on which taps depend, constant over the object's lifetime: none,
   /// `height_mean` and `height_std`, or these and `object_probability`.
   virtual QuantitySet predicts() const { return {}; }
 
-  /// Returns the quantities that show() reads, the same from birth to death.
+  /// Returns the quantities that show() reads, constant over the object's lifetime.
   virtual QuantitySet reads() const { return {}; }
 
-  /// Called after every tap, once it is recorded and the belief has it, and at the start of a run that is carried on:
-  /// for a robot whose surface people watch. Whatever it reads, the taps are the same. An Error ends the run.
+  /// Displays the surface to people who watch a robot. Called after every tap, once the record and the belief contain
+  /// it, and when a run is resumed. It must not change the taps. An Error ends the run.
   virtual void show(const BeliefView& /*belief*/) {}
 
-  /// Whether the scene of the config is the very world that is tapped, so that errors against it mean something.
+  /// Returns whether the taps are made on the scene of the config, so that errors against this scene are meaningful.
   virtual bool scene_is_truth() const = 0;
 };
 

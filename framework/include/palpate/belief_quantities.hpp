@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Quantities by which beliefs, acquisitions and backends agree on what is read: names of arrays with one value per
-// candidate, and of single numbers. The names are open: a belief of yours may offer others.
+// Names of the quantities that beliefs offer and that acquisitions and backends read: arrays with one value per
+// candidate, and single numbers. The set of names is open; your own belief may offer others.
 #pragma once
 
 #include <initializer_list>
@@ -26,28 +26,28 @@ struct Quantity {
 
 namespace quantity {
 
-// Of every shipped belief: M values.
+// Offered by every shipped belief: M values.
 inline constexpr const char* kUncertainty = "uncertainty";         ///< variance relative to the prior, in [0, 1]
 inline constexpr const char* kMeasurementStd = "measurement_std";  ///< standard deviation of a tap's height, metres
 
-// Of the belief `height_map`: M values.
+// Offered by the belief `height_map`: M values.
 inline constexpr const char* kLabelMean =
     "label_mean";  ///< w: mean of the label GP, clipped with `label: {clip: true}`
-inline constexpr const char* kObjectProbability = "object_probability";  ///< p: of an object, by the footprint
+inline constexpr const char* kObjectProbability = "object_probability";  ///< p: of an object, from the footprint
 inline constexpr const char* kHeightMean = "height_mean";                ///< mean of the surface, metres
-inline constexpr const char* kHeightStd = "height_std";                  ///< its standard deviation, metres
+inline constexpr const char* kHeightStd = "height_std";                  ///< standard deviation of the surface, metres
 inline constexpr const char* kHypotheses = "hypotheses";                 ///< BeliefView::hypotheses()
 inline constexpr const char* kDeskPosition = "desk_position";  ///< the candidates are fixed positions on the desk
 
-// Of the belief `solids`: M values.
-inline constexpr const char* kExpectedDistance = "expected_distance";  ///< of the contact along the line, metres
+// Offered by the belief `solids`: M values.
+inline constexpr const char* kExpectedDistance = "expected_distance";  ///< to the contact along the line, metres
 inline constexpr const char* kSurfaceStd = "surface_std";  ///< of the surface along its normal at the contact, metres
-inline constexpr const char* kIncidenceCosine = "incidence_cosine";      ///< between line and normal, in [0, 1]
+inline constexpr const char* kIncidenceCosine = "incidence_cosine";      ///< cosine between line and normal, in [0, 1]
 inline constexpr const char* kExpectedDiscovery = "expected_discovery";  ///< see SolidsBelief
 inline constexpr const char* kStdReduction = "std_reduction";            ///< see SolidsBelief
 
-// Numbers.
-inline constexpr const char* kExpectedRmse = "expected_rmse";  ///< of the reconstruction, metres
+// Offered as single numbers.
+inline constexpr const char* kExpectedRmse = "expected_rmse";  ///< expected RMSE of the reconstruction, metres
 /// Probability of an object that no tap has touched.
 inline constexpr const char* kUndiscoveredProbability = "undiscovered_probability";
 inline constexpr const char* kObjectSeen = "object_seen";  ///< 1 if a camera saw an object before the first tap

@@ -47,16 +47,17 @@ struct HeightOffset {
   double drift = 0.0;
 };
 
-/// Things that are not part of the scene, such as a chip or a cable. They lie on a share of the squares of side `size`
-/// (metres) of the area. Their heights are uniform up to `height` (metres), and equal at every tap.
+/// Things that are not part of the scene, such as a chip or a cable. The area is divided into squares of side `size`
+/// (metres), and a share of the squares has such a thing. The heights of these things are uniform up to `height`
+/// (metres), and the same at every tap.
 struct ForeignObjects {
   double probability = 0.02;
   double height = 0.03;
   double size = 0.01;
 };
 
-/// Radius of the spherical tip, metres; without this effect the tip is a point. Reported heights are those of the
-/// sphere's lowest point.
+/// Radius of the spherical tip, metres; without this effect the tip is a point. The reported height is the height of
+/// the sphere's lowest point.
 struct TipRadius {
   double radius = 0.005;
 };

@@ -6,17 +6,17 @@
 
 namespace palpate {
 
-/// Absent values: no such cell or point, or the models are not built.
+/// An error is absent if it has no cells or points, or if its models are not built.
 struct Errors {
   std::optional<double> rmse = std::nullopt;           ///< metres, of the reconstructed heights, desk included
-  std::optional<double> rmse_object = std::nullopt;    ///< metres, of the same over the true objects
+  std::optional<double> rmse_object = std::nullopt;    ///< metres, of the reconstructed heights over the true objects
   std::optional<double> rmse_height = std::nullopt;    ///< metres, of the mean height over the true objects
   std::optional<double> footprint_iou = std::nullopt;  ///< 1 if both footprints are empty
   // Of closed surfaces.
   std::optional<double> surface_distance = std::nullopt;      ///< metres, mean symmetric distance
-  std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the same distances
-  std::optional<double> f_score = std::nullopt;               ///< at 5 mm
-  std::optional<double> coverage = std::nullopt;              ///< of the 95 % intervals of the surface
+  std::optional<double> rms_surface_distance = std::nullopt;  ///< metres, root mean square of the symmetric distances
+  std::optional<double> f_score = std::nullopt;               ///< F-score at 5 mm
+  std::optional<double> coverage = std::nullopt;              ///< coverage of the 95 % intervals of the surface
   std::optional<double> volume_iou = std::nullopt;            ///< absent if nothing is solid
 
   /// Returns the root mean square error of the whole reconstruction, metres.
@@ -32,10 +32,10 @@ inline constexpr std::optional<double> Errors::*kErrors[]{
 /// Reconstruction of one object of the scene.
 struct ObjectErrors {
   int cells = 0;        ///< candidates that are on the object and not on a higher one
-  bool merged = false;  ///< with another object
+  bool merged = false;  ///< whether one component holds this and another object
   bool split = false;
-  /// Intersection over union of the object's cells with the predicted cells that are its own, or that are on no object
-  /// and nearer to one of its cells than to another object's. Absent if the object has no cell.
+  /// Intersection over union of the object's cells with its predicted cells. These are its own predicted cells, and the
+  /// predicted cells off all objects whose nearest object cell belongs to it. Absent if the object has no cell.
   std::optional<double> iou;
   std::optional<double> rmse_height;  ///< metres, of the mean height over the object's cells
 };

@@ -12,7 +12,7 @@
 namespace palpate {
 
 /// A number about a footprint for the record. Four names are diagnostics of factorisations: "jitter" (present variance
-/// on the diagonal beside the noise), "jitter_raised" (increases of the jitter), "pivoted" (factorisations of
+/// on the diagonal in addition to the noise), "jitter_raised" (increases of the jitter), "pivoted" (factorisations of
 /// independent rows only) and "redundant_taps" (touches that are left out at present). The framework adds them to the
 /// diagnostics of the Gaussian processes.
 struct FootprintNumber {
@@ -24,7 +24,7 @@ struct FootprintNumber {
 ///
 /// Laws, checked by the contract tests for every footprint found: probabilities are finite and in [0, 1] for any
 /// touches (none, all equal, contradictory ones at one position, a thousand). The same touches in the same order give
-/// the same bytes, whichever probabilities were computed in between. Random numbers come from the context's streams.
+/// the same bytes, also if probabilities were computed in between. Random numbers come from the context's streams.
 class Footprint {
  public:
   static constexpr const char* kKind = "footprint";

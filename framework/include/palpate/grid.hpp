@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A fixed grid of taps from above, and the errors of a height per cell of it: for beliefs.
+// A fixed grid of taps from above, and errors of heights on it: for authors of beliefs.
 #pragma once
 
 #include <palpate/belief.hpp>
@@ -19,9 +19,9 @@ constexpr int kMaxCellsPerSide = 2000;
 /// column, y with the row. The config sets number or size of the cells; otherwise there are `usual_count` per side.
 /// Throws Error for more than kMaxCellsPerSide.
 inline Candidates grid_from_above(const Context& context, int usual_count = 47) {
-  // Above every object, and through the desk: the arm joins the line where it likes.
+  // Lines begin above every object and end below the desk; the arm may join them at any height.
   constexpr double kTop = 0.5;      // metres above the desk
-  constexpr double kBeneath = 0.1;  // and below it
+  constexpr double kBeneath = 0.1;  // metres below the desk
   const RunSettings& run = context.run;
   const Area area = context.scene.area();
   const auto cells = [&](double side) {
@@ -49,8 +49,8 @@ inline Candidates grid_from_above(const Context& context, int usual_count = 47) 
   return out;
 }
 
-/// Returns the errors of heights (M values, metres) at fixed candidates from above. `on_object` has the cells that are
-/// predicted to be on an object.
+/// Returns the errors of heights (M values, metres) at fixed candidates from above. `on_object`: cells predicted to be
+/// on an object.
 inline Errors height_errors(const Candidates& candidates, const Eigen::VectorXd& heights,
                             const Eigen::Array<bool, Eigen::Dynamic, 1>& on_object, const Scene& truth) {
   double squares = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The instruction set of loops that are compiled for several sets, such as those of palpate/math.hpp. Each library has
-// its own copy of this setting. A plugin gets that of its run when it is created (Context::instructions).
+// its own copy of this setting. When a plugin is created, it gets the instruction set of its run
+// (Context::instructions).
 #pragma once
 
 namespace palpate {
@@ -13,7 +14,7 @@ enum class Instructions {
   avx512,
 };
 
-/// Returns the set in use: the widest set of this processor, or that of use_instructions().
+/// Returns the set in use: the set of use_instructions(), or without it the widest set of this processor.
 Instructions instructions_in_use();
 /// Sets the set in use. This processor must have it.
 void use_instructions(Instructions set);

@@ -12,7 +12,7 @@ namespace palpate {
 
 /// A named hyperparameter of a kernel with its present value. All are positive, so that fits work on their logarithms.
 struct KernelParameter {
-  std::string name;  ///< its option, with dots if kernels are nested: "kernels.0.length_scale"
+  std::string name;  ///< name of its option, with dots if kernels are nested: "kernels.0.length_scale"
   double value;      ///< SI, positive
   /// `metre` for a distance over the area; fits scale their expectations by the size of the area.
   Unit unit = Unit::none;
@@ -21,9 +21,9 @@ struct KernelParameter {
 /// Covariance function without signal variance and noise, which belong to the Gaussian process.
 ///
 /// Laws, checked by the contract tests for every kernel found: symmetric, covariance(A, A) positive semi-definite, its
-/// diagonal equal to variance(A), |k(a, b)|^2 <= k(a, a) k(b, b), a batch equal to the same points one by one, finite
-/// for all finite points. Equal means within 8 ulp, because Eigen rounds differently inside and outside of packets. The
-/// same call gives the same bytes. Const methods may run in several threads at the same time.
+/// diagonal equal to variance(A), |k(a, b)|^2 <= k(a, a) k(b, b), results of a batch equal to results point by point,
+/// finite for all finite points. Equal means within 8 ulp, because Eigen rounds differently inside and outside of
+/// packets. The same call gives the same bytes. Const methods may run in several threads at the same time.
 class Kernel {
  public:
   static constexpr const char* kKind = "kernel";

@@ -55,7 +55,7 @@ struct PluginChoice {
   std::shared_ptr<const Tree> options;  ///< options, checked and complete
 };
 
-/// Absent value: of an optional field, or of a list without items.
+/// Absent value of an optional field, or of a list without items.
 struct NoValue {};
 
 /// A value in code: a real number in SI units, or the name of a choice.
@@ -104,7 +104,7 @@ class Field {
   /// Set the owner. Every top-level key of a config needs an owner.
   Field& of_strategy() { return owner = Owner::strategy, *this; }
   Field& of_run() { return owner = Owner::run, *this; }
-  /// Moves a plugin's group of options with this name out of the plugin's block, to a group beside it. The group
+  /// Moves a plugin's group of options with this name out of the plugin's block, to a group next to it. The group
   /// belongs to the run; a strategy may give its default.
   Field& with_beside(const char* option) { return beside = option, *this; }
 
@@ -190,8 +190,8 @@ class Fields {
   virtual void plugin(std::optional<PluginChoice>& choice, const char* kind, const Field& field) = 0;
   /// Visits a list of plugins of one kind.
   virtual void plugins(std::vector<PluginChoice>& choices, const char* kind, const Field& field) = 0;
-  /// Visits another plugin whose options are beside the present fields, not in their own group. The required `field`
-  /// has its name. Throws Error if one of its options has the name of a present field.
+  /// Visits another plugin whose options are among the present fields, not in their own group. The required `field` has
+  /// its name. Throws Error if one of its options has the name of a present field.
   virtual void adopt(PluginChoice& choice, const Field& field) = 0;
   /// Declares an option that versions from 0.1.0 on had, with the default `last`. The value enters the id as before,
   /// and a record may have it. Other values are errors, with the remedy `field.meaning`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a shared library becomes a plugin. An author writes a class, an options struct and one line:
+// Interface between shared libraries and plugins. An author writes a class, an options struct and one line:
 //
 //     PALPATE_PLUGIN(Kernel, Rbf, "rbf", "squared-exponential kernel")
 //
@@ -44,10 +44,10 @@ class PluginFactory {
   }
 };
 
-/// Settings of the run that a belief needs, beside its own options.
+/// Settings of the run that a belief needs in addition to its own options.
 struct RunSettings {
-  PluginChoice kernel{"kernel", {}, nullptr};         ///< of a GP whose own options choose no kernel
-  PluginChoice fitting{"fitting", "fixed", nullptr};  ///< of a GP whose own options choose no fitting
+  PluginChoice kernel{"kernel", {}, nullptr};         ///< kernel for a GP that sets none itself
+  PluginChoice fitting{"fitting", "fixed", nullptr};  ///< fitting for a GP that sets none itself
   /// Number of candidates, per side for a grid, or side length of a grid cell, metres. Without both, the belief has its
   /// own default.
   std::optional<std::int64_t> candidates;
@@ -66,8 +66,8 @@ struct Context {
   /// on.
   std::string directory = {};
   Instructions instructions = instructions_in_use();  ///< set for the loops of palpate/math.hpp
-  PhaseClock* clock = nullptr;                        ///< of the run, for fits and inference; may be null
-  RunSettings run = {};                               ///< for beliefs
+  PhaseClock* clock = nullptr;                        ///< clock of the run, for fits and inference; may be null
+  RunSettings run = {};                               ///< settings for beliefs
   bool from_above = true;                             ///< whether the belief taps straight down only, for backends
 
   /// Returns the run's random stream for one purpose, for example "acquisition/random" at tap `number`.

@@ -28,7 +28,8 @@ using RecordFields = std::vector<std::pair<std::string, Scalar>>;
 /// The state of a belief, for one row of the record.
 struct BeliefState {
   RecordFields fields;
-  /// Numerical trouble so far, by kind: "fit_failed", "jitter", "pivoted", "redundant_taps", "variance_clamped".
+  /// Number of numerical problems so far, by kind: "fit_failed", "jitter", "pivoted", "redundant_taps",
+  /// "variance_clamped".
   std::map<std::string, int> diagnostics;
   double jitter_max = 0.0;  ///< largest jitter of a model, as a variance
 

@@ -29,7 +29,8 @@ class Scene {
   /// Returns the height of the bare desk, metres.
   virtual double desk() const = 0;
 
-  /// Returns the largest height at (x, y), metres: that of the desk or of an object on it. Defined on the whole plane.
+  /// Returns the largest height at (x, y), metres: the height of the desk, or of the highest object. Defined on the
+  /// whole plane.
   virtual double height(double x, double y) const = 0;
 
   /// Returns `scene.min_object_height` of the config, metres.

@@ -54,8 +54,8 @@ class Shape {
   /// along {1, 0, 0} and {-1, 0, 0}, and along {0, 1, 0} and {0, -1, 0}.
   virtual double support(const Eigen::Vector3d& direction) const = 0;
 
-  /// Returns the height of the upright solid at (s, t) of its own frame; -infinity beside the solid. Law: equal to the
-  /// result of first_intersection() with the vertical line. Overridden if a faster computation exists.
+  /// Returns the height of the upright solid at (s, t) of its own frame; -infinity outside its outline. Law: equal to
+  /// the result of first_intersection() with the vertical line. Overridden if a faster computation exists.
   virtual double top(double s, double t) const { return -first_intersection({{s, t, 0.0}, {0.0, 0.0, -1.0}}); }
 
   /// Returns the intervals of the line inside of the solid, in ascending order; hollow space does not count. This

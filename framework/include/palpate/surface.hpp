@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// Resolution of a surface that is stored, metres: a mesh has no holes in walls of 3 mm or more.
+/// Resolution of a stored surface, metres: walls of 3 mm or more have no holes in the mesh.
 inline constexpr double kFineResolution = 0.002;
 
 /// Lengths in metres, in the frame of the scene.
@@ -19,7 +19,7 @@ struct Surface {
 
   struct Vertex {
     Eigen::Vector3d position, normal;  ///< the normal outwards, a unit vector
-    double standard_deviation = 0.0;   ///< of the position along the normal
+    double standard_deviation = 0.0;   ///< standard deviation of the position along the normal
   };
   /// The mesh: triangles of vertices, counter-clockwise seen from outside.
   std::vector<Vertex> vertices;

@@ -32,29 +32,29 @@ inline TapLine line_from_above(const Target& target, double top = 0.0, double le
   return {{target.x, target.y, top}, {0.0, 0.0, -1.0}, length, true};
 }
 
-/// Origin of the choice of a tap: the initial design, the acquisition's scores, the fallback where these scores are all
-/// equal or not positive, or the scores of a calling program.
+/// Origin of the choice of a tap: the initial design, the acquisition's scores, the fallback if these scores are all
+/// equal or none is positive, or the scores of a calling program.
 enum class Source { initial, acquisition, fallback, caller };
 
-/// What the models expect at the end of a line: mean and standard deviation of the height, metres. With
-/// `surface: two_part` it is the height that an object would have there.
+/// Prediction of the models at the end of a line: mean and standard deviation of the height, metres. With `surface:
+/// two_part` it is the height that an object would have there.
 struct Prediction {
   double height = 0.0;
   double standard_deviation = 0.0;
-  std::optional<double> probability = std::nullopt;  ///< of an object, for a backend that reads it
+  std::optional<double> probability = std::nullopt;  ///< probability of an object, for a backend that reads it
 };
 
-/// One tap as it is requested. It holds all that a simulated result may depend on besides options and seed, so that a
-/// resumed run continues exactly as the unbroken run.
+/// Request for one tap. It contains everything that a simulated result may depend on besides options and seed, so that
+/// a resumed run continues exactly like an uninterrupted one.
 struct TapRequest {
-  int number = 1;  ///< of the tap within the run, from 1
+  int number = 1;  ///< number of the tap within the run, from 1
   TapLine line;
   Source source = Source::initial;
   int motion = 0;                       ///< index of the backend's motion, see motions.hpp
   double height_noise = 0.0;            ///< standard deviation that this motion adds to the height, metres
-  std::optional<TapLine> previous;      ///< line of the tap before; nullopt for the first tap
+  std::optional<TapLine> previous;      ///< line of the previous tap; nullopt for the first tap
   std::optional<Prediction> predicted;  ///< only for a backend that reads predictions
-  double elapsed = 0.0;                 ///< robot time of all taps before, seconds
+  double elapsed = 0.0;                 ///< robot time of all previous taps, seconds
 };
 
 /// Outcome of one tap. The models learn from `contact` and, on lines that are not from above, from `no_contact`; other
@@ -75,13 +75,13 @@ struct TapResult {
   /// absent on lines from above, and after `no_contact`, which then means the whole length.
   std::optional<double> distance = std::nullopt;
   std::optional<Eigen::Vector3d> contact = std::nullopt;  ///< the touched point, metres; only for `contact`
-  double force = 0.0;                                     ///< at contact, newtons; only for `contact`
+  double force = 0.0;                                     ///< force at contact, newtons; only for `contact`
   std::optional<double> peak_force = std::nullopt;  ///< largest force of the tap, newtons, also of a failed tap; the
                                                     ///< true force from a simulator, else the measured one
-  double seconds = 0.0;                             ///< robot time of the tap, whatever its outcome
+  double seconds = 0.0;                             ///< robot time of the tap, for any outcome
   std::string reason{};                             ///< why the tap failed or the run ends, one line; else empty
-  /// Whether no other tap can be made until somebody has checked the robot. The tap is recorded, then the run fails
-  /// with `reason`; `palpate resume --retry-failed` continues after it.
+  /// Whether a person must check the robot before another tap. The tap is recorded, then the run fails with `reason`;
+  /// `palpate resume --retry-failed` continues after it.
   bool ends_run = false;
 
   bool is_contact() const { return outcome == Outcome::contact; }
@@ -109,15 +109,15 @@ inline TapResult tap_without_contact(Outcome outcome, double seconds, std::strin
   return out;
 }
 
-/// A result as the belief reads it now; later taps may change all but `tap`.
+/// Current reading of a result by the belief; later taps may change everything but `tap`.
 struct TapReading {
   int tap = 1;
-  Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< of the contact, or of the end of a line without one; metres
+  Eigen::Vector3d position{0.0, 0.0, 0.0};  ///< position of the contact, or of the end of a line without one; metres
   bool is_contact = true;
-  bool on_object = false;            ///< a contact with an object, not with the desk
-  bool is_corrected = false;         ///< the position is corrected for the offset of the arm
-  bool moved = false;                ///< an object was pushed since, so that the reading does not hold at its position
-  double outlier_probability = 0.0;  ///< of the height or the label
+  bool on_object = false;     ///< a contact with an object, not with the desk
+  bool is_corrected = false;  ///< the position is corrected for the offset of the arm
+  bool moved = false;         ///< an object was pushed later, so that the reading no longer holds at its position
+  double outlier_probability = 0.0;      ///< probability that the height or the label is wrong
   double wrong_label_probability = 0.0;  ///< the part of it due to the label
 };
 

@@ -21,19 +21,19 @@ using Then = Fault::Then;
 constexpr double kMostPullReadings = 6.0;
 constexpr double kFewestPullReadings = 3.0;
 constexpr double kPullTime = 0.12;
-constexpr double kEvenFrom = 0.7;  ///< s until an arm that trails its set-point by 0.35 s descends at constant speed
-constexpr double kEvenTo = 1.0;    ///< s: end of the average of the force, later with fewer than kFewestEven readings
+constexpr double kEvenFrom = 0.7;  ///< s until an arm that lags 0.35 s behind its set-point descends at constant speed
+constexpr double kEvenTo = 1.0;    ///< s: end of the average of the force, or later until it has kFewestEven readings
 constexpr std::size_t kFewestEven = 10;
 /// Conditions for an arm that falls behind without a contact. A blocked arm presses with at least half of stiffness
 /// times lag, and the measured force must exceed the threshold by kBlockedForce (N). A lag below kLeastLag (m) may come
 /// from a posture that sags more.
 constexpr double kBlockedForce = 2.0;
 constexpr double kLeastLag = 0.003;
-constexpr int kQuietReadings = 3;         ///< consecutive readings within half the threshold; a contact has fewer
+constexpr int kQuietReadings = 3;  ///< consecutive readings within half the threshold; the start of a contact has fewer
 constexpr double kSteadyForce = 1.5;      ///< N between the means of both halves; noise of 1.5 N causes 0.55 N
 constexpr double kLeastZeroChange = 2.5;  ///< N: least limit of the zero's change in a tap; noise causes 0.4 N
 
-/// Mean force along z while the arm, which trails its set-point, descends at constant speed. Without a result if the
+/// Mean force along z while the arm descends at constant speed and lags behind its set-point. Gives no result if the
 /// force rises meanwhile, because a contact may begin.
 class EvenDescent {
  public:
@@ -56,7 +56,7 @@ class EvenDescent {
   bool done_ = false;
 };
 
-/// Periods with a constant speed of descent: all up to now, and those up to the last detection.
+/// Periods with a constant speed of descent: all up to now, and all up to the last detection.
 struct EvenPeriods {
   std::vector<ReactionTime::Period> now;
   std::vector<double> lags;  ///< m by which the tip trails its set-point in each period
@@ -83,8 +83,8 @@ struct EvenPeriods {
     clear();
     begin = time + kEvenFrom;
   }
-  /// Returns the lag of the tip `ago` seconds before the last period, minus the least lag, in metres; 0 without such a
-  /// period.
+  /// Returns the lag of the tip `ago` seconds before the last period, minus the least lag, metres; 0 if there was no
+  /// such period.
   double behind(double ago) const {
     for (std::size_t i = now.size(); i > 0; --i) {
       if (now[i - 1].time <= now.back().time - ago) return lags[i - 1] - least_lag;
@@ -130,7 +130,7 @@ class SignedTap {
   const tapping::GuardedTap& tap() const { return taps_.front().tap; }
   /// Returns the zero of the force along z, with the robot's sign.
   double zero() const { return taps_.front().sign * tap().zero(); }
-  /// Returns 0 as long as the sign is unknown.
+  /// Returns the sign of the force; 0 while it is unknown.
   double sign() const { return taps_.size() == 1 ? taps_.front().sign : 0.0; }
 
  private:
@@ -154,10 +154,10 @@ struct Tapper::DescentState {
   bool goes_up = false;
   std::vector<Eigen::Vector3d> tare = {};  ///< readings of the current tare
   EvenDescent even = {};
-  std::optional<double> moving = {};  ///< N along z by which a free descent reads more than rest
+  std::optional<double> moving = {};  ///< N along z: force of a free descent minus force at rest
   EvenPeriods periods = {};
-  int pulled = 0;  ///< consecutive readings
-  int quiet = 0;   ///< consecutive readings
+  int pulled = 0;  ///< number of consecutive readings with a pull
+  int quiet = 0;   ///< number of consecutive readings within half the threshold
 
   Joints at(double height) const { return column.at(plan.hover + kFromAbove - height); }
 };
@@ -199,15 +199,15 @@ void Tapper::update(DescentState& way) {
   if (way.tap.tap().noticed() > way.periods.noticed) way.periods.notice(way.tap.tap().noticed());
   if (!taring && !way.tap.tap().presses_no_further()) slow_down(way);
   const double sign = way.tap.sign();
-  // Called once per rise, because a new expectation resets the count of pulling readings.
+  // Called once per rise, because a new call resets the count of readings with a pull.
   if (way.set_point > before && !way.goes_up && sign != 0.0) {
     const double along = std::clamp(way.plan.hover + kFromAbove - height(), 0.0, way.column.length() - kRotationWindow);
     guard_.expect_rise(MotionGuard::Rise{way.tap.zero(), sign, largest_pull(way.column, along)});
   }
   if (way.set_point < before) guard_.expect_rise(std::nullopt);
   if (way.set_point != before) way.goes_up = way.set_point > before;
-  // A set-point at the height of the arm means stop. Commanding the measured joints stops every joint, not only the
-  // tip.
+  // A set-point at the height of the arm means to stop. The measured joints as the command stop every joint, not only
+  // the tip.
   if (way.set_point == height() && way.set_point != before) {
     way.command = seen_.joints->position;
   } else if (way.set_point != before) {
@@ -218,8 +218,8 @@ void Tapper::update(DescentState& way) {
   expect_following(way);
 }
 
-/// Throws Fault if the arm falls behind its set-point without a contact force. It would jump down to its set-point when
-/// it comes free.
+/// Throws Fault if the arm falls behind its set-point without a contact force: something blocks it, and it would jump
+/// down to its set-point once it comes free.
 void Tapper::expect_following(const DescentState& way) const {
   if (way.quiet < kQuietReadings || way.tap.tap().done()) return;
   const double behind = way.periods.behind(reaction_.noticing() + reaction_.lateness());
@@ -230,7 +230,8 @@ void Tapper::expect_following(const DescentState& way) const {
               Then::hold};
 }
 
-/// Reduces the speed if later messages or rarer renewals of the force leave less time to stop.
+/// Reduces the speed if messages become later or the force is renewed less often, because less time is then left to
+/// stop.
 void Tapper::slow_down(DescentState& way) {
   const double greatest = greatest_speed(way.motion.threshold, way.stiffness, Then::retreat);
   if (greatest >= way.speed) return;
@@ -266,8 +267,8 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
   } else {
     guard_.set_tare({zero_.x(), zero_.y(), zero + beside});
   }
-  // Measured once, high above the desk. Lower, the bias of another pose would count as that of the motion, and near the
-  // expected surface a soft contact would.
+  // The force of motion is measured once, high above the desk. Lower down, the bias of another pose would count as
+  // force of motion; near the expected surface, so would a soft contact.
   if (!way.moving && way.plan.start >= way.plan.hover) {
     const auto mean = way.even.add(way.tap.tap().even_for(), seen_.endpoint->force.z());
     if (mean) way.moving = *mean - zero_.z();
@@ -281,8 +282,8 @@ void Tapper::evaluate_force(DescentState& way, double felt, double beside, bool 
       Then::retreat};
 }
 
-/// Accepts the contact if the force at rest equals that before the tap. Sideways the limit is larger, because the
-/// robot's estimate is worst there. Learns from an accepted contact.
+/// Accepts the contact if the force at rest is the same as before the tap. The limit is larger sideways, where the
+/// robot's estimate is worst. Learns from an accepted contact.
 tapping::HeightResult Tapper::accept(const DescentState& way, const tapping::HeightResult& contact) {
   rest_from_above(way.column);
   const Eigen::Vector3d moved = force_at_rest(way.at(way.plan.hover)) - way.at_hover;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Force rules of MotionGuard: the force is renewed, is not too strong, and nothing holds the tool.
+// Force rules of MotionGuard: the force must be renewed and must not be too strong, and nothing may hold the tool.
 #include "baxter/motion_guard.hpp"
 
 #include "baxter/error_texts.hpp"

@@ -19,7 +19,7 @@ constexpr std::size_t kForceSamples = 25;        ///< new readings of the force 
 constexpr std::size_t kFewestForceSamples = 12;  ///< least number of readings, after kForcePatience
 constexpr double kForcePatience = 1.0;           ///< s
 constexpr double kMostForcePatience = 3.0;       ///< s
-constexpr int kLoggedTaps = 3;                   ///< number of taps per run for which the difference is logged
+constexpr int kLoggedTaps = 3;                   ///< number of taps per run whose force of motion is logged
 constexpr double kMostMoving = 0.8;  ///< fraction of the threshold; a larger difference may be the onset of a contact
 
 /// Clearance in m at which a slow rise ends: the tool is free, and the friction of the joints has changed its
@@ -59,8 +59,8 @@ double Tapper::rotation_per_metre(const Path& way, double along) {
   return (way.at(end) - way.at(along)).lpNorm<1>() / std::max(end - along, 1e-3);
 }
 
-/// Descends from the height of travel to `hover` and waits until the arm rests. The direction matters because of
-/// friction: at 0.4 Nm, the force at rest reads 9 N less after a rise than after a descent. So all forces at rest are
+/// Descends from the height of travel to `hover` and waits until the arm rests. Friction depends on the direction of
+/// motion: at 0.4 Nm, the force at rest reads 9 N less after a rise than after a descent. So every force at rest is
 /// measured after a descent.
 void Tapper::rest_from_above(const Path& column) {
   settle(column.front());
@@ -139,7 +139,7 @@ double Tapper::largest_pull(const Path& way, double along) const {
   return motion_.threshold + beside + kReversalFriction * 2 * *friction_ * rotation_per_metre(way, along);
 }
 
-/// Returns the speed in m/s at which a free rise reads at most kSpeedPull N less than at the known speed. The
+/// Returns the speed in m/s at which a free rise reads at most kSpeedPull N less than at the measured speed. The
 /// difference grows with the speed.
 double Tapper::greatest_rise() const {
   const double surely = last_moving_.beside - kMovingNoise;
@@ -155,14 +155,14 @@ void Tapper::retreat(const Path& up, double sign, double zero, const tapping::He
 }
 
 /// Rises slowly until the tip is `gently` metres higher, or up to kExtraRise metres more while the tool presses; then
-/// faster. During the slow part pressure disappears and friction changes its direction. Afterwards the zero follows the
-/// pose. `zero`: force along z of a free arm, N; if absent, the force after the slow part.
+/// faster. During the slow part, the pressure disappears and friction changes its direction. Afterwards the zero
+/// follows the pose. `zero`: force along z of a free arm, N; if absent, the force after the slow part.
 void Tapper::rise(const Path& up, double gently, double sign, const std::optional<double>& zero) {
   const double limit = largest_pull(up, 0.0);
   if (sign != 0.0 && zero) guard_.expect_rise(MotionGuard::Rise{*zero, sign, limit});
   const double clear = height() + gently;
   const double surely = clear + kExtraRise;
-  // A pull is detected as late as a contact.
+  // A pull is detected with the same delay as a contact.
   const double stiffness = arm_.vertical_stiffness(seen_.joints->position);
   double speed = std::min({motion_.speed, kGentleSpeed,
                            std::max(reaction_.slowest(), reaction_.greatest_speed(motion_.threshold, stiffness))});
@@ -200,7 +200,7 @@ void Tapper::learn_sign() {
         std::string(sign_ > 0.0 ? "rises: positive" : "falls: negative"));
 }
 
-/// Learns the difference of the force between free descent and rest, which later descents subtract.
+/// Learns the difference of the force between free descent and rest, which is subtracted in later descents.
 void Tapper::learn_moving(double difference) {
   const bool much = std::abs(difference) >= kMostMoving * motion_.threshold;
   moving_ = much ? 0.0 : difference;

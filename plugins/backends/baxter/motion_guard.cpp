@@ -209,7 +209,7 @@ std::optional<Fault> MotionGuard::check_state(const Snapshot& seen, bool moving,
   return Fault{"/robot/joint_states has a position that is not a number: restart the robot"};
 }
 
-/// Checks the rules whose violation still allows to hold the arm, because its position is known.
+/// Checks the rules after whose violation the arm may still be held, because its position is known.
 std::optional<Fault> MotionGuard::check_force_data(const Snapshot& seen, double gap) {
   const EndpointReading& endpoint = *seen.endpoint;
   if (auto fault = duplicate_sender_fault(seen.senders, Then::hold)) return fault;
@@ -244,7 +244,7 @@ std::optional<Fault> MotionGuard::check_settings(const Snapshot& seen) {
   return std::nullopt;
 }
 
-/// Checks the rules in the order of their actions: first those that demand silence, last those that allow a rise. So if
+/// Checks the rules in the order of their actions: rules that demand silence first, rules that allow a rise last. So if
 /// several rules are broken, the most restrictive one counts.
 std::optional<Fault> MotionGuard::check(const Snapshot& seen, const Eigen::Vector3d& tip) {
   const double own = own_gap(seen);
@@ -284,7 +284,7 @@ std::optional<Fault> MotionGuard::check_endpoint(const Snapshot& seen, double ga
   return check_collision_stream(seen, gap);
 }
 
-/// A robot that repeats its collision state must continue to do so. A robot that sends only changes may be silent.
+/// A robot that repeats its collision state must continue to send it. A robot that sends only changes may be silent.
 std::optional<Fault> MotionGuard::check_collision_stream(const Snapshot& seen, double gap) {
   if (!seen.collision) return std::nullopt;
   const double received = seen.collision->received;

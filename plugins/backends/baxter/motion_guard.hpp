@@ -128,14 +128,14 @@ class MotionGuard {
   static constexpr double kLate = 0.3;        ///< s by which a stamp may be older than the best so far
   static constexpr double kDrift = 1e-3;      ///< s per second, drift between the robot's clock and this computer's
   static constexpr int kFrozen = 10;          ///< renewal periods without a change of the force are a fault
-  static constexpr int kFewestFrozen = 4;     ///< so many periods are a fault if they take kFrozenFor
+  static constexpr int kFewestFrozen = 4;     ///< this many periods are a fault if they last kFrozenFor
   static constexpr double kFrozenFor = 0.1;   ///< s
   static constexpr double kJump = 0.06;      ///< rad between two readings; 4 rad/s of the wrist are 0.04 rad per period
   static constexpr double kFollowing = 0.2;  ///< rad from the last set-point
   static constexpr double kOffTheWay = 0.06;    ///< rad from every set-point of the last kTrail seconds
   static constexpr double kTrail = 0.8;         ///< s
   static constexpr double kZeroFollows = 0.5;   ///< s, time constant of a zero that follows the force
-  static constexpr double kRiseFollows = 0.25;  ///< s, the same while the arm rises
+  static constexpr double kRiseFollows = 0.25;  ///< s, time constant of that zero while the arm rises
   static constexpr double kMostDrift = 50.0;    ///< N/m, largest change of the zero during a rise
   /// Factor of the sideways limit during vertical motion, where the robot's estimate is worst. Friction of 0.4 Nm
   /// causes 12 N.
@@ -163,7 +163,7 @@ class MotionGuard {
   }
   /// Disables force_stop. Pulls are still detected.
   void forget_tare() { motion_.tare.reset(); }
-  /// Limits of the pull while the arm rises: nothing presses against a rising arm, and a pull means that something
+  /// Limits of the pull while the arm rises: nothing presses against a rising arm, so a pull means that something
   /// holds the tool. `zero`: force along z without contact, N. `sign`: sign of the force when an object presses the
   /// tool upwards. `limit`: pull in N that stops the arm.
   /// Friction during a rise reads as a pull of up to 13 N at 0.4 Nm. So once the arm rises freely, the zero is measured
@@ -181,18 +181,19 @@ class MotionGuard {
     motion_.anchor.reset();
     motion_.pulled = 0;
   }
-  /// Sets whether a collision detected by the firmware is expected and is not a fault.
+  /// Sets whether a collision that the firmware detects is expected; then it is not a fault.
   void expect_collision(bool expected) { motion_.collision_expected = expected; }
 
-  /// Checks all rules. `tip`: position of the tip in the scene's frame, from the joints in `seen`.
+  /// Returns the fault of the first broken rule, else nullopt. `tip`: position of the tip in the scene's frame, from
+  /// the joints in `seen`.
   std::optional<Fault> check(const Snapshot& seen, const Eigen::Vector3d& tip);
-  /// Part of check() without rules for our own motion: marks new readings and checks their rates, which are known half
-  /// a second after begin().
+  /// Performs only the part of check() that does not depend on our own motion: marks new readings and checks their
+  /// rates, which are known half a second after begin().
   std::optional<Fault> check_rates(const Snapshot& seen);
   /// Returns an upper bound in s of the present lateness of set-points and readings together. It is twice the excess
   /// delay of the latest joints or force, or the delay of this program's last read.
   double lateness() const;
-  /// Returns whether the last read brought a new force, neither the same message nor an estimate that was sent again.
+  /// Returns whether the last read brought a new force, not a known message or a repeated estimate.
   bool fresh() const { return fresh_; }
   /// Returns the measured period of the force.
   const Renewals& renewals() const { return renewals_; }
@@ -239,7 +240,7 @@ class MotionGuard {
     std::optional<Eigen::Vector3d> tare;
     int too_strong = 0;
     std::optional<Rise> rise;
-    /// Zero (N) and height (m) at which a zero began to follow.
+    /// Zero (N) and height (m) at which the zero began to follow.
     struct Anchor {
       double zero, height;
     };

@@ -16,15 +16,15 @@ namespace palpate::baxter {
 /// arm keeps pressing while a contact is detected and the motion stops, so a threshold must be lower.
 constexpr double kGreatestThreshold = 10.0;
 constexpr double kGreatestStop = 15.0;
-/// N: twice the noise of the simulated robot; no noise of a real one is published
+/// N: twice the noise of the simulated robot; the noise of a real one is not published
 constexpr double kLeastThreshold = 3.0;
 constexpr double kShortestTare = 0.1;  ///< s
 constexpr double kSlowest = 0.01;      ///< m/s, for motions without a timeout
 constexpr double kFastest = 0.1;  ///< m/s downwards: after a contact the arm moves on for about a third of a second
 constexpr double kDeepest = 0.1;  ///< m below the desk
 
-/// Marks `field` as mandatory, except in the stub. There, the error about missing packages must come before any error
-/// about a missing option.
+/// Marks `field` as mandatory, except in the stub: its error about missing packages must come before errors about
+/// missing options.
 inline Field mandatory(Field field) {
 #ifndef PALPATE_STUB
   field.needed();

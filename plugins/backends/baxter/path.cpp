@@ -119,7 +119,7 @@ Path Planner::line(const Joints& from, const Joints& to) const {
   const double turn = start.rotation.angularDistance(end.rotation);
   const double posture = (to - from).cwiseAbs().maxCoeff();
   const int count = std::max({steps(length, kLineStep), steps(turn, kTurnStep), steps(posture, kTurnStep)});
-  // A rotation on the spot takes as long as a translation by the same angle with a lever of 20 cm.
+  // A rotation on the spot takes as long as a translation by the angle times a lever of 20 cm.
   const double step = std::max({length, 0.2 * turn, 0.2 * posture}) / count;
   Path out;
   out.add(from, 0.0);
@@ -129,7 +129,7 @@ Path Planner::line(const Joints& from, const Joints& to) const {
     const double share = static_cast<double>(i) / count;
     const Pose between{(1.0 - share) * start.position + share * end.position,
                        start.rotation.slerp(share, end.rotation)};
-    // The mean of both ends is the seed, so that the path ends in `to` and not in another posture with the same tip.
+    // The seed is interpolated between both ends, so that the path does not end in another posture with the same tip.
     const Joints joints = i == count ? to : solve(between, (1.0 - share) * from + share * to, nullptr);
     if ((joints - last).cwiseAbs().maxCoeff() > kJump) {
       throw NoPath{"the joints would jump on the way at " + place_text(between) +

@@ -72,8 +72,8 @@ class Planner {
   Eigen::Vector3d to_scene(const Eigen::Vector3d& base) const { return frame_.inverse() * base; }
 
   /// Plans straight down at `place`, from `hover` to `floor` (m). Inverse kinematics at `hover` starts from the
-  /// solution at `middle`, and at each lower height from the one above. So a column depends on its position only, not
-  /// on the arm's earlier path. Throws if the tip's `speed` (m/s) requires a joint speed above kJointSpeed.
+  /// solution at `middle`, and at each lower height from the solution above. So a column depends only on its position,
+  /// not on the arm's earlier path. Throws if the tip's `speed` (m/s) requires a joint speed above kJointSpeed.
   Path column(const Target& place, const Target& middle, double hover, double floor, double speed) const;
 
   /// Plans from `from` to `to` with the tip on a straight line and the hand rotating evenly.
@@ -91,7 +91,7 @@ class Planner {
   /// Inverse kinematics at each height starts from the previous solution. `way` is a phrase for the error.
   Path vertical(const Joints& from, Pose tip, double rise, const char* way) const;
 
-  Eigen::Isometry3d frame_;  ///< of the scene's frame in `base`
+  Eigen::Isometry3d frame_;  ///< pose of the scene's frame in `base`
   const Arm& arm_;
   Inverse inverse_;
 };

@@ -21,15 +21,15 @@ constexpr double kReadinessTimeout = 1.0;  ///< s in which the data must become 
 /// Time in s to detect other programs that command the arm, and message rates that are too low.
 constexpr double kRateWindow = ReadingCounter::kWindow + 0.05;
 
-constexpr double kAgreement = 0.005;   ///< m between own kinematics and endpoint_state, which both use the same joints
-constexpr double kAgreedTurn = 0.035;  ///< rad between own kinematics and endpoint_state
+constexpr double kAgreement = 0.005;   ///< m: allowed difference between own kinematics and endpoint_state
+constexpr double kAgreedTurn = 0.035;  ///< rad: allowed difference of the rotations
 constexpr double kUpright = 0.35;  ///< rad: largest tilt of the tool before the first motion, which makes it upright
 
-/// Formats a length with more digits than messages about taps have.
+/// Formats a length with more digits than in messages about taps.
 std::string fine_centimetres(double length) { return fmt::format("{:.2f} cm", 100.0 * length); }
 
-/// Compares own kinematics with the robot's pose of left_gripper. Throws Error if they disagree, also if the distance
-/// of left_gripper is not the configured one.
+/// Compares own kinematics with the robot's pose of left_gripper. Throws Error if they disagree, or if left_gripper is
+/// not at the configured distance.
 void check_gripper(const JointReading& joints, const EndpointReading& endpoint, double gripper) {
   const Pose hand = Arm(Eigen::Vector3d::Zero()).tip(joints.position);
   const Eigen::Vector3d seen = hand.rotation.inverse() * (endpoint.pose.position - hand.position);

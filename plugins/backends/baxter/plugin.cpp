@@ -18,7 +18,7 @@
 namespace palpate::baxter {
 namespace {
 
-/// Log of the driver beside the run's record, one line per event, in the file `baxter.txt`.
+/// Log of the driver in the folder of the run's record: file `baxter.txt`, one line per event.
 class RunLog {
  public:
   /// An empty `directory` disables the log. The folder exists from the first tap on.
@@ -56,7 +56,8 @@ class RunLog {
   std::string waiting_;
 };
 
-/// Returns the lock of the left arm at ROS_MASTER_URI. Without the variable no lock is taken; connect() then throws.
+/// Returns the lock of the left arm at ROS_MASTER_URI. Without this variable it takes no lock, and connect() throws
+/// later.
 ArmLock lock_of_arm() {
   const char* master = std::getenv("ROS_MASTER_URI");
   if (master == nullptr || *master == '\0') return {};

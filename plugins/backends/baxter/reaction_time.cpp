@@ -14,16 +14,16 @@ constexpr std::size_t kMotions = 5;      ///< last motions, of which the maximum
 constexpr std::size_t kContacts = 10;    ///< last contacts: five with a soft object leave an uncertainty of 0.1 s
 constexpr double kFades = 30.0;          ///< s: time constant with which a lateness decays
 constexpr std::size_t kFewest = 30;      ///< periods of a free descent
-constexpr double kClear = 0.001;         ///< m above the onset, where the tip counts as free
+constexpr double kClear = 0.001;         ///< m above the onset from which the tip counts as free
 constexpr double kLeastNoticing = 0.04;  ///< s: three readings at 100 Hz, and one control period
 constexpr double kRiseFor = 0.1;         ///< s before a detection in which the slope of the force is measured
-constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: a longer rise is not steady
+constexpr double kMostNoticing = 0.5;    ///< s beyond kRenewals: longer rises are not steady
 /// Two standard deviations of the initial assumption, s, and its weight, 1/s^2.
 constexpr double kFirst = ReactionTime::kFirstNoticing - kLeastNoticing;
 constexpr double kFirstWeight = 4.0 / (kFirst * kFirst);
 /// Least lag of the joints of a Baxter in s (measured: 0.3 to 0.4 s).
 constexpr double kLeastLag = 0.3;
-/// Distance of a critically damped joint after a stop, in lags at its speed before the stop: 1 / (2 e).
+/// Distance that a critically damped joint moves on after a stop, in units of lag times speed: 1 / (2 e).
 constexpr double kGoOn = 0.184;
 
 template <typename Value>

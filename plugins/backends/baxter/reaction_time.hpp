@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Measures the time from a contact to standstill while the arm taps, and derives the largest safe speed of a descent.
 //
-// The springs of the joints hold the tip. An arm that descends with speed v onto something rigid presses with
+// The joints hold the tip through springs. An arm that descends with speed v onto a rigid object presses with
 //     F = threshold + k v T,    T = noticing + stopping + lateness,
 // where k is the vertical stiffness of the springs. None of these times is published, and each depends on the robot,
 // its firmware and its network:
@@ -11,8 +11,8 @@
 //   descent. If the force rises slowly, as on a soft object, noise moves the detection much earlier or later. So
 //   contacts are weighted by the slope of their force.
 // - stopping: from that set-point to standstill. It includes the delay of commands and joints, and the further motion
-//   of the joints. All three make the arm trail its set-point. So the bound is the time by which the arm trails, minus
-//   the certain lag of the joints.
+// of the joints, which all make the arm lag behind its set-point. So the bound is the time by which the arm lags, minus
+// the least lag of the joints themselves.
 // - lateness: the additional delay of messages, or of this program, compared with the measured contacts.
 #pragma once
 
@@ -29,18 +29,19 @@ class ReactionTime {
   /// Time and height of the tip in one period of a descent.
   struct Period {
     double time;    ///< s
-    double height;  ///< of the tip, m
+    double height;  ///< height of the tip, m
   };
 
   /// Largest expected force of a contact, N. The firmware stops the arm at 16 N, and noise delays the detection.
   static constexpr double kGreatestForce = 13.5;
-  /// m/s: an arm that would have to be slower is rejected.
+  /// m/s: the run is rejected if the arm would have to be slower.
   static constexpr double kSlowest = 0.002;
   /// m/s: limit until the first measured contact. Until then the delays of the slowest supported robot are assumed.
   static constexpr double kSlowestFirst = 0.001;
   static constexpr double kLookedAt = 1.5;      ///< s of a descent that are used
   static constexpr double kShortestWay = 0.06;  ///< m: shortest motion that is used
-  /// Renewals of the force until a contact is detected: the three readings of a contact, and one that noise spoils.
+  /// Number of renewals of the force until a contact is detected: the three readings of a contact, and one spoilt by
+  /// noise.
   static constexpr double kRenewals = 4.0;
   /// Noticing and trailing times in s until they are measured. The values belong to the slowest supported robot with a
   /// force renewed 100 times a second.

@@ -9,7 +9,7 @@
 
 namespace palpate::baxter {
 
-/// Schedules the calling thread in real time (SCHED_FIFO) during its own lifetime, if the system allows that.
+/// Schedules the calling thread in real time (SCHED_FIFO) during the lifetime of this object, if the system allows it.
 class RealTime {
  public:
   /// With `wanted` false nothing changes. Periods of a simulated clock are not real time.
@@ -31,7 +31,8 @@ class RealTime {
   RealTime(const RealTime&) = delete;
   RealTime& operator=(const RealTime&) = delete;
 
-  /// Returns a line for the run's log: whether it was granted, and the remedy. Empty with `wanted` false.
+  /// Returns a line for the run's log: whether real-time scheduling was granted, and the remedy if not. Empty with
+  /// `wanted` false.
   const std::string& status() const { return status_; }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Interface to a Baxter in plain numbers. The driver (tapper.*, motion_guard.*) makes all decisions and does not use
-// ROS. The files in ros/ carry messages and decide nothing.
+// Interface to a Baxter in plain numbers. The driver (tapper.*, motion_guard.*) makes all decisions without ROS; the
+// files in ros/ only transport messages.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,12 +45,12 @@ struct JointReading : Arrival {
 struct EndpointReading : Arrival {
   Pose pose;
   Eigen::Vector3d force;
-  /// Number of messages of this stream with a force different from that of the message before. A robot may send an
+  /// Number of messages of this stream whose force differs from that of the previous message. A robot may send the same
   /// estimate several times.
   long renewals = 0;
 };
 
-/// Sets the count of `reading`, the message after `before`.
+/// Sets the count of `reading`, the message that follows `before`.
 template <class Reading>
 void count_after(const std::optional<Reading>& before, Reading& reading) {
   reading.count = (before ? before->count : 0) + 1;
@@ -106,7 +106,7 @@ struct Senders {
   std::vector<std::string> clock;  ///< simulated clock
 };
 
-/// Latest message of every stream, and all senders. A stream without messages is absent.
+/// Latest message of every stream, and all senders. A stream without a message is absent.
 struct Snapshot {
   double now = 0.0;        ///< protocol time in s: the clock of the robot's network
   bool simulated = false;  ///< whether the clock is simulated: it does not wait for a late program
@@ -123,7 +123,7 @@ struct Snapshot {
   double own_gap = 0.0;
   Senders senders;
   std::vector<std::string> commanders;  ///< other nodes that sent set-points of the left arm
-  std::string malformed;                ///< error text for the first inconsistent message; empty if there was none
+  std::string malformed;                ///< error text for the first inconsistent message; else empty
 };
 
 /// Connection to one arm of a Baxter.

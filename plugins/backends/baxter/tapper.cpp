@@ -26,7 +26,7 @@ constexpr double kSettlingTimeout = 5.0;     ///< s: after a stop the arm needs 
 constexpr double kHoldTime = 0.5;       ///< s for which the measured joints are sent at a stop
 constexpr double kReflexTimeout = 4.0;  ///< s: the firmware's own stop lasts two
 constexpr int kMaxReflexes = 20;        ///< reflexes of the firmware that are tolerated while a pressing arm rises
-constexpr double kFrictionPull = 3.5;   ///< N below zero that friction can cause in an arm that presses
+constexpr double kFrictionPull = 3.5;   ///< N below zero that friction can cause while the arm presses
 constexpr double kAboveTravel = 0.3;    ///< m: largest height above the height of travel
 constexpr double kBelowFloor = 0.01;    ///< m: largest depth below the end of a descent
 

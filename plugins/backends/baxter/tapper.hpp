@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Motion of the arm in a tap: plan, travel, tare, descent until a contact, stop, rise; and the reactions to faults.
+// Motion of the arm in a tap: plan, travel, tare, descent until a contact, stop and rise; and the reactions to faults.
 #pragma once
 
 #include "baxter/motion_guard.hpp"
@@ -50,13 +50,13 @@ class Tapper {
   static constexpr double kPeriod = tapping::GuardedTap::kPeriod;
   static constexpr double kNearTravel = 0.01;  ///< m by which the tip may be below the height of travel
   static constexpr double kGentleRise = 0.01;  ///< m of a slow rise for an arm that may press
-  /// m: upper limit of that rise, because supported objects yield less
+  /// m: upper limit of that rise, because supported objects yield less.
   static constexpr double kMostGentleRise = 0.02;
   static constexpr const char* kSilent = "no more commands are sent, the arm stays where it is";
   /// Height of travel above `hover`, m. The arm descends from there to its rest before the tare, so that friction
   /// always has the same direction.
   static constexpr double kFromAbove = tapping::GuardedTap::kFromAbove;
-  /// m of a path over which largest_pull() measures the rotation of the joints
+  /// m of a path over which largest_pull() measures the rotation of the joints.
   static constexpr double kRotationWindow = 0.01;
 
   tapping::HeightResult attempt(const TapRequest& request);
@@ -127,8 +127,8 @@ class Tapper {
   double sign_;  ///< sign of the force along z when an object presses the tool upwards; 0 if unknown
   Eigen::Vector3d zero_ = Eigen::Vector3d::Zero();  ///< N, force at the last tare
   double moving_ = 0.0;  ///< N: difference of the force along z between a free descent and rest
-  /// Latest difference of the force between a free descent and rest (N), and the speed of that descent (m/s). It is of
-  /// this descent as soon as measured, else of an earlier one.
+  /// Latest difference of the force between a free descent and rest (N), and the speed of that descent (m/s). Measured
+  /// in this descent if possible, else in an earlier one.
   struct {
     double beside = 0.0;
     double speed = 0.0;
@@ -136,7 +136,7 @@ class Tapper {
   std::optional<double> friction_;  ///< Nm of friction per joint, once measured
   double shown_sign_ = 0.0;         ///< sign of the force at the last accepted contact; 0 if not determined
   ReactionTime reaction_;
-  std::optional<std::vector<ReactionTime::Step>> motion_log_;  ///< receives every period while present
+  std::optional<std::vector<ReactionTime::Step>> motion_log_;  ///< receives every period if present
   int logged_ = 0;                                             ///< number of taps for which moving_ was logged
   std::optional<double> peak_;  ///< N, largest force against the tool in this tap; absent before the descent
 };

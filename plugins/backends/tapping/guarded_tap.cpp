@@ -251,7 +251,7 @@ double GuardedTap::even_for() const {
 }
 
 void GuardedTap::enter(Stage stage) {
-  // A real arm with `paper` may touch during a pause, or between two steps. Its samples continue then.
+  // A real arm with `paper` may touch during a pause, or between two steps. In these cases its samples continue.
   const bool resumed =
       stage_ == Stage::stop || (arm_ == Arm::real && (stage_ == Stage::pause || stage_ == Stage::rest));
   stage_ = stage;
@@ -291,7 +291,7 @@ void GuardedTap::enter(Stage stage) {
 void GuardedTap::start_reaction(double height) {
   first_ = height;
   ++noticed_;
-  // If the arm trails its set-point, keeping the set-point would increase the force.
+  // If the arm lags behind its set-point, a constant set-point would increase the force.
   if (motion_.type != MotionOptions::Type::paper || arm_ == Arm::real) set_point_ = height;
   if (motion_.type == MotionOptions::Type::continuous) set_point_ = std::min(descent_.hover, height + motion_.brake);
   switch (motion_.type) {
@@ -317,8 +317,8 @@ bool GuardedTap::ramp(double goal, double speed) {
   return false;
 }
 
-/// Returns whether the arm has reached its set-point or is blocked. An arm that trails may still press on the object
-/// that it should leave.
+/// Returns whether the arm has reached its set-point or is blocked. An arm that lags behind may still press on the
+/// object that it should leave.
 bool GuardedTap::arrived(double height) {
   const double gap = std::abs(height - set_point_);
   if (gap < gap_ - kArrivalTolerance) {

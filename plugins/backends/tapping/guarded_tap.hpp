@@ -51,13 +51,13 @@ class GuardedTap {
   static constexpr double kPeriod = 0.01;
 
   /// Kind of arm. The simulated arm with `paper` keeps its set-point at a contact and presses further, as in the paper.
-  /// A real arm stops at 16 N and its zero drifts. At each contact its set-point jumps to the arm, and every pause of
-  /// `paper` tares again, unless a contact may begin. Friction makes its force at rest depend on the direction of
-  /// motion, so every tare follows a descent.
+  /// A real arm stops at 16 N and its zero drifts. At each contact its set-point jumps to the arm's position, and every
+  /// pause of `paper` tares again, unless a contact may begin. Friction makes its force at rest depend on the direction
+  /// of motion, so every tare follows a descent.
   enum class Arm { simulated, real };
 
-  /// Descent in metres after which the friction of a resting arm is that of a descending one: joints deflect less than
-  /// a milliradian before they slip.
+  /// Descent in metres after which the friction of a resting arm equals the friction of a descending arm: joints
+  /// deflect less than a milliradian before they slip.
   static constexpr double kFromAbove = 0.01;
 
   /// Limits of a real arm's contact: its onset is at most kFarthestOnset (m) above the detection, and its force rises
@@ -66,12 +66,12 @@ class GuardedTap {
   static constexpr double kSoftestRise = 200.0;
   /// Stiffness in N/m of the softest supported contact; its onset is excluded from the force of free travel.
   static constexpr double kSoftest = 600.0;
-  /// Least numbers of new readings in a real arm's mean, in a tare and after a contact. A robot may renew its force
-  /// only 8 times a second.
+  /// For a real arm: least number of new readings in the mean of a tare, and in the mean after a contact. A robot may
+  /// renew its force only 8 times a second.
   static constexpr int kFewestTared = 10;
   static constexpr int kFewestWatched = 3;
-  /// Number of contacts within kFarthestOnset that last but rise by less than kSoftestRise, after which the tap ends:
-  /// the object is too soft.
+  /// Number of contacts within kFarthestOnset that last but rise by less than kSoftestRise after which the tap ends,
+  /// because the object is too soft.
   static constexpr int kMostSoft = 2;
   /// Distance in metres within which two contacts that do not last are one contact with a soft object.
   static constexpr double kSamePlace = 0.002;
@@ -90,7 +90,7 @@ class GuardedTap {
   void give_up(double height);
 
   bool done() const { return stage_ == Stage::done; }
-  /// Returns whether the next force belongs to a tare, the first one or that of two_stage.
+  /// Returns whether the next force belongs to a tare: the first one, or the second one of two_stage.
   bool taring() const { return stage_ == Stage::tare || stage_ == Stage::settle; }
   /// Returns whether a contact was detected and the arm is stopping.
   bool stopping() const { return stage_ == Stage::stop; }
@@ -102,7 +102,7 @@ class GuardedTap {
   int noticed() const { return noticed_; }
   /// Returns whether the arm descends or stops at a contact. The force then includes the effects of motion.
   bool coming_down() const;
-  /// Returns the reference of the force, newtons: that of the tare, or of free travel once known.
+  /// Returns the reference of the force, newtons: the mean of the tare, or the force of free travel once it is known.
   double zero() const { return zero_; }
   /// Returns for how many seconds the set-point has descended at constant speed in this stage.
   double even_for() const;

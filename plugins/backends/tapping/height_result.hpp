@@ -10,11 +10,11 @@
 
 namespace palpate::tapping {
 
-/// TapResult without its line: one height in the place of the touched point.
+/// Result of a tap without its line: a height replaces the touched point of TapResult.
 struct HeightResult {
   Outcome outcome = Outcome::unknown;
-  double height = 0.0;   ///< of the contact, metres; only for `contact`
-  double force = 0.0;    ///< at contact, newtons; only for `contact`
+  double height = 0.0;   ///< height of the contact, metres; only for `contact`
+  double force = 0.0;    ///< force at contact, newtons; only for `contact`
   double seconds = 0.0;  ///< robot time
   std::string reason{};
   bool ends_run = false;

@@ -215,7 +215,7 @@ Descent plan_descent(const MotionOptions& motion, double desk, const std::option
     const AdaptiveHover& adaptive = *motion.adaptive_hover;
     const double probability = adaptive.certainty ? predicted->probability.value_or(0.5) : 0.5;
     const double certainty = adaptive.certainty.value_or(1.0);
-    // The desk is certain, whatever the models predict.
+    // The desk is certain for any prediction of the models.
     double surface = desk;
     if (probability > 1.0 - certainty)
       surface = std::max(desk, predicted->height + adaptive.deviations * predicted->standard_deviation);
@@ -250,7 +250,7 @@ double ideal_seconds(const MotionOptions& motion, const Descent& descent, double
     const double end = std::max(descent.start, surface);
     seconds += (descent.hover - end) / adaptive.speed;
     from = end;
-    if (surface > descent.start) {  // contact during the fast descent: back off, then as usual
+    if (surface > descent.start) {  // contact during the fast descent: the arm backs off, then descends as usual
       from = std::min(descent.hover, end + adaptive.clearance);
       seconds += (from - end) / adaptive.speed;
     }

@@ -20,7 +20,8 @@ struct AdaptiveHover : Options {
   double deviations = 2.0;  ///< clearance in standard deviations of the predicted height
   double clearance = 0.01;  ///< additional clearance, metres
   double speed = 0.1;       ///< m/s, speed of the fast descent
-  /// Least probability of an object, or of the bare desk, to be relied on. Without it an object is expected everywhere.
+  /// Least probability of an object, or of the bare desk, at which the motion relies on it. Absent: an object is
+  /// expected everywhere.
   std::optional<double> certainty;
   void list(Fields& fields) override;
 };

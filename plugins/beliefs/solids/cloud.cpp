@@ -31,13 +31,13 @@ std::array<std::int64_t, 3> cube_of(const Vector3d& point, double side) {
   return out;
 }
 
-constexpr double kFar = 0.1;  ///< metres: the largest distance that counts, also of a point to an empty cloud
+constexpr double kFar = 0.1;  ///< metres: larger distances, and distances to an empty cloud, count as this one
 
 }  // namespace
 
 Bundle::Bundle(const Vector3d& centre, double radius, int directions, double pitch) {
   for (int k = 0; k < directions; ++k) {
-    // A spiral over the sphere, evenly by area.
+    // Directions on a spiral over the sphere, with equal areas.
     const double z = -1.0 + 1.5 * (k + 0.5) / directions;
     const double angle = kHalfTurn * (3.0 - std::sqrt(5.0)) * k;
     const double level = std::sqrt(1.0 - z * z);
@@ -68,7 +68,7 @@ Cloud thinned(const Cloud& points, double side) {
 }
 
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
-  // Points within kFar of each other lie in cubes no farther apart than that.
+  // Points within kFar of each other lie in cubes that are at most kMost apart.
   constexpr std::int64_t kMost = 10;
   constexpr double kSide = kFar / kMost;
   std::unordered_map<std::int64_t, std::vector<int>> cubes;
@@ -99,8 +99,8 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
 }
 
 CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth) {
-  constexpr double kNear = 0.005;      // metres: of the F-score
-  constexpr double kThinning = 0.003;  // metres: so that where many lines meet a surface counts no more than elsewhere
+  constexpr double kNear = 0.005;      // metres: threshold of the F-score
+  constexpr double kThinning = 0.003;  // metres: so that regions where many lines meet the surface do not count more
   struct Sums {
     double count = 0.0, distance = 0.0, square = 0.0, near = 0.0;
     explicit Sums(const std::vector<double>& distances) : count(static_cast<double>(distances.size())) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Surfaces as clouds of points, and how far two are apart.
+// Point clouds of surfaces, and the distances between two of them.
 #pragma once
 
 #include <palpate/shape.hpp>
@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-/// The lines by which a surface is looked at, from all sides from which a tool may come: those of every direction that
-/// comes down, level, or up by no more than 30 degrees, side by side, through a ball.
+/// Bundles of parallel lines through a ball. Their directions are spread over all in which a tool may move: down,
+/// level, or up by at most 30 degrees. The errors of a surface are measured where these lines first meet it.
 struct Bundle {
   Bundle(const Eigen::Vector3d& centre, double radius, int directions, double pitch);
 
@@ -21,24 +21,24 @@ struct Bundle {
 
 using Cloud = std::vector<Eigen::Vector3d>;
 
-/// At most one of the points in each cube of this side.
+/// Returns at most one of the points per cube of this side.
 Cloud thinned(const Cloud& points, double side);
 
-/// The distance from each point of `from` to the nearest of `to`, metres; infinity where none is within 10 cm, which is
-/// the most that is told apart.
+/// Returns the distance from each point of `from` to the nearest point of `to`, metres; infinity if that is more than
+/// 10 cm.
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to);
 
-/// Of two surfaces, of which some points say how far they are from the other: at most one in a cube of 3 mm.
+/// Errors between two surfaces, from the nearest-neighbour distances of their points, thinned to one per cube of 3 mm.
 struct CloudErrors {
   double mean = 0.0;          ///< mean nearest-neighbour distance over the points of both, metres
-  double of_truth = 0.0;      ///< from the points of the truth alone: what is missing
-  double of_belief = 0.0;     ///< from those of the reconstruction: what is too much
-  double rms = 0.0;           ///< root mean square, over the points of both
-  double rms_of_truth = 0.0;  ///< over those of the truth
-  double f_score = 0.0;       ///< at 5 mm: harmonic mean of the shares of either within 5 mm of the other
+  double of_truth = 0.0;      ///< mean over the points of the truth: parts that the belief lacks
+  double of_belief = 0.0;     ///< mean over the points of the belief: parts that the truth lacks
+  double rms = 0.0;           ///< root mean square over the points of both
+  double rms_of_truth = 0.0;  ///< root mean square over the points of the truth
+  double f_score = 0.0;       ///< at 5 mm: harmonic mean of the shares of points within 5 mm of the other cloud
 };
-/// How far apart the points of the clouds are limits what can be told: of the same surface, seen twice by points 1 mm
-/// apart, the mean is about 0.4 mm.
+/// Returns the errors of `belief` against `truth`. The spacing of the points limits the resolution: two clouds of the
+/// same surface with points 1 mm apart have a mean of about 0.4 mm.
 CloudErrors compare_clouds(const Cloud& belief, const Cloud& truth);
 
 }  // namespace palpate

@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Tools come level or from above, or from below by no more than 30 degrees.
+/// Sine of the steepest upward direction: tools move down, level, or up by at most 30 degrees.
 constexpr double kSteepestUp = 0.5;
 
-/// Returns one of the lines from where a tool may come, all alike.
+/// Returns a uniformly drawn line with a direction in which a tool may come.
 Line random_line(const Region& region, Random& random) {
   while (true) {
     const double z = -1.0 + (1.0 + kSteepestUp) * random.uniform();
@@ -37,7 +37,7 @@ Line random_line(const Region& region, Random& random) {
   }
 }
 
-/// Returns the line along the normal of the surface where a random line from outside meets it; nullopt if none does.
+/// Returns the line along the surface normal at the point where a random line meets the surface; nullopt if it misses.
 std::optional<Line> along_normal(const Region& region, const Assembly& surface, Random& random) {
   const Line line = random_line(region, random);
   const double hit = surface.first_intersection(line);
@@ -52,7 +52,7 @@ std::optional<Line> along_normal(const Region& region, const Assembly& surface, 
   return out.origin.z() > 0.0 ? std::optional(out) : std::nullopt;
 }
 
-/// Appends the lines of `from` that `accepted` names.
+/// Appends the lines of `from` for which `accepted` is true.
 void append(const Candidates& from, const Eigen::Array<bool, Eigen::Dynamic, 1>& accepted,
             const std::vector<bool>& anywhere, SampledLines& out) {
   Candidates& to = out.lines;
@@ -68,7 +68,7 @@ void append(const Candidates& from, const Eigen::Array<bool, Eigen::Dynamic, 1>&
 }  // namespace
 
 Region::Region(const Area& area) {
-  constexpr double kShare = 0.46;  // of the longer side: objects lie anywhere along it
+  constexpr double kShare = 0.46;  // share of the longer side, along which objects may be anywhere
   constexpr double kHeight = 0.65;
   radius = kShare * std::max(area.width, area.depth);
   centre = {area.width / 2, area.depth / 2, kHeight * radius};

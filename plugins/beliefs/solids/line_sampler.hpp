@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The lines among which the next tap is chosen: half of them anywhere through the region, half along normals of the
-// surface that is believed.
+// Samples the lines among which the next tap is chosen: half at random through the region, half along normals of the
+// estimated surface.
 #pragma once
 
 #include "solids/solids.hpp"
@@ -17,8 +17,8 @@
 
 namespace palpate {
 
-/// The ball in which objects are looked for: over the middle of the area, resting on the desk. Lengths relative to the
-/// desk.
+/// The ball in which objects are searched. Its centre is above the middle of the area, at 0.65 of its radius above the
+/// desk. Lengths are relative to the desk.
 struct Region {
   explicit Region(const Area& area);
   Eigen::Vector3d centre;
@@ -27,14 +27,15 @@ struct Region {
   double outside() const { return 1.5 * radius; }
 };
 
-/// Lines, and which of them go anywhere: the others are along a normal.
+/// Lines, and a flag per line: drawn at random (`anywhere`), or along a normal of the surface.
 struct SampledLines {
   Candidates lines;
   std::vector<bool> anywhere;
 };
 
-/// Draws `count` lines that `filter` accepts, `desk` high the desk. The lines are along normals of `surface` only if
-/// there is one. The first line goes anywhere, and of the others half. Throws Error if the filter rejects nearly all.
+/// Draws `count` lines that `filter` accepts. `desk`: its height, metres. Half of the lines, the first included, are
+/// drawn at random, the others along normals of `surface`. Without a surface, all are random. Throws Error if the
+/// filter rejects nearly all.
 SampledLines sample_lines(const Region& region, double desk, std::size_t count, const Assembly* surface, Random& random,
                           const LineFilter& filter);
 

@@ -84,8 +84,8 @@ Eigen::VectorXd LineValues::reductions(const Solids& solids, const ResidualGp& r
 
 Eigen::VectorXd LineValues::discovery(const SampledLines& lines, const Solids& solids, Random random) const {
   constexpr int kDraws = 1000;
-  constexpr double kMinEarlier = 0.003;  // earlier than what is believed
-  constexpr double kFarthest = 0.03;     // that a line counts
+  constexpr double kMinEarlier = 0.003;  // metres: a primitive counts if it makes the contact earlier by more than this
+  constexpr double kFarthest = 0.03;     // metres: larger differences count as this one
   const Eigen::Index count = distance_.size();
   Eigen::VectorXd out = Eigen::VectorXd::Zero(count);
   const std::vector<Primitive> primitives = solids.undiscovered(solids.best(), kDraws, random);
@@ -100,7 +100,7 @@ Eigen::VectorXd LineValues::discovery(const SampledLines& lines, const Solids& s
   std::vector<Eigen::Index> meets;
   Eigen::ArrayXd along(count), aside(count);
   for (const Primitive& primitive : primitives) {
-    // Most lines pass by the ball around the primitive, or end before it.
+    // Most lines miss the sphere around the primitive, or end before it.
     const double radius = primitive.half.norm();
     const auto apart = [&](Eigen::Index k) { return primitive.centre(k) - origin.col(k); };
     along = apart(0) * direction.col(0) + apart(1) * direction.col(1) + apart(2) * direction.col(2);
@@ -115,7 +115,7 @@ Eigen::VectorXd LineValues::discovery(const SampledLines& lines, const Solids& s
       meets.push_back(i);
       if (lines.anywhere[static_cast<std::size_t>(i)]) moves += std::min(kFarthest, earlier);
     }
-    // The mean over the lines from all sides.
+    // Mean over the random lines.
     moves /= anywhere * kDraws;
     for (const Eigen::Index i : meets) out(i) += moves;
   }

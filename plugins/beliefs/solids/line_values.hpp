@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The quantities of lines by the solids and the residual GP that are believed.
+// Values of candidate lines under the current solids and residual GP.
 #pragma once
 
 #include "solids/line_sampler.hpp"
@@ -18,13 +18,13 @@
 
 namespace palpate {
 
-/// N values of each quantity that is read.
+/// N values per quantity. A quantity is empty before compute(), and if `reads` does not contain it.
 class LineValues {
  public:
   /// `desk`: its height, metres.
   explicit LineValues(double desk) : desk_(desk) {}
 
-  /// Computes the quantities of `lines` that are in `reads`. `random`: of expected_discovery.
+  /// Computes the quantities of `lines` that are in `reads`. `random` is used for expected_discovery.
   void compute(const SampledLines& lines, const Solids& solids, const ResidualGp& residual_gp, const QuantitySet& reads,
                Random random);
 
@@ -33,7 +33,8 @@ class LineValues {
   /// Returns the arrays of those of them that have one.
   const std::map<std::string, Eigen::VectorXd, std::less<>>& arrays() const { return arrays_; }
 
-  /// Number of variances of the last compute() that rounding had taken below 0, and factorisations of all of them.
+  /// Return the number of variances that rounding made negative in the last compute(), and the report of its
+  /// factorisations.
   int variances_clamped() const { return clamped_; }
   const FactorReport& factors() const { return factors_; }
 

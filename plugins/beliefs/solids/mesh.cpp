@@ -10,17 +10,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// f, of which the residual GP has a say near the assembly's surface alone: further away it changes no sign. Of many
-/// places at once, because so the residual GP is quicker.
+/// The function f. The residual GP is evaluated only near the assembly's surface; further away it changes no sign.
+/// Positions are evaluated in batches, which is faster.
 class SignedSurface {
  public:
   SignedSurface(const Assembly& solids, const ResidualGp& residual_gp)
       : solids_(solids), residual_gp_(residual_gp), most_(residual_gp.reach()) {}
 
-  /// How far off the assembly's surface that of the belief may be.
+  /// Returns the largest distance between the surfaces of the assembly and of the belief, metres.
   double most() const { return most_; }
 
-  /// At places with these distances from the assembly, without regard to the desk.
+  /// Returns f at positions with these distances to the assembly. The desk is ignored.
   std::vector<double> values(const std::vector<Vector3d>& at, std::vector<double> distances) const {
     ResidualGp::Places places;
     std::vector<std::size_t> whose;
@@ -39,11 +39,12 @@ class SignedSurface {
     return values(at, std::move(distances));
   }
 
-  /// The normals of the surface at places of it: the gradient of f by differences from the corners of a tetrahedron.
+  /// Returns the surface normals at points of the surface: gradients of f from differences at the corners of a
+  /// tetrahedron.
   std::vector<Vector3d> normals(const std::vector<Vector3d>& at) const {
     constexpr double kStep = 1e-5;
-    // The slope of a distance is 1 and that of the residual GP less: where f is steeper it jumps, as the assembly's
-    // normal does, and tells nothing.
+    // A distance has gradient 1, and the residual GP has less. A steeper difference is not a gradient: f jumps there,
+    // as the assembly's normal does.
     constexpr double kSteepest = 3.0;
     static const std::array<Vector3d, 4> corners{Vector3d(1, -1, -1), Vector3d(-1, -1, 1), Vector3d(-1, 1, -1),
                                                  Vector3d(1, 1, 1)};
@@ -81,21 +82,22 @@ Box box_of(const Primitive& primitive, double margin) {
   return {(primitive.centre - reach).array() - margin, (primitive.centre + reach).array() + margin};
 }
 
-/// What is solid ends at the desk.
+/// Cuts the solid off at the desk.
 double above_desk(double value, const Vector3d& at) { return std::max(value, -at.z()); }
 
-/// An edge from a node to the next one, of which one lies inside, and what of it has the end of the surface.
+/// An edge from a node to the next one, with one end inside, and the state of the search for its root.
 struct Edge {
   Vector3d from;
   Eigen::Index axis;
-  double at_low, at_high;  ///< f; infinity, maybe, far off
+  double at_low, at_high;  ///< f at both ends; may be infinite far from the surface
   double low = 0.0, high = 1.0, share = 0.5;
   bool done = false;
 
   Vector3d at(double part, double side) const { return from + part * side * Vector3d::Unit(axis); }
 };
 
-/// Where f is 0 on each. Never at an end, where vertices of several edges would fall together.
+/// Returns the zero of f on each edge, at least kRim away from its ends, where vertices of several edges would
+/// coincide.
 std::vector<Vector3d> roots(const SignedSurface& field, std::vector<Edge> edges, double side) {
   constexpr double kRim = 0.01;
   constexpr double kExact = 1e-6;
@@ -105,7 +107,7 @@ std::vector<Vector3d> roots(const SignedSurface& field, std::vector<Edge> edges,
     std::vector<Vector3d> places;
     for (Edge& one : edges) {
       if (one.done) continue;
-      // Between the two by the secant, then in their middle: f has kinks, and jumps where normals do.
+      // Alternates secant and bisection steps, because f has kinks, and jumps where normals do.
       const bool secant = step % 2 == 0 && std::abs(one.at_low) < kNoHit && std::abs(one.at_high) < kNoHit;
       one.share = secant ? one.low + (one.high - one.low) * one.at_low / (one.at_low - one.at_high)
                          : 0.5 * (one.low + one.high);
@@ -127,8 +129,8 @@ std::vector<Vector3d> roots(const SignedSurface& field, std::vector<Edge> edges,
   return out;
 }
 
-/// The eight nodes of a cube are counted along x, then y, then z; an edge is one of three axes from one of them. Of
-/// each face the nodes counter-clockwise, seen from outside the cube.
+/// The eight nodes of a cube are numbered along x, then y, then z; an edge has a first node and one of three axes. Each
+/// face lists its nodes counter-clockwise, seen from outside the cube.
 constexpr std::array<std::array<int, 4>, 6> kFaces{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 constexpr std::size_t kEdges = 24;
@@ -138,8 +140,8 @@ std::size_t edge_between(int one, int other) {
   return static_cast<std::size_t>(edge);
 }
 
-/// The rings of a cube by the nodes inside: of each edge with a vertex the next one around, outside to the front, -1 of
-/// one without; and which edges lie on a face with four of them.
+/// The rings of a cube, from its inner nodes. `next` maps each edge with a vertex to the next one of its ring,
+/// counter-clockwise seen from outside the solid, others to -1. `crowded` marks edges on a face with four vertices.
 struct Rings {
   std::array<int, kEdges> next{};
   std::array<bool, kEdges> crowded{};
@@ -153,7 +155,7 @@ struct Rings {
       for (std::size_t k = 0; k < 4; ++k) leaves += in(node(k)) && !in(node(k + 1)) ? 1 : 0;
       for (std::size_t k = 0; k < 4; ++k) {
         if (!in(node(k)) || in(node(k + 1))) continue;
-        // Around what lies outside: where two nodes inside are across from each other, they are one.
+        // The ring goes around the outer nodes: if the inner nodes of a face are diagonal, they are connected.
         std::size_t back = k + 1;
         while (!in(node(back + 1))) ++back;
         const std::size_t leave = edge_between(node(k), node(k + 1));
@@ -165,7 +167,7 @@ struct Rings {
   }
 };
 
-/// The distance from each node to the assembly; infinity, maybe, where that is more than `most`.
+/// Returns the distance from each node to the assembly; may be infinity for distances above `most`.
 std::vector<double> distances_at(const Crossings& grid, const Assembly& solids, double most) {
   const std::array<int, 3> strides = grid.strides();
   std::vector<double> out(static_cast<std::size_t>(strides[2]) * static_cast<std::size_t>(grid.nodes[2]), kNoHit);
@@ -203,7 +205,8 @@ Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, d
   all.low.z() = 0.0;
   if (!(all.high > all.low).all()) return out;
   for (const Eigen::Array3d extent = all.high - all.low; (extent / side + 4.0).prod() > kMostNodes;) side *= 1.1;
-  // Around it a node more; of those below the desk none lies on it.
+  // The grid has one more layer of nodes around this box. Its lowest nodes are half a cube below the desk, so none lies
+  // on it.
   out.side = side;
   out.origin = all.low - 1.5 * side;
   out.origin.z() = -0.5 * side;
@@ -215,7 +218,7 @@ Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, d
   const std::array<int, 3> strides = out.strides();
   const auto place = [&](int x, int y, int z) { return Vector3d(out.origin + side * Vector3d(x, y, z)); };
 
-  // Where nothing is near, infinity: outside.
+  // Nodes far from all primitives have distance infinity and are outside.
   std::vector<double> f = distances_at(out, solids, field.most() + side);
   out.inside.resize(f.size());
   std::vector<Vector3d> layer;
@@ -257,7 +260,7 @@ Surface close_mesh(const Crossings& crossings, double desk) {
   std::array<int, 8> corners{};
   for (int i = 0; i < 8; ++i)
     corners[static_cast<std::size_t>(i)] = (i & 1) + strides[1] * (i >> 1 & 1) + strides[2] * (i >> 2);
-  std::vector<int> first;  // vertex of each node
+  std::vector<int> first;  // index of the first vertex of each node
   first.reserve(crossings.inside.size());
   int count = 0;
   for (int node = 0; node < static_cast<int>(crossings.inside.size()); ++node) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The surface that is believed as a closed mesh: where f(x) = m(x) - g(x) of residual_gp.hpp is 0, and the desk where
-// an object stands on it.
+// Closed mesh of the estimated surface: the zero level of f(x) = m(x) - g(x) of residual_gp.hpp, closed by the desk
+// where an object stands on it.
 //
-// After marching cubes (Lorensen and Cline 1987), without its table: where the surface crosses the edges of a grid of
-// cubes it has a vertex, exactly; in each cube the vertices are joined to rings, face by face, and two cubes join those
-// on the face between them in the same way. So every edge of the mesh is shared by two triangles, whatever f does.
+// A variant of marching cubes (Lorensen and Cline 1987) without its table. Each grid edge that the surface crosses has
+// one vertex at the crossing. In each cube, the vertices are joined face by face into rings. Two neighbouring cubes
+// join the vertices of their common face in the same way, so two triangles share every edge of the mesh for any f.
 #pragma once
 
 #include "solids/residual_gp.hpp"
@@ -20,19 +20,20 @@
 
 namespace palpate {
 
-/// A grid of cubes with the nodes that lie within the surface, and where the surface crosses its edges: all of a mesh
-/// but its triangles. Lengths in metres, relative to the desk.
+/// A grid of cubes: its nodes inside the surface, and the crossings of the surface with its edges. Lengths are in
+/// metres, relative to the desk. A mesh consists of these data and of triangles.
 struct Crossings {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the first node
-  double side = 0.0;                                 ///< of a cube
-  std::array<int, 3> nodes{};                        ///< along x, y and z; 0 where nothing is believed in
-  std::vector<std::uint8_t> inside;                  ///< 1 or 0 for each node, x fastest; 0 at the rim
-  /// One for each edge with an end on either side: node by node, of each those along x, y and z that begin there.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< position of the first node
+  double side = 0.0;                                 ///< side of a cube
+  std::array<int, 3> nodes{};                        ///< number of nodes along x, y and z; 0 without an object
+  std::vector<std::uint8_t> inside;                  ///< 1 or 0 for each node, x fastest; 0 at the boundary
+  /// One vertex per edge between an inner and an outer node, ordered by the first node of the edge, then by its axis.
   std::vector<Surface::Vertex> vertices;
 
-  /// From a node to the next one along x, y and z, as they are counted.
+  /// Differences of the index between a node and its neighbours along x, y and z.
   std::array<int, 3> strides() const { return {1, nodes[0], nodes[0] * nodes[1]}; }
-  /// Whether the surface crosses an edge. Behind the last node of a row comes the first one of the next: both outside.
+  /// Returns whether the surface crosses an edge. The last node of a row is followed by the first of the next row; both
+  /// are outside, so no crossing is found there.
   bool crosses(int node, std::size_t axis) const {
     const auto one = static_cast<std::size_t>(node);
     const std::size_t other = one + static_cast<std::size_t>(strides()[axis]);
@@ -40,14 +41,15 @@ struct Crossings {
   }
 };
 
-/// Of the assembly as `residual_gp`, which was fitted to it, corrects it. Cubes of `side`, or, where there would be
-/// more than four million, as of 2 mm over what is 31 cm wide, long and high, larger ones: Crossings::side. A wall that
-/// is thinner may have holes, whose rims are closed, too. Normals are those of f; where f jumps, as at the edges of
-/// primitives, those of the assembly. The deviations are left to SolidsBelief, which knows all assemblies.
+/// Returns the crossings of the surface of `solids`, corrected by `residual_gp`, which was fitted to it. Cubes have
+/// side `side`. If more than four million were needed, they are larger (see Crossings::side). Four million cubes of 2
+/// mm fill a cube of 31 cm. Thinner walls may have holes; the mesh is closed around them. Normals are gradients of f;
+/// where f jumps, as at edges of primitives, the normals of the assembly replace them. SolidsBelief computes the
+/// standard deviations, from all assemblies.
 Crossings cross_surface(const Assembly& solids, const ResidualGp& residual_gp, double side);
 
-/// Returns the closed mesh; `desk`: its height, metres, with which heights become those of the scene. Rings that could
-/// share a diagonal with those of the next cube have a vertex more, in their middle; these come last.
+/// Returns the closed mesh, with heights raised by `desk`, the desk's height in the scene, metres. A ring gets an
+/// additional vertex in its middle if it could share a diagonal with a ring of the next cube. These vertices come last.
 Surface close_mesh(const Crossings& crossings, double desk);
 
 }  // namespace palpate

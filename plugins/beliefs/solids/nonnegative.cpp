@@ -50,7 +50,8 @@ VectorXd Nonnegative::unbounded() const {
 void Nonnegative::settle() {
   while (true) {
     const VectorXd best = unbounded();
-    // As far towards it as none becomes negative; whoever is 0 first is let go, whatever rounding makes of its value.
+    // Moves towards it until the first value reaches 0. That unknown is released, even if rounding leaves its value
+    // positive.
     double share = 1.0;
     Index first = -1;
     for (Index i = 0; i < best.size(); ++i) {
@@ -80,7 +81,7 @@ void Nonnegative::settle() {
 void Nonnegative::solve() {
   if (d_.size() == 0) return;
   const double rounding = 1e-13 * d_.cwiseAbs().maxCoeff();
-  const auto cost = [&] { return -0.5 * values_.dot(VectorXd(d_(held_))); };  // where they are optimal
+  const auto cost = [&] { return -0.5 * values_.dot(VectorXd(d_(held_))); };  // only at an optimum
   std::vector<bool> refused(is_.size());
   while (true) {
     const VectorXd pull = d_ - s_(Eigen::all, held_) * values_;
@@ -97,7 +98,7 @@ void Nonnegative::solve() {
     values_.conservativeResize(values.size() + 1);
     values_.tail(1).setZero();
     settle();
-    // By more than rounding: the same set in another order is no better.
+    // The form must fall by more than rounding, because the same set in another order gives no improvement.
     constexpr double kMinRelativeDecrease = 1e-13;
     if (cost() < least - kMinRelativeDecrease * std::abs(least)) continue;
     hold_only(before);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The least of a quadratic form whose unknowns are not negative, and become more:
+// Minimises a quadratic form over nonnegative unknowns, whose number grows:
 //
 //     1/2 l' S l - d' l,   l >= 0
 //
-// By the active-set method of Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23), each time from the
-// last optimum. It goes from one set of unknowns that are not 0 to the next, and each lowers the form by more than
-// rounding, or is not taken: no set comes twice, and no bound on their number is needed.
+// It uses the active-set method of Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23), each time from
+// the last optimum. A step changes the set of positive unknowns, and is kept only if it lowers the form by more than
+// rounding. So no set occurs twice, and the loop ends without a limit on the number of steps.
 #pragma once
 
 #include "gp/factor.hpp"
@@ -18,25 +18,26 @@ namespace palpate {
 
 class Nonnegative {
  public:
-  /// More unknowns, m to the n before: `s` are the last m columns of S, n + m rows, `d` has m values.
+  /// Appends m unknowns to the existing n: `s` holds the last m columns of S (n + m rows), `d` has m values.
   void append(const Eigen::MatrixXd& s, const Eigen::VectorXd& d);
   void solve();
 
-  /// The unknowns that are not 0, in the order in which they became so, and their values.
+  /// Returns the positive unknowns in the order in which they became positive, and their values.
   const std::vector<int>& held() const { return held_; }
   const Eigen::VectorXd& values() const { return values_; }
-  /// Unknowns that stay 0 because, with those that were held, S was not positive definite in double precision.
+  /// Returns the number of excluded unknowns. They stay 0, because with them the held part of S is not positive
+  /// definite in double precision.
   int redundant_taps() const { return set_aside_; }
 
  private:
   enum class Is { free, held, aside };
-  /// Adds one to those that are held; where their part of S is not positive definite then, sets it aside: false.
+  /// Adds an unknown to the held ones. If their part of S is then not positive definite, excludes it and returns false.
   bool hold(int unknown);
-  /// Holds these again, and no others.
+  /// Holds exactly these unknowns.
   void hold_only(const std::vector<int>& unknowns);
-  /// What the values of those held would be if they might be negative.
+  /// Returns the optimal values of the held unknowns without the bounds.
   Eigen::VectorXd unbounded() const;
-  /// To the optimum of those held; lets go whoever becomes 0 on the way.
+  /// Moves to the optimum of the held unknowns; releases each one that reaches 0 on the way.
   void settle();
 
   Eigen::MatrixXd s_;
@@ -44,7 +45,7 @@ class Nonnegative {
   std::vector<Is> is_;
   std::vector<int> held_;
   Eigen::VectorXd values_;
-  Factor factor_;  ///< of the part of S that belongs to those held
+  Factor factor_;  ///< factor of the part of S with the held rows and columns
   int set_aside_ = 0;
 };
 

@@ -13,13 +13,13 @@ constexpr OffsetPrior kPrior{0.006, 0.0005, 0.0012};
 // The floor of a vessel is a few millimetres above the desk, and not taken for it: the noise is that of a pose, no
 // more. Of flatter ways what the desk's height errs by is too much along the way.
 constexpr double kSteep = 0.6;
-constexpr double kMeasurable = 1e-6;  // metres: less is rounding
+constexpr double kMeasurable = 1e-6;  // metres: smaller values are rounding
 
 }  // namespace
 
 Overtravel::Overtravel(double tip, double most) : tip_(tip), most_(most), offset_model_(kPrior) {}
 
-/// Of a round tip, which is higher than its foremost point would be where the tool comes at a slope.
+/// For a round tip, which is higher than its foremost point if the tool comes at an angle.
 double Overtravel::lowest_point(const SurfaceTouch& touch) const {
   return touch.end().z() - tip_ * (1.0 - std::abs(touch.line.direction.z()));
 }
@@ -39,12 +39,12 @@ void Overtravel::add(const SurfaceTouch& told, double force) {
   const double height = lowest_point(told);
   const double steep = -told.line.direction.z();
   if (steep < kSteep || height > margin()) return;
-  // Each at a place of its own: that what is low beside something higher may be a rim is for taps from above, and would
-  // leave out the desk beside every wall.
+  // Each contact has a position of its own. OffsetModel drops low contacts near higher ones as rims. This suits taps
+  // from above, but here it would drop the desk near every wall.
   constexpr double kApart = 1.0;
   offset_model_.add({kApart * static_cast<double>(lows_.size()), 0.0}, force, height / steep);
   lows_.push_back({height, steep, force});
-  // As if two had been seen that err by the least.
+  // Prior: two contacts with the smallest spread.
   double count = 2.0;
   double squares = count * kLeastSpread * kLeastSpread;
   for (const Low& low : lows_) {

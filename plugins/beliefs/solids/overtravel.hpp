@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// How far a tool has gone beyond a surface along its way by the time that a contact with it is told, learnt from the
-// desk, whose height is known; and, by that, which contacts are with the desk.
+// Estimates how far a tool travels past a surface before its contact is reported. It learns this from contacts with the
+// desk, whose height is known, and classifies which contacts are with the desk.
 //
-// What is touched gives way under the force, and an arm that trails its set-point or hears late comes further. So a
-// contact is told too deep by a + b F, with F the force of the contact; a and b are learnt as OffsetModel learns offset
-// and drift (gp/offset_model.hpp), the force in the place of the time. Never less than 0: a tool is not stopped
-// by what it has not reached. So where contacts with the desk lie on it, nothing is changed.
+// The touched surface yields under the force, and an arm that lags behind its set-point or detects late goes further.
+// So a contact is reported too deep by a + b F, where F is its force. OffsetModel (gp/offset_model.hpp) learns a and b
+// as its offset and drift, with force in the place of time. The estimate is at least 0, because a tool cannot stop
+// before the surface. If contacts with the desk are reported on the desk, nothing is changed.
 //
-// By how much contacts err from one to the next, the spread, is seen below the desk alone: what is above it may be a
-// low part of an object.
+// The spread is the standard deviation from one contact to the next. Only contacts reported below the desk determine
+// it, because contacts above may be with low parts of an object.
 //
-// What an object gives way beyond the desk is not in it, nor what the tool is off sideways: no contact with the desk
-// tells.
+// The model covers neither the additional yielding of an object compared with the desk nor sideways errors of the tool,
+// because contacts with the desk do not show them.
 #pragma once
 
 #include "gp/offset_model.hpp"
@@ -23,26 +23,26 @@ namespace palpate {
 
 class Overtravel {
  public:
-  /// `tip`: radius of the tool's round tip, metres. No contact higher than `most` above the desk is with it.
+  /// `tip`: radius of the tool's round tip, metres. Contacts more than `most` above the desk are never with the desk.
   Overtravel(double tip, double most);
 
-  /// Takes in a touch as the arm told it, relative to the desk, and the force of the contact, newtons.
+  /// Adds a touch as the arm reported it, relative to the desk, with the force of its contact, newtons.
   void add(const SurfaceTouch& told, double force);
 
-  /// A touch as it is read now: where its way ended, and whether that is on the desk.
+  /// Returns a touch with its corrected length and whether it ended on the desk.
   SurfaceTouch read(const SurfaceTouch& told, double force) const;
 
-  /// To be taken off the way of a contact with such a force, metres.
+  /// Returns the length to subtract from a contact with this force, metres.
   double at(double force) const;
-  /// Standard deviation with which heights of contacts err from one to the next, metres, at least kLeastSpread: less
-  /// was not asked of the desk so far.
+  /// Returns the standard deviation of contact heights from one contact to the next, metres. It is at least
+  /// kLeastSpread, as the desk has shown no smaller one.
   double spread() const { return spread_; }
   static constexpr double kLeastSpread = 0.0005;
 
  private:
   struct Low {
-    double height;  ///< of the tip's lowest point, as it was told
-    double steep;   ///< share of the way that goes down
+    double height;  ///< height of the tip's lowest point, as reported
+    double steep;   ///< vertical component of the direction, downwards
     double force;
   };
   double lowest_point(const SurfaceTouch& touch) const;
@@ -51,7 +51,7 @@ class Overtravel {
   double tip_;
   double most_;
   OffsetModel offset_model_;
-  std::vector<Low> lows_;  ///< contacts that may be with the desk, as offset_model_ counts them
+  std::vector<Low> lows_;  ///< contacts that may be with the desk, in the order of offset_model_
   double spread_ = kLeastSpread;
 };
 

@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of lengths far from the least and greatest of numbers, so that no care is taken of these.
+/// Assumes lengths far from the limits of double, so it needs no scaling.
 double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
 
-/// Keeps of `chord` what lies between two of its distances.
+/// Clips `chord` to the interval between two distances.
 void keep(double begin, double begin_cosine, double end, double end_cosine, Chord& chord) {
   if (begin > chord.begin) chord.begin = begin, chord.begin_cosine = begin_cosine;
   if (end < chord.end) chord.end = end, chord.end_cosine = end_cosine;
@@ -33,8 +33,8 @@ void clip(double origin, double slope, double low, double high, Chord& chord) {
   keep(std::min(one, other), std::abs(slope), std::max(one, other), std::abs(slope), chord);
 }
 
-/// Clips `chord` to where the weighted norm of from + x along is at most 1; `along` has the length of its part of a
-/// direction of unit length.
+/// Clips `chord` to where the weighted norm of from + x along is at most 1. `along` is the part of a unit direction in
+/// these dimensions, not normalised.
 template <class Vector>
 void clip_round(const Vector& from, const Vector& along, const Vector& half, Chord& chord) {
   const Vector p = from.cwiseQuotient(half);
@@ -61,7 +61,8 @@ void clip_round(const Vector& from, const Vector& along, const Vector& half, Cho
   keep(begin, begin > chord.begin ? cosine(begin) : 1.0, end, end < chord.end ? cosine(end) : 1.0, chord);
 }
 
-/// Of a line in the frame of a form with these half extents, the part within it and between two heights.
+/// Returns the part of a line, in the frame of a form with these half extents, that lies within the form and between
+/// two heights.
 Chord within(Primitive::Form form, const Vector3d& half, const Vector3d& from, const Vector3d& along, double low,
              double top) {
   Chord out{-kNoHit, kNoHit};
@@ -81,7 +82,7 @@ Chord within(Primitive::Form form, const Vector3d& half, const Vector3d& from, c
   return out;
 }
 
-/// The distance to a convex set that is the product of two, given the distances to either.
+/// Returns the distance to the product of two convex sets, from the distances to each.
 double of_both(double one, double other) {
   const double outside = length_of(std::max(one, 0.0), std::max(other, 0.0));
   return outside + std::min(0.0, std::max(one, other));
@@ -100,7 +101,7 @@ double to_ellipse(const Eigen::Vector2d& at, const Eigen::Vector2d& half) {
   return slope < 1e-9 ? -half.minCoeff() : k * (k - 1.0) / slope;
 }
 
-/// The distance to a form between two heights of its own frame.
+/// Returns the distance to a form, cut at two heights of its own frame.
 double to_form(Primitive::Form form, const Vector3d& half, const Vector3d& at, double low, double top) {
   const double upright = std::max(low - at.z(), at.z() - top);
   switch (form) {
@@ -116,7 +117,7 @@ double to_form(Primitive::Form form, const Vector3d& half, const Vector3d& at, d
   return kNoHit;
 }
 
-/// An angle.
+/// An angle by its cosine and sine.
 struct Turned {
   double cosine = 1.0, sine = 0.0;
 };
@@ -185,8 +186,8 @@ double Primitive::aside(const Line& line, double most) const {
     }
     return least;
   }
-  // The direction in which it is least, from twelve and then between them; by sums of known angles, because this is
-  // most of what a run from any side computes.
+  // Searches the direction with the least value: first among twelve, then between them. It uses sums of known angles,
+  // because this search dominates the run time of runs from any side.
   static const std::array<Turned, 12> directions = [] {
     std::array<Turned, 12> out;
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = turned_by(kHalfTurn / 6.0 * static_cast<double>(k));
@@ -212,8 +213,8 @@ double Primitive::aside(const Line& line, double most) const {
   };
   least = kNoHit;
   for (const Turned& direction : directions) attempt(direction);
-  // Between two of them it is less by at most sin 15 degrees of the extent (where it is thin across), and by 1 - cos 15
-  // degrees of what the line is off the centre.
+  // Between two of these directions, the value may be smaller. The difference is at most sin 15 degrees times the
+  // extent (for thin solids), plus (1 - cos 15 degrees) times the distance between line and centre.
   if (least - 0.3 * half.norm() > most) return most;
   for (const Turned& step : steps) {
     const Turned middle = best;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The simple solids that a belief over space is made of, and what a touch along a line has to do with one.
+// Simple solids, of which assemblies consist, and their intersections with lines.
 #pragma once
 
 #include <palpate/shape.hpp>
@@ -11,12 +11,12 @@
 
 namespace palpate {
 
-/// Where a line meets what it does not meet; and 180 degrees, in radian.
+/// Value that stands for the distance to a solid if a line misses it; and 180 degrees in radians.
 inline constexpr double kNoHit = std::numeric_limits<double>::infinity();
 inline constexpr double kHalfTurn = 3.14159265358979323846;
 
-/// The part of a line between two distances from its origin, metres; empty where `begin` > `end`. Beside each the
-/// cosine between line and surface normal there, without its sign.
+/// The part of a line between two distances from its origin, metres; empty if `begin` > `end`. The cosines are the
+/// absolute cosines between the line and the surface normals at both ends.
 struct Chord {
   double begin = std::numeric_limits<double>::infinity();
   double end = -std::numeric_limits<double>::infinity();
@@ -25,32 +25,34 @@ struct Chord {
   bool empty() const { return begin > end; }
 };
 
-/// A box, a cylinder or an ellipsoid at any pose, whole or a vessel: hollowed out from its upper end, with a wall all
-/// around and below. Of an ellipsoid a vessel keeps the lower half: a bowl. Lengths in metres, relative to the desk.
+/// A box, a cylinder or an ellipsoid with any pose, solid or hollow. A hollow one is a vessel open at its upper end,
+/// with a wall around and below. A hollow ellipsoid keeps only its lower half: a bowl. Lengths in metres, relative to
+/// the desk.
 struct Primitive {
   enum class Form { box, cylinder, ellipsoid };
   Form form = Form::box;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();      ///< from its own frame, in which up is the third axis
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();      ///< rotation from its own frame, whose third axis is up
   Eigen::Vector3d half = Eigen::Vector3d::Constant(0.05);  ///< half its extents in that frame
-  double wall = 0.0;                                       ///< thickness; 0 where it is whole
+  double wall = 0.0;                                       ///< thickness; 0 if solid
 
   bool hollow() const { return wall > 0.0; }
-  double volume() const;  ///< of what it encloses, the hollow included, cubic metres
-  /// How far that reaches from its centre, along a direction of its own frame.
+  double volume() const;  ///< including the hollow, cubic metres
+  /// Returns its extent from its centre along a direction of its own frame, the hollow included.
   double reach(const Eigen::Vector3d& own) const;
 
-  /// Which parts of a line lie in the solid, in their order: none, one or, where it passes through the hollow, two.
+  /// Returns the parts of a line in the solid, in order: none, one, or two if it passes through the hollow.
   std::array<Chord, 2> inside(const Line& line) const;
-  /// Where a line first meets it, infinity where it does not.
+  /// Returns the distance at which a line first meets it; infinity if it misses.
   double first_intersection(const Line& line) const;
 
-  /// By how much a line that passes through would have to be moved aside to pass by, metres, whatever is hollow: 0 or
-  /// less where it does pass by; `most` if it is more. An upper bound, of boxes exact, of others nearly.
+  /// Returns how far a line through it would have to be moved sideways to miss it, metres, with the hollow counted as
+  /// solid. At most 0 if the line misses; `most` if it is more. Exact for boxes, else a close upper bound.
   double aside(const Line& line, double most = kNoHit) const;
 
-  /// About how far a point is outside (or, negative, inside), metres: exact at the surface, of one sign on either side
-  /// of it, and of a whole box or cylinder exact everywhere; never more than the distance but for ellipsoids.
+  /// Returns the approximate signed distance of a point, metres, negative inside. It is exact at the surface and has
+  /// the correct sign everywhere; for solid boxes and cylinders it is exact everywhere. Except for ellipsoids, it never
+  /// exceeds the true distance.
   double distance(const Eigen::Vector3d& point) const;
 };
 

@@ -64,7 +64,7 @@ Representatives representatives(const ResidualGp::Places& places, std::size_t mo
     std::map<std::array<std::int64_t, 4>, std::size_t> taken;
     for (const ResidualGp::Place& place : places) {
       Index axis = 0;
-      place.normal.cwiseAbs().maxCoeff(&axis);  // so that the two sides of a wall are apart
+      place.normal.cwiseAbs().maxCoeff(&axis);  // so that the two sides of a wall are separate
       std::array<std::int64_t, 4> key{};
       for (std::size_t i = 0; i < 3; ++i)
         key[i] = static_cast<std::int64_t>(std::floor(place.at(static_cast<Index>(i)) / side));

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// By how much a poke is expected to lower what is not known of a surface.
+// Expected reduction of the uncertainty of a surface by one tap.
 //
-// The surface lies outside that of the most probable assembly by an offset that is taken for normal, with mean that
-// of the residual GP and the covariance
+// The offset of the true surface outside the surface of the most probable assembly is modelled as a GP. Its mean is the
+// mean of the residual GP; its covariance is
 //
 //     k(x, x') + (1 / K) sum over assemblies of d_j(x) d_j(x')
 //
-// k is the residual GP's prior, and d_j(x) how far outside the surface of assembly j lies there, none more than 2 cm.
-// So touches at one place tell of others as far as the residual GP is smooth and as the assemblies agree on what
-// belongs together. Given all contacts, and one more with their noise at a place y,
+// where k is the residual GP's prior, and d_j(x) is the offset of the surface of assembly j near x, clipped to 2 cm. So
+// a touch informs about other positions as far as the residual GP is smooth, and as far as the assemblies agree. With
+// an additional contact at a position y, with the same noise, the variance is
 //
 //     Var(x | y) = Var(x) - Cov(x, y)^2 / (Var(y) + noise^2),
 //
-// whatever is found there, and what a poke takes off is the mean over the surface of sd(x) - sd(x | y): in the words of
-// the design of experiments, active learning by Cohn's criterion (Cohn 1996), of deviations instead of variances.
+// for any result of the tap. The reduction is the mean over the surface of sd(x) - sd(x | y). This is active learning
+// by Cohn's criterion (Cohn 1996), with standard deviations instead of variances.
 #pragma once
 
 #include "solids/residual_gp.hpp"
@@ -26,14 +26,16 @@
 
 namespace palpate {
 
-/// For each place, near the surface of the most probable assembly, by how much the mean standard deviation over all
-/// of them falls when the surface is touched there, metres: from 0 to the mean itself. The work grows with the square
-/// of the number of places. Adds to `report` what rounding made necessary, a variance in square metres. Never throws.
+/// Returns the reduction by a touch at each of the places, which must be near the surface of the most probable
+/// assembly. It is the decrease of the mean standard deviation over all places, metres, between 0 and this mean. The
+/// work grows with the square of the number of places. Adds jitter, a variance in square metres, and redundant rows to
+/// `report`. Never throws.
 Eigen::VectorXd expected_reductions(const Solids& solids, const ResidualGp& residual_gp,
                                     const ResidualGp::Places& places, FactorReport* report = nullptr);
 
-/// Some of the places, evenly: in each cube the first on each side of a wall, the cubes (8 mm or larger) such that it
-/// is at most `most`. `stands_for` has for each place the number of that of its cube and side.
+/// A subset of the places, evenly spread: the first place in each cube for each direction of the normal. The cubes have
+/// sides of at least 8 mm, and as large as needed for at most `most` places. `stands_for` maps each place to the index
+/// of its representative.
 struct Representatives {
   ResidualGp::Places places;
   std::vector<std::size_t> stands_for;

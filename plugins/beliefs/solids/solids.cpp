@@ -30,8 +30,9 @@ Vector3d normal3(Random& random) {
 
 double between(double low, double high, Random& random) { return low + (high - low) * random.uniform(); }
 
-/// By how much the way of a tool, which came from far outside, contradicts a primitive in it: how far its surface would
-/// have to be moved back, or the way aside, so that it is met no earlier than the touch ended; 0 where it is not.
+/// Returns how much the free path of a tool, which came from far outside, contradicts a primitive. It is the smaller of
+/// two shifts, metres, after which the tool no longer meets the primitive too early: a shift of the surface backwards,
+/// or of the path sideways. 0 without a contradiction.
 double depth_of(const Primitive& primitive, const SurfaceTouch& touch) {
   const Vector3d to = primitive.centre - touch.line.origin;
   if ((to - to.dot(touch.line.direction) * touch.line.direction).squaredNorm() > primitive.half.squaredNorm())
@@ -42,7 +43,7 @@ double depth_of(const Primitive& primitive, const SurfaceTouch& touch) {
   return back < 1e-4 ? back : primitive.aside(touch.line, back);
 }
 
-/// Upright, lying or in between.
+/// Returns a random rotation: upright, lying or in between.
 Matrix3d stance(Random& random) {
   Matrix3d turned = rotation_about(Vector3d::UnitZ(), between(0.0, 2.0 * kHalfTurn, random));
   const double how = random.uniform();
@@ -51,7 +52,7 @@ Matrix3d stance(Random& random) {
   return turned * rotation_about(Vector3d::UnitY(), between(0.0, kHalfTurn / 2, random));
 }
 
-/// A primitive of any size whose surface or inside is near a point.
+/// Draws a primitive of any size that contains a given point, or has it on its surface.
 Primitive draw(const Vector3d& near, Random& random) {
   Primitive out;
   const double form = random.uniform();
@@ -63,7 +64,7 @@ Primitive draw(const Vector3d& near, Random& random) {
   Vector3d within;
   for (Eigen::Index i = 0; i < 3; ++i) within(i) = out.half(i) * between(-1.0, 1.0, random);
   out.centre = near - out.turn * within;
-  if (random.uniform() < 0.5) {  // set down
+  if (random.uniform() < 0.5) {  // placed on the desk
     const Vector3d up = out.turn.transpose() * Vector3d::UnitZ();
     out.centre.z() = out.half.dot(up.cwiseAbs());
   }
@@ -120,10 +121,10 @@ double Solids::prior_of(const Primitive& primitive) const {
     return -kNoHit;
   const Vector3d own = primitive.turn.transpose() * Vector3d::UnitZ();
   const double lowest = primitive.centre.z() - primitive.half.dot(own.cwiseAbs());
-  // Nothing reaches into the desk, and what floats needs something that holds it.
+  // Nothing reaches into the desk, and floating primitives need a support.
   if (lowest < 0.0) out -= 0.5 * math::pow(lowest / 0.003, 2);
   if (lowest > 0.003) out -= 1.0;
-  // Of two that explain the same the smaller.
+  // Prefers the smaller of two primitives that explain the same touches.
   out -= 0.3 * math::log(1.0 + primitive.volume() / 1e-5);
   return out;
 }
@@ -155,7 +156,8 @@ Eigen::VectorXd Solids::offsets(const Vector3d& at) const {
 
 std::vector<Primitive> Solids::undiscovered(const Assembly& one, int draws, Random& random) const {
   constexpr double kClear = 0.001;
-  // Nats beside those of any primitive, for stance, size and wall: more has what reaches into the desk.
+  // Largest cost of stance, size and wall, nats, beyond that of any primitive. Primitives that reach into the desk cost
+  // more.
   constexpr double kUnlikely = 6.0;
   std::vector<Primitive> out;
   for (int i = 0; i < draws && !one.parts.empty(); ++i) {
@@ -235,7 +237,7 @@ void Solids::resample(const std::vector<double>& weights) {
     total += shares.back();
     squares += shares.back() * shares.back();
   }
-  // All may be impossible, and none is then more so.
+  // All assemblies may be impossible; then none is preferred.
   if (!std::isfinite(total) || total * total / squares > 0.5 * static_cast<double>(shares.size())) return;
   std::vector<Assembly> drawn;
   const double step = total / static_cast<double>(shares.size());
@@ -249,11 +251,11 @@ void Solids::resample(const std::vector<double>& weights) {
   all_ = std::move(drawn);
 }
 
-/// Of heavy tails, because the simple solids are not the objects.
+/// Uses Student's t distribution with three degrees of freedom, because the simple solids only approximate the objects.
 double Solids::likelihood_with(const Assembly& one, std::size_t which, const Primitive* primitive, double least) {
   constexpr double kTails = 3.0;
   constexpr double kFarthest = 0.3;
-  constexpr std::size_t kAtOnce = 8;  // as many factors have one logarithm
+  constexpr std::size_t kAtOnce = 8;  // number of factors per logarithm
   const double scale = 1.0 / (kTails * settings_.misfit * settings_.misfit);
   const double most = math::exp(std::min(700.0, -2.0 * least / (kTails + 1.0)));
   const double of_a_lie = math::exp(2.0 * settings_.most / (kTails + 1.0));
@@ -283,7 +285,7 @@ double Solids::likelihood_with(const Assembly& one, std::size_t which, const Pri
       out += math::log(product), product = 1.0;
     }
     if (-0.5 * (kTails + 1.0) * out < least || product > most) {
-      // Whoever refuses is asked first the next time.
+      // The touch that rejected this proposal is evaluated first for the next proposal.
       std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(k),
                   order_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
       return -kNoHit;
@@ -298,7 +300,7 @@ void Solids::move(Assembly& one) {
   order_.resize(touches_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::reverse(order_.begin(), order_.end());
-  // Every touch costs as much as the 40th at most: what is known moves little.
+  // The number of moves falls as 1/n after the 40th touch, so later touches cost no more time than the 40th.
   constexpr double kFullSweeps = 40.0;
   const auto single = static_cast<double>(touches_.size() - seen_);
   const int moves = static_cast<int>(settings_.moves * std::min(1.0, kFullSweeps / std::max(1.0, single)));
@@ -333,7 +335,7 @@ void Solids::move(Assembly& one) {
   }
 }
 
-/// One primitive more, at one of the touches that are explained worst.
+/// Adds a primitive at one of the touches that are explained worst.
 void Solids::give_birth(Assembly& one) {
   constexpr std::size_t kMost = 7;
   if (one.parts.size() >= kMost || touches_.empty()) return;
@@ -373,7 +375,7 @@ void Solids::take_away(Assembly& one) {
   one.parts.pop_back();
 }
 
-/// Moves the face that is nearest to one of the contacts there, its opposite face stays.
+/// Moves the face nearest to a random contact towards it; the opposite face stays.
 bool Solids::fit_to_contact(Primitive& primitive) {
   const SurfaceTouch& touch = touches_[random_.index(touches_.size())];
   if (!touch.contact || touch.desk) return false;
@@ -402,7 +404,7 @@ bool Solids::fit_to_contact(Primitive& primitive) {
   return true;
 }
 
-/// Changes a primitive; false where that makes none.
+/// Changes a primitive at random. Returns false if the change is impossible.
 bool Solids::change(Primitive& primitive) {
   const double kind = random_.uniform();
   const double size = math::exp(between(math::log(0.0005), math::log(0.03), random_));
@@ -410,7 +412,7 @@ bool Solids::change(Primitive& primitive) {
   if (kind < 0.3) return fit_to_contact(primitive);
   if (kind < 0.4) {
     primitive.centre += size * normal3(random_);
-  } else if (kind < 0.6) {  // one face
+  } else if (kind < 0.6) {  // moves one face
     const double by = size * normal(random_);
     Vector3d grown = Vector3d::Zero();
     grown(axis) = by / 2;
@@ -418,7 +420,7 @@ bool Solids::change(Primitive& primitive) {
     primitive.centre += primitive.turn * (random_.uniform() < 0.5 ? Vector3d(-grown) : grown);
     if (primitive.form == Primitive::Form::cylinder && axis < 2 && random_.uniform() < 0.8)
       primitive.half(1 - axis) = primitive.half(axis);
-  } else if (kind < 0.7) {  // both faces, or all
+  } else if (kind < 0.7) {  // scales one axis, or both horizontal axes
     const double factor = math::exp(10.0 * size * normal(random_));
     if (random_.uniform() < 0.5 || primitive.form != Primitive::Form::box) {
       primitive.half.head<2>() *= factor;

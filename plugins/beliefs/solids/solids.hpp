@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What is believed of the objects as a whole: some assemblies of simple solids, about equally likely, moved by Markov
-// chain Monte Carlo after every touch. They say where a line that nobody has tried may meet something, and they are the
-// mean that the process of residual_gp.hpp corrects.
+// Belief about whole objects: some assemblies of simple solids, about equally probable, moved by Markov chain Monte
+// Carlo after every touch. They predict where untried lines meet something. The GP of residual_gp.hpp corrects the
+// surface of the most probable one.
 #pragma once
 
 #include "solids/primitive.hpp"
@@ -18,25 +18,25 @@ namespace palpate {
 
 struct SolidsSettings {
   int count = 24;           ///< assemblies
-  int moves = 1000;         ///< of each, after a touch; fewer after the 40th
-  double misfit = 0.002;    ///< by how much a touch is off the simple solids, metres: they are but nearly the objects
-  double primitives = 5.0;  ///< what one primitive more has to explain, nats
-  double smallest = 0.002;  ///< half the least extent, metres
-  double largest = 0.15;    ///< half the largest
-  double most = std::numeric_limits<double>::infinity();  ///< nats that a touch costs at most: it may be a lie
+  int moves = 1000;         ///< per assembly and touch; fewer after the 40th touch
+  double misfit = 0.002;    ///< standard deviation of touches from the simple solids, which approximate objects, metres
+  double primitives = 5.0;  ///< log likelihood that an additional primitive has to gain, nats
+  double smallest = 0.002;  ///< smallest half extent, metres
+  double largest = 0.15;    ///< largest half extent, metres
+  double most = std::numeric_limits<double>::infinity();  ///< largest cost of a touch, nats: it may be an outlier
 };
 
-/// Primitives, and what each touch so far is to each of them.
+/// Primitives, and the distances of all touches to each of them.
 struct Assembly {
   struct Part {
     Primitive primitive;
-    std::vector<double> reach;  ///< distance of the end of each touch
-    std::vector<double> depth;  ///< how deep the free way of each touch passes through
+    std::vector<double> reach;  ///< distance from the end of each touch
+    std::vector<double> depth;  ///< penetration by the free part of each touch
     double prior = 0.0;         ///< log density
   };
   std::vector<Part> parts;
-  double likelihood = 0.0;  ///< log
-  double prior = 0.0;       ///< log
+  double likelihood = 0.0;  ///< log density
+  double prior = 0.0;       ///< log density
 
   double posterior() const { return likelihood + prior; }
   double first_intersection(const Line& line) const;
@@ -49,40 +49,40 @@ class Solids {
  public:
   Solids(const Area& area, const SolidsSettings& settings, Random random);
 
-  /// Takes in touches made at once, one or few.
+  /// Adds touches that were made at the same time: one or a few.
   void add(const std::vector<SurfaceTouch>& touches);
-  /// The same touches as they are read now; of the settings `misfit` and `most` as they are from now on.
+  /// Replaces all touches by their current readings, and sets `misfit` and `most`.
   void read_again(const std::vector<SurfaceTouch>& touches, double misfit, double most);
-  /// Takes in a view before all touches: many at once, and as many rounds of moves as it would take to get there touch
-  /// by touch, the first of them with the likelihood to a small power, from which it cools: so that no mode stays
-  /// because it came first.
+  /// Adds a camera view before all touches: many touches at once, then several rounds of moves. The rounds begin with a
+  /// flattened likelihood (a small power of it) and cool down, so that no mode survives only because it was found
+  /// first.
   void look(const std::vector<SurfaceTouch>& view);
 
   const std::vector<Assembly>& assemblies() const { return all_; }
-  /// Of so many draws of one primitive more, attached to `one`, those that no touch so far contradicts: what nobody has
-  /// seen. The share that is left is what the touches leave of its prior probability.
+  /// Draws one more primitive, attached to `one`, this many times, and returns the draws that no touch contradicts:
+  /// undiscovered objects. The share of returned draws estimates how much of its prior probability remains.
   std::vector<Primitive> undiscovered(const Assembly& one, int draws, Random& random) const;
-  /// The one that is most probable.
+  /// Returns the most probable assembly.
   const Assembly& best() const;
-  /// How far outside the surface of that one the surface of each lies near a point, metres, none more than 2 cm: a
-  /// primitive that others do not have is somewhere else, or nowhere.
+  /// Returns for each assembly how far its surface lies outside the surface of the best one near a point, metres.
+  /// Values are clipped to 2 cm, because a primitive that other assemblies lack may be elsewhere or absent there.
   Eigen::VectorXd offsets(const Eigen::Vector3d& at) const;
 
  private:
   double prior_of(const Primitive& primitive) const;
   void look(Assembly::Part& part, std::size_t from) const;
-  /// The log likelihood of `one` with `primitive` (null: none) in the place of its part `which`, its number of parts
-  /// for one more; -infinity as soon as it is sure to be below `least`. Leaves what each touch is to the primitive in
-  /// scratch_.
+  /// Returns the log likelihood of `one` with its part `which` replaced by `primitive` (null: removed); `which` =
+  /// number of parts adds a part. Returns -infinity as soon as the value is certain to be below `least`. Leaves the
+  /// distances of the touches to the primitive in scratch_.
   double likelihood_with(const Assembly& one, std::size_t which, const Primitive* primitive, double least);
   void resample(const std::vector<double>& weights);
   void take_in(const std::vector<SurfaceTouch>& touches);
-  /// By what touches_ are from one of them on.
+  /// Weighs the assemblies by the touches_ from index `from` on, and resamples them.
   void weigh(std::size_t from);
   void move_all();
   void move(Assembly& one);
-  /// The least likelihood with which a change is taken, if it gains so much in prior: by Metropolis's rule, the
-  /// likelihood to the power power_.
+  /// Returns the smallest likelihood with which the Metropolis rule accepts a change that gains this log prior. The
+  /// rule uses the likelihood to the power power_.
   double least_likelihood(const Assembly& one, double prior_gained);
   void give_birth(Assembly& one);
   void take_away(Assembly& one);
@@ -92,12 +92,12 @@ class Solids {
   SolidsSettings settings_;
   Random random_;
   std::vector<SurfaceTouch> touches_;
-  std::size_t seen_ = 0;     ///< of them, in a view
-  double last_power_ = 1.0;  ///< of the likelihood, at the end of a sweep of moves
-  double power_ = 1.0;       ///< now
+  std::size_t seen_ = 0;     ///< number of touches_ that come from a view
+  double last_power_ = 1.0;  ///< power of the likelihood at the end of a sweep of moves
+  double power_ = 1.0;       ///< current power
   std::vector<Assembly> all_;
   Assembly::Part scratch_;
-  std::vector<std::size_t> order_;  ///< of the touches: those that refused a proposal last come first
+  std::vector<std::size_t> order_;  ///< order of the touches; the last to reject a proposal is evaluated first
 };
 
 }  // namespace palpate

@@ -9,14 +9,14 @@
 
 namespace palpate {
 
-/// Of the GP of the distances between the most probable particle and the surface, metres.
+/// GP of the distances between the most probable particle and the surface, metres.
 struct ResidualOptions : Options {
   double signal = 0.006;
   double noise = 0.0005;
   void list(Fields& fields) override;
 };
 
-/// What a camera saw before the first tap, see solids/camera_rays.hpp.
+/// A camera's view before the first tap, see solids/view.hpp.
 struct SideViewOptions : Options {
   std::optional<double> azimuth;  ///< radians; absent: drawn from the seed
   double elevation = 35.0 / 180.0 * 3.14159265358979323846;

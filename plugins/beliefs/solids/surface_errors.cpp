@@ -6,11 +6,11 @@
 namespace palpate {
 namespace {
 
-// Lines from 150 directions, 6 mm apart: every patch of a surface as large as a finger is met by some.
+// Lines from 150 directions, 6 mm apart: some of them meet every patch of a surface that a finger can touch.
 constexpr int kDirections = 150;
 constexpr double kPitch = 0.006;
-constexpr double kSide = 0.001;  // of cubes of which each has one point of a surface
-// Of cubes so large a wall of 3 mm holds those whose centres it holds, too many here and too few there.
+constexpr double kSide = 0.001;  // metres: cubes that keep one point of a surface each
+// Metres. A cube is solid if its centre is, so a wall of 3 mm has about the right volume only on average.
 constexpr double kCube = 0.004;
 
 }  // namespace
@@ -28,7 +28,7 @@ Cloud surface_points(const Bundle& lines, double side, const Solids& solids, con
   Cloud out;
   for (std::size_t i = 0; i < places.size(); ++i) {
     Eigen::Vector3d moved = places[i].at + means(static_cast<Eigen::Index>(i)) * places[i].normal;
-    moved.z() = std::max(0.0, moved.z());  // the desk is known, nothing is below it
+    moved.z() = std::max(0.0, moved.z());  // nothing lies below the desk
     out.push_back(moved);
   }
   return out;

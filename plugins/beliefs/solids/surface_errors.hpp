@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Errors of a closed surface against the true scene: by points where lines from all sides first meet it, and by volume.
+// Errors of a closed surface against the true scene, from the points where lines from all sides first meet it, and from
+// volumes.
 #pragma once
 
 #include "solids/cloud.hpp"
@@ -17,33 +18,33 @@
 
 namespace palpate {
 
-/// The surface that solids and residual GP describe, where `lines` first meet it: at most one point in a cube of `side`
-/// metres, relative to the desk.
+/// Returns the points where `lines` first meet the surface of the solids with the residual GP: at most one per cube
+/// with this side, metres, relative to the desk.
 Cloud surface_points(const Bundle& lines, double side, const Solids& solids, const ResidualGp& residual_gp);
 
-/// Returns the standard deviation of the surface near such points, metres: what the residual GP leaves open, and the
-/// distances of the other particles' surfaces there, none more than 2 cm.
+/// Returns the standard deviation of the surface near such points, metres. It combines the variance of the residual GP
+/// with the distances of the other particles' surfaces, clipped to 2 cm.
 Eigen::VectorXd surface_std(const Cloud& points, const Solids& solids, const ResidualGp& residual_gp);
 
-/// What is truly there, and the lines and cubes by which it is compared.
+/// The true scene, and the lines and cubes for the comparison.
 class SurfaceErrors {
  public:
   explicit SurfaceErrors(const Region& region);
 
-  /// Sets the true scene as it stands now, null if it is not known. It outlives the next call.
+  /// Sets the true scene in its current state; null if unknown. The scene must live until the next call.
   void set_truth(const Scene* scene);
 
-  /// Returns the errors of a surface; null: none is believed, and all of the true surface is missing. Without a known
-  /// truth, or if nothing of it can be met, all are absent.
+  /// Returns the errors of a surface. Null means that no surface is estimated yet, so the whole true surface is
+  /// missing. All errors are absent if the truth is unknown, or if no line meets it.
   Errors compare(const Solids* solids, const ResidualGp& residual_gp);
 
  private:
   struct Truth {
-    Cloud points;       ///< one in a cube of 1 mm
-    Cubes::Held cubes;  ///< that are solid
+    Cloud points;       ///< one per cube of 1 mm
+    Cubes::Held cubes;  ///< solid cubes
   };
   const Truth& truth();
-  /// Share of points whose distance to the truth is within the 95 % interval.
+  /// Returns the share of points whose distance to the truth is within the 95 % interval.
   std::optional<double> coverage(const Cloud& points, const Solids& solids, const ResidualGp& residual_gp);
 
   Bundle lines_;

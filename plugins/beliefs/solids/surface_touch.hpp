@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A touch as a belief over space sees it.
+// A touch in the form that the belief over solids uses.
 #pragma once
 
 #include <palpate/shape.hpp>
@@ -10,14 +10,14 @@
 
 namespace palpate {
 
-/// The way of a tool that came to `length`, metres from the origin of the line, and there touched something or not. All
-/// of the line before is free: the tool passed there.
+/// The path of a tool that moved `length` metres from the origin of its line, and ended there with or without a
+/// contact. The line before the end is free, because the tool passed it.
 struct SurfaceTouch {
   Line line;
   double length = 0.0;
   bool contact = false;
   bool desk = false;                        ///< a contact with the desk, not an object
-  std::optional<Eigen::Vector3d> normal{};  ///< of the surface, outwards, of length 1: where the tool feels it
+  std::optional<Eigen::Vector3d> normal{};  ///< surface normal, outwards, unit length; only if the tool measures it
 
   Eigen::Vector3d end() const { return line.origin + length * line.direction; }
 };

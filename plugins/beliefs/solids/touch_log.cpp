@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-/// Metres below the desk at which a tool that presses on it has felt it.
+/// Depth below the desk, metres, at which a tool must have felt the desk.
 constexpr double kFeltLate = 0.03;
 
 }  // namespace

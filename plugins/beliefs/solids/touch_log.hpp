@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The touches so far, as they are read now: how far the tool came before it met the surface, and whether that was the
-// desk. Later contacts with the desk show how deep contacts are reported, and change how earlier ones are read.
+// The touches so far, as currently read: how far the tool moved before it met the surface, and whether that was the
+// desk. Later contacts with the desk improve the estimate of the overtravel, and so change the readings of earlier
+// ones.
 #pragma once
 
 #include "solids/overtravel.hpp"
@@ -17,8 +18,8 @@ namespace palpate {
 
 class TouchLog {
  public:
-  /// `desk`: its height, metres; `tip`: radius of the tool's round tip, metres; no contact higher than `most` above the
-  /// desk is with the desk.
+  /// `desk`: its height, metres; `tip`: radius of the tool's round tip, metres. Contacts more than `most` above the
+  /// desk are never with the desk.
   TouchLog(double desk, double tip, double most) : desk_(desk), overtravel_(tip, most) {}
 
   /// Takes the rays of a camera, before the first tap. `shows_object`: whether one of all its rays ends on an object.
@@ -28,10 +29,10 @@ class TouchLog {
   /// the desk, and so would have felt nothing of an object.
   std::optional<TapReading> read(const TapRequest& request, const TapResult& result) const;
 
-  /// Takes the result of a tap. All contacts so far are read again.
+  /// Adds the result of a tap, and reads all contacts again.
   void add(const TapRequest& request, const TapResult& result);
 
-  /// Touches as they are read now, lengths relative to the desk: first those that were seen.
+  /// Returns the current readings of all touches, lengths relative to the desk. The touches of the view come first.
   const std::vector<SurfaceTouch>& touches() const { return touches_; }
   std::size_t seen() const { return seen_; }
   const TapsSoFar& taps() const { return taps_; }
@@ -44,7 +45,7 @@ class TouchLog {
 
  private:
   struct Reported {
-    SurfaceTouch touch;  ///< as the arm reported it
+    SurfaceTouch touch;  ///< touch as the arm reported it
     double force;
     int tap;
   };

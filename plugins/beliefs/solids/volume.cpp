@@ -36,13 +36,13 @@ Cubes::Held Cubes::of(const Scene& scene) const {
 namespace {
 
 struct Nearest {
-  double distance = kNoHit;   ///< to the assembly
-  double clear = kNoHit;      ///< no surface is nearer
-  std::size_t primitive = 0;  ///< whose distance that is
+  double distance = kNoHit;   ///< distance to the assembly
+  double clear = kNoHit;      ///< lower bound of the distance to any surface
+  std::size_t primitive = 0;  ///< the primitive with this distance
 };
 
-/// The share of what Primitive::distance() says that is true at least: of what is round, and not equally in all
-/// directions, it is too much between the axes.
+/// Returns a lower bound of the ratio of true distance to Primitive::distance(). For round primitives with unequal half
+/// extents, that function is too large between the axes.
 double certain_share(const Primitive& primitive) {
   if (primitive.form == Primitive::Form::box) return 1.0;
   if (primitive.form == Primitive::Form::cylinder && primitive.half.x() == primitive.half.y()) return 1.0;
@@ -58,8 +58,8 @@ Vector3d normal(const Primitive& primitive, const Vector3d& at) {
   return out.stableNormalized();
 }
 
-/// What the residual GP adds, which changes slowly: asked for once in a few cubes for each of six directions of the
-/// normal of each primitive. Primitives side by side may have surfaces that are parallel, and other than each other.
+/// Mean of the residual GP, which changes slowly. It is evaluated once per few cubes, for each primitive and each of
+/// six directions of the normal: neighbouring primitives may have parallel surfaces with different means.
 class ResidualGpNearby {
  public:
   ResidualGpNearby(const ResidualGp& residual_gp, double side) : residual_gp_(residual_gp), side_(kCubes * side) {}
@@ -80,7 +80,7 @@ class ResidualGpNearby {
 
  private:
   static constexpr int kCubes = 3;
-  static constexpr unsigned kBits = 16;  // 13 are left for primitives, and more than seven there never are
+  static constexpr unsigned kBits = 16;  // leaves 13 bits for primitives, of which there are at most seven
   const ResidualGp& residual_gp_;
   double side_;
   std::unordered_map<std::uint64_t, double> means_;
@@ -105,7 +105,7 @@ Cubes::Held Cubes::of(const Assembly& solids, const ResidualGp& residual_gp) con
       const double distance = primitive.distance(at);
       const double to_ball = (at - primitive.centre).norm() - balls[i];
       const double clear = std::max(shares[i] * std::abs(distance), to_ball);
-      if (distance < 0.0) {  // whoever is inside of a primitive has to leave that one
+      if (distance < 0.0) {  // a point inside a primitive has to leave that primitive
         known.clear = known.distance < 0.0 ? std::max(known.clear, clear) : clear;
       } else if (known.distance >= 0.0) {
         known.clear = std::min(known.clear, clear);
@@ -114,7 +114,7 @@ Cubes::Held Cubes::of(const Assembly& solids, const ResidualGp& residual_gp) con
     }
     return known;
   };
-  // Blocks of cubes, halved until the surface is farther from their centre than their corners are.
+  // Subdivides blocks of cubes until the surface is farther from their centre than their corners are.
   const auto fill = [&](const auto& self, int x, int y, int z, int size) -> void {
     if (x >= across_ || y >= across_ || z >= up_) return;
     const Vector3d at = lowest_ + side_ * (Vector3d(x, y, z) + Vector3d::Constant(0.5 * (size - 1)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How much of what is solid two descriptions of it have in common: cubes over a region, by their centres.
+// Common volume of two solids: a grid of cubes over a region, represented by their centres.
 #pragma once
 
 #include "solids/residual_gp.hpp"
@@ -15,25 +15,25 @@ namespace palpate {
 
 class Cubes {
  public:
-  /// Over the ball, as far as it is above the desk. Lengths are relative to the desk.
+  /// Covers the part of the ball above the desk. Lengths are relative to the desk.
   Cubes(const Eigen::Vector3d& centre, double radius, double side);
 
-  /// Of each cube, whether its centre lies in a solid; column by column, each from below.
+  /// One flag per cube: whether its centre lies in a solid. Cubes are ordered by columns, each from bottom to top.
   using Held = std::vector<bool>;
 
-  /// In an object of the scene: within its walls, not in what they enclose.
+  /// Returns the cubes in an object of the scene: in its material, not in its hollow.
   Held of(const Scene& scene) const;
-  /// In what is believed: where the assembly's distance, less what the residual GP adds, is negative. The residual GP
-  /// is asked as far from the assembly's surface as it reaches, once in three cubes along each axis.
+  /// Returns the cubes where the assembly's distance minus the mean of the residual GP is negative. The residual GP is
+  /// evaluated only within its reach of the assembly's surface, once per three cubes along each axis.
   Held of(const Assembly& solids, const ResidualGp& residual_gp) const;
 
  private:
-  Eigen::Vector3d lowest_;  ///< centre of the first
+  Eigen::Vector3d lowest_;  ///< centre of the first cube
   double side_;
   int across_, up_;
 };
 
-/// Cubes in both over cubes in either; 1 where both are empty.
+/// Returns the number of cubes in both sets, divided by the number of cubes in at least one; 1 if both are empty.
 double intersection_over_union(const Cubes::Held& one, const Cubes::Held& other);
 
 }  // namespace palpate

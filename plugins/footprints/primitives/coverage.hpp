@@ -67,7 +67,8 @@ class TapRows {
 
 /// Sets `out` to the largest step of each tap over all rows: the step in the union of the primitives.
 void find_deepest(const RowList& rows, int length, LabelModel::Step* out);
-/// Return whether a row has an object tap inside, whether two rows share one, and whether they contain different ones.
+/// Return whether a row has an object tap inside, whether two rows share an object tap, and whether they contain
+/// different object taps.
 bool holds_object(const LabelModel::Step* row, const Taps& taps);
 bool share_object(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);
 bool hold_different_objects(const LabelModel::Step* one, const LabelModel::Step* other, const Taps& taps);

@@ -148,7 +148,7 @@ Prior::Prior(const Settings& settings)
       // A form longer than the diagonal never fits.
       longest_(0.5 * std::min(settings.max_length, math::hypot(settings.area.width, settings.area.depth))),
       range_(math::log(longest_ / (0.5 * settings.min_width))) {
-  constexpr double kRoom = 1.01;  // with a smaller ratio hardly any draw fits
+  constexpr double kRoom = 1.01;  // with a smaller ratio, almost no draw fits
   if (std::min(settings.area.width, settings.area.depth) < kRoom * settings.min_width) {
     throw Error("footprint", "hardly any primitive of this prior fits into the area",
                 "make min_width smaller or the area larger");

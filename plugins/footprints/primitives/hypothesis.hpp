@@ -143,7 +143,7 @@ struct Push {
   /// Return the position of an object's point after the push, and before it.
   Target to_current(const Target& original) const;
   Target to_original(const Target& current) const;
-  /// As above, for primitives.
+  /// Return the primitive after the push, and before it.
   Primitive to_current(Primitive original) const;
   Primitive to_original(Primitive current) const;
 };

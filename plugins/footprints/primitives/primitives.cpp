@@ -127,7 +127,7 @@ class Primitives final : public Footprint {
     return sampler_.undiscovered_probability(kMinLength);
   }
 
-  /// After gp_classifier has replaced the primitives, the numbers keep their values of that contact.
+  /// Once gp_classifier has replaced the primitives, the numbers keep their values from that contact.
   std::vector<FootprintNumber> numbers() const override {
     std::vector<FootprintNumber> out{{"label_errors", sampler_.mean_label_errors()},
                                      {"primitives", sampler_.mean_primitives()},

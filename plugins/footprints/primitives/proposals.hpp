@@ -19,7 +19,7 @@ struct Proposal {
   enum class Kind { change_form, replace, add, remove, make_hole, fill_hole, flip_noise, push };
   Kind kind = Kind::change_form;
   /// Ratio of Metropolis and Hastings without the likelihood: (prior density times density of the reverse proposal)
-  /// after the change, divided by the same before. 0 if the move is impossible.
+  /// after the change, divided by the same product before the change. 0 if the move is impossible.
   double ratio = 0.0;
   ShortList<int> removed;      ///< indices in the hypothesis
   ShortList<Primitive> added;  ///< the first elements replace the removed ones
@@ -63,12 +63,13 @@ void propose(Proposal& out, const Hypothesis& from, const Prior& prior, const Ta
 /// Proposes to switch between exact and noisy positions.
 void propose_noise(Proposal& out, const Hypothesis& from);
 
-/// Proposes to add, remove or change a push. With probability 1/2 the primitives move along and fit the earlier taps as
-/// before. `rate`: prior weight of a push between two taps, relative to no push. `taps` must be at least 2.
+/// Proposes to add, remove or change a push. With probability 1/2 the primitives move with the push, so that they still
+/// fit the earlier taps. `rate`: prior weight of a push between two taps, relative to no push. `taps` must be at least
+/// 2.
 ///
 /// The weight omits (1 - rate)^(taps - 1), which all hypotheses share up to one factor 1 - rate. The prior of a
 /// primitive with an object tap omits exp(-r), where r is the expected number of such primitives. It also omits the
-/// part of the desk taps in the same factor. Both depend on the push; no effect was measured in 1200 runs.
+/// part of that factor that the desk taps contribute. Both depend on the push; no effect was measured in 1200 runs.
 void propose_push(Proposal& out, const Hypothesis& from, const Prior& prior, int taps, double rate, Random& random);
 
 }  // namespace palpate::footprints

@@ -51,13 +51,13 @@ struct Particle {
   RowList list_rows() const;
 };
 
-/// Replaces the primitives of `to` about which the latest tap is informative by those of `from`. These are primitives
-/// near the tap, and primitives that are close to them or share an object tap with them, in either hypothesis. Other
-/// primitives stay, because a tap of one object carries no information about another (local particle filters:
-/// Rebeschini and van Handel 2015). Without this rule few distinct hypotheses of an object would survive while another
-/// object is tapped. The likelihood of `to` is not updated. Returns false, without a change, in three cases: no
-/// primitive would stay or more than `most` would result, a hypothesis has a push, or only one hypothesis has noisy
-/// positions. `taps` are the positions as made.
+/// Copies the primitives about which the latest tap is informative from `from` to `to`, where they replace such
+/// primitives. These are primitives near the tap, and primitives that are close to them or share an object tap with
+/// them, in either hypothesis. Other primitives stay, because a tap of one object carries no information about another
+/// (local particle filters: Rebeschini and van Handel 2015). Without this rule few distinct hypotheses of an object
+/// would survive while another object is tapped. The likelihood of `to` is not updated. Returns false, without a
+/// change, in three cases: no primitive would stay or more than `most` would result, a hypothesis has a push, or only
+/// one hypothesis has noisy positions. `taps` are the positions as made.
 ///
 /// An approximation: the resampling weights are not corrected for the primitives that stay; the moves that follow
 /// correct the particles. A calibration with the default moves showed no error at 0.003.
@@ -136,13 +136,14 @@ class Sampler {
   /// Sets `out` to the probability that each tap's label is an error. A label that noise of the position explains does
   /// not count as an error.
   void label_errors(VectorOut out) const;
-  /// Moves the positions of taps to where objects are now, if over half of the particles have a later push. `positions`
+  /// Moves the positions of taps with the objects if more than half of the particles have a later push. `positions`
   /// contains the original positions.
   void current_positions(Points& positions) const;
   /// Returns the probability that an object of at least `length` metres exists apart from all known primitives.
   double undiscovered_probability(double length) const;
 
-  /// Return the mean number of improbable labels (LabelModel::contradicts) per particle, and of primitives.
+  /// Return the mean number of improbable labels (LabelModel::contradicts) per particle, and the mean number of
+  /// primitives.
   double mean_label_errors() const;
   double mean_primitives() const;
   /// Fraction of particles with a push, their mean number of taps before it, and the mean translation of their

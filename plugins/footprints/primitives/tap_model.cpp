@@ -20,9 +20,9 @@ constexpr double kSlopeGrowth = 0.5;
 // Fractions of level and of sloped tops.
 constexpr double kLevels = 0.5;
 constexpr double kSlopes = 0.3;
-// Fraction of primitives whose height continues that of the nearest tap outside.
+// Fraction of primitives that continue the height of the nearest tap outside.
 constexpr double kContinued = 0.3;
-// Number of nearest earlier taps that are searched; one of them is nearly always in the same primitive.
+// Number of nearest earlier taps that are searched; nearly always, one of them is in the same primitive.
 constexpr std::size_t kNeighbours = 8;
 
 /// Returns the logarithm of a height's density given an earlier one, relative to the uniform density.

@@ -17,9 +17,9 @@ using LogUnits = std::int64_t;
 LogUnits to_units(double logarithm);
 inline double from_units(LogUnits units) { return static_cast<double>(units) * 0x1p-20; }
 
-/// Probability of a tap's label, given its depth in the deepest primitive of a hypothesis. With two rims within the
-/// noise this is an approximation: the union of two primitives is deeper, and a thin primitive less deep. A calibration
-/// with 4 mm of noise showed no error.
+/// Probability of a tap's label, given its depth in the deepest primitive of a hypothesis. If two rims are within the
+/// noise, this is an approximation: the union of two primitives is deeper, and a thin primitive is less deep. A
+/// calibration with 4 mm of noise showed no error.
 class LabelModel {
  public:
   /// `label_error`: probability that an object tap has the label of the desk. `false_contact`: probability that a desk
@@ -66,9 +66,9 @@ class LabelModel {
 };
 
 /// Probability of the heights of object taps, relative to independent uniform heights. The top of a primitive is level,
-/// sloped or arbitrary. On a level or sloped top, a height depends on that of the nearest earlier tap in the same
+/// sloped or arbitrary. On a level or sloped top, a height depends on the height of the nearest earlier tap in the same
 /// primitive: a Gaussian process with one neighbour (Vecchia 1988). The first tap of a primitive has an arbitrary
-/// height, or that of the nearest earlier tap outside.
+/// height, or continues the height of the nearest earlier tap outside.
 class HeightModel {
  public:
   /// Adds an object tap.

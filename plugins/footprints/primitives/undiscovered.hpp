@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Undiscovered primitives: those without an object tap inside.
+// Undiscovered primitives: primitives without an object tap inside.
 //
 // The prior is a Poisson process, so primitives are independent. Hypotheses contain the primitives with an object tap.
 // The others form another Poisson process: none has an object tap inside, and each desk tap reduces the probability of
@@ -27,7 +27,7 @@ class Undiscovered {
    public:
     /// Returns the expected number of undiscovered primitives at the position.
     double rate() const { return rate_; }
-    /// Returns a random one of them. The rate must be above 0.
+    /// Returns a random primitive at the position. The rate must be above 0.
     const Primitive& draw(Random& random) const;
 
    private:
@@ -45,11 +45,11 @@ class Undiscovered {
   ///
   /// One process serves exact and noisy hypotheses. With position noise, `labels` is the model of noisy ones. The
   /// expected number of primitives is then 0.012 smaller on average (at most 0.026 in 40 scenes of 40 taps). The odds
-  /// of noisy against exact positions should include the factor exp(this difference), and omit it.
+  /// of noisy against exact positions should include the factor exp(this difference), but omit it.
   void add(const Touch& touch, const LabelModel& labels);
 
-  /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from those
-  /// of the last call.
+  /// Prepares grid(), rates() and expected_extent() for positions, M x 2 metres. Returns whether they differ from the
+  /// positions of the last call.
   bool prepare(const PointsView& positions);
   /// Returns the prepared positions.
   const Grid& grid() const { return *grid_; }
@@ -97,7 +97,7 @@ class Undiscovered {
   std::int64_t apart(std::size_t draw) const { return known_ - static_cast<std::int64_t>(overlaps_[draw]); }
 
   std::vector<Draw> draws_;
-  FormTable forms_;              ///< of the draws
+  FormTable forms_;              ///< forms of the draws
   std::vector<float> overlaps_;  ///< number of known hypotheses that each draw overlaps
   std::int64_t known_ = 1;       ///< number of these hypotheses
   double unit_;                  ///< expected number of primitives per unit of weight

@@ -27,7 +27,7 @@ class Bag {
   /// Opens the file; write() has an effect from now on. Throws Error.
   void open(const std::string& file);
 
-  /// Queues a message with the connection header of its sender. Without effect before open() and after an error, which
+  /// Queues a message with the connection header of its sender. Has no effect before open(), or after an error, which
   /// is printed once.
   template <class Message>
   void write(const std::string& topic, const ros::Time& time, const boost::shared_ptr<const Message>& message,

@@ -21,9 +21,9 @@ constexpr milliseconds kListedDeadline(3000);     ///< until all required topics
 constexpr milliseconds kReceivedDeadline(3800);   ///< until all required streams have arrived
 constexpr milliseconds kExplainedDeadline(4200);  ///< until the cause of missing streams is known
 
-constexpr milliseconds kLookUp(1000);       ///< for the name of the robot's host
-constexpr milliseconds kOnePublisher(300);  ///< for the answer of one publisher
-constexpr milliseconds kAskAgain(100);      ///< between queries to the master, which serves one at a time
+constexpr milliseconds kLookUp(1000);       ///< longest look-up of the name of the robot's host
+constexpr milliseconds kOnePublisher(300);  ///< longest wait for the answer of one publisher
+constexpr milliseconds kAskAgain(100);      ///< pause between queries to the master, which serves one at a time
 constexpr milliseconds kLook(2);
 
 constexpr const char* kVersionParameter = "/rethink/software_version";

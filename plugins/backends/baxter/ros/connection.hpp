@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Interface between connect(), which waits for messages and explains missing ones, and the part that uses roscpp.
+// Interface between connect(), which waits for messages and explains why some are missing, and the code that uses
+// roscpp.
 #pragma once
 
 #include "baxter/ros/bag.hpp"

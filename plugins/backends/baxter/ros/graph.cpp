@@ -32,7 +32,7 @@ using Why = NetworkError::Why;
 constexpr const char* kCaller = "/palpate";
 /// Bytes of an answer; the description of a whole network has about 10'000
 constexpr std::size_t kLongest = 4'000'000;
-constexpr std::size_t kDeepest = 64;  ///< nested elements; that description has 17
+constexpr std::size_t kDeepest = 64;  ///< nested elements; the description of a whole network has 17
 
 NetworkError not_ros() { return {Why::nonsense, "the program that answers there is not ROS"}; }
 
@@ -79,7 +79,7 @@ std::string http_body(TcpConnection& wire, Deadline deadline) {
 /// per nested value, and searches a member's name anywhere. So the name must come first in its member.
 bool is_well_formed(std::string_view xml) {
   std::vector<std::string_view> open;
-  bool in_member = false;  // in a member, before its name
+  bool in_member = false;  // whether the position is in a member, before its name
   for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at)) {
     const std::size_t end = xml.find_first_of("<>", ++at);
     if (end == std::string_view::npos || end == at || xml[end] == '<' || xml[at] == '!') return false;

@@ -78,8 +78,8 @@ class SilentErrorHandler : public XmlRpc::XmlRpcErrorHandler {
 class Node {
  public:
   explicit Node(const Network& joined) : network(joined) {
-    // roscpp's log is switched off. connect(), the safety rules and the record report its errors. Reconnections would
-    // appear between palpate's own lines.
+    // roscpp's log is switched off, because its lines, such as reconnections, would appear between palpate's own.
+    // connect(), the safety rules and the record report its errors.
     ROSCONSOLE_AUTOINIT;
     ros::console::set_logger_level("ros", ros::console::levels::Fatal);
     ros::console::notifyLoggerLevelsChanged();
@@ -162,7 +162,7 @@ void start_node(const Network& network) {
   if (!ros::ok()) {
     throw robot_error(network.where(), "the ROS node of this process was told to shut down", "start it again");
   }
-  point_roscpp_at(network.uri);  // an earlier connection may have marked it as gone
+  point_roscpp_at(network.uri);  // an earlier connection may have pointed it at a closed port
 }
 
 std::string node_name() { return ros::this_node::getName(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The roscpp node of this process. roscpp aborts or waits for ever if the environment is wrong or a host is gone, so
-// everything is checked before it starts.
+// The roscpp node of this process. With a wrong environment or an unreachable host, roscpp aborts or waits for ever, so
+// both are checked before it starts.
 #pragma once
 
 #include "baxter/ros/graph.hpp"
@@ -39,7 +39,7 @@ constexpr const char* kNodeName = "palpate";
 std::string node_name();
 
 /// Prepares the end of subscribers and publishers. If the master does not answer within half a second, roscpp is
-/// pointed at a closed port. Unregistering from a silent master would take minutes.
+/// pointed at a closed port, because unregistering from a silent master would take minutes.
 void forget_silent_master();
 
 /// Runs `connections` on roscpp's connection thread and waits for its end. Closing connections on another thread may

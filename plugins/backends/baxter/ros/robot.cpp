@@ -40,7 +40,7 @@ constexpr auto kSimulatedNap = 150us;
 /// Tolerance in s for rounding, because a simulated clock advances in steps.
 constexpr double kRounding = 1e-6;
 /// Real time that messages get to catch up with a simulated clock, which may be ahead of them on a busy machine.
-/// kAlmostNow is the sufficient age in s of simulated time.
+/// kAlmostNow is the age in s, of simulated time, at which messages are recent enough.
 constexpr auto kCatchUp = 50ms;
 constexpr double kAlmostNow = 0.03;
 
@@ -112,7 +112,7 @@ class RosRobot final : public RosConnection {
     handle_.setCallbackQueue(&queue_);
     listen();
     if (commands) {
-      // Another sender of set-points moves the same arm.
+      // Another sender of set-points would move the same arm.
       subscribe<msgs::JointCommand>(kCommandTopic, [](const auto&, const MessageInfo& heard, Snapshot& latest) {
         add_once(latest.commanders, heard.sender);
       });
@@ -216,7 +216,7 @@ class RosRobot final : public RosConnection {
 
   std::shared_ptr<Bag> bag() override { return bag_; }
 
-  /// This program subscribes to the topic, too.
+  /// One subscriber is this program itself.
   bool listened_to() override { return command_publisher_.getNumSubscribers() > 1; }
 
  private:
@@ -250,7 +250,7 @@ class RosRobot final : public RosConnection {
     using Event = ros::MessageEvent<const Message>;
     const boost::function<void(const Event&)> heard = [this, topic, take](const Event& event) {
       if (event.getPublisherName() == ros::this_node::getName()) return;
-      // Before the first simulated time no message has an age. Latched messages arrive only then, so they are kept
+      // Before the first simulated time, messages have no age. Latched messages arrive only then, so they are kept
       // without a time.
       if (!event.getReceiptTime().isZero()) {
         bag_->write<Message>(topic, event.getReceiptTime(), event.getConstMessage(), event.getConnectionHeaderPtr());
@@ -346,7 +346,7 @@ class RosRobot final : public RosConnection {
     if (latest.malformed.empty()) latest.malformed = words;
   }
 
-  /// Loop of the spinner thread, which every message and the end wake up.
+  /// Loop of the spinner thread. Messages and the end of the connection wake it up.
   void spin() {
     while (!stop_) {
       queue_.callAvailable(kSpin);
@@ -376,7 +376,7 @@ class RosRobot final : public RosConnection {
   Master master_;
   std::mutex mutex_;
   Snapshot latest_;      ///< guarded by mutex_; `now` and `own_gap` are not used
-  Heartbeat heartbeat_;  ///< of the spinner thread; guarded by mutex_
+  Heartbeat heartbeat_;  ///< heartbeat of the spinner thread; guarded by mutex_
   std::atomic<bool> stop_{false};
   std::thread spinner_;
 };

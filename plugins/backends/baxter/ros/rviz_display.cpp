@@ -57,7 +57,7 @@ class RosView final : public View {
   void surface(const Points& places, const VectorView& height, const VectorView& deviation) override {
     const auto count = static_cast<std::size_t>(std::min({places.rows(), height.size(), deviation.size()}));
     sensor_msgs::PointCloud2 cloud;
-    // Without a stamp, because RViz drops messages that are older than its transforms.
+    // The cloud has no stamp, because RViz drops messages that are older than its transforms.
     cloud.header.frame_id = kFrame;
     cloud.height = 1;
     cloud.is_dense = height.allFinite() && deviation.allFinite();
