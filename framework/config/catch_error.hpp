@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors as values, for callers that go on after an error or add information to it.
+// Returns errors as values, for callers that continue after an error or add information to it.
 #pragma once
 
 #include <palpate/error.hpp>

@@ -27,8 +27,8 @@ constexpr Layer kLayersOfGroup = 16;
               "merge them into fewer files");
 }
 
-/// Appends a group to `chain`, the files under way from the config to this one. Throws Error for an invalid name and
-/// for a file that is already in the chain.
+/// Appends a group to `chain`, the groups that led from the config to this one. Throws Error for an invalid name, and
+/// for a group that is already in the chain.
 void add_link(const std::string& group, const std::string& name, const SourceLocation& place,
               std::vector<std::string>& chain) {
   if (!is_name(name))
@@ -201,7 +201,7 @@ std::vector<Composer::Choice> Composer::take_defaults(Tree& own) const {
   std::vector<Choice> choices;
   const Tree* defaults = own.find("defaults");
   if (defaults == nullptr) {
-    // Otherwise the first error would be about a group that the misspelt list chooses.
+    // Report a misspelt `defaults` first; otherwise the first error would be about a group that the list chooses.
     for (const Tree::Entry& entry : own.entries) {
       if (nearest(entry.key, {"defaults"}).empty()) continue;
       throw Error(entry.place.text(), fmt::format("unknown option '{}'", entry.key), "did you mean 'defaults'?");
@@ -253,8 +253,8 @@ Tree Composer::take_group(const Choice& choice, const fs::path& beside, Layer la
 }
 
 void Composer::lay_groups(Tree& tree, const std::vector<Choice>& choices, const fs::path& beside, Layer& layer) {
-  // A group may bring options for the key next to it, as a backend brings its motion. These options count unless that
-  // key is chosen by an override, or anywhere in the config that chooses the group.
+  // A group may contain options for the key next to it: a backend may contain a motion. These options are ignored if an
+  // override chooses that key, or if the config that chooses the group also chooses that key.
   const auto is_chosen = [&](const std::string& key, Layer since) {
     return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) {
       return one.path == key && (one.value.layer >= kSweepLayer || since < kSweepLayer);

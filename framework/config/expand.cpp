@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMaxValues = 1'000'000;        ///< per axis
-constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< for all axes together
+constexpr std::size_t kMaxValues = 1'000'000;        ///< limit per axis
+constexpr std::size_t kMostValues = 2 * kMaxValues;  ///< limit for all axes together
 constexpr const char* kHowTo = "write range(0,10), range(0,10,2) or logspace(1cm,5cm,8), both ends with the same unit";
 
 [[noreturn]] void refuse(const Tree& tree, const std::string& key, const std::string& reason, const std::string& hint) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The values of swept keys, parsed from lists, `range` and `logspace`; and continuous ranges.
+// Parses the values of swept keys (lists, `range` and `logspace`) and continuous ranges.
 #pragma once
 
 #include "config/compose.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reading of one map of a config: known keys, values of fields, and the text for the id of the run. See resolve.cpp
-// for the kinds of fields.
+// Reads one map of a config: known keys, values of fields, and the text for the id of the run. See resolve.cpp for the
+// kinds of fields.
 #pragma once
 
 #include "config/resolve.hpp"
@@ -60,11 +60,11 @@ class MapReader : public Fields {
   /// Marks a field as known and returns its value. Returns null if a config does not set it. In a record, a missing
   /// field has its neutral value: see resolve().
   const Tree* claim(const Field& field, Missing missing = Missing::refused);
-  /// The same for a list, whose neutral value is the empty list.
+  /// Like claim(), for a list; its neutral value is the empty list.
   const Tree* claim_list(const Field& field);
 
-  /// Notes the type that decides which fields exist. If the type was not chosen by the record itself, missing fields
-  /// have their defaults instead of their neutral values.
+  /// Notes the type that decides which fields exist. If an override of a record chose the type, missing fields have
+  /// their defaults instead of their neutral values.
   void note_type(const Tree& type);
 
   double quantity(const Tree& tree, const Field& field) const;
@@ -85,7 +85,7 @@ class MapReader : public Fields {
 
   /// Writes a claimed field. `id_text` is its value in the id; "" if the id gets it in another way.
   void write(const Field& field, Tree value, std::string_view id_text);
-  /// The same for a scalar whose id text is its own text.
+  /// Writes a claimed scalar, whose text also goes into the id.
   void write(const Field& field, std::string text);
 
   /// Returns the properties for the map at `name`, which is the field or one of its items.
@@ -96,7 +96,7 @@ class MapReader : public Fields {
   std::string plugin_;    ///< plugin that has these options; "": none
   std::string beside_;    ///< option next to the plugin: Field::with_beside(); "": none
   std::string above_;     ///< path of the map around such a plugin
-  std::string id_above_;  ///< the same with former names of fields
+  std::string id_above_;  ///< `above_` with former names of fields
   bool silent_ = false;   ///< the options of a plugin are unknown, so that any key may be valid
   std::string adopted_;   ///< adopted plugin (Fields::adopt()), whose options are among these; "": none
   ResolveNotes& notes_;

@@ -72,7 +72,7 @@ struct Dimension {
   const char* example;
 };
 
-/// In the order of Unit.
+/// Names in the order of Unit.
 constexpr std::array kDimensions{
     Dimension{"number", "a plain number"},
     Dimension{"length", "a length like '1.7 cm'"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From a composed config to checked options and the resolved config, which has the final value of every field and
-// nothing else.
+// Converts a composed config to checked options and to the resolved config, which contains exactly the final values of
+// all fields.
 #pragma once
 
 #include "config/tree.hpp"
@@ -36,8 +36,8 @@ struct ResolveNotes {
     std::string path;   ///< dotted, for example "kernel.length_scale"
     std::string place;  ///< "file:line:column", "command line", or "default"
   };
-  std::vector<Origin> origins;  ///< of each value, in the order of the resolved config
-  std::vector<Origin> dropped;  ///< options that a type lacks which was chosen later
+  std::vector<Origin> origins;  ///< origin of each value, in the order of the resolved config
+  std::vector<Origin> dropped;  ///< options that were set for another type and that the final type lacks
   PluginNames plugins;          ///< all plugins of the config
   /// Lines `path=value` of all values that affect the results of a run, in the order of the fields: see identity_of().
   std::vector<std::string> identity;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Units and digits of quantities for people. Tables, summaries, status lines and reports format numbers only by this
-// file; common.js of the pages follows the same rule. Machine formats (CSV, JSON, records) have all digits in SI.
+// Units and digits of quantities in output for users. Tables, summaries, status lines and reports format all numbers
+// with this file; common.js of the pages follows the same rules. Machine formats (CSV, JSON, records) have all digits
+// in SI.
 //
 // Units: positions, heights and their standard deviations are in centimetres, errors in millimetres, times in seconds,
 // all else in SI. A column or axis has one unit. The unit changes only if the largest number would have too many digits
@@ -26,7 +27,7 @@ struct Scale {
   std::string unit;     ///< "": none
   double factor = 1.0;  ///< SI units per `unit`
   int decimals = 0;
-  bool scientific = false;  ///< for numbers without a unit that are too small or too large for decimals
+  bool scientific = false;  ///< true for numbers without a unit that are too small or too large for decimals
   bool open = false;        ///< the values are not known yet; each gets at least two significant digits
 
   /// Returns for example "3.21" for `value` in SI, without its unit; "nan" or "inf" for values that are not finite.

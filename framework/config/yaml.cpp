@@ -76,7 +76,7 @@ class Reader final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { put(mark, "", anchor, Tree()); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    if (refused_) return;                      // an alias may stand for many values
+    if (refused_) return;                      // stop after an error, because an alias may expand to many values
     const auto found = anchors_.find(anchor);  // an alias within its own anchor is not found
     if (found == anchors_.end()) refuse(place(mark), "nested too deeply", "at most 100 levels");
     put(mark, "", YAML::NullAnchor, found == anchors_.end() ? Tree() : found->second);
@@ -101,7 +101,7 @@ class Reader final : public YAML::EventHandler {
   struct Open {
     Tree* tree;  ///< null after an error
     YAML::anchor_t anchor;
-    bool has_key;  ///< of a map: the next value belongs to its last key
+    bool has_key;  ///< the tree is a map, and the next value belongs to its last key
   };
 
   void close() {
@@ -266,10 +266,10 @@ Tree read_yaml(const std::filesystem::path& path, Origin origin) {
 }
 
 void check_readable(const Tree& config, const std::string& file) {
-  // Writing takes longer than resolving, and few configs are near the limit.
+  // Small configs pass without a test, because to_yaml() takes longer than resolving the config.
   constexpr std::size_t kSmall = 1 << 16;
   if (config.canonical().size() < kSmall) return;
-  int values = 0;  // as Reader counts them
+  int values = 0;  // number of values, counted as in Reader
   for_all(config, [&](const Tree&) { ++values; });
   if (to_yaml(config).size() <= kMostConfigBytes && values <= kMaxValues) return;
   throw Error(file, "too large after the defaults are filled in",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The writing of YAML: to_yaml(), and the comments with places.
+// Writes YAML: to_yaml(), and the comments with places.
 #include "config/yaml.hpp"
 #include "reading/reading.hpp"
 
