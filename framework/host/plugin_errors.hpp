@@ -16,7 +16,7 @@ class Motions;
 std::shared_ptr<void> wrap_plugin(const std::string& kind, const std::string& type,
                                   const std::shared_ptr<void>& object);
 
-/// The same for the motions of a backend. `name` is <kind>/<type>.
+/// Returns the motions of a backend in such a wrapper. `name` is <kind>/<type>.
 std::shared_ptr<const Motions> wrap_plugin(const std::string& name, const std::shared_ptr<Motions>& motions);
 
 }  // namespace palpate
