@@ -20,7 +20,7 @@
 namespace palpate {
 namespace {
 
-/// Returns the texts as an array of the C library, which a null pointer ends.
+/// Returns pointers to the texts, followed by a null pointer, as functions of the C library expect.
 std::vector<char*> pointers(const std::vector<std::string>& texts) {
   std::vector<char*> out;
   for (const std::string& text : texts) out.push_back(const_cast<char*>(text.c_str()));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Child processes: programs, and work in a forked process because it may crash or hang, or because plugins do not
-// support threads.
+// Child processes: programs, and forked processes for work that may crash or hang or that cannot use threads.
 //
 // Framework and shipped plugins use these functions, which need only the C library. They throw nothing. If a system
 // call fails, they return an empty result with errno, so that callers can report the failed action. A child gets its
@@ -69,12 +68,12 @@ struct Program {
   /// handling. Otherwise Ctrl-C ends it, and it ignores the signals that this process ignores, except SIGPIPE and
   /// SIGXFSZ.
   bool own_group = true;
-  std::string folder{};  ///< working folder; if empty, the present one
+  std::string folder{};  ///< working folder; if empty, the current one
 };
 
-/// Starts a program whose only open files are `files`, with the numbers 0, 1, 2, .... Each of `files` is above its new
-/// number. Returns the process id, for which the caller has to wait, or -1 with errno; ENOENT means no such program.
-/// For a dialogue with a program; otherwise use ChildProcess.
+/// Starts a program whose only open files are `files`, with the numbers 0, 1, 2, .... Each number in `files` must be
+/// larger than its new number. Returns the process id, for which the caller has to wait, or -1 with errno; ENOENT means
+/// no such program. Use this function for a dialogue with a program, otherwise ChildProcess.
 pid_t spawn(const Program& program, const std::vector<int>& files);
 
 /// Child process whose output is read until its end.
@@ -106,9 +105,9 @@ class ChildProcess {
   bool wait(double seconds = std::numeric_limits<double>::infinity());
 
   bool ended() const { return pid_ < 0; }
-  /// All output so far.
+  /// Returns all output so far.
   const std::string& said() const { return output_; }
-  /// Status of waitpid(); -1 if another caller has reaped the child.
+  /// Returns the status of waitpid(); -1 if another caller has reaped the child.
   int status() const { return status_; }
 
   /// Sends a signal to the child, unless it has ended.
@@ -122,7 +121,7 @@ class ChildProcess {
   void reap();
 
   pid_t pid_ = -1;
-  Descriptor pipe_;  ///< none after the end
+  Descriptor pipe_;  ///< closed after the end
   int status_ = 0;
   std::string output_;
 };

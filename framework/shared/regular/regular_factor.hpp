@@ -48,10 +48,10 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& covariance);
 /// Numerical diagnostics of the factorisations of one model, for the record. If a model is factorised again at every
 /// tap, every factorisation counts.
 struct FactorReport {
-  double jitter = 0.0;     ///< present variance on the diagonal beside the noise, in the unit of the matrix
+  double jitter = 0.0;     ///< current variance added to the diagonal besides the noise, in the unit of the matrix
   int raised = 0;          ///< number of increases of the jitter
   int pivoted = 0;         ///< number of factorisations of independent rows, because no jitter helped
-  int redundant_taps = 0;  ///< rows that are left out at present
+  int redundant_taps = 0;  ///< number of rows that are currently left out
 
   /// Adds the counts of another model of the same rows. Jitter and redundant taps become the maximum of both.
   void add(const FactorReport& other) {
