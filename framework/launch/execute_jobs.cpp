@@ -23,7 +23,7 @@ bool is_gone(const Sweep& sweep) {
 /// The state of a job.
 struct JobState {
   RunStatus::State state = RunStatus::State::absent;
-  int attempts = 0;  ///< only of a failed job
+  int attempts = 0;  ///< number of attempts of a failed job
   std::string reason;
 };
 

@@ -42,7 +42,7 @@ JobEnd attempt_job(const RunEnvironment& environment, const std::shared_ptr<RunD
     const ResolvedConfig config = load_run(environment.host, directory);
     end = Run::resume(environment, config, held, options)->run().interrupted ? JobEnd::interrupted : JobEnd::done;
   });
-  if (trouble) {  // an error ends only this job, not the sweep
+  if (trouble) {  // the error fails this job, but the sweep continues
     // Another process uses the arm. The job has not failed and stays open.
     if (trouble->kind() == Error::Kind::busy) throw *trouble;
     if (!is_there(directory / "config.yaml")) throw *trouble;

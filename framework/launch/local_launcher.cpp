@@ -59,7 +59,7 @@ JobEnd LocalLauncher::run(std::size_t job) const {
   JobEnd end = JobEnd::unrecorded;
   try {
     return run_job(order_.environment, directory_of(job), order_.options.resume);
-  } catch (const std::exception& trouble) {  // the error cannot be recorded, so that only the terminal gets it
+  } catch (const std::exception& trouble) {  // the error cannot be recorded, so it is only printed
     const auto* const error = dynamic_cast<const Error*>(&trouble);
     if (error != nullptr && error->kind() == Error::Kind::busy) end = JobEnd::blocked;
     // execute_jobs() reports a missing folder once for all jobs. fmt::print would throw if the terminal is closed.
@@ -85,7 +85,7 @@ Launcher::State LocalLauncher::poll(double seconds) {
   if (running_.empty() && later_.empty()) seconds = 0.0;
   ChildProcess::listen(processes, seconds);
   State state;
-  // The count includes jobs that have just ended, because others take their places at once.
+  // The count includes jobs that have just ended, because other jobs start at once in their place.
   state.running = static_cast<int>(running_.size());
   const auto ended =
       std::stable_partition(running_.begin(), running_.end(), [](const Running& one) { return !one.process->ended(); });
