@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Conditions on named values, such as the `where` of a sweep: taps >= 12 and (surface == two_part or not kernel ==
-// rbf).
+// Conditions on named values, such as the `where` of a sweep. Example: taps >= 12 and (surface == two_part or not
+// kernel == rbf).
 #pragma once
 
 #include "config/tree.hpp"
