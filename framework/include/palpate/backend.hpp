@@ -44,12 +44,13 @@ class Backend {
   /// known beside the place. Never called unless a person is asked; called or not, the taps are the same.
   virtual std::vector<std::string> describe(const TapRequest& /*request*/) { return {}; }
 
-  /// Something that taps have shown of the robot, one line each.
+  /// A property of the robot that taps have determined.
   struct Learnt {
-    std::string name;  ///< of the option that left it open
+    std::string name;  ///< name of the option that left the value open
     std::string value;
   };
-  /// What the taps of this process have shown of what the config left open, noted in the manifest when the run ends.
+  /// Returns the values that the config left open and that the taps of this process have determined. At the end of the
+  /// run, a line `note` of the record stores each of them.
   virtual std::vector<Learnt> learnt() const { return {}; }
 
   /// Returns the quantities of TapRequest::predicted on which taps depend, the same from birth to death: none,
