@@ -18,7 +18,7 @@ struct Installation {
   std::filesystem::path configs;
 };
 
-/// Returns the installation of the running program. Throws Error as the overload below.
+/// Returns the installation of the running program. Throws Error as the overload below does.
 Installation find_installation();
 
 /// Returns the installation of `file`, a program or a library such as the Python module: the nearest folder above it

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Finds the runs and sweeps in a folder, and the one that a user names by a directory, a folder that contains one, or a
-// name. All commands that take a run or a sweep use these functions, so all accept the same arguments.
+// Finds the runs and sweeps in a folder. Also finds the run or sweep that a user names by its directory, by a folder
+// that contains it, or by its name. All commands that take a run or a sweep use these functions, so all accept the same
+// arguments.
 #pragma once
 
 #include "config/tree.hpp"
@@ -21,8 +22,8 @@ struct Catalogue {
   int moved_aside = 0;                         ///< runs that --force moved aside: <id>.old-N
 };
 
-/// Searches `folder`, which may be a record itself. Folders that this user may not enter count as empty. Throws
-/// nothing.
+/// Searches `folder`, which may be a record itself. Folders that this user may not enter count as empty. Does not
+/// throw.
 Catalogue read_catalogue(const std::filesystem::path& folder);
 
 /// Returns the local time at which the run or sweep in `directory` was started, as 2026-11-24T23:59:28. This is the
@@ -45,9 +46,9 @@ enum class Wanted { run, sweep, any };
 /// Returns the directory of the record that `words` name. The meanings are tried in this order:
 ///
 /// 1. an existing path: a record, or a folder that contains one;
-/// 2. the name of a run, as in its config or as its folder in `runs`; also if there is a folder of that name without a
-///    record;
-/// 3. either of these followed by @latest: the record that was started last.
+/// 2. the name of a run: `name` of its config, or its folder in `runs`. A folder of this name that contains no record
+///    is ignored;
+/// 3. a path or name followed by @latest, which stands for the record that was started last.
 ///
 /// Returns a path without a record unchanged; the caller then reports what is missing there. Throws Error for an
 /// unknown name. Throws Error for several records, with the settings that distinguish the last ones.

@@ -19,7 +19,7 @@ constexpr std::size_t kMostShown = 3;
 /// Limits the work: each setting is compared over all pairs of runs, and configs may differ in 100,000 values.
 constexpr std::size_t kMostCompared = 64;
 
-/// One setting over all runs.
+/// One setting and its values in all runs.
 struct Setting {
   std::string name;                ///< "scene", "kernel.length_scale"
   std::string block;               ///< first part of the name
@@ -72,7 +72,7 @@ std::vector<Setting> differing_settings(const std::vector<RecordedSettings>& run
   for (const RecordedSettings& run : runs) configs.push_back(run.values);
   std::vector<std::string> keys = differing_keys(configs);
   keys.resize(std::min(keys.size(), kMostCompared));
-  // A key that is missing in the first runs is sorted to the other keys of its block.
+  // Place a key that the first runs lack next to the other keys of its block.
   std::map<std::string, std::size_t> order;
   for (const Row& config : configs) {
     for (const auto& field : config.fields) order.emplace(block_of(field.first), order.size());

@@ -30,7 +30,7 @@ constexpr std::array kStatistics{
     StatisticName{"p90", Statistic::quantile, 0.9},  StatisticName{"p95", Statistic::quantile, 0.95},
 };
 
-/// A key with its value; the keys of nested maps are joined.
+/// A key with its value; the keys of nested maps are joined by dots.
 struct Clause {
   std::string key;
   SourceLocation place;

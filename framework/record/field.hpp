@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Field list of a record, similar to the field list of an options struct. It defines each field once: name, unit,
+// The field list of a record, similar to the field list of an options struct. It defines each field once: name, unit,
 // meaning, better direction, and reason for a missing value. All code that writes, reads, judges, compares, draws or
 // documents the record uses this list.
 //
@@ -37,7 +37,7 @@ struct RecordField {
   RecordField& measured() { return of_machine = true, *this; }
   /// Sets the name shown on pages and in tables.
   RecordField& called(std::string words) { return label = std::move(words), *this; }
-  /// Marks a field to show where space is limited. Such fields keep the order of the list.
+  /// Marks an important field, which is shown even where space is limited. Such fields keep the order of the list.
   RecordField& headline() { return first_look = true, *this; }
 
   std::string name;     ///< dotted if nested: "compute.infer"; a family has a pattern: "height_gp.*"
@@ -101,7 +101,7 @@ class FieldList {
     return insert(RecordField(std::move(pattern), std::move(meaning)), true, std::move(write));
   }
 
-  /// Sets how the last added field is read back from a row.
+  /// Sets the function that reads the last added field back from a row.
   void read_by(std::function<void(Record&, const RowReader&)> read) { entries_.back().read = std::move(read); }
 
   /// Returns the record of a row, filled by the fields that have a `read` function. Throws Error for a damaged cell.

@@ -111,7 +111,7 @@ bool has(const BeliefState& state, const std::string& name) { return state.find(
 
 constexpr const char* kObject = "object";
 
-/// Returns the field `relabelled`, such as "5 object; 9 desk".
+/// Returns the text of the field `relabelled`, such as "5 object; 9 desk".
 std::string words(const std::vector<Relabelled>& relabelled) {
   std::string out;
   for (const Relabelled& one : relabelled)

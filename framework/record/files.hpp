@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Files that survive kills: write_file() writes a temporary file and renames it; AppendFile appends line by line. Locks
-// end with their process. Another user may have made the folders, so no function follows a link in the place of a file
-// that it writes.
+// Writes files that stay intact if the process is killed: write_file() renames a complete temporary file, and
+// AppendFile appends line by line. Also locks files; a lock ends with its process. Another user may have made the
+// folders, so no function follows a link in the place of a file that it writes.
 #pragma once
 
 #include "children/child_process.hpp"
@@ -24,9 +24,9 @@ namespace palpate {
 /// unchanged, unless only the sync of its folder failed.
 void write_file(const std::filesystem::path& file, const std::string& text, bool sync = false);
 
-/// A locked temporary file that later replaces another file. It is created empty next to that file, as NAME.<16 random
-/// hex digits>.tmp. The destructor deletes it if it was not published. After a kill, the next process that writes in
-/// the folder deletes it.
+/// A locked temporary file that publish() renames to its final name `file`. It is created empty next to `file`, as
+/// NAME.<16 random hex digits>.tmp. The destructor deletes it if it was not published. After a kill, the next process
+/// that writes in the folder deletes it.
 class TemporaryFile {
  public:
   /// Throws Error.
@@ -61,19 +61,20 @@ void refuse_link(const std::filesystem::path& path);
 /// Makes `folder` if it does not exist, and returns it. Throws Error.
 std::filesystem::path make_folder(const std::filesystem::path& folder);
 
-/// Makes `folder`, a part of a record, like make_folder(). Throws Error; also if `folder` is a link.
+/// Makes `folder`, a part of a record, like make_folder(). Throws Error, for example if `folder` is a link.
 std::filesystem::path make_inner_folder(const std::filesystem::path& folder);
 
 /// Returns the content of a file of a record. Throws Error if read_bounded() cannot read it; the Error has kind `run`
 /// if the file system fails.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes);
 
-/// Returns the same content; nullopt if is_there() is false. Files of the user and of the installation may be links.
+/// Returns the content of a file; nullopt if is_there() is false. Files of the user and of the installation may be
+/// links.
 std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t most_bytes = kMostLogBytes,
                                          Origin origin = Origin::record);
 
 /// Returns the first line of a file that grows by lines, without its line end, and reads only the beginning of the
-/// file. Returns nullopt without a file or a complete line. Throws Error as read_if_there().
+/// file. Returns nullopt without a file or a complete line. Throws Error as read_if_there() does.
 std::optional<std::string> first_line_if_there(const std::filesystem::path& file);
 
 /// The last complete line of a file that grows by lines.
@@ -85,7 +86,7 @@ struct LastLine {
 };
 
 /// Returns the last complete line and reads only the end of the file. Returns nullopt without a file. Throws Error as
-/// read_if_there().
+/// read_if_there() does.
 std::optional<LastLine> last_line_if_there(const std::filesystem::path& file);
 
 /// A file that only grows, by complete lines.
@@ -115,9 +116,9 @@ class AppendFile {
   std::optional<Error> failure_;  ///< error of an earlier call; later calls of append() throw it again
 };
 
-/// A lock of the kernel on a file. The lock ends when the process and all children forked from it while it was held
-/// have ended, however they end. Programs that they start do not inherit the lock. It also works between machines if
-/// their file system has locks (NFS; Lustre mounted with `flock`).
+/// A lock of the kernel on a file. The lock ends when the process has ended, normally or by a kill, and so have all
+/// children that were forked while it held the lock. Programs that these processes start do not inherit the lock. The
+/// lock also works between machines if their file system has locks (NFS; Lustre mounted with `flock`).
 class FileLock {
  public:
   FileLock() = default;
@@ -132,8 +133,8 @@ class FileLock {
   /// locked file under its name. The folder itself may have been moved.
   void check() const;
 
-  /// Throws Error as check(); also if the path given to the constructor no longer leads to the locked file, because
-  /// writing by path would then change other files.
+  /// Throws Error as check() does. Also throws if the path given to the constructor no longer leads to the locked file,
+  /// because writing by path would then change other files.
   void check_in_place() const;
 
   /// Returns the locked file for appending. A file opened separately would not be protected by the lock.
@@ -152,7 +153,7 @@ class FileLock {
   std::filesystem::path file_;
   Descriptor descriptor_;
   Descriptor folder_;
-  int owner_ = 0;  ///< process id
+  int owner_ = 0;  ///< id of the process that took the lock
 };
 
 /// Throws Error if the file system of the existing folder `folder` has no locks: two processes could then do the same

@@ -94,7 +94,7 @@ double statistic_of(const Expectation& one, const std::vector<double>& sorted) {
   return mean_of(sorted);
 }
 
-/// Returns " over 20 seeds"; "" unless the runs have several seeds.
+/// Returns a text such as " over 20 seeds"; "" if all runs have the same seed.
 std::string seeds_words(const std::vector<RunOutcome>& runs) {
   std::set<std::optional<std::string>> seeds;
   for (const RunOutcome& run : runs) seeds.insert(run.seed);

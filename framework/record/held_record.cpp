@@ -58,7 +58,7 @@ void HeldRecord::clear() {
 }
 
 void HeldRecord::add_manifest(const Tree& manifest, bool sync) {
-  before();  // reads the record while it is still empty
+  before();  // read the record before it has its first line
   append(to_json_line(manifest) + "\n", sync);
   begun_ = true;
 }

@@ -55,7 +55,7 @@ class HeldRecord {
   /// Appends a line whose first field is `note` with the value `kind`, followed by the fields of `note`.
   void add_note(const std::string& kind, const Row& note, bool sync);
   /// Appends the line from which all readers take the final state of the run; call this after all other writes. On
-  /// return the file system has accepted all lines.
+  /// return, the file system has accepted all lines of the record.
   void add_end(const Ending& ending, bool sync);
 
   /// Syncs the name of the record to the disk.

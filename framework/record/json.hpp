@@ -18,8 +18,8 @@
 namespace palpate {
 
 /// Returns a JSON object as a row: names of nested objects are joined by dots, lists are kept as text. Returns nullopt
-/// and sets `reason` if the text is not one valid object, has more than 4096 values or more than 100 levels, or if a
-/// joined name exceeds 1 KiB.
+/// and sets `reason` if the text is not one valid object. The limits are 4096 values, 100 levels, and 1 KiB per joined
+/// name.
 std::optional<Row> parse_json_row(const std::string& text, std::string* reason = nullptr);
 
 /// Returns the objects of a list; items that are not objects are left out.
@@ -37,7 +37,7 @@ class RowLines {
   /// Counts a line that the caller reads itself.
   void skip() { ++number_; }
   /// Returns the row of the next line. Throws Error, with file and line, if the line is not an object or is longer than
-  /// 1 MiB. Throws Error, too, after 1.1 million lines or 20 million values.
+  /// 1 MiB. Also throws Error after 1.1 million lines or 20 million values.
   Row read(const std::string& line);
 
   /// Returns "FILE:LINE" of the last line.
@@ -51,12 +51,12 @@ class RowLines {
 };
 
 /// Calls `use` with each object of a file that has one object per line. A last line without a line end was cut off by a
-/// kill and is skipped. Returns the bytes of the complete lines. Throws Error for a complete line that is not an
-/// object.
+/// kill and is skipped. Returns the number of bytes of all complete lines. Throws Error for a complete line that is not
+/// an object.
 std::uintmax_t read_json_lines(const std::filesystem::path& file, const std::function<void(Row)>& use);
 
-/// Returns the JSON object in a file of at most 64 MiB and 100 levels. It reads files written by to_json() without
-/// loss. Throws Error.
+/// Returns the JSON object in a file of at most 64 MiB and 100 levels. A file written by to_json() gives the same tree
+/// again. Throws Error.
 Tree read_json(const std::filesystem::path& file, Origin origin = Origin::record);
 
 /// Returns the JSON object in `text`, the content of `file`. Throws Error.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes closed surfaces as PLY files.
+// Converts closed surfaces to PLY files.
 #pragma once
 
 #include <palpate/surface.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The record of a run, record.jsonl: all events in their order, one JSON object per line. It only grows. The process
-// that executes the run holds it locked. The last line contains how the run ended. The first key of a line is its kind:
+// that executes the run holds it locked. The last line records how the run ended. The first key of a line is its kind:
 //
 // | first key | line |
 // |---|---|
@@ -73,7 +73,7 @@ struct RecordLine {
   LineKind kind = LineKind::other;
   Row row;                    ///< content of attempt, intent, tap, timing, note and end
   Tree tree;                  ///< content of the other kinds, which contain lists
-  std::optional<Ending> end;  ///< also for end
+  std::optional<Ending> end;  ///< parsed content of an `end`
 };
 
 /// Returns the times in a line `timing`.
@@ -119,7 +119,7 @@ struct RunRecord {
   std::optional<Tree> setup;      ///< setup of the last attempt
   std::vector<Row> taps;          ///< one row per tap
   std::optional<Row> intent;      ///< announced tap without a result
-  std::vector<TapTimes> timings;  ///< a kill may have lost some
+  std::vector<TapTimes> timings;  ///< times of the taps; a kill may have lost some
   std::vector<Row> objects, notes;
   std::optional<Ending> end;  ///< end in the last line, if it is one
 
@@ -129,7 +129,7 @@ struct RunRecord {
   bool is_failure_alone() const { return manifest && manifest->find("build") == nullptr && attempts.empty(); }
 };
 
-/// Returns the record in `directory`; an empty one if there is none. Throws Error as RecordReader.
+/// Returns the record in `directory`; an empty one if there is none. Throws Error as RecordReader does.
 RunRecord read_run_record(const std::filesystem::path& directory);
 
 /// Returns the manifest and reads no other line; nullopt if there is none. Throws Error.

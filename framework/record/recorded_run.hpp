@@ -30,8 +30,8 @@ Tree read_run_config(const std::filesystem::path& directory);
 /// The places are comments of config.yaml. Returns nothing if config.yaml cannot be read.
 std::map<std::string, std::string> recorded_origins(const std::filesystem::path& directory);
 
-/// Returns the group of this `kind` ("scene") whose file set a value at a path that begins with `path`; with several,
-/// the group of the first such value. Returns "" if there is none.
+/// Returns the group of this `kind` ("scene") that set the first of the values whose paths begin with `path`; "" if no
+/// such group set any of them. `origins` comes from recorded_origins().
 std::string recorded_group(const std::map<std::string, std::string>& origins, const std::string& path,
                            const std::string& kind);
 

@@ -263,7 +263,7 @@ std::unique_ptr<Run> Run::start(const RunEnvironment& environment, const Resolve
                                 std::vector<Observer*> observers) {
   const Stopwatch watch;
   check_who_taps(config, options.taps, "run");
-  if (is_running(directory)) FileLock{directory / kRecordFile};  // throws: busy
+  if (is_running(directory)) FileLock{directory / kRecordFile};  // throws Error of kind `busy`
   RunStatus status;
   if (const auto trouble = catch_error([&] { status = read_record(directory); })) {
     // With `force`, a record that cannot be read can still be moved aside.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Execution of a run in its directory, from its config to its summary.
+// Executes a run in its directory, from its config to its summary.
 #pragma once
 
 #include "experiment/experiment.hpp"
@@ -32,10 +32,10 @@ struct RunEnvironment {
 
 /// The backend of a run whose taps are made by a calling program.
 inline constexpr const char* kCaller = "caller";
-/// Who makes the taps of a run.
+/// The maker of the taps of a run: its backend, or the calling program.
 enum class Taps { by_backend, by_caller };
 
-/// Names of files that were missing in the directory of an ended run.
+/// The files that were missing in the directory of an ended run, by name.
 struct Restored {
   std::vector<std::string> made;  ///< files made again, byte for byte
   std::vector<std::string> lost;  ///< files not made again, because this build makes different ones from the same taps
@@ -46,8 +46,8 @@ struct RunReport {
   std::filesystem::path directory;
   bool already_done = false;  ///< nothing was run: the directory held the finished run
   bool interrupted = false;   ///< the run can be resumed and has no summary
-  Row summary;                ///< the fields of summary.json
-  Restored restored{};        ///< for a finished run
+  Row summary;                ///< all fields of summary.json
+  Restored restored{};        ///< files of a finished run that were restored or lost
 };
 
 struct StartOptions {
@@ -69,8 +69,8 @@ class Run {
  public:
   /// Starts `config` in `directory`. `observers`, which must outlive the run, are called after each tap is recorded. If
   /// the directory holds the same run, finished by the same build, nothing is run: see is_finished(). Throws Error if
-  /// it holds a failed or interrupted run, or one of another build; with `force` the old directory is moved to
-  /// <id>.old-N instead.
+  /// the directory holds a failed or interrupted run, or a run of another build. With `force` the old directory is
+  /// moved to <id>.old-N instead.
   static std::unique_ptr<Run> start(const RunEnvironment& environment, const ResolvedConfig& config,
                                     const std::filesystem::path& directory, const StartOptions& options,
                                     std::vector<Observer*> observers = {});
@@ -108,7 +108,8 @@ class Run {
   bool is_finished() const { return report_.has_value(); }
 
   /// Returns a belief with the current arrays of these quantities. This is the belief of the run if its readers already
-  /// use them; else the belief of a copy with the same taps, so that the call does not change the record.
+  /// use these quantities. Otherwise it is the belief of a copy with the same taps, so that the call does not change
+  /// the record.
   Belief& look(const QuantitySet& quantities);
 
   /// Do not call this for a run that was finished before.

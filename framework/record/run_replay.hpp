@@ -47,7 +47,7 @@ class RunReplay {
   /// false if no tap is chosen.
   bool run_next(Observer& observer);
 
-  /// Returns the result after the taps processed so far. If truth_lost(), its errors are the recorded ones.
+  /// Returns the result after the taps processed so far. If the truth is lost, the result contains the recorded errors.
   RunResult result();
 
   /// Returns the experiment after the taps processed so far. Do not call its run().
@@ -77,8 +77,8 @@ struct Difference {
 
 struct ReplayReport {
   int taps = 0;
-  int numbers = 0;  ///< number of values compared
-  /// Reason why numbers that need the truth are left out, if they are: see RunReplay::truth_lost().
+  int numbers = 0;  ///< number of compared values
+  /// Reason why numbers that need the truth are not compared; nullopt if they are. See RunReplay::truth_lost().
   std::optional<Error> truth_lost;
   std::vector<Difference> differences;
 };
@@ -90,7 +90,7 @@ ReplayReport replay_run(const RunEnvironment& environment, const std::filesystem
 /// Returns the summaries that a successful run would have had after each of its taps except the last. Each equals the
 /// summary of a run with that budget in all fields that depend only on the config, because choices do not depend on the
 /// budget. There is one exception: the engines are those that `engine: {type: auto}` chose for the full budget. Where
-/// it would choose another engine for a smaller budget, numbers may differ within `belief.engine.accuracy`. Throws
+/// `auto` would choose another engine for a smaller budget, numbers may differ within `belief.engine.accuracy`. Throws
 /// Error if the run knew the truth and the truth is lost.
 ///
 /// Measured fields are estimates: `compute.*` are sums of the recorded times so far. `wall_seconds` and

@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// Measures wall time, and CPU time of the current thread, since the construction of the stopwatch.
+/// Measures the wall time and the CPU time of the current thread since the construction of the stopwatch.
 class Stopwatch {
  public:
   Stopwatch();
